@@ -1,0 +1,194 @@
+//! The road users of one step, as columns, and the roster that says who they are.
+//!
+//! A [`Roster`] holds what does not change while a road user is in the scene (id, type, size, brakes); a [`Frame`]
+//! holds what changes in every step. Both are filled by whoever has the data (the bridge from libsumo, replay
+//! from a file, a caller from arrays) and only read by the detector.
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+
+use crate::geometry::polygon::Polygon;
+use crate::profile::{Category, Profile};
+use crate::units::{Metre, MetrePerSecond, Radian, Second};
+use crate::{Error, Result};
+
+/// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
+pub const SUMO_INVALID: f64 = -1_073_741_824.0;
+
+/// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct UserIndex(pub u32);
+
+/// Which [`Profile`] of a [`Roster`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ProfileIndex(pub u32);
+
+/// One road user's unchanging part.
+#[derive(Clone, Debug)]
+pub struct RoadUser {
+    /// SUMO's id.
+    pub id: Arc<str>,
+    /// Its type.
+    pub profile: ProfileIndex,
+    /// The shape of an obstacle, in convex parts; empty for all others.
+    pub shape: Arc<[Polygon]>,
+}
+
+/// Everybody in the scene, by [`UserIndex`].
+#[derive(Clone, Debug, Default)]
+pub struct Roster {
+    users: Vec<RoadUser>,
+    profiles: Vec<Profile>,
+    free: Vec<u32>,
+    by_name: FxHashMap<String, ProfileIndex>,
+}
+
+impl Roster {
+    /// Adds a type, or finds it by its name.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
+    pub fn profile(&mut self, profile: Profile) -> Result<ProfileIndex> {
+        if let Some(&known) = self.by_name.get(&profile.name) {
+            return Ok(known);
+        }
+        let checks = [
+            ("length", profile.length, false),
+            ("width", profile.width, false),
+            ("mass", profile.mass, true),
+            ("deceleration", profile.brakes.deceleration, profile.category == Category::Vehicle),
+            ("response time", profile.brakes.response, false),
+            ("build-up time", profile.brakes.build_up, false),
+        ];
+        for (what, value, must_be_positive) in checks {
+            let bad = !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0);
+            if bad {
+                let wanted = if must_be_positive { "above 0" } else { "0 or more" };
+                return Err(Error::Value(format!(
+                    "type \"{}\": {what} is {value}, it must be finite and {wanted}",
+                    profile.name
+                )));
+            }
+        }
+        let index = ProfileIndex(self.profiles.len() as u32);
+        self.by_name.insert(profile.name.clone(), index);
+        self.profiles.push(profile);
+        Ok(index)
+    }
+
+    /// The type that was added under this name.
+    pub fn profile_named(&self, name: &str) -> Option<ProfileIndex> {
+        self.by_name.get(name).copied()
+    }
+
+    /// Takes a road user into the scene.
+    pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
+        self.enter_shaped(id, profile, Arc::new([]))
+    }
+
+    /// Takes an obstacle with a polygon for a shape into the scene.
+    pub fn enter_shaped(&mut self, id: &str, profile: ProfileIndex, shape: Arc<[Polygon]>) -> UserIndex {
+        let user = RoadUser { id: id.into(), profile, shape };
+        match self.free.pop() {
+            Some(index) => {
+                self.users[index as usize] = user;
+                UserIndex(index)
+            }
+            None => {
+                self.users.push(user);
+                UserIndex(self.users.len() as u32 - 1)
+            }
+        }
+    }
+
+    /// Lets a road user leave; its index may be given to another from now on.
+    pub fn leave(&mut self, user: UserIndex) {
+        self.free.push(user.0);
+    }
+
+    /// Who this is.
+    pub fn user(&self, user: UserIndex) -> &RoadUser {
+        &self.users[user.0 as usize]
+    }
+
+    /// The type of this road user.
+    pub fn profile_of(&self, user: UserIndex) -> &Profile {
+        &self.profiles[self.users[user.0 as usize].profile.0 as usize]
+    }
+
+    /// The number of indices in use or free: one more than the largest [`UserIndex`].
+    pub fn len(&self) -> usize {
+        self.users.len()
+    }
+
+    /// Whether nobody was ever in the scene.
+    pub fn is_empty(&self) -> bool {
+        self.users.is_empty()
+    }
+}
+
+/// A road user's changing part, as it goes into a [`Frame`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct State {
+    /// Front-bumper centre (SUMO's reference point), x in m; an obstacle's is not used.
+    pub x: Metre,
+    /// Front-bumper centre, y in m.
+    pub y: Metre,
+    /// Height in m.
+    pub z: Metre,
+    /// Direction from the rear to the front bumper, in rad counter-clockwise from +x.
+    pub heading: Radian,
+    /// Speed in m/s, 0 or more.
+    pub speed: MetrePerSecond,
+}
+
+/// The road users of one step: one row each, one column per quantity.
+#[derive(Clone, Debug, Default)]
+pub struct Frame {
+    /// Simulated time in s.
+    pub time: Second,
+    users: Vec<UserIndex>,
+    states: Vec<State>,
+}
+
+impl Frame {
+    /// Empties the frame for the step at `time`; its memory is kept.
+    pub fn begin(&mut self, time: Second) {
+        self.time = time;
+        self.users.clear();
+        self.states.clear();
+    }
+
+    /// Adds a road user's row. What has no valid position (SUMO's invalid value, NaN, infinities) or no valid
+    /// speed is no road user in this step: it is left out, and `false` returned.
+    pub fn push(&mut self, user: UserIndex, state: State) -> bool {
+        let State { x, y, z, heading, speed } = state;
+        let valid = (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0;
+        if valid {
+            self.users.push(user);
+            self.states.push(state);
+        }
+        valid
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.users.len()
+    }
+
+    /// Whether nobody is in the scene.
+    pub fn is_empty(&self) -> bool {
+        self.users.is_empty()
+    }
+
+    /// Who stands in each row.
+    pub fn users(&self) -> &[UserIndex] {
+        &self.users
+    }
+
+    /// The state in each row.
+    pub fn states(&self) -> &[State] {
+        &self.states
+    }
+}

@@ -1,0 +1,3 @@
+//! Rectangles, polygons, and where moving ones touch.
+
+pub mod polygon;

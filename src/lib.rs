@@ -1,0 +1,20 @@
+//! # closecall
+//!
+//! Who comes closer than they can safely be? Road users come in as [`frame::Frame`]s, one per step; the
+//! [`detector::Detector`] finds the pairs that would meet and measures each against the minimal collision distance μ
+//! ([`braking`]): first cheaply, over circles ([`precollision`]), then accurately, along the [`path`]s of both
+//! ([`accurate`]). What stays in conflict over several steps becomes one [`conflict::Conflict`], a row of the [`log`].
+
+pub mod braking;
+pub mod detector;
+pub mod encounter;
+mod error;
+pub mod frame;
+pub mod geometry;
+pub mod net;
+pub mod options;
+pub mod profile;
+pub mod run;
+pub mod units;
+
+pub use error::{Error, Result};

@@ -1,0 +1,118 @@
+//! What all road users of one type have in common, from what SUMO says of the type and what the options set.
+
+use crate::braking::Brakes;
+use crate::options::{BrakeSystem, Deceleration, Options};
+use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
+
+/// What sort of road user it is, as far as the model distinguishes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Category {
+    /// A vehicle (bicycles too): it brakes as its [`Brakes`] say.
+    Vehicle,
+    /// A person on foot: stops within a step. Two persons are no pair.
+    Person,
+    /// A static obstacle with a polygon for a shape and no heading of its own.
+    Obstacle,
+}
+
+/// What all road users of one type have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// SUMO's type id.
+    pub name: String,
+    /// Vehicle, person or obstacle.
+    pub category: Category,
+    /// Length in m, from front to rear bumper.
+    pub length: Metre,
+    /// Width in m.
+    pub width: Metre,
+    /// Mass in kg.
+    pub mass: Kilogram,
+    /// How it brakes.
+    pub brakes: Brakes,
+}
+
+/// What SUMO says of a vehicle or person type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SumoType {
+    /// The type's id.
+    pub name: String,
+    /// SUMO's `vClass`.
+    pub vehicle_class: String,
+    /// Length in m.
+    pub length: Metre,
+    /// Width in m.
+    pub width: Metre,
+    /// Mass in kg.
+    pub mass: Kilogram,
+    /// `emergencyDecel` in m/s².
+    pub emergency_decel: MetrePerSecondSquared,
+    /// `decel` in m/s².
+    pub decel: MetrePerSecondSquared,
+}
+
+/// Classes whose vehicles have air brakes.
+const PNEUMATIC_CLASSES: [&str; 6] = ["truck", "trailer", "bus", "coach", "army", "delivery_truck"];
+
+/// A person's deceleration as a multiple of speed is not known to SUMO; this one stands within centimetres.
+const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
+
+impl Profile {
+    /// The profile of a vehicle type: `[type.NAME]` first, then the general settings, then SUMO.
+    pub fn vehicle(sumo: &SumoType, options: &Options) -> Self {
+        let set = options.types.get(&sumo.name).cloned().unwrap_or_default();
+        let system = set.brakes.unwrap_or_else(|| {
+            if PNEUMATIC_CLASSES.contains(&sumo.vehicle_class.as_str()) {
+                BrakeSystem::Pneumatic
+            } else {
+                BrakeSystem::Hydraulic
+            }
+        });
+        let delay = set.brake_delay.unwrap_or(match system {
+            BrakeSystem::Hydraulic => options.hydraulic_delay,
+            BrakeSystem::Pneumatic => options.pneumatic_delay,
+        });
+        let deceleration = set.decel.unwrap_or(match options.decel {
+            Deceleration::Emergency => sumo.emergency_decel,
+            Deceleration::Decel => sumo.decel,
+        });
+        Self {
+            name: sumo.name.clone(),
+            category: Category::Vehicle,
+            length: set.length.unwrap_or(sumo.length),
+            width: set.width.unwrap_or(sumo.width),
+            mass: set.mass.unwrap_or(sumo.mass),
+            brakes: Brakes {
+                response: set.response_time.unwrap_or(options.response_time) + delay,
+                build_up: set.build_up.unwrap_or(options.build_up),
+                deceleration,
+            },
+        }
+    }
+
+    /// The profile of a person type: it stops within a step of `step_length` s.
+    pub fn person(sumo: &SumoType, options: &Options, step_length: Second) -> Self {
+        let set = options.types.get(&sumo.name).cloned().unwrap_or_default();
+        let _ = step_length;
+        Self {
+            name: sumo.name.clone(),
+            category: Category::Person,
+            length: set.length.unwrap_or(sumo.length),
+            width: set.width.unwrap_or(sumo.width),
+            mass: set.mass.unwrap_or(sumo.mass),
+            brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: PERSON_DECELERATION },
+        }
+    }
+
+    /// The profile of all polygons of one type: they do not move.
+    pub fn obstacle(polygon_type: &str) -> Self {
+        Self {
+            name: format!("polygon:{polygon_type}"),
+            category: Category::Obstacle,
+            length: 0.0,
+            width: 0.0,
+            mass: f64::MAX,
+            brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },
+        }
+    }
+}

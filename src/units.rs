@@ -1,0 +1,14 @@
+//! Units as types: every quantity is an `f64` in SI units, and its alias says which.
+
+/// A length, way or distance in m.
+pub type Metre = f64;
+/// A point in time or a duration in s.
+pub type Second = f64;
+/// A speed in m/s.
+pub type MetrePerSecond = f64;
+/// A deceleration or acceleration in m/s².
+pub type MetrePerSecondSquared = f64;
+/// An angle in rad, counter-clockwise from +x.
+pub type Radian = f64;
+/// A mass in kg.
+pub type Kilogram = f64;
