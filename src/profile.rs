@@ -54,7 +54,7 @@ pub struct SumoType {
 /// Classes whose vehicles have air brakes.
 const PNEUMATIC_CLASSES: [&str; 6] = ["truck", "trailer", "bus", "coach", "army", "delivery_truck"];
 
-/// A person's deceleration as a multiple of speed is not known to SUMO; this one stands within centimetres.
+/// A person walks on for the step under way and then stands: with this deceleration within millimetres.
 const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
 
 impl Profile {
@@ -93,14 +93,13 @@ impl Profile {
     /// The profile of a person type: it stops within a step of `step_length` s.
     pub fn person(sumo: &SumoType, options: &Options, step_length: Second) -> Self {
         let set = options.types.get(&sumo.name).cloned().unwrap_or_default();
-        let _ = step_length;
         Self {
             name: sumo.name.clone(),
             category: Category::Person,
             length: set.length.unwrap_or(sumo.length),
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or(sumo.mass),
-            brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: PERSON_DECELERATION },
+            brakes: Brakes { response: step_length, build_up: 0.0, deceleration: PERSON_DECELERATION },
         }
     }
 
