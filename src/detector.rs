@@ -4,34 +4,485 @@
 
 use std::sync::Arc;
 
-use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, Roster};
+use crate::accurate::{self, Meeting, Mover, OneDimension, side};
+use crate::approach::{self, Course};
+use crate::braking::{self, stopping_distance};
+use crate::encounter::{Encounter, Nearness, Placement};
+use crate::frame::{Frame, Roster, State, UserIndex};
+use crate::geometry::outline::Outline;
+use crate::geometry::rectangle::{self, Rectangle, direction};
+use crate::geometry::{Bounds, Point, Vector};
+use crate::measures;
 use crate::net::Net;
-use crate::options::Options;
+use crate::options::{Mode, Options, PathModel};
+use crate::path::lanes::{LanePath, Start};
+use crate::path::{Pose, arc, straight, turn};
+use crate::precollision::{Circle, Search};
+use crate::profile::{Category, Profile};
+use crate::units::Metre;
+
+/// Two road users further apart in height than this are no pair, in m: one is on a bridge.
+pub const LEVEL: Metre = 2.5;
+/// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
+const STANDS: f64 = 0.0;
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
+    options: Options,
+    net: Option<Arc<Net>>,
+    routes_may_change: bool,
+    search: Search,
+    memory: Vec<Memory>,
+    circles: Vec<Circle>,
+    rows: Vec<Row>,
+    pairs: Vec<(u32, u32)>,
     unplaced: Vec<u32>,
+    poses: Vec<Pose>,
+    scratch: [Vec<Pose>; 2],
     encounters: Vec<Encounter>,
+}
+
+/// What is remembered of a road user from step to step.
+#[derive(Clone, Debug, Default)]
+struct Memory {
+    path: LanePath,
+    last: Option<(Point, Vector)>,
+    curvature: f64,
+}
+
+/// What is known of a frame's row in the step under way.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    axis: Vector,
+    stop: Metre,
+    in_pair: bool,
+    on_lanes: bool,
+    poses: (u32, u32),
+    straight: bool,
+    bounds: Bounds,
 }
 
 impl Detector {
     /// A detector for a scene; without a net every path is straight (or an arc, if so chosen).
-    pub fn new(_options: &Options, _net: Option<Arc<Net>>) -> Self {
-        todo!()
+    pub fn new(options: &Options, net: Option<Arc<Net>>) -> Self {
+        Self {
+            options: options.clone(),
+            net,
+            routes_may_change: true,
+            search: Search::default(),
+            memory: Vec::new(),
+            circles: Vec::new(),
+            rows: Vec::new(),
+            pairs: Vec::new(),
+            unplaced: Vec::new(),
+            poses: Vec::new(),
+            scratch: [Vec::new(), Vec::new()],
+            encounters: Vec::new(),
+        }
+    }
+
+    /// Says that no road user's route changes while it is in the scene, so that a path once laid holds until the road
+    /// user leaves it.
+    pub fn routes_are_fixed(&mut self) {
+        self.routes_may_change = false;
+    }
+
+    /// Forgets a road user that has left the scene: its index may be given to another.
+    pub fn forget(&mut self, user: UserIndex) {
+        if let Some(memory) = self.memory.get_mut(user.0 as usize) {
+            memory.path.clear();
+            memory.last = None;
+            memory.curvature = 0.0;
+        }
     }
 
     /// Phase 1: which pairs may meet. Returns the frame's rows whose lane the detector has to know for phase 2;
     /// the caller says it with [`Detector::place`], and leaves out whom it cannot place.
-    pub fn approach(&mut self, _frame: &Frame, _roster: &Roster) -> &[u32] {
+    pub fn approach(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
+        if self.memory.len() < roster.len() {
+            self.memory.resize(roster.len(), Memory::default());
+        }
+        self.look(frame, roster);
+        self.search.pairs(&self.circles, &mut self.pairs);
+        let states = frame.states();
+        self.pairs.retain(|&(a, b)| {
+            let (a, b) = (a as usize, b as usize);
+            let moves = states[a].speed > STANDS || states[b].speed > STANDS;
+            let same_level = (states[a].z - states[b].z).abs() <= LEVEL;
+            let categories = (category(roster, frame, a), category(roster, frame, b));
+            moves && same_level && categories != (Category::Person, Category::Person)
+        });
+        self.unplaced.clear();
+        for index in 0..self.pairs.len() {
+            for row in [self.pairs[index].0, self.pairs[index].1] {
+                if !std::mem::replace(&mut self.rows[row as usize].in_pair, true) {
+                    self.follow(frame, roster, row);
+                }
+            }
+        }
         &self.unplaced
     }
 
-    /// Where the road user of a row is on the net.
-    pub fn place(&mut self, _row: u32, _placement: Placement) {}
+    /// Every row's circle and what else follows from its state alone.
+    fn look(&mut self, frame: &Frame, roster: &Roster) {
+        self.circles.clear();
+        self.rows.clear();
+        let arcs = self.options.path == PathModel::Arc;
+        for (&user, state) in frame.users().iter().zip(frame.states()) {
+            let profile = roster.profile_of(user);
+            let axis = direction(state.heading);
+            let front = Point::new(state.x, state.y);
+            let stop = if state.speed > STANDS { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
+            self.circles.push(circle(roster, user, profile, front, axis, stop + self.options.epsilon));
+            self.rows.push(Row {
+                axis,
+                stop,
+                in_pair: false,
+                on_lanes: false,
+                poses: (0, 0),
+                straight: false,
+                bounds: Bounds::EMPTY,
+            });
+            if arcs {
+                let memory = &mut self.memory[user.0 as usize];
+                if let Some((last, last_axis)) = memory.last {
+                    memory.curvature = arc::curvature(turn(&last_axis, &axis), (front - last).norm());
+                }
+                memory.last = Some((front, axis));
+            }
+        }
+    }
 
-    /// Phase 2: the pairs that would meet, in the order of their ids.
-    pub fn detect(&mut self, _frame: &Frame, _roster: &Roster) -> &[Encounter] {
+    /// Follows a row's path along the lanes, or asks for its lane.
+    fn follow(&mut self, frame: &Frame, roster: &Roster, row: u32) {
+        let state = &frame.states()[row as usize];
+        let by_lanes = self.options.path == PathModel::Lanes && self.options.mode == Mode::Closecall;
+        let moving_vehicle =
+            state.speed > STANDS && category(roster, frame, row as usize) == Category::Vehicle && by_lanes;
+        if !moving_vehicle || self.net.is_none() {
+            return;
+        }
+        let memory = &mut self.memory[frame.users()[row as usize].0 as usize];
+        self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
+        if self.routes_may_change || !self.rows[row as usize].on_lanes {
+            self.unplaced.push(row);
+        }
+    }
+
+    /// Where the road user of a row is on the net.
+    pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
+        let Some(net) = &self.net else { return };
+        let user = frame.users()[row as usize];
+        let memory = &mut self.memory[user.0 as usize];
+        if self.rows[row as usize].on_lanes && memory.path.is_for(&placement.route) {
+            return;
+        }
+        let state = &frame.states()[row as usize];
+        let start = Start {
+            front: Point::new(state.x, state.y),
+            axis: self.rows[row as usize].axis,
+            length: roster.profile_of(user).length,
+            speed: state.speed,
+        };
+        memory.path.lay(net, &start, placement);
+        self.rows[row as usize].on_lanes = memory.path.track.is_laid();
+    }
+
+    /// Phase 2: the pairs that would meet, in the order of the frame's rows.
+    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> &[Encounter] {
+        self.encounters.clear();
+        self.poses.clear();
+        for row in 0..self.rows.len() {
+            if self.rows[row].in_pair {
+                self.lay_poses(frame, roster, row);
+            }
+        }
+        let pairs = std::mem::take(&mut self.pairs);
+        for &(a, b) in &pairs {
+            let met = match self.options.mode {
+                Mode::Closecall => self.meet(frame, roster, a, b),
+                Mode::Paper => self.meet_on_paper(frame, roster, a, b),
+            };
+            self.encounters.extend(met);
+        }
+        self.pairs = pairs;
         &self.encounters
     }
+
+    /// A row's poses until it stands and ε further.
+    fn lay_poses(&mut self, frame: &Frame, roster: &Roster, row: usize) {
+        let user = frame.users()[row];
+        let profile = roster.profile_of(user);
+        let stop = self.rows[row].stop;
+        let start = self.poses.len();
+        let ways = [stop, stop + self.options.epsilon];
+        let mut poses = std::mem::take(&mut self.poses);
+        self.course(frame, roster, row, &ways, false, &mut poses);
+        self.poses = poses;
+        let laid = &self.poses[start..];
+        let axis = laid.first().map_or(self.rows[row].axis, |pose| pose.axis);
+        let row = &mut self.rows[row];
+        row.poses = (start as u32, self.poses.len() as u32);
+        row.straight = laid.iter().all(|pose| pose.axis == axis);
+        row.bounds = Bounds::EMPTY;
+        if profile.category == Category::Obstacle {
+            for part in roster.user(user).shape.iter() {
+                row.bounds.join(&part.bounds);
+            }
+        }
+        for pose in laid {
+            row.bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
+        }
+        row.bounds = row.bounds.grown(crate::geometry::sweep::TOLERANCE);
+    }
+
+    /// Poses of a row at the given ways, and between.
+    fn course(
+        &mut self,
+        frame: &Frame,
+        roster: &Roster,
+        row: usize,
+        ways: &[Metre],
+        beyond: bool,
+        poses: &mut Vec<Pose>,
+    ) {
+        let user = frame.users()[row];
+        let profile = roster.profile_of(user);
+        let State { x, y, .. } = frame.states()[row];
+        let (front, axis) = (Point::new(x, y), self.rows[row].axis);
+        let memory = &mut self.memory[user.0 as usize];
+        if profile.category == Category::Obstacle {
+            return;
+        }
+        if self.rows[row].on_lanes
+            && let Some(net) = &self.net
+        {
+            let furthest = ways.last().copied().unwrap_or(0.0);
+            memory.path.reach(net, profile.length, furthest);
+            memory.path.track.poses(axis, profile.length, ways, beyond, poses);
+            return;
+        }
+        poses.push(Pose { way: 0.0, front, axis });
+        let ways = ways.iter().copied().skip_while(|way| *way <= 0.0).collect::<Vec<_>>();
+        if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
+            arc::poses(front, axis, memory.curvature, profile.length, &ways, poses);
+        } else {
+            straight::poses(front, axis, &ways, poses);
+        }
+    }
+
+    fn mover<'a>(&'a self, frame: &Frame, roster: &'a Roster, row: u32) -> Mover<'a> {
+        let (index, row) = (row as usize, &self.rows[row as usize]);
+        let user = frame.users()[index];
+        let profile = roster.profile_of(user);
+        let state = &frame.states()[index];
+        Mover {
+            rectangle: Rectangle::behind(Point::new(state.x, state.y), row.axis, profile.length, profile.width),
+            shape: &roster.user(user).shape,
+            poses: &self.poses[row.poses.0 as usize..row.poses.1 as usize],
+            straight: row.straight,
+            bounds: row.bounds,
+            speed: state.speed,
+            brakes: &profile.brakes,
+            stop: row.stop,
+        }
+    }
+
+    fn meet(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
+        if !self.rows[a as usize].bounds.meet(&self.rows[b as usize].bounds) {
+            return None;
+        }
+        let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
+        let (first, second, a, b) = if first.shape.is_empty() { (first, second, a, b) } else { (second, first, b, a) };
+        let a_is_smaller = || roster.user(frame.users()[a as usize]).id <= roster.user(frame.users()[b as usize]).id;
+        if side::touch_now(&first, &second) {
+            let ego_is_a = !second.shape.is_empty() || a_is_smaller();
+            let (ego, foe) = if ego_is_a { (&first, &second) } else { (&second, &first) };
+            let foe_axis = foe.shape.is_empty().then_some(foe.rectangle.axis);
+            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: ego.rectangle, foe_axis, leads: true };
+            let rows = if ego_is_a { (a, b) } else { (b, a) };
+            return Some(self.measure(frame, roster, rows, &meeting, true));
+        }
+        let (ego_is_a, meeting) = match accurate::in_one_dimension(&first, &second) {
+            OneDimension::Apart => return None,
+            OneDimension::Meet(ego_is_a, meeting) if meeting.ego_way == meeting.foe_way => {
+                (ego_is_a && a_is_smaller(), meeting)
+            }
+            OneDimension::Meet(ego_is_a, meeting) => (ego_is_a, meeting),
+            OneDimension::Unfit => {
+                let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
+                match (as_ego(&first, &second), as_ego(&second, &first)) {
+                    (None, None) => return None,
+                    (Some(meeting), None) => (true, meeting),
+                    (None, Some(meeting)) => (false, meeting),
+                    (Some(x), Some(y)) if x.ego_way > y.ego_way => (true, x),
+                    (Some(x), Some(y)) if x.ego_way < y.ego_way => (false, y),
+                    (Some(x), Some(y)) => {
+                        if a_is_smaller() {
+                            (true, x)
+                        } else {
+                            (false, y)
+                        }
+                    }
+                }
+            }
+        };
+        let rows = if ego_is_a { (a, b) } else { (b, a) };
+        Some(self.measure(frame, roster, rows, &meeting, false))
+    }
+
+    /// Gap, μ and margin of a pair that would meet; for a pair in conflict also how near it is.
+    fn measure(
+        &mut self,
+        frame: &Frame,
+        roster: &Roster,
+        (ego_row, foe_row): (u32, u32),
+        meeting: &Meeting,
+        collision: bool,
+    ) -> Encounter {
+        let angle = meeting.angle();
+        let sigma = angle.cos();
+        let foe_way = match meeting.foe_axis {
+            Some(_) if sigma > 0.0 && !meeting.leads => self.way_out(frame, roster, foe_row, meeting),
+            _ => meeting.foe_way,
+        };
+        let (ego, foe) = (self.mover(frame, roster, ego_row), self.mover(frame, roster, foe_row));
+        let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, foe_way, sigma) };
+        let mu = accurate::mu(self.options.mu, &ego, &foe, sigma, self.options.epsilon);
+        let place = meeting.place();
+        let ego_user = frame.users()[ego_row as usize];
+        let lane = if self.rows[ego_row as usize].on_lanes {
+            self.memory[ego_user.0 as usize].path.lane_at(meeting.ego_way)
+        } else {
+            None
+        };
+        let mut encounter = Encounter {
+            ego: ego_user,
+            foe: frame.users()[foe_row as usize],
+            ego_row,
+            foe_row,
+            kind: accurate::kind_at(angle, &self.options),
+            angle,
+            gap,
+            mu,
+            margin: gap - mu,
+            ego_way: meeting.ego_way,
+            foe_way,
+            x: place.x,
+            y: place.y,
+            lane,
+            collision,
+            nearness: None,
+        };
+        if encounter.in_conflict() {
+            encounter.nearness = Some(self.nearness(frame, roster, &encounter, meeting));
+        }
+        encounter
+    }
+
+    /// The foe's way until it has left the ego's meeting place.
+    fn way_out(&mut self, frame: &Frame, roster: &Roster, foe_row: u32, meeting: &Meeting) -> Metre {
+        let profile = roster.profile_of(frame.users()[foe_row as usize]);
+        // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
+        let way =
+            meeting.foe_way + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width;
+        let mut poses = std::mem::take(&mut self.scratch[0]);
+        poses.clear();
+        self.course(frame, roster, foe_row as usize, &[way], true, &mut poses);
+        let foe = self.mover(frame, roster, foe_row);
+        let out = side::departure(&poses, &foe, &meeting.ego, meeting.foe_way);
+        self.scratch[0] = poses;
+        out
+    }
+
+    fn nearness(&mut self, frame: &Frame, roster: &Roster, encounter: &Encounter, meeting: &Meeting) -> Nearness {
+        let (ego_row, foe_row) = (encounter.ego_row, encounter.foe_row);
+        let ttc = self.time_to_collision(frame, roster, ego_row, foe_row, encounter.collision);
+        let ego = self.mover(frame, roster, ego_row);
+        let foe = self.mover(frame, roster, foe_row);
+        let clearance = if encounter.collision {
+            0.0
+        } else if foe.shape.is_empty() {
+            rectangle::distance(&ego.rectangle, &foe.rectangle)
+        } else {
+            crate::geometry::polygon::distance(foe.shape, &ego.rectangle)
+        };
+        let drac = ttc.and_then(|_| measures::drac(encounter, ego.speed, foe.speed, meeting));
+        let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, &self.options);
+        Nearness { clearance, ttc, drac, severity }
+    }
+
+    fn time_to_collision(
+        &mut self,
+        frame: &Frame,
+        roster: &Roster,
+        ego_row: u32,
+        foe_row: u32,
+        collision: bool,
+    ) -> Option<f64> {
+        if collision {
+            return Some(0.0);
+        }
+        let mut poses = std::mem::take(&mut self.scratch);
+        for (row, poses) in [ego_row, foe_row].into_iter().zip(&mut poses) {
+            poses.clear();
+            let way = frame.states()[row as usize].speed * approach::HORIZON;
+            self.course(frame, roster, row as usize, &[way], true, poses);
+        }
+        let course = |row: u32, poses| {
+            let profile = roster.profile_of(frame.users()[row as usize]);
+            let speed = frame.states()[row as usize].speed;
+            Course { poses, speed, length: profile.length, width: profile.width }
+        };
+        let (ego, foe) = (course(ego_row, &poses[0]), course(foe_row, &poses[1]));
+        let shape = &roster.user(frame.users()[foe_row as usize]).shape;
+        let ttc = if shape.is_empty() {
+            approach::time_to_collision(&ego, &foe)
+        } else {
+            let outlines = shape.iter().map(|part| part.outline).collect::<Vec<Outline>>();
+            approach::time_to_fixed(&ego, &outlines)
+        };
+        self.scratch = poses;
+        ttc
+    }
+
+    fn meet_on_paper(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
+        let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
+        if !first.shape.is_empty() || !second.shape.is_empty() {
+            return None;
+        }
+        let found = accurate::paper::measure(&first, &second, &self.options);
+        let (ego, foe) = if found.ego_is_a { (&first, &second) } else { (&second, &first) };
+        let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
+        let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
+        // Eq. 4: the ego's detection radius reaches the foe's front.
+        if between - foe.rectangle.half_length > radius || !found.distance.is_finite() {
+            return None;
+        }
+        let collision = rectangle::touches(&ego.rectangle, &foe.rectangle);
+        let rows = if found.ego_is_a { (a, b) } else { (b, a) };
+        let mut encounter = self.measure(frame, roster, rows, &found.meeting, collision);
+        encounter.kind = found.kind;
+        encounter.gap = found.distance;
+        encounter.margin = encounter.gap - encounter.mu;
+        Some(encounter)
+    }
+}
+
+fn category(roster: &Roster, frame: &Frame, row: usize) -> Category {
+    roster.profile_of(frame.users()[row]).category
+}
+
+/// The circle that holds all that a road user may cover within `reach` m of way.
+fn circle(roster: &Roster, user: UserIndex, profile: &Profile, front: Point, axis: Vector, reach: Metre) -> Circle {
+    if profile.category == Category::Obstacle {
+        let mut bounds = Bounds::EMPTY;
+        for part in roster.user(user).shape.iter() {
+            bounds.join(&part.bounds);
+        }
+        let centre = nalgebra::center(&bounds.low, &bounds.high);
+        return Circle { x: centre.x, y: centre.y, radius: (bounds.high - bounds.low).norm() / 2.0 };
+    }
+    let centre = front - axis * (profile.length / 2.0);
+    Circle { x: centre.x, y: centre.y, radius: reach + profile.length.hypot(profile.width) / 2.0 }
 }

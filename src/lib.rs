@@ -5,14 +5,19 @@
 //! ([`braking`]): first cheaply, over circles ([`precollision`]), then accurately, along the [`path`]s of both
 //! ([`accurate`]). What stays in conflict over several steps becomes one [`conflict::Conflict`], a row of the [`log`].
 
+pub mod accurate;
+pub mod approach;
 pub mod braking;
 pub mod detector;
 pub mod encounter;
 mod error;
 pub mod frame;
 pub mod geometry;
+pub mod measures;
 pub mod net;
 pub mod options;
+pub mod path;
+pub mod precollision;
 pub mod profile;
 pub mod run;
 pub mod units;

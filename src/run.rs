@@ -41,7 +41,7 @@ impl Run {
 
     /// Says where the road user of a row is on the net.
     pub fn place(&mut self, row: u32, placement: Placement) {
-        self.detector.place(row, placement);
+        self.detector.place(&self.frame, &self.roster, row, &placement);
     }
 
     /// Phase 2, the events and the log.

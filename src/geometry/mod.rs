@@ -1,3 +1,70 @@
-//! Rectangles, polygons, and where moving ones touch.
+//! Rectangles, convex outlines, and where moving ones touch.
+//!
+//! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`rectangle::distance`],
+//! [`polygon::convex_parts`]), and the conversion to its types is in one place, [`parry`].
 
+pub mod outline;
+pub(crate) mod parry;
 pub mod polygon;
+pub mod rectangle;
+pub mod sweep;
+
+use nalgebra::{Point2, Vector2};
+
+use crate::units::Metre;
+
+/// A place in the plane, in m.
+pub type Point = Point2<Metre>;
+/// A direction or displacement in the plane.
+pub type Vector = Vector2<Metre>;
+
+/// An axis-parallel box: what is compared before anything costlier is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest x and y.
+    pub low: Point,
+    /// Largest x and y.
+    pub high: Point,
+}
+
+impl Bounds {
+    /// Bounds that hold nothing yet.
+    pub const EMPTY: Self =
+        Self { low: Point::new(f64::INFINITY, f64::INFINITY), high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY) };
+
+    /// Grows to hold a point.
+    pub fn include(&mut self, point: Point) {
+        self.low = self.low.inf(&point);
+        self.high = self.high.sup(&point);
+    }
+
+    /// Grows to hold other bounds.
+    pub fn join(&mut self, other: &Self) {
+        self.low = self.low.inf(&other.low);
+        self.high = self.high.sup(&other.high);
+    }
+
+    /// Whether the two share a point.
+    pub fn meet(&self, other: &Self) -> bool {
+        self.low.x <= other.high.x
+            && other.low.x <= self.high.x
+            && self.low.y <= other.high.y
+            && other.low.y <= self.high.y
+    }
+
+    /// The same, larger by `margin` on every side.
+    pub fn grown(&self, margin: Metre) -> Self {
+        let by = Vector::new(margin, margin);
+        Self { low: self.low - by, high: self.high + by }
+    }
+}
+
+/// The cross product's z: positive where `b` lies to the left of `a`.
+pub fn cross(a: &Vector, b: &Vector) -> f64 {
+    a.x * b.y - a.y * b.x
+}
+
+/// The direction a quarter turn to the left.
+pub fn left_of(direction: &Vector) -> Vector {
+    Vector::new(-direction.y, direction.x)
+}

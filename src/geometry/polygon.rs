@@ -1,10 +1,122 @@
-//! A small convex polygon.
+//! Polygons of any shape, in convex parts: what static obstacles are made of.
 
-use nalgebra::Point2;
+use parry2d_f64::math::Pose;
+use parry2d_f64::query;
+use parry2d_f64::shape::{ConvexPolygon, TriMesh};
+use parry2d_f64::transformation::{convex_hull, hertel_mehlhorn};
 
-/// A convex polygon, corners counter-clockwise.
-#[derive(Clone, Debug, PartialEq)]
+use super::outline::Outline;
+use super::rectangle::Rectangle;
+use super::{Bounds, Point, parry};
+use crate::units::Metre;
+
+/// A convex polygon with three to eight corners.
+#[derive(Clone, Copy, Debug)]
 pub struct Polygon {
-    /// The corners.
-    pub corners: Vec<Point2<f64>>,
+    /// Its outline, counter-clockwise.
+    pub outline: Outline,
+    /// The box around it.
+    pub bounds: Bounds,
+}
+
+impl Polygon {
+    fn new(corners: &[Point]) -> Option<Self> {
+        let outline = Outline::try_from(corners).ok()?;
+        Some(Self { outline, bounds: outline.bounds() })
+    }
+}
+
+/// The convex parts of a polygon given by its outline, in either sense and closed or not; parts with more than
+/// eight corners come as fans. An outline that crosses itself, which no partition exists for, gives its convex hull;
+/// fewer than three different points give none.
+pub fn convex_parts(outline: &[Point]) -> Vec<Polygon> {
+    let mut points = outline.to_vec();
+    points.dedup();
+    if points.len() > 1 && points.first() == points.last() {
+        points.pop();
+    }
+    if points.len() < 3 || points.iter().any(|point| !(point.x + point.y).is_finite()) {
+        return Vec::new();
+    }
+    let twice_area: f64 = (0..points.len())
+        .map(|index| super::cross(&(points[index] - points[0]), &(points[(index + 1) % points.len()] - points[0])))
+        .sum();
+    if twice_area < 0.0 {
+        points.reverse();
+    }
+    let vectors = points.iter().map(|&point| parry::vector(point)).collect::<Vec<_>>();
+    let parts = match TriMesh::from_polygon(vectors.clone()) {
+        Some(triangles) => hertel_mehlhorn(&vectors, triangles.indices()),
+        None => vec![convex_hull(&vectors)],
+    };
+    parts.iter().flat_map(|part| fans(&part.iter().map(|&v| parry::point(v)).collect::<Vec<_>>())).collect()
+}
+
+/// The smallest distance between a polygon in convex parts and a rectangle, in m; 0 where they touch or overlap.
+pub fn distance(parts: &[Polygon], rectangle: &Rectangle) -> Metre {
+    let (pose, cuboid) = parry::cuboid(rectangle);
+    parts
+        .iter()
+        .filter_map(|part| {
+            let corners = part.outline.corners().iter().map(|&corner| parry::vector(corner)).collect();
+            let shape = ConvexPolygon::from_convex_polyline(corners)?;
+            query::distance(&Pose::IDENTITY, &shape, &pose, &cuboid).ok()
+        })
+        .map(|found| found.distance)
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// A convex polygon in pieces of up to eight corners that all share the first corner.
+fn fans(corners: &[Point]) -> Vec<Polygon> {
+    let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
+    let mut pieces = Vec::new();
+    let mut start = 0;
+    while start + 1 < rest.len() {
+        let end = (start + 6).min(rest.len() - 1);
+        let mut piece = vec![first];
+        piece.extend_from_slice(&rest[start..=end]);
+        pieces.extend(Polygon::new(&piece));
+        start = end;
+    }
+    pieces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(parts: &[Polygon]) -> f64 {
+        parts
+            .iter()
+            .map(|part| {
+                let corners = part.outline.corners();
+                (1..corners.len() - 1)
+                    .map(|i| super::super::cross(&(corners[i] - corners[0]), &(corners[i + 1] - corners[0])) / 2.0)
+                    .sum::<f64>()
+            })
+            .sum()
+    }
+
+    #[test]
+    fn an_l_shape_keeps_its_area_in_either_sense() {
+        let mut corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 1.0), (1.0, 1.0), (1.0, 3.0), (0.0, 3.0), (0.0, 0.0)]
+            .map(|(x, y)| Point::new(x, y));
+        assert!((area(&convex_parts(&corners)) - 6.0).abs() < 1e-12);
+        corners.reverse();
+        assert!((area(&convex_parts(&corners)) - 6.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_circle_of_many_corners_keeps_its_area() {
+        let corners: Vec<_> = (0..40)
+            .map(|i| f64::from(i) * std::f64::consts::TAU / 40.0)
+            .map(|a| Point::new(a.cos(), a.sin()))
+            .collect();
+        assert!((area(&convex_parts(&corners)) - 20.0 * (std::f64::consts::TAU / 40.0).sin()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_line_is_no_obstacle() {
+        assert!(convex_parts(&[Point::new(0.0, 0.0), Point::new(1.0, 0.0)]).is_empty());
+    }
 }

@@ -1,0 +1,31 @@
+//! Frontal on one straight line: the two paths meet where the areas that both need to stop meet.
+
+use super::{Mover, OneDimension};
+use crate::accurate::Meeting;
+use crate::geometry::rectangle::Rectangle;
+use crate::units::Metre;
+
+/// The meeting of two that drive towards each other with `ahead` m between their fronts. Each one's way ends where
+/// the area that the other needs to stop begins; the ego is the one with the longer way.
+pub fn in_line(a: &Mover, b: &Mover, ahead: Metre) -> OneDimension {
+    let way = |ego: &Mover, foe: &Mover| {
+        let way = (ahead - foe.stop.min(foe.reach())).max(0.0);
+        (way <= ego.reach()).then_some(way)
+    };
+    let (ego_is_a, ego_way) = match (way(a, b), way(b, a)) {
+        (None, None) => return OneDimension::Apart,
+        (Some(a), Some(b)) => (a >= b, a.max(b)),
+        (Some(a), None) => (true, a),
+        (None, Some(b)) => (false, b),
+    };
+    let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
+    let centre = ego.rectangle.centre + ego.rectangle.axis * ego_way;
+    let meeting = Meeting {
+        ego_way,
+        foe_way: ahead.max(0.0) - ego_way,
+        ego: Rectangle { centre, ..ego.rectangle },
+        foe_axis: Some(foe.rectangle.axis),
+        leads: false,
+    };
+    OneDimension::Meet(ego_is_a, meeting)
+}

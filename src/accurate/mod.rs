@@ -1,0 +1,153 @@
+//! Phase 2, accurate: where two road users would meet, and by the angle there of which kind that is.
+//!
+//! Two that drive straight on, side by side or in line, are a matter of one dimension: [`rear_end`] where they drive
+//! the same way, [`frontal`] where they drive towards each other. All others are swept: [`side`]. The paper's own
+//! tests are in [`paper`].
+
+pub mod frontal;
+pub mod paper;
+pub mod rear_end;
+pub mod side;
+
+use crate::braking::{self, Brakes, MuModel};
+use crate::encounter::Kind;
+use crate::geometry::polygon::Polygon;
+use crate::geometry::rectangle::Rectangle;
+use crate::geometry::{Bounds, Point, Vector, cross};
+use crate::options::Options;
+use crate::path::Pose;
+use crate::units::{Metre, MetrePerSecond, Radian};
+
+/// Two straight paths are parallel where they deviate by less than this over their length, in m.
+const PARALLEL: Metre = 1e-3;
+
+/// One road user of a pair: what phase 2 needs to know of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Mover<'a> {
+    /// The rectangle of now.
+    pub rectangle: Rectangle,
+    /// Convex parts of an obstacle; empty for all others.
+    pub shape: &'a [Polygon],
+    /// Poses from now until it stands and ε further.
+    pub poses: &'a [Pose],
+    /// Whether it drives straight on all the way.
+    pub straight: bool,
+    /// The box around all that it covers on the way.
+    pub bounds: Bounds,
+    /// Speed in m/s.
+    pub speed: MetrePerSecond,
+    /// How it brakes.
+    pub brakes: &'a Brakes,
+    /// Its stopping distance.
+    pub stop: Metre,
+}
+
+impl Mover<'_> {
+    /// Length in m.
+    pub fn length(&self) -> Metre {
+        2.0 * self.rectangle.half_length
+    }
+
+    /// Width in m.
+    pub fn width(&self) -> Metre {
+        2.0 * self.rectangle.half_width
+    }
+
+    /// How far ahead its path is known to go: S + ε, or less where the path ends.
+    pub fn reach(&self) -> Metre {
+        self.poses.last().map_or(0.0, |pose| pose.way)
+    }
+}
+
+/// Where an ego meets a foe.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Meeting {
+    /// Way of the ego to the meeting place.
+    pub ego_way: Metre,
+    /// Way of the foe until it is there.
+    pub foe_way: Metre,
+    /// The ego's rectangle there.
+    pub ego: Rectangle,
+    /// The foe's axis there; none for an obstacle, which the ego meets with its front.
+    pub foe_axis: Option<Vector>,
+    /// Whether the foe is out of the way as soon as it moves: a leader in the lane.
+    pub leads: bool,
+}
+
+impl Meeting {
+    /// The angle α between the two headings.
+    pub fn angle(&self) -> Radian {
+        match self.foe_axis {
+            Some(axis) => angle_between(&self.ego.axis, &axis),
+            None => std::f64::consts::PI,
+        }
+    }
+
+    /// The ego's front-bumper centre.
+    pub fn place(&self) -> Point {
+        self.ego.centre + self.ego.axis * self.ego.half_length
+    }
+}
+
+/// What a test in one dimension says of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum OneDimension {
+    /// They do not drive in parallel: to be swept.
+    Unfit,
+    /// They do not meet.
+    Apart,
+    /// They meet; `true` where the first of the pair is the ego.
+    Meet(bool, Meeting),
+}
+
+/// Tries to settle a pair in one dimension.
+pub fn in_one_dimension(a: &Mover, b: &Mover) -> OneDimension {
+    if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
+        return OneDimension::Unfit;
+    }
+    let (axis, other) = (a.rectangle.axis, b.rectangle.axis);
+    let extent = (a.stop + a.length()).max(b.stop + b.length());
+    if cross(&axis, &other).abs() * extent > PARALLEL {
+        return OneDimension::Unfit;
+    }
+    let between = b.rectangle.centre - a.rectangle.centre;
+    if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
+        return OneDimension::Apart;
+    }
+    let along = between.dot(&axis);
+    let ahead = along.abs() - a.rectangle.half_length - b.rectangle.half_length;
+    if axis.dot(&other) > 0.0 {
+        let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
+        rear_end::in_line(ego, foe, ahead).map_or(OneDimension::Apart, |meeting| OneDimension::Meet(ego_is_a, meeting))
+    } else if along > 0.0 {
+        frontal::in_line(a, b, ahead)
+    } else {
+        OneDimension::Apart
+    }
+}
+
+/// The angle between two directions, 0 to π.
+pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
+    cross(a, b).abs().atan2(a.dot(b))
+}
+
+/// The kind of a conflict at this angle.
+pub fn kind_at(angle: Radian, options: &Options) -> Kind {
+    if angle < options.rear_end_below {
+        Kind::RearEnd
+    } else if angle > options.frontal_above {
+        Kind::Frontal
+    } else {
+        Kind::Side
+    }
+}
+
+/// The room that is left: max(way_ego − σ·way_foe, 0).
+pub fn gap(ego_way: Metre, foe_way: Metre, sigma: f64) -> Metre {
+    (ego_way - sigma * foe_way).max(0.0)
+}
+
+/// The minimal collision distance of a pair.
+pub fn mu(model: MuModel, ego: &Mover, foe: &Mover, sigma: f64, epsilon: Metre) -> Metre {
+    braking::mu(model, ego.speed, ego.brakes, foe.speed, foe.brakes, sigma, epsilon)
+}

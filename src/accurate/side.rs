@@ -1,0 +1,136 @@
+//! Side, and whatever else is not in line: swept rectangles.
+
+use super::{Meeting, Mover};
+use crate::geometry::outline::Outline;
+use crate::geometry::rectangle::Rectangle;
+use crate::geometry::sweep::{Step, TOLERANCE, translation};
+use crate::geometry::{Bounds, Vector};
+use crate::path::Pose;
+use crate::units::Metre;
+
+/// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
+/// to stop; none if there is no such pose.
+pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
+    if !ego.bounds.meet(&foe.bounds) {
+        return None;
+    }
+    let (ego_way, rectangle) = first_touch(ego, foe)?;
+    if !foe.shape.is_empty() {
+        return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis: None, leads: false });
+    }
+    let (foe_way, foe_axis) = arrival(foe, &rectangle);
+    Some(Meeting { ego_way, foe_way, ego: rectangle, foe_axis: Some(foe_axis), leads: false })
+}
+
+/// The ego's way to the foe's area and its rectangle there.
+fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
+    for (index, (pose, step)) in steps(ego.poses, ego).enumerate() {
+        let bounds = step_bounds(&step);
+        if bounds.meet(&foe.bounds) {
+            let mut enter = f64::INFINITY;
+            each_part_of_area(foe, &bounds, |part| {
+                if let Some(contact) = step.contact(part) {
+                    enter = enter.min(contact.enter);
+                }
+            });
+            if enter <= 1.0 {
+                let next = ego.poses[index + 1].way;
+                return Some((pose.way + (next - pose.way) * enter, step.rectangle(enter)));
+            }
+        }
+    }
+    None
+}
+
+/// Calls with every convex part of the area that the foe covers now and still needs to stop, as far as it reaches
+/// into `window`.
+fn each_part_of_area(foe: &Mover, window: &Bounds, mut visit: impl FnMut(&Outline)) {
+    for polygon in foe.shape.iter().filter(|polygon| polygon.bounds.meet(window)) {
+        visit(&polygon.outline);
+    }
+    if !foe.shape.is_empty() {
+        return;
+    }
+    if foe.stop <= 0.0 {
+        visit(&Outline::rectangle(&foe.rectangle));
+        return;
+    }
+    for (pose, step) in steps(foe.poses, foe) {
+        if pose.way >= foe.stop {
+            break;
+        }
+        if step_bounds(&step).meet(window) {
+            visit(&step.area());
+        }
+    }
+}
+
+/// The foe's way to the ego's rectangle at the meeting place, and its axis there.
+///
+/// The two touch there to within rounding and the sweep's tolerance, so the rectangle is taken larger by that.
+fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
+    let ego = Outline::rectangle(&grown(ego));
+    for (index, (pose, step)) in steps(foe.poses, foe).enumerate() {
+        if let Some(contact) = step.contact(&ego) {
+            let next = foe.poses[index + 1].way;
+            return (pose.way + (next - pose.way) * contact.enter, step.rectangle(contact.enter).axis);
+        }
+        if pose.way >= foe.stop {
+            break;
+        }
+    }
+    (foe.stop, foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
+}
+
+/// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
+/// until it is there.
+pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -> Metre {
+    let ego = Outline::rectangle(&grown(ego));
+    let mut left = arrival;
+    for (pose, next, step) in
+        poses.windows(2).map(|pair| (pair[0], pair[1], pair[0].step_to(&pair[1], foe.length(), foe.width())))
+    {
+        if next.way < arrival {
+            continue;
+        }
+        let Some(contact) = step.contact(&ego) else {
+            if pose.way > arrival {
+                return left;
+            }
+            continue;
+        };
+        left = pose.way + (next.way - pose.way) * contact.leave.min(1.0);
+        if contact.leave < 1.0 {
+            return left;
+        }
+    }
+    left
+}
+
+fn grown(rectangle: &Rectangle) -> Rectangle {
+    Rectangle {
+        half_length: rectangle.half_length + TOLERANCE,
+        half_width: rectangle.half_width + TOLERANCE,
+        ..*rectangle
+    }
+}
+
+fn steps<'a>(poses: &'a [Pose], of: &Mover) -> impl Iterator<Item = (Pose, Step)> + 'a {
+    let (length, width) = (of.length(), of.width());
+    poses.windows(2).map(move |pair| (pair[0], pair[0].step_to(&pair[1], length, width)))
+}
+
+fn step_bounds(step: &Step) -> Bounds {
+    let mut bounds = step.rectangle(0.0).bounds();
+    bounds.join(&step.rectangle(1.0).bounds());
+    bounds
+}
+
+/// Whether two rectangles-with-shapes overlap or touch now.
+pub fn touch_now(a: &Mover, b: &Mover) -> bool {
+    let outline = Outline::rectangle(&a.rectangle);
+    if b.shape.is_empty() {
+        return crate::geometry::rectangle::touches(&a.rectangle, &b.rectangle);
+    }
+    b.shape.iter().any(|part| translation(&outline, &Vector::zeros(), &part.outline).is_some())
+}

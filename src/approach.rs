@@ -1,0 +1,150 @@
+//! Time to collision: when two rectangles touch if both keep their speed along their paths.
+
+use crate::geometry::outline::Outline;
+use crate::geometry::rectangle::Rectangle;
+use crate::geometry::sweep::{TOLERANCE, translation};
+use crate::geometry::{Point, Vector};
+use crate::path::Pose;
+use crate::units::{Metre, MetrePerSecond, Second};
+
+/// Contact that is later than this is none: paths are not laid further; s.
+pub const HORIZON: Second = 10.0;
+
+/// One road user that keeps its speed along its poses, which reach [`HORIZON`] ahead.
+#[derive(Clone, Copy, Debug)]
+pub struct Course<'a> {
+    /// Poses from now on; straight on beyond the last.
+    pub poses: &'a [Pose],
+    /// Speed in m/s.
+    pub speed: MetrePerSecond,
+    /// Length in m.
+    pub length: Metre,
+    /// Width in m.
+    pub width: Metre,
+}
+
+impl Course<'_> {
+    fn at(&self, time: Second) -> Rectangle {
+        let way = self.speed * time;
+        let next = self.poses.partition_point(|pose| pose.way <= way);
+        let (front, axis): (Point, Vector) = match (self.poses.get(next.wrapping_sub(1)), self.poses.get(next)) {
+            (Some(last), Some(next)) => {
+                let part = (way - last.way) / (next.way - last.way);
+                let axis = last.axis + (next.axis - last.axis) * part;
+                (last.front + (next.front - last.front) * part, axis.normalize())
+            }
+            (Some(last), None) => (last.front + last.axis * (way - last.way), last.axis),
+            (None, _) => (Point::origin(), Vector::x()),
+        };
+        Rectangle::behind(front, axis, self.length, self.width)
+    }
+
+    /// The next time at which it reaches a pose.
+    fn next_pose(&self, time: Second) -> Second {
+        let way = self.speed * time;
+        let next = self.poses.partition_point(|pose| pose.way <= way * (1.0 + f64::EPSILON));
+        match self.poses.get(next) {
+            Some(pose) if self.speed > 0.0 => pose.way / self.speed,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// Time until a moving road user touches another, in s; none where it does not within [`HORIZON`].
+pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
+    let mut time = 0.0;
+    while time < HORIZON {
+        let end = a.next_pose(time).min(b.next_pose(time)).min(HORIZON).max(time + 1e-6);
+        let contact = contact_between(a, b, time, end, 0);
+        if contact.is_some() {
+            return contact;
+        }
+        time = end;
+    }
+    None
+}
+
+/// Time until a moving road user touches something that stands.
+pub fn time_to_fixed(a: &Course, fixed: &[Outline]) -> Option<Second> {
+    let mut first: Option<Second> = None;
+    for (pose, next) in a.poses.windows(2).map(|pair| (pair[0], pair[1])) {
+        let step = pose.step_to(&next, a.length, a.width);
+        for outline in fixed {
+            if let Some(contact) = step.contact(outline) {
+                let time = (pose.way + (next.way - pose.way) * contact.enter) / a.speed;
+                first = Some(first.map_or(time, |earliest| earliest.min(time)));
+            }
+        }
+        if first.is_some() {
+            break;
+        }
+    }
+    first.filter(|time| *time <= HORIZON)
+}
+
+/// Between two times in which both move almost straight: relative translation in closed form; halved as long as the
+/// turning of the two is more than the tolerance allows.
+fn contact_between(a: &Course, b: &Course, start: Second, end: Second, depth: u32) -> Option<Second> {
+    /// Halving this often leaves less than a millionth of the interval.
+    const DEEPEST: u32 = 20;
+    let (a_start, a_end, b_start, b_end) = (a.at(start), a.at(end), b.at(start), b.at(end));
+    let bend =
+        |first: &Rectangle, last: &Rectangle| (last.axis - first.axis).norm() * (first.half_length + first.half_width);
+    if depth < DEEPEST && bend(&a_start, &a_end) + bend(&b_start, &b_end) > TOLERANCE {
+        let middle = (start + end) / 2.0;
+        if !near(&a_start, &a_end, &b_start, &b_end) {
+            return None;
+        }
+        return contact_between(a, b, start, middle, depth + 1)
+            .or_else(|| contact_between(a, b, middle, end, depth + 1));
+    }
+    let by = (a_end.centre - a_start.centre) - (b_end.centre - b_start.centre);
+    let contact = translation(&Outline::rectangle(&a_start), &by, &Outline::rectangle(&b_start))?;
+    Some(start + (end - start) * contact.enter)
+}
+
+/// Whether the boxes around the two movements meet at all.
+fn near(a_start: &Rectangle, a_end: &Rectangle, b_start: &Rectangle, b_end: &Rectangle) -> bool {
+    let mut a = a_start.bounds();
+    a.join(&a_end.bounds());
+    let mut b = b_start.bounds();
+    b.join(&b_end.bounds());
+    a.grown(TOLERANCE).meet(&b.grown(TOLERANCE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn straight(x: f64, y: f64, heading: f64, speed: f64) -> (Vec<Pose>, f64) {
+        let axis = crate::geometry::rectangle::direction(heading);
+        (vec![Pose { way: 0.0, front: Point::new(x, y), axis }], speed)
+    }
+
+    fn ttc(a: (Vec<Pose>, f64), b: (Vec<Pose>, f64)) -> Option<f64> {
+        let course = |(poses, speed): &(Vec<Pose>, f64)| Course {
+            poses: Box::leak(poses.clone().into()),
+            speed: *speed,
+            length: 5.0,
+            width: 2.0,
+        };
+        time_to_collision(&course(&a), &course(&b))
+    }
+
+    #[test]
+    fn a_follower_needs_the_gap_over_the_closing_speed() {
+        let found = ttc(straight(0.0, 0.0, 0.0, 20.0), straight(25.0, 0.0, 0.0, 10.0)).unwrap();
+        assert!((found - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn who_passes_behind_the_other_never_touches() {
+        let crossing = straight(30.0, -9.0, std::f64::consts::FRAC_PI_2, 10.0);
+        assert_eq!(ttc(straight(0.0, 0.0, 0.0, 10.0), crossing), None);
+    }
+
+    #[test]
+    fn equal_speeds_never_touch() {
+        assert_eq!(ttc(straight(0.0, 0.0, 0.0, 20.0), straight(25.0, 0.0, 0.0, 20.0)), None);
+    }
+}

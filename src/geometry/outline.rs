@@ -1,0 +1,125 @@
+//! A convex outline of a few corners, kept on the stack: the shape that sweeping works on.
+
+use super::rectangle::Rectangle;
+use super::{Bounds, Point, Vector, cross};
+use crate::units::Metre;
+
+/// The hull of two rectangles has eight corners at most.
+const MOST_CORNERS: usize = 8;
+
+/// A convex polygon with up to eight corners, counter-clockwise.
+#[derive(Clone, Copy, Debug)]
+pub struct Outline {
+    corners: [Point; MOST_CORNERS],
+    count: usize,
+    /// Edges whose normals have to be looked at: in a rectangle opposite ones share theirs.
+    edges: usize,
+}
+
+impl Outline {
+    /// The outline of a rectangle.
+    pub fn rectangle(rectangle: &Rectangle) -> Self {
+        let mut outline = Self { corners: [Point::origin(); MOST_CORNERS], count: 4, edges: 2 };
+        outline.corners[..4].copy_from_slice(&rectangle.corners());
+        outline
+    }
+
+    /// The convex hull of two outlines of four corners at most.
+    ///
+    /// Andrew's monotone chain; corners beyond the eighth, which two rectangles do not have, are never made.
+    pub fn hull(a: &Rectangle, b: &Rectangle) -> Self {
+        let mut points = [Point::origin(); MOST_CORNERS];
+        points[..4].copy_from_slice(&a.corners());
+        points[4..].copy_from_slice(&b.corners());
+        points.sort_unstable_by(|p, q| p.x.total_cmp(&q.x).then(p.y.total_cmp(&q.y)));
+        let mut chain = [Point::origin(); 2 * MOST_CORNERS];
+        let mut count = 0;
+        for upper in [false, true] {
+            let start = count;
+            for index in 0..MOST_CORNERS {
+                let point = points[if upper { MOST_CORNERS - 1 - index } else { index }];
+                while count >= start + 2
+                    && cross(&(chain[count - 1] - chain[count - 2]), &(point - chain[count - 2])) <= 0.0
+                {
+                    count -= 1;
+                }
+                chain[count] = point;
+                count += 1;
+            }
+            count -= 1;
+        }
+        let mut outline = Self { corners: [Point::origin(); MOST_CORNERS], count, edges: count };
+        outline.corners[..count].copy_from_slice(&chain[..count]);
+        outline
+    }
+
+    /// The corners, counter-clockwise.
+    pub fn corners(&self) -> &[Point] {
+        &self.corners[..self.count]
+    }
+
+    /// The normals of the edges, not normalised, each direction once where the shape is a rectangle.
+    pub fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
+        (0..self.edges).map(|index| {
+            let edge = self.corners[(index + 1) % self.count] - self.corners[index];
+            Vector::new(edge.y, -edge.x)
+        })
+    }
+
+    /// Smallest and largest coordinate along a direction.
+    pub fn extent(&self, direction: &Vector) -> (Metre, Metre) {
+        let mut low = f64::INFINITY;
+        let mut high = f64::NEG_INFINITY;
+        for corner in self.corners() {
+            let along = corner.coords.dot(direction);
+            low = low.min(along);
+            high = high.max(along);
+        }
+        (low, high)
+    }
+
+    /// The axis-parallel box around it.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        for corner in self.corners() {
+            bounds.include(*corner);
+        }
+        bounds
+    }
+}
+
+impl TryFrom<&[Point]> for Outline {
+    type Error = usize;
+
+    /// The outline of a convex polygon, corners counter-clockwise; fails with the number of corners where these are
+    /// not three to eight.
+    fn try_from(corners: &[Point]) -> Result<Self, usize> {
+        let count = corners.len();
+        if !(3..=MOST_CORNERS).contains(&count) {
+            return Err(count);
+        }
+        let mut outline = Self { corners: [Point::origin(); MOST_CORNERS], count, edges: count };
+        outline.corners[..count].copy_from_slice(corners);
+        Ok(outline)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_hull_of_a_rectangle_and_its_shifted_self_is_the_swept_area() {
+        let here = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
+        let there = Rectangle::new(Point::new(10.0, 0.0), 0.0, 4.0, 2.0);
+        let hull = Outline::hull(&here, &there);
+        assert_eq!(hull.corners().len(), 4);
+        assert_eq!(hull.bounds(), Bounds { low: Point::new(-2.0, -1.0), high: Point::new(12.0, 1.0) });
+    }
+
+    #[test]
+    fn the_hull_of_one_rectangle_twice_is_that_rectangle() {
+        let here = Rectangle::new(Point::new(3.0, 4.0), 0.7, 4.0, 2.0);
+        assert_eq!(Outline::hull(&here, &here).corners().len(), 4);
+    }
+}

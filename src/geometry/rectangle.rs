@@ -1,0 +1,130 @@
+//! The rectangle that a road user covers.
+
+use std::f64::consts::FRAC_PI_2;
+
+use parry2d_f64::query;
+
+use super::{Bounds, Point, Vector, left_of, parry};
+use crate::units::{Metre, Radian};
+
+/// A rectangle that may stand at any angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rectangle {
+    /// Its centre.
+    pub centre: Point,
+    /// Unit vector from the rear to the front.
+    pub axis: Vector,
+    /// Half the length, along the axis, in m.
+    pub half_length: Metre,
+    /// Half the width, across the axis, in m.
+    pub half_width: Metre,
+}
+
+impl Rectangle {
+    /// A rectangle around a centre.
+    ///
+    /// ```
+    /// use closecall::geometry::{Point, rectangle::Rectangle};
+    /// let car = Rectangle::new(Point::new(2.5, 0.0), 0.0, 5.0, 1.8);
+    /// assert_eq!(car.corners()[0], Point::new(5.0, 0.9));
+    /// ```
+    pub fn new(centre: Point, heading: Radian, length: Metre, width: Metre) -> Self {
+        Self { centre, axis: direction(heading), half_length: length / 2.0, half_width: width / 2.0 }
+    }
+
+    /// The rectangle behind a front-bumper centre: SUMO's reference point.
+    pub fn behind(front: Point, axis: Vector, length: Metre, width: Metre) -> Self {
+        let half_length = length / 2.0;
+        Self { centre: front - axis * half_length, axis, half_length, half_width: width / 2.0 }
+    }
+
+    /// The corners counter-clockwise: front left, rear left, rear right, front right.
+    pub fn corners(&self) -> [Point; 4] {
+        let along = self.axis * self.half_length;
+        let across = left_of(&self.axis) * self.half_width;
+        [
+            self.centre + along + across,
+            self.centre - along + across,
+            self.centre - along - across,
+            self.centre + along - across,
+        ]
+    }
+
+    /// The axis-parallel box around it.
+    pub fn bounds(&self) -> Bounds {
+        let reach = Vector::new(
+            self.axis.x.abs() * self.half_length + self.axis.y.abs() * self.half_width,
+            self.axis.y.abs() * self.half_length + self.axis.x.abs() * self.half_width,
+        );
+        Bounds { low: self.centre - reach, high: self.centre + reach }
+    }
+}
+
+/// The unit vector of a heading; exact for the four directions along the axes.
+pub fn direction(heading: Radian) -> Vector {
+    let quarters = heading / FRAC_PI_2;
+    if quarters == quarters.round() {
+        return match quarters.rem_euclid(4.0) {
+            0.0 => Vector::new(1.0, 0.0),
+            1.0 => Vector::new(0.0, 1.0),
+            2.0 => Vector::new(-1.0, 0.0),
+            _ => Vector::new(0.0, -1.0),
+        };
+    }
+    let (sine, cosine) = heading.sin_cos();
+    Vector::new(cosine, sine)
+}
+
+/// Whether two rectangles share a point; touching counts.
+///
+/// Separating axes (Gottschalk et al. 1996) on the difference of the centres, so that far from the origin nothing
+/// cancels that did not before.
+pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
+    let between = b.centre - a.centre;
+    [a.axis, left_of(&a.axis), b.axis, left_of(&b.axis)]
+        .iter()
+        .all(|axis| between.dot(axis).abs() <= reach(a, axis) + reach(b, axis))
+}
+
+/// How far a rectangle reaches from its centre along a direction.
+fn reach(rectangle: &Rectangle, direction: &Vector) -> Metre {
+    rectangle.axis.dot(direction).abs() * rectangle.half_length
+        + left_of(&rectangle.axis).dot(direction).abs() * rectangle.half_width
+}
+
+/// The smallest distance between two rectangles in m; 0 where they touch or overlap.
+///
+/// parry2d's, at 67 ns a pair: only pairs in conflict ask for it.
+pub fn distance(a: &Rectangle, b: &Rectangle) -> Metre {
+    if touches(a, b) {
+        return 0.0;
+    }
+    let (pose_a, shape_a) = parry::cuboid(a);
+    let (pose_b, shape_b) = parry::cuboid(b);
+    query::distance(&pose_a, &shape_a, &pose_b, &shape_b).map_or(0.0, |found| found.distance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn touching_counts_and_a_hair_apart_does_not() {
+        let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
+        assert!(touches(&a, &Rectangle::new(Point::new(4.0, 0.0), 0.0, 4.0, 2.0)));
+        assert!(!touches(&a, &Rectangle::new(Point::new(4.0 + 1e-12, 0.0), 0.0, 4.0, 2.0)));
+    }
+
+    #[test]
+    fn a_cross_touches_although_no_corner_lies_inside() {
+        let a = Rectangle::new(Point::origin(), 0.0, 10.0, 1.0);
+        assert!(touches(&a, &Rectangle::new(Point::origin(), FRAC_PI_2, 10.0, 1.0)));
+    }
+
+    #[test]
+    fn the_distance_of_two_in_a_row_is_the_room_between_the_bumpers() {
+        let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
+        let b = Rectangle::new(Point::new(9.0, 0.0), 0.0, 4.0, 2.0);
+        assert!((distance(&a, &b) - 5.0).abs() < 1e-12);
+    }
+}

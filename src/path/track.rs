@@ -1,0 +1,247 @@
+//! A line on the ground and a road user's place on it: the front bumper is on the line, and so is the rear.
+
+use super::{Pose, largest_turn, rotated, turn};
+use crate::geometry::{Point, Vector};
+use crate::units::{Metre, Radian};
+
+/// How far from the line a front bumper may be found and still be on it, in m.
+const ON_THE_LINE: Metre = 1e-3;
+/// A heading that differs by less than this from the line's chord is the chord, in rad.
+const SAME_HEADING: Radian = 1e-6;
+/// Directions that differ by less than this are one: poses in between say nothing.
+const SAME_DIRECTION: f64 = 1e-10;
+
+/// A polyline with a place on it.
+#[derive(Clone, Debug, Default)]
+pub struct Track {
+    points: Vec<Point>,
+    ways: Vec<Metre>,
+    segment: usize,
+    front: Metre,
+}
+
+impl Track {
+    /// Forgets the line.
+    pub fn clear(&mut self) {
+        self.points.clear();
+        self.ways.clear();
+        self.segment = 0;
+        self.front = 0.0;
+    }
+
+    /// Appends a point; one that repeats the last is left out.
+    pub fn push(&mut self, point: Point) {
+        let way = match (self.points.last(), self.ways.last()) {
+            (Some(last), Some(way)) => {
+                let step = (point - last).norm();
+                if step < ON_THE_LINE {
+                    return;
+                }
+                way + step
+            }
+            _ => 0.0,
+        };
+        self.points.push(point);
+        self.ways.push(way);
+    }
+
+    /// Whether there is a line at all.
+    pub fn is_laid(&self) -> bool {
+        self.points.len() >= 2
+    }
+
+    /// The way from the line's beginning to the front bumper.
+    pub fn front(&self) -> Metre {
+        self.front
+    }
+
+    /// The way from the line's beginning to its end.
+    pub fn end(&self) -> Metre {
+        self.ways.last().copied().unwrap_or(0.0)
+    }
+
+    /// Puts the front bumper at a way from the line's beginning.
+    pub fn set_front(&mut self, way: Metre) {
+        self.front = way;
+        self.segment =
+            self.ways.partition_point(|&start| start <= way).saturating_sub(1).min(self.points.len().saturating_sub(2));
+    }
+
+    /// Follows the front bumper to where it is now; `false` if it is not on the line ahead any more.
+    pub fn follow(&mut self, front: Point) -> bool {
+        if !self.is_laid() {
+            return false;
+        }
+        for segment in self.segment..self.points.len() - 1 {
+            let (start, end) = (self.points[segment], self.points[segment + 1]);
+            let length = self.ways[segment + 1] - self.ways[segment];
+            let direction = (end - start) / length;
+            let along = (front - start).dot(&direction);
+            if along > length {
+                continue;
+            }
+            let aside = (front - (start + direction * along)).norm_squared();
+            if aside > ON_THE_LINE * ON_THE_LINE || along < -ON_THE_LINE {
+                return false;
+            }
+            self.segment = segment;
+            self.front = self.ways[segment] + along.max(0.0);
+            return true;
+        }
+        false
+    }
+
+    /// Forgets what lies further behind the front bumper than `behind`; returns by how much all ways have shrunk.
+    pub fn forget_behind(&mut self, behind: Metre) -> Metre {
+        let keep = self.ways.partition_point(|&way| way <= self.front - behind).saturating_sub(1);
+        if keep == 0 {
+            return 0.0;
+        }
+        let shift = self.ways[keep];
+        self.points.drain(..keep);
+        self.ways.drain(..keep);
+        for way in &mut self.ways {
+            *way -= shift;
+        }
+        self.segment -= keep;
+        self.front -= shift;
+        shift
+    }
+
+    /// Adds the poses at the given ways ahead of the front bumper (ascending, from 0 on), where the line's points
+    /// make the road user turn, and as many between as the sweep's tolerance needs. Ends where the line ends, unless
+    /// `beyond`: then it goes straight on from there.
+    ///
+    /// `axis` is the heading of now. Where it differs from the chord (a lane change, a rear on a lane that is not
+    /// known) the difference fades out over the road user's own length.
+    pub fn poses(&self, axis: Vector, length: Metre, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
+        let limit = if beyond { f64::INFINITY } else { self.end() - self.front };
+        let mut front = Cursor::at(self, self.segment, self.front);
+        let rear_way = self.front - length;
+        let rear_segment = self.ways[..=self.segment].partition_point(|&way| way <= rear_way).saturating_sub(1);
+        let mut rear = Cursor::at(self, rear_segment, rear_way);
+        let chord_now = chord(&front, &rear, axis);
+        let mut skew = turn(&chord_now, &axis);
+        if skew.abs() < SAME_HEADING {
+            skew = 0.0;
+        }
+        let widest = largest_turn(length);
+        let start = poses.len();
+        let first = if skew == 0.0 { chord_now } else { axis };
+        poses.push(Pose { way: 0.0, front: front.point(), axis: first });
+        let mut way = 0.0;
+        for &target in ways {
+            let target = target.min(limit);
+            while way < target {
+                let mut next = target.min(way + front.room()).min(way + rear.room());
+                if skew != 0.0 && way < length {
+                    next = next.min(length);
+                }
+                // Rounding may leave a room too small to move by; the next point is then as good as reached.
+                let step = (next - way).max(f64::EPSILON * self.end().max(1.0));
+                let (before_front, before_rear, before_axis) = (front, rear, axis_of_last(poses, axis));
+                front.advance(step);
+                rear.advance(step);
+                let after = skewed(chord(&front, &rear, before_axis), skew, way + step, length);
+                let bend = turn(&before_axis, &after).abs();
+                let parts = (bend / widest).ceil().max(1.0);
+                for part in 1..parts as u32 {
+                    let share = step * f64::from(part) / parts;
+                    let (mut front, mut rear) = (before_front, before_rear);
+                    front.advance_within(share);
+                    rear.advance_within(share);
+                    let axis = skewed(chord(&front, &rear, before_axis), skew, way + share, length);
+                    poses.push(Pose { way: way + share, front: front.point(), axis });
+                }
+                way += step;
+                let pose = Pose { way, front: front.point(), axis: after };
+                push_merged(poses, start, pose, ways);
+            }
+            if way >= limit {
+                break;
+            }
+        }
+    }
+}
+
+/// The axis of the last pose.
+fn axis_of_last(poses: &[Pose], otherwise: Vector) -> Vector {
+    poses.last().map_or(otherwise, |pose| pose.axis)
+}
+
+/// Adds a pose, in place of the last one where that lies on the straight line between its neighbours and is not one
+/// of those that were asked for.
+fn push_merged(poses: &mut Vec<Pose>, start: usize, pose: Pose, asked: &[Metre]) {
+    if let [.., before, last] = &poses[start..]
+        && last.axis == before.axis
+        && (pose.axis - last.axis).norm() < SAME_DIRECTION
+        && !asked.contains(&last.way)
+    {
+        let index = poses.len() - 1;
+        poses[index] = Pose { axis: before.axis, ..pose };
+        return;
+    }
+    let axis = match poses.last() {
+        Some(last) if (pose.axis - last.axis).norm() < SAME_DIRECTION => last.axis,
+        _ => pose.axis,
+    };
+    poses.push(Pose { axis, ..pose });
+}
+
+fn skewed(chord: Vector, skew: Radian, way: Metre, length: Metre) -> Vector {
+    if skew == 0.0 || way >= length { chord } else { rotated(&chord, skew * (1.0 - way / length)) }
+}
+
+/// The direction from the rear to the front; another where both are in one place (a hairpin of no width).
+fn chord(front: &Cursor, rear: &Cursor, otherwise: Vector) -> Vector {
+    (front.point() - rear.point()).try_normalize(1e-9).unwrap_or(otherwise)
+}
+
+/// A place on a track that moves ahead.
+#[derive(Clone, Copy)]
+struct Cursor<'a> {
+    track: &'a Track,
+    segment: usize,
+    direction: Vector,
+    way: Metre,
+}
+
+impl<'a> Cursor<'a> {
+    fn at(track: &'a Track, segment: usize, way: Metre) -> Self {
+        let mut cursor = Self { track, segment, direction: Vector::x(), way };
+        cursor.aim();
+        cursor
+    }
+
+    fn aim(&mut self) {
+        let (points, ways) = (&self.track.points, &self.track.ways);
+        self.direction =
+            (points[self.segment + 1] - points[self.segment]) / (ways[self.segment + 1] - ways[self.segment]);
+    }
+
+    /// Before the line's beginning and beyond its end, straight on.
+    fn point(&self) -> Point {
+        self.track.points[self.segment] + self.direction * (self.way - self.track.ways[self.segment])
+    }
+
+    /// Way to the next point of the line.
+    fn room(&self) -> Metre {
+        if self.segment + 2 >= self.track.points.len() {
+            f64::INFINITY
+        } else {
+            self.track.ways[self.segment + 1] - self.way
+        }
+    }
+
+    fn advance(&mut self, way: Metre) {
+        self.advance_within(way);
+        while self.room() <= f64::EPSILON * self.track.end() {
+            self.segment += 1;
+            self.aim();
+        }
+    }
+
+    fn advance_within(&mut self, way: Metre) {
+        self.way += way;
+    }
+}

@@ -1,0 +1,110 @@
+//! Scenes of two, straight on and without a net: what DESIGN.md's definitions give by hand.
+
+use closecall::detector::Detector;
+use closecall::encounter::{Encounter, Kind};
+use closecall::frame::{Frame, Roster, State};
+use closecall::options::{BrakeSystem, Options, TypeOptions};
+use closecall::profile::{Profile, SumoType};
+
+/// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
+fn car(options: &Options) -> Profile {
+    let sumo = SumoType {
+        name: "car".to_owned(),
+        vehicle_class: "passenger".to_owned(),
+        length: 5.0,
+        width: 2.0,
+        mass: 1500.0,
+        emergency_decel: 8.0,
+        decel: 4.5,
+    };
+    Profile::vehicle(&sumo, options)
+}
+
+fn options() -> Options {
+    let mut options = Options::default();
+    let settings = TypeOptions {
+        response_time: Some(0.75),
+        build_up: Some(0.0),
+        brakes: Some(BrakeSystem::Hydraulic),
+        ..TypeOptions::default()
+    };
+    options.types.insert("car".to_owned(), settings);
+    options
+}
+
+/// Encounters of cars given as (x, y, heading, speed) of their front bumpers, named a, b, c, ….
+fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
+    let options = options();
+    let mut roster = Roster::default();
+    let profile = roster.profile(car(&options)).unwrap();
+    let mut frame = Frame::default();
+    frame.begin(0.0);
+    for (index, &(x, y, heading, speed)) in cars.iter().enumerate() {
+        let user = roster.enter(&char::from(b'a' + index as u8).to_string(), profile);
+        frame.push(user, State { x, y, z: 0.0, heading, speed });
+    }
+    let mut detector = Detector::new(&options, None);
+    detector.approach(&frame, &roster);
+    let found = detector.detect(&frame, &roster).to_vec();
+    found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
+}
+
+const WEST: f64 = std::f64::consts::PI;
+const NORTH: f64 = std::f64::consts::FRAC_PI_2;
+
+#[test]
+fn a_follower_has_the_room_between_the_bumpers_left() {
+    let [(found, ego)] = &encounters(&[(30.0, 0.0, 0.0, 10.0), (0.0, 0.0, 0.0, 20.0)])[..] else { panic!() };
+    assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "b"));
+    assert!((found.gap - 25.0).abs() < 1e-9);
+    // 20 m of response; then both brake alike, 400/16 − 100/16.
+    assert!((found.mu - (20.0 + 25.0 - 6.25 + 0.5)).abs() < 0.05, "{}", found.mu);
+    assert!(found.in_conflict());
+    assert!((found.nearness.unwrap().ttc.unwrap() - 2.5).abs() < 1e-9);
+}
+
+#[test]
+fn two_that_drive_at_each_other_need_the_sum_of_their_ways() {
+    let [(found, _)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (60.0, 0.5, WEST, 10.0)])[..] else { panic!() };
+    assert_eq!(found.kind, Kind::Frontal);
+    assert!((found.gap - 60.0).abs() < 1e-9);
+    assert!((found.mu - (45.0 + 16.25 + 0.5)).abs() < 0.05, "{}", found.mu);
+}
+
+#[test]
+fn ordinary_opposite_traffic_is_no_encounter() {
+    assert!(encounters(&[(0.0, 0.0, 0.0, 20.0), (60.0, 3.2, WEST, 20.0)]).is_empty());
+}
+
+#[test]
+fn one_that_crosses_is_met_at_the_edge_of_its_way() {
+    let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -11.0, NORTH, 10.0)])[..] else { panic!() };
+    assert_eq!((found.kind, ego.as_str()), (Kind::Side, "a"));
+    assert!((found.ego_way - 19.0).abs() < 0.02, "{}", found.ego_way);
+    assert!((found.foe_way - 10.0).abs() < 0.05, "{}", found.foe_way);
+    assert!((found.gap - 19.0).abs() < 0.02);
+}
+
+#[test]
+fn who_can_stop_before_the_crossing_is_no_foe() {
+    assert!(encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -25.0, NORTH, 10.0)]).is_empty());
+}
+
+#[test]
+fn overlapping_rectangles_are_a_collision_without_a_gap() {
+    let [(found, _)] = &encounters(&[(0.0, 0.0, 0.0, 15.0), (2.0, 1.0, NORTH, 10.0)])[..] else { panic!() };
+    assert!(found.collision);
+    assert_eq!(found.gap, 0.0);
+}
+
+#[test]
+fn two_that_stand_are_no_pair() {
+    assert!(encounters(&[(0.0, 0.0, 0.0, 0.0), (5.1, 0.0, 0.0, 0.0)]).is_empty());
+}
+
+#[test]
+fn in_a_merge_the_foe_first_has_to_come_and_go() {
+    let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (20.0, -4.0, 0.3, 15.0)])[..] else { panic!() };
+    assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
+    assert!(found.foe_way > 5.0 && found.foe_way < 15.0, "{}", found.foe_way);
+}
