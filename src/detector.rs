@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use crate::accurate::{self, Meeting, Mover, OneDimension, side};
+use crate::accurate::{self, Meeting, Mover, Test, side};
 use crate::approach::{self, Course};
 use crate::braking::{self, stopping_distance};
 use crate::encounter::{Encounter, Nearness, Placement};
@@ -26,8 +26,32 @@ pub const LEVEL: Metre = 2.5;
 /// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
 const STANDS: f64 = 0.0;
 
+/// How much each part of the detector had to do since the run began, and what it could leave out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+pub struct Work {
+    /// Road users, counted in every step.
+    pub rows: u64,
+    /// Pairs whose circles meet.
+    pub pairs: u64,
+    /// Of these, left out because both stand.
+    pub both_stand: u64,
+    /// Of these, left out because one is on a bridge above the other.
+    pub other_level: u64,
+    /// Of these, left out because both are persons.
+    pub both_persons: u64,
+    /// Left out because the boxes around both ways do not meet.
+    pub ways_apart: u64,
+    /// Settled in one dimension.
+    pub in_line: u64,
+    /// Swept.
+    pub swept: u64,
+    /// Lanes asked for.
+    pub placed: u64,
+}
+
 /// Finds the encounters of one step after the other.
 pub struct Detector {
+    work: Work,
     options: Options,
     net: Option<Arc<Net>>,
     routes_may_change: bool,
@@ -66,6 +90,7 @@ impl Detector {
     /// A detector for a scene; without a net every path is straight (or an arc, if so chosen).
     pub fn new(options: &Options, net: Option<Arc<Net>>) -> Self {
         Self {
+            work: Work::default(),
             options: options.clone(),
             net,
             routes_may_change: true,
@@ -87,6 +112,11 @@ impl Detector {
         self.routes_may_change = false;
     }
 
+    /// What was done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
     /// Forgets a road user that has left the scene: its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
         if let Some(memory) = self.memory.get_mut(user.0 as usize) {
@@ -104,13 +134,22 @@ impl Detector {
         }
         self.look(frame, roster);
         self.search.pairs(&self.circles, &mut self.pairs);
-        let states = frame.states();
+        self.work.rows += frame.len() as u64;
+        self.work.pairs += self.pairs.len() as u64;
+        let (states, work) = (frame.states(), &mut self.work);
         self.pairs.retain(|&(a, b)| {
             let (a, b) = (a as usize, b as usize);
-            let moves = states[a].speed > STANDS || states[b].speed > STANDS;
-            let same_level = (states[a].z - states[b].z).abs() <= LEVEL;
-            let categories = (category(roster, frame, a), category(roster, frame, b));
-            moves && same_level && categories != (Category::Person, Category::Person)
+            let left_out = if states[a].speed <= STANDS && states[b].speed <= STANDS {
+                &mut work.both_stand
+            } else if (states[a].z - states[b].z).abs() > LEVEL {
+                &mut work.other_level
+            } else if category(roster, frame, a) == Category::Person && category(roster, frame, b) == Category::Person {
+                &mut work.both_persons
+            } else {
+                return true;
+            };
+            *left_out += 1;
+            false
         });
         self.unplaced.clear();
         for index in 0..self.pairs.len() {
@@ -120,6 +159,7 @@ impl Detector {
                 }
             }
         }
+        self.work.placed += self.unplaced.len() as u64;
         &self.unplaced
     }
 
@@ -290,6 +330,7 @@ impl Detector {
 
     fn meet(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
         if !self.rows[a as usize].bounds.meet(&self.rows[b as usize].bounds) {
+            self.work.ways_apart += 1;
             return None;
         }
         let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
@@ -303,30 +344,12 @@ impl Detector {
             let rows = if ego_is_a { (a, b) } else { (b, a) };
             return Some(self.measure(frame, roster, rows, &meeting, true));
         }
-        let (ego_is_a, meeting) = match accurate::in_one_dimension(&first, &second) {
-            OneDimension::Apart => return None,
-            OneDimension::Meet(ego_is_a, meeting) if meeting.ego_way == meeting.foe_way => {
-                (ego_is_a && a_is_smaller(), meeting)
-            }
-            OneDimension::Meet(ego_is_a, meeting) => (ego_is_a, meeting),
-            OneDimension::Unfit => {
-                let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
-                match (as_ego(&first, &second), as_ego(&second, &first)) {
-                    (None, None) => return None,
-                    (Some(meeting), None) => (true, meeting),
-                    (None, Some(meeting)) => (false, meeting),
-                    (Some(x), Some(y)) if x.ego_way > y.ego_way => (true, x),
-                    (Some(x), Some(y)) if x.ego_way < y.ego_way => (false, y),
-                    (Some(x), Some(y)) => {
-                        if a_is_smaller() {
-                            (true, x)
-                        } else {
-                            (false, y)
-                        }
-                    }
-                }
-            }
-        };
+        let (test, met) = accurate::meet(&first, &second, a_is_smaller);
+        match test {
+            Test::InLine => self.work.in_line += 1,
+            Test::Swept => self.work.swept += 1,
+        }
+        let (ego_is_a, meeting) = met?;
         let rows = if ego_is_a { (a, b) } else { (b, a) };
         Some(self.measure(frame, roster, rows, &meeting, false))
     }

@@ -7,14 +7,14 @@ use crate::units::Metre;
 
 /// The meeting of two that drive towards each other with `ahead` m between their fronts. Each one's way ends where
 /// the area that the other needs to stop begins; the ego is the one with the longer way.
-pub fn in_line(a: &Mover, b: &Mover, ahead: Metre) -> OneDimension {
+pub(super) fn in_line(a: &Mover, b: &Mover, ahead: Metre, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
     let way = |ego: &Mover, foe: &Mover| {
         let way = (ahead - foe.stop.min(foe.reach())).max(0.0);
         (way <= ego.reach()).then_some(way)
     };
     let (ego_is_a, ego_way) = match (way(a, b), way(b, a)) {
         (None, None) => return OneDimension::Apart,
-        (Some(a), Some(b)) => (a >= b, a.max(b)),
+        (Some(a), Some(b)) => (a > b || (a == b && a_is_smaller()), a.max(b)),
         (Some(a), None) => (true, a),
         (None, Some(b)) => (false, b),
     };

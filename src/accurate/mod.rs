@@ -89,9 +89,40 @@ impl Meeting {
     }
 }
 
+/// Which test settled a pair.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Test {
+    /// In one dimension.
+    InLine,
+    /// By sweeping both rectangles.
+    Swept,
+}
+
+/// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
+/// of equal ones the first if `a_is_smaller` says that its id is.
+pub fn meet(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> (Test, Option<(bool, Meeting)>) {
+    match in_one_dimension(a, b, &a_is_smaller) {
+        OneDimension::Apart => (Test::InLine, None),
+        OneDimension::Meet(ego_is_a, meeting) => (Test::InLine, Some((ego_is_a, meeting))),
+        OneDimension::Unfit => {
+            let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
+            let met = match (as_ego(a, b), as_ego(b, a)) {
+                (None, None) => None,
+                (Some(as_a), Some(as_b)) => {
+                    let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
+                    Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
+                }
+                (Some(as_a), None) => Some((true, as_a)),
+                (None, Some(as_b)) => Some((false, as_b)),
+            };
+            (Test::Swept, met)
+        }
+    }
+}
+
 /// What a test in one dimension says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OneDimension {
+enum OneDimension {
     /// They do not drive in parallel: to be swept.
     Unfit,
     /// They do not meet.
@@ -101,7 +132,7 @@ pub enum OneDimension {
 }
 
 /// Tries to settle a pair in one dimension.
-pub fn in_one_dimension(a: &Mover, b: &Mover) -> OneDimension {
+fn in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return OneDimension::Unfit;
     }
@@ -120,7 +151,7 @@ pub fn in_one_dimension(a: &Mover, b: &Mover) -> OneDimension {
         let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
         rear_end::in_line(ego, foe, ahead).map_or(OneDimension::Apart, |meeting| OneDimension::Meet(ego_is_a, meeting))
     } else if along > 0.0 {
-        frontal::in_line(a, b, ahead)
+        frontal::in_line(a, b, ahead, a_is_smaller)
     } else {
         OneDimension::Apart
     }

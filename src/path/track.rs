@@ -245,3 +245,76 @@ impl<'a> Cursor<'a> {
         self.way += way;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn track(points: &[(f64, f64)], front: f64) -> Track {
+        let mut track = Track::default();
+        for &(x, y) in points {
+            track.push(Point::new(x, y));
+        }
+        track.set_front(front);
+        track
+    }
+
+    fn poses(track: &Track, ways: &[f64]) -> Vec<Pose> {
+        let mut found = Vec::new();
+        let front = Cursor::at(track, track.segment, track.front);
+        let rear = Cursor::at(track, 0, track.front - 5.0);
+        track.poses(chord(&front, &rear, Vector::x()), 5.0, ways, false, &mut found);
+        found
+    }
+
+    #[test]
+    fn a_straight_line_needs_only_the_poses_asked_for() {
+        let line = track(&[(0.0, 0.0), (10.0, 0.0), (20.0, 0.0), (30.0, 0.0), (100.0, 0.0)], 8.0);
+        let ways: Vec<_> = poses(&line, &[30.0, 30.5]).iter().map(|pose| pose.way).collect();
+        assert_eq!(ways, [0.0, 30.0, 30.5]);
+    }
+
+    #[test]
+    fn front_and_rear_are_both_on_the_line_round_a_corner() {
+        let corner = track(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
+        for pose in poses(&corner, &[10.0]) {
+            let rear = pose.front - pose.axis * 5.0;
+            let on_line = |p: Point| p.y.abs() < 1e-9 || (p.x - 10.0).abs() < 1e-9;
+            assert!(on_line(pose.front), "{pose:?}");
+            // The chord is shorter than the way round the corner, so the rear of a rigid vehicle is off the line.
+            assert!((rear - Point::new(10.0, 0.0)).norm() < 5.0 + 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_path_ends_where_the_line_ends() {
+        let line = track(&[(0.0, 0.0), (20.0, 0.0)], 8.0);
+        assert_eq!(poses(&line, &[30.0, 30.5]).last().unwrap().way, 12.0);
+    }
+
+    #[test]
+    fn another_heading_fades_out_over_the_length() {
+        let line = track(&[(0.0, 0.0), (100.0, 0.0)], 20.0);
+        let mut found = Vec::new();
+        line.poses(rotated(&Vector::x(), 0.1), 5.0, &[30.0], false, &mut found);
+        assert!((turn(&Vector::x(), &found[0].axis) - 0.1).abs() < 1e-12);
+        assert!(found.iter().filter(|pose| pose.way >= 5.0).all(|pose| pose.axis.y.abs() < 1e-12));
+    }
+
+    #[test]
+    fn it_is_followed_as_long_as_the_front_is_on_it() {
+        let mut corner = track(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
+        assert!(corner.follow(Point::new(9.5, 0.0)));
+        assert!(corner.follow(Point::new(10.0, 3.0)));
+        assert_eq!(corner.front(), 13.0);
+        assert!(!corner.follow(Point::new(11.0, 4.0)));
+    }
+
+    #[test]
+    fn repeated_points_and_a_turn_back_are_no_trouble() {
+        let back = track(&[(0.0, 0.0), (0.0, 0.0), (10.0, 0.0), (10.0, 0.0), (0.0, 0.0)], 8.0);
+        let found = poses(&back, &[6.0, 8.0]);
+        assert!(found.iter().all(|pose| (pose.axis.norm() - 1.0).abs() < 1e-9));
+        assert!(found.windows(2).all(|pair| pair[0].way < pair[1].way));
+    }
+}
