@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use crate::accurate::{self, Meeting, Mover, Test, side};
 use crate::approach::{self, Course};
-use crate::braking::{self, stopping_distance};
+use crate::braking::{self, MuModel, stopping_distance};
 use crate::encounter::{Encounter, Nearness, Placement};
 use crate::frame::{Frame, Roster, State, UserIndex};
 use crate::geometry::outline::Outline;
@@ -371,7 +371,7 @@ impl Detector {
         };
         let (ego, foe) = (self.mover(frame, roster, ego_row), self.mover(frame, roster, foe_row));
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, foe_way, sigma) };
-        let mu = accurate::mu(self.options.mu, &ego, &foe, sigma, self.options.epsilon);
+        let mu = accurate::mu(self.mu_model(), &ego, &foe, sigma, self.options.epsilon);
         let place = meeting.place();
         let ego_user = frame.users()[ego_row as usize];
         let lane = if self.rows[ego_row as usize].on_lanes {
@@ -401,6 +401,13 @@ impl Detector {
             encounter.nearness = Some(self.nearness(frame, roster, &encounter, meeting));
         }
         encounter
+    }
+
+    fn mu_model(&self) -> MuModel {
+        match self.options.mode {
+            Mode::Closecall => self.options.mu,
+            Mode::Paper => MuModel::Paper,
+        }
     }
 
     /// The foe's way until it has left the ego's meeting place.

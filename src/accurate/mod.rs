@@ -9,7 +9,7 @@ pub mod paper;
 pub mod rear_end;
 pub mod side;
 
-use crate::braking::{self, Brakes, MuModel};
+use crate::braking::{self, Brakes, Braking, MuModel};
 use crate::encounter::Kind;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
@@ -51,6 +51,11 @@ impl Mover<'_> {
     /// Width in m.
     pub fn width(&self) -> Metre {
         2.0 * self.rectangle.half_width
+    }
+
+    /// Its part in μ.
+    pub fn braking(&self) -> Braking<'_> {
+        Braking { speed: self.speed, brakes: self.brakes }
     }
 
     /// How far ahead its path is known to go: S + ε, or less where the path ends.
@@ -180,5 +185,5 @@ pub fn gap(ego_way: Metre, foe_way: Metre, sigma: f64) -> Metre {
 
 /// The minimal collision distance of a pair.
 pub fn mu(model: MuModel, ego: &Mover, foe: &Mover, sigma: f64, epsilon: Metre) -> Metre {
-    braking::mu(model, ego.speed, ego.brakes, foe.speed, foe.brakes, sigma, epsilon)
+    braking::mu(model, ego.braking(), foe.braking(), sigma, epsilon)
 }

@@ -1,0 +1,228 @@
+//! How a road user brakes, and the minimal collision distance μ (Guan et al. 2008, eq. 5–21, corrected).
+//!
+//! A braking road user keeps its speed V for its response time r = t1 + t2; then its deceleration rises linearly to a
+//! over t3 and stays there until it stands, which may be before t3 is over. μ is the room that the ego needs so that
+//! both can brake without contact. Three models of it, chosen by name: [`MuModel`].
+//!
+//! Published μ must hold its 15 digits also where S − Si cancels, so [`mu`] computes the same formulas in plain f64
+//! first and only where the result is much smaller than its terms in twice the precision ([`double_double`]).
+
+pub mod double_double;
+mod narrowest;
+
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use double_double::{DoubleDouble, Number};
+
+/// How one road user brakes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brakes {
+    /// Response time t1 + t2 in s: full speed until it is over.
+    pub response: Second,
+    /// Build-up time t3 in s, in which the deceleration rises linearly.
+    pub build_up: Second,
+    /// Deceleration in m/s² from then on; above 0.
+    pub deceleration: MetrePerSecondSquared,
+}
+
+impl Brakes {
+    /// The same brakes in the paper's worst case: at once and fully.
+    pub fn at_once(&self) -> Self {
+        Self { response: 0.0, build_up: 0.0, ..*self }
+    }
+}
+
+/// Which model of the minimal collision distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MuModel {
+    /// The narrowest moment on the way to rest.
+    Minimal,
+    /// Both at rest.
+    AtRest,
+    /// Eq. 19 and 21 as printed: always a minus sign, no floor.
+    Paper,
+}
+
+impl MuModel {
+    /// All models, in the order of tables.
+    pub const ALL: [Self; 3] = [Self::Minimal, Self::AtRest, Self::Paper];
+}
+
+/// One road user's part in μ: its speed in m/s, 0 or more, and its brakes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Braking<'a> {
+    /// Speed in m/s.
+    pub speed: MetrePerSecond,
+    /// Its brakes.
+    pub brakes: &'a Brakes,
+}
+
+/// The stopping distance in m, exactly, with V₃ = V − a·t3/2:
+///
+/// ```text
+/// V₃ ≥ 0:  S(V) = V (t1+t2) + V t3/2 + V²/(2a) − a t3²/24
+/// V₃ < 0:  S(V) = V (t1+t2) + (2/3) V √(2 V t3 / a)
+/// ```
+pub fn stopping_distance(speed: MetrePerSecond, brakes: &Brakes) -> Metre {
+    narrowest::stopping_distance(speed, brakes)
+}
+
+/// The stopping distance in m as printed (eq. 17): t3 at full speed, then V² at the undiminished speed.
+pub fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre {
+    speed * (brakes.response + brakes.build_up) + speed / (2.0 * brakes.deceleration) * speed
+}
+
+/// The minimal collision distance in m, with σ = cos α of the angle between the headings at the meeting place:
+///
+/// ```text
+/// minimal:  max over t ≥ 0 of ( travel_ego(t) − σ · travel_foe(t) ) + ε,  never below ε
+/// at_rest:  S − σ Si + ε,  never below ε
+/// paper:    S − Si + ε  (eq. 17–21; Si = Vi²/(2 ai))
+/// ```
+///
+/// For σ > 0 the foe brakes at once and fully; for σ ≤ 0 it needs response and build-up like the ego. The relative
+/// error is below 1e-12 as long as no intermediate value leaves the range of normal f64.
+///
+/// ```
+/// use closecall::braking::{Brakes, Braking, MuModel, mu};
+/// let strong = Brakes { response: 1.0, build_up: 0.0, deceleration: 8.0 };
+/// let weak = Brakes { deceleration: 4.0, ..strong };
+/// let (ego, foe) = (Braking { speed: 30.0, brakes: &strong }, Braking { speed: 25.0, brakes: &weak });
+/// assert_eq!(mu(MuModel::AtRest, ego, foe, 1.0, 0.0), 8.125);
+/// assert_eq!(mu(MuModel::Minimal, ego, foe, 1.0, 0.0), 17.125);
+/// ```
+pub fn mu(model: MuModel, ego: Braking, foe: Braking, sigma: f64, epsilon: Metre) -> Metre {
+    if let (MuModel::Minimal | MuModel::AtRest, true) = (model, sigma <= 0.0) {
+        // Both distances add: nothing cancels, and the narrowest moment is at rest.
+        return stopping_distance(ego.speed, ego.brakes) - sigma * stopping_distance(foe.speed, foe.brakes) + epsilon;
+    }
+    let plain = needed::<f64>(model, ego, foe, sigma);
+    if plain.trusted() {
+        return add_epsilon(model, plain.distance, epsilon);
+    }
+    let twofold = needed::<DoubleDouble>(model, ego, foe, sigma).distance + DoubleDouble::from(epsilon);
+    if model == MuModel::Paper { twofold.value() } else { twofold.value().max(epsilon) }
+}
+
+fn add_epsilon(model: MuModel, distance: Metre, epsilon: Metre) -> Metre {
+    if model == MuModel::Paper { distance + epsilon } else { distance.max(0.0) + epsilon }
+}
+
+/// A difference of ways, and how large the terms were that it was formed from.
+#[derive(Clone, Copy, Debug)]
+struct Needed<N> {
+    distance: N,
+    scale: f64,
+}
+
+impl Needed<f64> {
+    /// Whether so little cancelled that plain f64 has kept 13 digits.
+    ///
+    /// A clearly negative distance is the floor ε for the models that have one, and needs no digits.
+    fn trusted(&self) -> bool {
+        /// Each of some ten operations may err by half a unit in the last place of the largest term.
+        const KEPT: f64 = 1.0 / 64.0;
+        self.distance.abs() > KEPT * self.scale || self.scale == 0.0
+    }
+}
+
+/// What the ego needs more than the foe, before ε and floor.
+fn needed<N: Number>(model: MuModel, ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
+    match model {
+        MuModel::Minimal => narrowest::on_the_way::<N>(ego, foe, sigma),
+        MuModel::AtRest => narrowest::at_rest::<N>(ego, foe, sigma),
+        MuModel::Paper => narrowest::on_paper::<N>(ego, foe),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// f(t) by its definition, at one time.
+    fn travel(braking: Braking, time: f64) -> f64 {
+        let Brakes { response, build_up, deceleration } = *braking.brakes;
+        let speed = braking.speed;
+        if time <= response {
+            return speed * time;
+        }
+        let ramp = if speed < deceleration * build_up / 2.0 {
+            (2.0 * speed * build_up / deceleration).sqrt()
+        } else {
+            build_up
+        };
+        let on_ramp = (time - response).min(ramp);
+        let mut way = speed * (response + on_ramp);
+        if build_up > 0.0 {
+            way -= deceleration / (6.0 * build_up) * on_ramp.powi(3);
+        }
+        let left = speed - deceleration * build_up / 2.0;
+        if left > 0.0 && time > response + build_up {
+            let braking = (time - response - build_up).min(left / deceleration);
+            way += left * braking - deceleration * braking * braking / 2.0;
+        }
+        way
+    }
+
+    fn brakes() -> impl Strategy<Value = Brakes> {
+        (0.0..2.0, prop_oneof![Just(0.0), 0.0..3.0], 0.5..12.0).prop_map(|(response, build_up, deceleration)| Brakes {
+            response,
+            build_up,
+            deceleration,
+        })
+    }
+
+    proptest! {
+        #[test]
+        fn minimal_is_the_largest_of_all_moments(
+            ego_brakes in brakes(), foe_brakes in brakes(), v in 0.0..60.0, vi in 0.0..60.0, sigma in -1.0..=1.0,
+        ) {
+            let foe_brakes = if sigma > 0.0 { foe_brakes.at_once() } else { foe_brakes };
+            let ego = Braking { speed: v, brakes: &ego_brakes };
+            let foe = Braking { speed: vi, brakes: &foe_brakes };
+            let found = mu(MuModel::Minimal, ego, foe, sigma, 0.5);
+            let most = (0..200_000)
+                .map(|step| f64::from(step) * 1e-3)
+                .map(|time| travel(ego, time) - sigma * travel(foe, time))
+                .fold(0.0, f64::max) + 0.5;
+            prop_assert!((found - most).abs() < 1e-4, "{found} against {most} by small steps");
+        }
+
+        #[test]
+        fn both_precisions_agree_where_nothing_cancels(
+            ego_brakes in brakes(), foe_brakes in brakes(), v in 20.0..60.0, vi in 0.0..20.0, sigma in 0.1..=1.0,
+        ) {
+            let ego = Braking { speed: v, brakes: &ego_brakes };
+            let foe = Braking { speed: vi, brakes: &foe_brakes };
+            let plain = needed::<f64>(MuModel::Minimal, ego, foe, sigma);
+            let twofold = needed::<DoubleDouble>(MuModel::Minimal, ego, foe, sigma).distance.value();
+            if plain.trusted() && twofold > 0.0 {
+                prop_assert!((plain.distance / twofold - 1.0).abs() < 1e-13, "{} {twofold}", plain.distance);
+            }
+        }
+    }
+
+    #[test]
+    fn who_stands_before_the_build_up_ends_needs_less() {
+        let brakes = Brakes { response: 0.0, build_up: 2.0, deceleration: 8.0 };
+        assert!((stopping_distance(1.0, &brakes) - 2.0 / 3.0 * 0.5_f64.sqrt()).abs() < 1e-15);
+    }
+
+    #[test]
+    fn equal_speeds_and_brakes_need_only_the_response_and_epsilon() {
+        let brakes = Brakes { response: 1.0, build_up: 0.0, deceleration: 7.3 };
+        let both = Braking { speed: 33.3, brakes: &brakes };
+        assert_eq!(mu(MuModel::AtRest, both, both, 1.0, 0.5), 33.8);
+        let none = Braking { speed: 33.3, brakes: &brakes.at_once() };
+        assert_eq!(mu(MuModel::Minimal, none, none, 1.0, 0.0), 0.0);
+    }
+
+    #[test]
+    fn the_paper_always_subtracts() {
+        let brakes = Brakes { response: 1.05, build_up: 0.1, deceleration: 8.0 };
+        let (ego, foe) = (Braking { speed: 10.0, brakes: &brakes }, Braking { speed: 20.0, brakes: &brakes });
+        let found = mu(MuModel::Paper, ego, foe, -1.0, 0.5);
+        assert!((found - (11.5 + 6.25 - 25.0 + 0.5)).abs() < 1e-12);
+    }
+}

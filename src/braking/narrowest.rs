@@ -1,0 +1,101 @@
+//! How much farther the ego gets than the foe, for a foe that drives the same way (σ > 0) and brakes at once.
+//!
+//! f(t) = travel_ego(t) − σ · travel_foe(t) grows as long as g = v_ego − σ v_foe is above 0. While both move, v_ego is
+//! concave and σ v_foe is a straight line, so g is concave and has at most one crossing from + to −:
+//!
+//! - Where the foe stands first, g ends above 0: there is no such crossing, and the narrowest moment is at rest.
+//! - Where the ego stands first, it is that crossing: in the build-up or after it, never during the response, when
+//!   only the foe brakes.
+//!
+//! f at the crossing is summed up from the relative speed g0 = V − σ Vi, so that what both have in common never enters.
+
+use super::double_double::Number;
+use super::{Brakes, Braking, Needed};
+use crate::units::MetrePerSecond;
+
+/// S(V), for any kind of number.
+pub fn stopping_distance<N: Number>(speed: MetrePerSecond, brakes: &Brakes) -> N {
+    let n = N::from;
+    let (v, r, t3, a) = (n(speed), n(brakes.response), n(brakes.build_up), n(brakes.deceleration));
+    if speed >= brakes.deceleration * brakes.build_up / 2.0 {
+        v * r + v * t3 / n(2.0) + v / (n(2.0) * a) * v - a * t3 * t3 / n(24.0)
+    } else {
+        v * r + n(2.0) * v * (n(2.0) * v / a * t3).root() / n(3.0)
+    }
+}
+
+/// S − σ Si.
+pub fn at_rest<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
+    let own = stopping_distance::<N>(ego.speed, ego.brakes);
+    let other = N::from(sigma) * stopping_distance::<N>(foe.speed, &foe.brakes.at_once());
+    Needed { distance: own - other, scale: own.value() }
+}
+
+/// S − Si by eq. 17 and 18.
+pub fn on_paper<N: Number>(ego: Braking, foe: Braking) -> Needed<N> {
+    let n = N::from;
+    let (v, a) = (n(ego.speed), n(ego.brakes.deceleration));
+    let (foe_speed, foe_deceleration) = (n(foe.speed), n(foe.brakes.deceleration));
+    let own = v * (n(ego.brakes.response) + n(ego.brakes.build_up)) + v / (n(2.0) * a) * v;
+    let other = foe_speed / (n(2.0) * foe_deceleration) * foe_speed;
+    Needed { distance: own - other, scale: own.value().max(other.value()) }
+}
+
+/// The largest f over all times; 0 or below where it never grows.
+pub fn on_the_way<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
+    let Brakes { response, build_up, deceleration } = *ego.brakes;
+    let ramp_is_enough = ego.speed < deceleration * build_up / 2.0;
+    let ego_stands = response
+        + if ramp_is_enough {
+            (2.0 * ego.speed / deceleration * build_up).sqrt()
+        } else {
+            ego.speed / deceleration + build_up / 2.0
+        };
+    if foe.speed / foe.brakes.deceleration <= ego_stands {
+        return at_rest(ego, foe, sigma);
+    }
+    let n = N::from;
+    let (a, t3) = (n(deceleration), n(build_up));
+    let foe_brakes = n(sigma) * n(foe.brakes.deceleration);
+    // Relative speed and f at the end of the response.
+    let (start, r) = (n(ego.speed) - n(sigma) * n(foe.speed), n(response));
+    let speed = start + foe_brakes * r;
+    let ahead = (start + foe_brakes * r / n(2.0)) * r;
+    let terms = Terms { speeds: ego.speed + sigma * foe.speed, brakes: deceleration + foe_brakes.value() };
+    // And at the end of the build-up.
+    let after = speed + (foe_brakes - a / n(2.0)) * t3;
+    let closing = a - foe_brakes;
+    let rest = after / closing;
+    if !ramp_is_enough && after.value() > 0.0 {
+        if closing.value() <= 0.0 || rest.value() > (ego.speed - deceleration * build_up / 2.0) / deceleration {
+            // Both stand at the same time, but for rounding.
+            return at_rest(ego, foe, sigma);
+        }
+        let further = (speed + (foe_brakes / n(2.0) - a / n(6.0)) * t3) * t3;
+        let last = after * rest / n(2.0);
+        let time = response + build_up + rest.value();
+        let steep = last.value() * terms.brakes / closing.value();
+        return Needed { distance: ahead + further + last, scale: terms.over(time) + steep };
+    }
+    // In the build-up: speed + foe_brakes·τ − a τ²/(2 t3) = 0, the later root; the sum has no minus sign to cancel.
+    let inside = foe_brakes * foe_brakes + n(2.0) * a * speed / t3;
+    if build_up <= 0.0 || inside.value().is_nan() || inside.value() < 0.0 {
+        return Needed { distance: n(0.0), scale: 0.0 };
+    }
+    let root = (foe_brakes + inside.root()) / a * t3;
+    let further = (speed + (foe_brakes / n(2.0) - a * root / t3 / n(6.0)) * root) * root;
+    Needed { distance: ahead + further, scale: terms.over(response + root.value()) }
+}
+
+/// The magnitudes that the relative motion is formed from: they bound what rounding can do to it.
+struct Terms {
+    speeds: f64,
+    brakes: f64,
+}
+
+impl Terms {
+    /// The largest way that these speeds and decelerations make in a time.
+    fn over(&self, time: f64) -> f64 {
+        (self.speeds + self.brakes * time) * time
+    }
+}
