@@ -2,6 +2,8 @@
 //!
 //! Only what paths, obstacles of the scene and places in the log need: lane shapes, what leads where, junctions.
 
+mod reader;
+
 use std::path::Path;
 
 use nalgebra::Point2;
@@ -9,6 +11,9 @@ use rustc_hash::FxHashMap;
 
 use crate::Result;
 use crate::units::Metre;
+
+/// SUMO's default width of a lane in m.
+const LANE_WIDTH: Metre = 3.2;
 
 /// Which lane of a [`Net`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -118,7 +123,66 @@ impl Net {
     /// # Errors
     /// An error that names the file, line and what is wrong: unreadable, no SUMO net, a lane without geometry, a
     /// connection to nowhere.
-    pub fn read(_path: &Path) -> Result<Self> {
-        todo!()
+    pub fn read(path: &Path) -> Result<Self> {
+        reader::read(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn net(text: &str) -> Result<Net> {
+        use std::sync::atomic::{AtomicU32, Ordering};
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let number = COUNT.fetch_add(1, Ordering::Relaxed);
+        let path = std::env::temp_dir().join(format!("closecall-net-{}-{number}.net.xml", std::process::id()));
+        std::fs::write(&path, text).unwrap();
+        let net = Net::read(&path);
+        std::fs::remove_file(&path).unwrap();
+        net
+    }
+
+    const CORNER: &str = r#"<net>
+        <edge id=":b_0" function="internal"><lane id=":b_0_0" length="5" shape="100,0 102,2 102,5"/></edge>
+        <edge id="ab" from="a" to="b"><lane id="ab_0" length="100" shape="0,0 100,0"/></edge>
+        <edge id="bc" from="b" to="c"><lane id="bc_0" length="50" shape="102,5 102,5 102,55" width="2.5"/></edge>
+        <junction id="b" x="100" y="0" shape="100,0 102,2 102,5"/>
+        <connection from="ab" to="bc" fromLane="0" toLane="0" via=":b_0_0" dir="l" state="M"/>
+        <connection from=":b_0" to="bc" fromLane="0" toLane="0" dir="l" state="M"/>
+    </net>"#;
+
+    #[test]
+    fn lanes_know_what_leads_where_through_the_junction() {
+        let net = net(CORNER).unwrap();
+        let (ab, via, bc) = (net.lane("ab_0").unwrap(), net.lane(":b_0_0").unwrap(), net.lane("bc_0").unwrap());
+        assert_eq!(net.lanes[ab.0 as usize].links, [Link { to: bc, via: Some(via) }]);
+        assert_eq!(net.lanes[via.0 as usize].links, [Link { to: bc, via: None }]);
+        assert_eq!(net.lanes[bc.0 as usize].from, [via]);
+        assert_eq!(net.edges[net.edge(":b_0").unwrap().0 as usize].junction, "b");
+        assert!(!net.has_levels);
+    }
+
+    #[test]
+    fn a_repeated_point_is_dropped() {
+        let net = net(CORNER).unwrap();
+        let lane = &net.lanes[net.lane("bc_0").unwrap().0 as usize];
+        assert_eq!((lane.shape.len(), lane.width, lane.ways[1]), (2, 2.5, 50.0));
+    }
+
+    #[test]
+    fn what_is_wrong_is_named_with_its_line() {
+        for (from, to, said) in [
+            ("0,0 100,0", "0,0", r#"line 3: lane "ab_0" has 1 shape point(s); at least two are needed"#),
+            ("0,0 100,0", "0,0 nan,0", r#"line 3: "ab_0": shape point "nan,0" is out of range"#),
+            ("0,0 100,0", "0,0 x", r#"line 3: "ab_0": shape point "x" is not x,y or x,y,z"#),
+            (r#"via=":b_0_0""#, r#"via="gone""#, r#"line 6: no lane "gone""#),
+            (r#"length="100""#, r#"length="-1""#, r#"line 3: lane "ab_0": its length must be given, 0 m or more"#),
+            ("</net>", "", "the file ends before its elements do"),
+            ("<net>", "<routes>", "it is no SUMO net: its root element is not <net>"),
+        ] {
+            let message = net(&CORNER.replace(from, to)).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+        }
     }
 }

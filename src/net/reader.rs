@@ -1,0 +1,303 @@
+//! Reading a SUMO net: XML as netconvert writes it, plain or gzipped.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::path::Path;
+
+use flate2::bufread::MultiGzDecoder;
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use rustc_hash::FxHashMap;
+
+use super::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link, Net};
+use crate::geometry::Point;
+use crate::{Error, Result};
+
+/// Beyond this a coordinate is no place on earth, in m; SUMO's invalid value is larger.
+const FURTHEST: f64 = 1e9;
+
+/// A file that may be gzipped, to be read from its beginning.
+pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
+    let mut file = File::open(path).map_err(|source| Error::file(path, source))?;
+    let mut magic = [0; 2];
+    let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;
+    file.seek(SeekFrom::Start(0)).map_err(|source| Error::file(path, source))?;
+    let file = BufReader::with_capacity(1 << 16, file);
+    Ok(if magic[..length] == [0x1f, 0x8b] {
+        Box::new(BufReader::with_capacity(1 << 16, MultiGzDecoder::new(file)))
+    } else {
+        Box::new(file)
+    })
+}
+
+/// Reads a net file.
+pub fn read(path: &Path) -> Result<Net> {
+    NetReader { path, line: 1, net: Net::default(), connections: Vec::new(), heights: (f64::MAX, f64::MIN) }
+        .read(open(path)?)
+}
+
+struct NetReader<'a> {
+    path: &'a Path,
+    line: u64,
+    net: Net,
+    connections: Vec<Connection>,
+    heights: (f64, f64),
+}
+
+/// A `<connection>` before its ends are looked up: a lane may stand behind it.
+struct Connection {
+    line: u64,
+    from: (String, u32),
+    to: (String, u32),
+    via: Option<String>,
+}
+
+impl NetReader<'_> {
+    fn read(mut self, source: Box<dyn BufRead>) -> Result<Net> {
+        let mut reader = Reader::from_reader(LineCounter { source, lines: 1 });
+        let mut buffer = Vec::new();
+        let mut root = false;
+        let mut depth = 0_usize;
+        loop {
+            buffer.clear();
+            let event = reader.read_event_into(&mut buffer).map_err(|error| self.wrong(xml_message(&error)))?;
+            match event {
+                Event::Start(ref tag) | Event::Empty(ref tag) => {
+                    if !root && tag.name().as_ref() != "net" {
+                        return Err(self.wrong("it is no SUMO net: its root element is not <net>"));
+                    }
+                    root = true;
+                    depth += usize::from(matches!(event, Event::Start(_)));
+                    self.element(tag)?;
+                }
+                Event::End(_) => depth = depth.saturating_sub(1),
+                Event::Eof => break,
+                _ => {}
+            }
+            self.line = reader.get_ref().lines;
+        }
+        if !root || depth > 0 {
+            return Err(self.wrong("the file ends before its elements do"));
+        }
+        self.finish()
+    }
+
+    fn element(&mut self, tag: &BytesStart) -> Result<()> {
+        match tag.name().as_ref() {
+            "edge" => self.edge(&self.attributes(tag)?),
+            "lane" => self.lane(&self.attributes(tag)?),
+            "junction" => self.junction(&self.attributes(tag)?),
+            "connection" => self.connection(&self.attributes(tag)?),
+            _ => Ok(()),
+        }
+    }
+
+    fn edge(&mut self, attributes: &Attributes) -> Result<()> {
+        let id = self.required(attributes, "id")?;
+        let function = match attributes.get("function").map(String::as_str) {
+            Some("internal") => EdgeFunction::Internal,
+            Some("crossing") => EdgeFunction::Crossing,
+            Some("walkingarea") => EdgeFunction::WalkingArea,
+            Some("connector") => EdgeFunction::Connector,
+            _ => EdgeFunction::Normal,
+        };
+        let junction = attributes.get("to").cloned().unwrap_or_else(|| junction_of_internal(id));
+        let index = EdgeIndex(self.net.edges.len() as u32);
+        self.net.edge_ids.insert(id.clone(), index);
+        self.net.edges.push(Edge { id: id.clone(), function, lanes: Vec::new(), junction });
+        Ok(())
+    }
+
+    fn lane(&mut self, attributes: &Attributes) -> Result<()> {
+        let id = self.required(attributes, "id")?.clone();
+        let Some(edge) = self.net.edges.len().checked_sub(1) else {
+            return Err(self.wrong(format!("lane \"{id}\" stands outside any edge")));
+        };
+        let shape = self.shape(&id, self.required(attributes, "shape")?)?;
+        if shape.len() < 2 {
+            let points = shape.len();
+            return Err(self.wrong(format!("lane \"{id}\" has {points} shape point(s); at least two are needed")));
+        }
+        let length = self.number(attributes, "length", f64::NAN)?;
+        if !(length.is_finite() && length >= 0.0) {
+            return Err(self.wrong(format!("lane \"{id}\": its length must be given, 0 m or more")));
+        }
+        let width = self.number(attributes, "width", super::LANE_WIDTH)?;
+        let index = LaneIndex(self.net.lanes.len() as u32);
+        let edge_lanes = &mut self.net.edges[edge].lanes;
+        let place = edge_lanes.len() as u32;
+        edge_lanes.push(index);
+        self.net.lane_ids.insert(id.clone(), index);
+        let mut ways = Vec::with_capacity(shape.len());
+        let mut way = 0.0;
+        for (point, index) in shape.iter().zip(0_usize..) {
+            if let Some(before) = index.checked_sub(1) {
+                way += (point - shape[before]).norm();
+            }
+            ways.push(way);
+        }
+        let edge = EdgeIndex(edge as u32);
+        let (links, from) = (Vec::new(), Vec::new());
+        self.net.lanes.push(Lane { id, edge, index: place, length, width, shape, ways, links, from });
+        Ok(())
+    }
+
+    fn junction(&mut self, attributes: &Attributes) -> Result<()> {
+        let id = self.required(attributes, "id")?.clone();
+        let shape = match attributes.get("shape") {
+            Some(shape) => self.shape(&id, shape)?,
+            None => Vec::new(),
+        };
+        self.net.junctions.push(Junction { id, shape });
+        Ok(())
+    }
+
+    fn connection(&mut self, attributes: &Attributes) -> Result<()> {
+        let end = |edge: &str, lane: &str| -> Result<(String, u32)> {
+            let index = self.required(attributes, lane)?;
+            let index = index.parse().map_err(|_| self.wrong(format!("connection: {lane} is \"{index}\"")))?;
+            Ok((self.required(attributes, edge)?.clone(), index))
+        };
+        let connection = Connection {
+            line: self.line,
+            from: end("from", "fromLane")?,
+            to: end("to", "toLane")?,
+            via: attributes.get("via").cloned(),
+        };
+        self.connections.push(connection);
+        Ok(())
+    }
+
+    fn finish(mut self) -> Result<Net> {
+        if self.net.lanes.is_empty() {
+            return Err(Error::content(self.path, "the net has no lanes"));
+        }
+        for connection in std::mem::take(&mut self.connections) {
+            self.line = connection.line;
+            let from = self.end_of(&connection.from)?;
+            let to = self.end_of(&connection.to)?;
+            let via = match &connection.via {
+                Some(id) => Some(self.net.lane(id).ok_or_else(|| self.wrong(format!("no lane \"{id}\"")))?),
+                None => None,
+            };
+            self.net.lanes[from.0 as usize].links.push(Link { to, via });
+            let from_lanes = &mut self.net.lanes[via.unwrap_or(to).0 as usize].from;
+            if !from_lanes.contains(&from) {
+                from_lanes.push(from);
+            }
+        }
+        self.net.has_levels = self.heights.1 - self.heights.0 > crate::detector::LEVEL;
+        Ok(self.net)
+    }
+
+    fn end_of(&self, (edge, lane): &(String, u32)) -> Result<LaneIndex> {
+        let lanes = self.net.edge(edge).map(|edge| &self.net.edges[edge.0 as usize].lanes);
+        lanes
+            .and_then(|lanes| lanes.get(*lane as usize))
+            .copied()
+            .ok_or_else(|| self.wrong(format!("connection to lane {lane} of edge \"{edge}\", which does not exist")))
+    }
+
+    /// The points of a shape; points that repeat are dropped, since they have no direction, but two are kept.
+    fn shape(&mut self, id: &str, text: &str) -> Result<Vec<Point>> {
+        let mut points: Vec<Point> = Vec::new();
+        for triple in text.split_ascii_whitespace() {
+            let mut values = triple.split(',').map(|value| value.parse::<f64>().ok());
+            let (x, y, z) = (values.next().flatten(), values.next().flatten(), values.next());
+            let (Some(x), Some(y), None | Some(Some(_))) = (x, y, z) else {
+                return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is not x,y or x,y,z")));
+            };
+            let z = z.flatten().unwrap_or(0.0);
+            if !(x.abs() < FURTHEST && y.abs() < FURTHEST && z.abs() < FURTHEST) {
+                return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is out of range")));
+            }
+            self.heights = (self.heights.0.min(z), self.heights.1.max(z));
+            let point = Point::new(x, y);
+            if points.len() != 1 && points.last() == Some(&point) {
+                continue;
+            }
+            if let [first, second] = points[..]
+                && first == second
+            {
+                points.pop();
+            }
+            points.push(point);
+        }
+        Ok(points)
+    }
+
+    fn attributes(&self, tag: &BytesStart) -> Result<Attributes> {
+        let mut attributes = Attributes::default();
+        for attribute in tag.attributes() {
+            let attribute = attribute.map_err(|error| self.wrong(error.to_string()))?;
+            let name = attribute.key.as_ref().to_owned();
+            let value = quick_xml::escape::unescape(&attribute.value)
+                .map_err(|error| self.wrong(error.to_string()))?
+                .into_owned();
+            attributes.insert(name, value);
+        }
+        Ok(attributes)
+    }
+
+    fn required<'a>(&self, attributes: &'a Attributes, name: &str) -> Result<&'a String> {
+        attributes.get(name).ok_or_else(|| match attributes.get("id") {
+            Some(id) => self.wrong(format!("\"{id}\" has no attribute \"{name}\"")),
+            None => self.wrong(format!("attribute \"{name}\" is missing")),
+        })
+    }
+
+    fn number(&self, attributes: &Attributes, name: &str, default: f64) -> Result<f64> {
+        match attributes.get(name) {
+            Some(text) => text.parse().map_err(|_| self.wrong(format!("{name} is \"{text}\", not a number"))),
+            None => Ok(default),
+        }
+    }
+
+    fn wrong(&self, message: impl Into<String>) -> Error {
+        Error::line(self.path, self.line, message)
+    }
+}
+
+type Attributes = FxHashMap<String, String>;
+
+/// `:J_0` lies in junction J.
+fn junction_of_internal(edge: &str) -> String {
+    let name = edge.strip_prefix(':').unwrap_or(edge);
+    name.rsplit_once('_').map_or(name, |(junction, _)| junction).to_owned()
+}
+
+/// What quick-xml says, in one line.
+pub fn xml_message(error: &quick_xml::Error) -> String {
+    error.to_string().replace('\n', " ")
+}
+
+/// Counts lines as they are read: messages name them.
+struct LineCounter {
+    source: Box<dyn BufRead>,
+    lines: u64,
+}
+
+impl Read for LineCounter {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let length = self.source.read(buffer)?;
+        self.lines += count_lines(&buffer[..length]);
+        Ok(length)
+    }
+}
+
+impl BufRead for LineCounter {
+    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
+        self.source.fill_buf()
+    }
+
+    fn consume(&mut self, amount: usize) {
+        if let Ok(buffer) = self.source.fill_buf() {
+            self.lines += count_lines(&buffer[..amount.min(buffer.len())]);
+        }
+        self.source.consume(amount);
+    }
+}
+
+fn count_lines(bytes: &[u8]) -> u64 {
+    bytes.iter().filter(|byte| **byte == b'\n').count() as u64
+}
