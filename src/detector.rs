@@ -7,7 +7,7 @@ use std::sync::Arc;
 use crate::accurate::{self, Meeting, Mover, Test, side};
 use crate::approach::{self, Course};
 use crate::braking::{self, MuModel, stopping_distance};
-use crate::encounter::{Encounter, Nearness, Placement};
+use crate::encounter::{Encounter, Kind, Nearness, Placement};
 use crate::frame::{Frame, Roster, State, UserIndex};
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::{self, Rectangle, direction};
@@ -437,9 +437,25 @@ impl Detector {
         } else {
             crate::geometry::polygon::distance(foe.shape, &ego.rectangle)
         };
-        let drac = ttc.and_then(|_| measures::drac(encounter, ego.speed, foe.speed, meeting));
+        let drac = ttc.and_then(|_| self.drac(frame, roster, encounter, meeting));
+        let ego = self.mover(frame, roster, ego_row);
         let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, &self.options);
         Nearness { clearance, ttc, drac, severity }
+    }
+
+    fn drac(&mut self, frame: &Frame, roster: &Roster, encounter: &Encounter, meeting: &Meeting) -> Option<f64> {
+        let speed = |row: u32| frame.states()[row as usize].speed;
+        let (ego, foe) = (speed(encounter.ego_row), speed(encounter.foe_row));
+        let sigma = encounter.angle.cos();
+        if meeting.leads || encounter.kind == Kind::Frontal {
+            return measures::drac_in_line(ego - sigma * foe, encounter.gap);
+        }
+        let out = if sigma > 0.0 || meeting.foe_axis.is_none() {
+            encounter.foe_way
+        } else {
+            self.way_out(frame, roster, encounter.foe_row, meeting)
+        };
+        measures::drac_across(ego, encounter.ego_way, foe, out)
     }
 
     fn time_to_collision(

@@ -8,6 +8,7 @@
 pub mod accurate;
 pub mod approach;
 pub mod braking;
+pub mod conflict;
 pub mod detector;
 pub mod encounter;
 mod error;

@@ -1,0 +1,381 @@
+//! Encounters become conflicts: one event per pair and run of steps with margin < 0.
+//!
+//! An event opens at the first step with margin < 0 and closes when the margin has been ≥ 0 for [`CLOSES_AFTER`] or
+//! one of the two is no road user any more. A side or frontal event then waits for its PET, at most [`pet::WAIT`].
+
+pub mod pet;
+
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+use crate::encounter::{Encounter, Kind, Severity};
+use crate::frame::{Frame, Roster, UserIndex};
+use crate::geometry::Point;
+use crate::geometry::rectangle::{Rectangle, direction};
+use crate::measures;
+use crate::net::LaneIndex;
+use crate::profile::Category;
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+
+/// How long the margin must be ≥ 0 before an event closes, in s (DESIGN.md, Events).
+pub const CLOSES_AFTER: Second = 1.0;
+/// Simulated times are sums of steps: what differs by less is the same moment, in s.
+const SAME_MOMENT: Second = 1e-6;
+
+/// One conflict: a pair and a run of steps with margin < 0.
+///
+/// Everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and `pet`,
+/// which are the event's extremes, and `severity`, its worst.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Conflict {
+    /// SUMO's id of the ego.
+    pub ego: Arc<str>,
+    /// SUMO's id of the foe.
+    pub foe: Arc<str>,
+    /// The kind at the smallest margin.
+    pub kind: Kind,
+    /// The worst over the event.
+    pub severity: Severity,
+    /// First step with margin < 0, in s.
+    pub begin: Second,
+    /// Last step with margin < 0, in s.
+    pub end: Second,
+    /// The step with the smallest margin, in s.
+    pub time: Second,
+    /// The room that was left, in m.
+    pub gap: Metre,
+    /// The minimal collision distance, in m.
+    pub mu: Metre,
+    /// gap − μ, in m.
+    pub margin: Metre,
+    /// Smallest distance between the two rectangles, in m.
+    pub clearance: Metre,
+    /// Smallest time to collision, in s.
+    pub ttc: Option<Second>,
+    /// Largest deceleration rate to avoid the collision, in m/s².
+    pub drac: Option<MetrePerSecondSquared>,
+    /// Post-encroachment time, in s; side and frontal only.
+    pub pet: Option<Second>,
+    /// Speed change of the ego in a fully inelastic collision, in m/s.
+    pub delta_v: MetrePerSecond,
+    /// Speed of the ego, in m/s.
+    pub ego_speed: MetrePerSecond,
+    /// Speed of the foe, in m/s.
+    pub foe_speed: MetrePerSecond,
+    /// Angle α at the meeting place, in rad.
+    pub angle: Radian,
+    /// The ego's front-bumper centre at the meeting place, x in m.
+    pub x: Metre,
+    /// The same, y in m.
+    pub y: Metre,
+    /// The lane of the meeting place.
+    #[serde(skip)]
+    pub lane: Option<LaneIndex>,
+    /// Whether the rectangles overlapped in any step.
+    pub collision: bool,
+}
+
+/// Both road users of an event that goes on, and how bad it is now: what is painted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Alarm {
+    /// The ego of the last step in conflict.
+    pub ego: UserIndex,
+    /// The foe of that step.
+    pub foe: UserIndex,
+    /// The severity in that step.
+    pub severity: Severity,
+    /// The kind in that step.
+    pub kind: Kind,
+}
+
+/// Follows the pairs in conflict from step to step.
+#[derive(Debug, Default)]
+pub struct Tracker {
+    events: FxHashMap<(UserIndex, UserIndex), Event>,
+    /// Closed, but its PET is not known yet.
+    waiting: Vec<Event>,
+    closed: Vec<Conflict>,
+    rows: Vec<u32>,
+}
+
+/// No row of the frame.
+const ABSENT: u32 = u32::MAX;
+
+/// An event under way, or closed and waiting for its PET.
+#[derive(Debug)]
+struct Event {
+    pair: (UserIndex, UserIndex),
+    conflict: Conflict,
+    alarm: Alarm,
+    courses: Option<[pet::Course; 2]>,
+}
+
+impl Tracker {
+    /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
+    /// and ids.
+    pub fn step(&mut self, frame: &Frame, roster: &Roster, encounters: &[Encounter]) -> &[Conflict] {
+        self.closed.clear();
+        if self.events.is_empty() && self.waiting.is_empty() && encounters.iter().all(|found| !found.in_conflict()) {
+            return &self.closed;
+        }
+        self.rows.clear();
+        self.rows.resize(roster.len(), ABSENT);
+        for (row, user) in (0..).zip(frame.users()) {
+            self.rows[user.0 as usize] = row;
+        }
+        for found in encounters.iter().filter(|found| found.in_conflict()) {
+            self.take(frame, roster, found);
+        }
+        self.follow(frame, roster);
+        self.close(frame.time);
+        self.settle(frame.time, false);
+        self.sort();
+        &self.closed
+    }
+
+    /// Closes whatever is still open: the run has ended.
+    pub fn finish(&mut self) -> &[Conflict] {
+        self.closed.clear();
+        self.waiting.extend(self.events.drain().map(|(_, event)| event));
+        self.settle(f64::INFINITY, true);
+        self.sort();
+        &self.closed
+    }
+
+    /// The events that go on, in no order that means anything.
+    pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
+        self.events.values().map(|event| event.alarm)
+    }
+
+    fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter) {
+        let pair = (found.ego.min(found.foe), found.ego.max(found.foe));
+        let now = moment(frame, roster, found);
+        let alarm = Alarm { ego: found.ego, foe: found.foe, severity: now.severity, kind: found.kind };
+        let event =
+            self.events.entry(pair).or_insert_with(|| Event { pair, conflict: now.clone(), alarm, courses: None });
+        event.alarm = alarm;
+        event.conflict.take(now);
+        if found.kind != Kind::RearEnd && event.courses.is_none() {
+            event.courses = Some(Default::default());
+        }
+    }
+
+    /// Records where the pairs of side and frontal events go.
+    fn follow(&mut self, frame: &Frame, roster: &Roster) {
+        for event in self.events.values_mut().chain(&mut self.waiting) {
+            let Some(courses) = &mut event.courses else { continue };
+            for (user, course) in [event.pair.0, event.pair.1].into_iter().zip(courses) {
+                let row = self.rows.get(user.0 as usize).copied().unwrap_or(ABSENT);
+                // An index that was given to another road user meanwhile is not followed.
+                if row == ABSENT || course.has_ended() {
+                    course.end();
+                    continue;
+                }
+                let profile = roster.profile_of(user);
+                if profile.category == Category::Obstacle {
+                    continue;
+                }
+                let state = &frame.states()[row as usize];
+                let front = Point::new(state.x, state.y);
+                let rectangle = Rectangle::behind(front, direction(state.heading), profile.length, profile.width);
+                course.push(frame.time, rectangle);
+            }
+        }
+    }
+
+    fn close(&mut self, time: Second) {
+        let rows = &self.rows;
+        let gone = |user: UserIndex| rows.get(user.0 as usize).is_none_or(|row| *row == ABSENT);
+        let over = self.events.extract_if(|pair, event| {
+            time - event.conflict.end >= CLOSES_AFTER - SAME_MOMENT || gone(pair.0) || gone(pair.1)
+        });
+        self.waiting.extend(over.map(|(_, event)| event));
+    }
+
+    /// Passes on the closed events whose PET is known, or will not be.
+    fn settle(&mut self, time: Second, at_once: bool) {
+        let mut waiting = std::mem::take(&mut self.waiting);
+        waiting.retain_mut(|event| {
+            if let (Some(courses), true) = (&event.courses, event.conflict.kind != Kind::RearEnd) {
+                let last_call = at_once
+                    || time - event.conflict.end >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
+                    || courses.iter().any(pet::Course::has_ended);
+                let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
+                if last_call || just_closed {
+                    event.conflict.pet = pet::post_encroachment_time(&courses[0], &courses[1]);
+                }
+                if event.conflict.pet.is_none() && !last_call {
+                    return true;
+                }
+            }
+            self.closed.push(event.conflict.clone());
+            false
+        });
+        self.waiting = waiting;
+    }
+
+    fn sort(&mut self) {
+        self.closed.sort_by(|a, b| a.begin.total_cmp(&b.begin).then_with(|| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe))));
+    }
+}
+
+/// One step of a pair as a conflict of its own.
+fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
+    let part = |user: UserIndex, row: u32| (frame.states()[row as usize].speed, roster.profile_of(user).mass);
+    let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
+    let near = found.nearness.as_ref();
+    Conflict {
+        ego: roster.user(found.ego).id.clone(),
+        foe: roster.user(found.foe).id.clone(),
+        kind: found.kind,
+        severity: near.map_or(Severity::Caution, |near| near.severity),
+        begin: frame.time,
+        end: frame.time,
+        time: frame.time,
+        gap: found.gap,
+        mu: found.mu,
+        margin: found.margin,
+        clearance: near.map_or(f64::INFINITY, |near| near.clearance),
+        ttc: near.and_then(|near| near.ttc),
+        drac: near.and_then(|near| near.drac),
+        pet: None,
+        delta_v: measures::delta_v(ego, foe, found.angle),
+        ego_speed: ego.0,
+        foe_speed: foe.0,
+        angle: found.angle,
+        x: found.x,
+        y: found.y,
+        lane: found.lane,
+        collision: found.collision,
+    }
+}
+
+impl Conflict {
+    /// Adds a later step of the same event.
+    fn take(&mut self, now: Self) {
+        let extremes = Self {
+            severity: self.severity.max(now.severity),
+            begin: self.begin,
+            end: now.end,
+            clearance: self.clearance.min(now.clearance),
+            ttc: least(self.ttc, now.ttc),
+            drac: least(self.drac.map(|drac| -drac), now.drac.map(|drac| -drac)).map(|drac| -drac),
+            collision: self.collision || now.collision,
+            ..if now.margin < self.margin { now } else { self.clone() }
+        };
+        *self = extremes;
+    }
+}
+
+fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.min(b)),
+        (a, b) => a.or(b),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::State;
+    use crate::options::Options;
+    use crate::profile::{Profile, SumoType};
+
+    struct Scene {
+        tracker: Tracker,
+        roster: Roster,
+        users: [UserIndex; 2],
+    }
+
+    impl Scene {
+        fn new() -> Self {
+            let mut roster = Roster::default();
+            let sumo = SumoType {
+                name: "car".to_owned(),
+                vehicle_class: "passenger".to_owned(),
+                length: 5.0,
+                width: 2.0,
+                mass: 1500.0,
+                emergency_decel: 9.0,
+                decel: 4.5,
+            };
+            let profile = roster.profile(Profile::vehicle(&sumo, &Options::default())).unwrap();
+            let users = [roster.enter("a", profile), roster.enter("b", profile)];
+            Self { tracker: Tracker::default(), roster, users }
+        }
+
+        /// A step in which both are there and their margin is this (rear-end).
+        fn step(&mut self, time: f64, margin: f64) -> Vec<Conflict> {
+            self.step_with(time, &[(0, 0.0), (1, 20.0)], margin, Kind::RearEnd)
+        }
+
+        fn step_with(&mut self, time: f64, present: &[(usize, f64)], margin: f64, kind: Kind) -> Vec<Conflict> {
+            let mut frame = Frame::default();
+            frame.begin(time);
+            for &(user, x) in present {
+                frame.push(self.users[user], State { x, y: 0.0, z: 0.0, heading: 0.0, speed: 10.0 });
+            }
+            let encounter = Encounter {
+                ego: self.users[0],
+                foe: self.users[1],
+                ego_row: 0,
+                foe_row: 1,
+                kind,
+                angle: 0.0,
+                gap: 10.0 + margin,
+                mu: 10.0,
+                margin,
+                ego_way: 10.0,
+                foe_way: 0.0,
+                x: 0.0,
+                y: 0.0,
+                lane: None,
+                collision: false,
+                nearness: None,
+            };
+            let found = if present.len() == 2 { vec![encounter] } else { vec![] };
+            self.tracker.step(&frame, &self.roster, &found).to_vec()
+        }
+    }
+
+    #[test]
+    fn a_conflict_is_open_until_the_margin_was_positive_for_a_second() {
+        let mut scene = Scene::new();
+        for (time, margin) in [(0.0, 1.0), (0.5, -1.0), (1.0, -3.0), (1.5, -2.0), (2.0, 1.0)] {
+            assert_eq!(scene.step(time, margin), []);
+        }
+        assert_eq!(scene.tracker.alarms().count(), 1);
+        let [closed] = &scene.step(2.5, 1.0)[..] else { panic!() };
+        assert_eq!((closed.begin, closed.end, closed.time, closed.margin), (0.5, 1.5, 1.0, -3.0));
+        assert_eq!(scene.tracker.alarms().count(), 0);
+    }
+
+    #[test]
+    fn a_margin_that_is_positive_for_less_than_a_second_is_the_same_conflict() {
+        let mut scene = Scene::new();
+        for (time, margin) in [(0.0, -1.0), (0.9, 1.0), (1.5, -2.0), (2.0, 1.0)] {
+            scene.step(time, margin);
+        }
+        let [closed] = scene.tracker.finish() else { panic!() };
+        assert_eq!((closed.begin, closed.end), (0.0, 1.5));
+    }
+
+    #[test]
+    fn a_conflict_closes_when_one_of_the_two_leaves() {
+        let mut scene = Scene::new();
+        scene.step(0.0, -1.0);
+        assert_eq!(scene.step_with(0.1, &[(0, 0.0)], -1.0, Kind::RearEnd).len(), 1);
+    }
+
+    #[test]
+    fn a_side_conflict_waits_for_what_both_really_do() {
+        let mut scene = Scene::new();
+        let both = [(0, 0.0), (1, 20.0)];
+        scene.step_with(0.0, &both, -1.0, Kind::Side);
+        assert_eq!(scene.step_with(1.0, &both, 1.0, Kind::Side), []);
+        assert_eq!(scene.step_with(5.9, &both, 1.0, Kind::Side), []);
+        assert_eq!(scene.step_with(6.0, &both, 1.0, Kind::Side).len(), 1);
+    }
+}

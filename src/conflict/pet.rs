@@ -1,0 +1,137 @@
+//! Post-encroachment time: how long after the first has left the conflict area the second enters it.
+//!
+//! Measured on what both really drove. The conflict area is where the two corridors, the areas that their rectangles
+//! covered, overlap: the first leaves it when its rectangle touches the other's corridor for the last time, the
+//! second enters it when its rectangle touches the first's corridor for the first time.
+
+use crate::geometry::Bounds;
+use crate::geometry::outline::Outline;
+use crate::geometry::rectangle::Rectangle;
+use crate::geometry::sweep::Step;
+use crate::path::Pose;
+use crate::units::Second;
+
+/// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
+pub const WAIT: Second = 5.0;
+
+/// What one road user drove: its rectangle at each time.
+#[derive(Clone, Debug, Default)]
+pub struct Course {
+    moments: Vec<(Second, Rectangle)>,
+    ended: bool,
+}
+
+impl Course {
+    /// Adds where it is at a time; one that stands adds nothing.
+    pub fn push(&mut self, time: Second, rectangle: Rectangle) {
+        if let [.., (_, before), (last_time, last)] = &mut self.moments[..]
+            && *before == *last
+            && *last == rectangle
+        {
+            *last_time = time;
+            return;
+        }
+        self.moments.push((time, rectangle));
+    }
+
+    /// It is no road user any more.
+    pub fn end(&mut self) {
+        self.ended = true;
+    }
+
+    /// Whether it is no road user any more.
+    pub fn has_ended(&self) -> bool {
+        self.ended
+    }
+
+    fn steps(&self) -> impl Iterator<Item = (Second, Second, Step)> {
+        self.moments.windows(2).map(|pair| {
+            let [(from, start), (to, end)] = [&pair[0], &pair[1]];
+            let pose = |rectangle: &Rectangle, way| Pose {
+                way,
+                front: rectangle.centre + rectangle.axis * rectangle.half_length,
+                axis: rectangle.axis,
+            };
+            let (length, width) = (2.0 * start.half_length, 2.0 * start.half_width);
+            (*from, *to, pose(start, 0.0).step_to(&pose(end, 1.0), length, width))
+        })
+    }
+
+    /// The area that it covered, in convex parts.
+    fn corridor(&self) -> Vec<(Bounds, Outline)> {
+        let bounds = |step: &Step| {
+            let mut bounds = step.rectangle(0.0).bounds();
+            bounds.join(&step.rectangle(1.0).bounds());
+            bounds
+        };
+        self.steps().map(|(_, _, step)| (bounds(&step), step.area())).collect()
+    }
+
+    /// The first and the last time at which it touches a corridor; the last is none where it still does at the end.
+    fn contact(&self, corridor: &[(Bounds, Outline)]) -> Option<(Second, Option<Second>)> {
+        let mut first = None;
+        let mut last = None;
+        let mut still = false;
+        for (from, to, step) in self.steps() {
+            let mut bounds = step.rectangle(0.0).bounds();
+            bounds.join(&step.rectangle(1.0).bounds());
+            still = false;
+            for (part_bounds, part) in corridor {
+                if !part_bounds.meet(&bounds) {
+                    continue;
+                }
+                if let Some(contact) = step.contact(part) {
+                    let enter = from + (to - from) * contact.enter;
+                    let leave = from + (to - from) * contact.leave.min(1.0);
+                    first = Some(first.map_or(enter, |known: Second| known.min(enter)));
+                    last = Some(last.map_or(leave, |known: Second| known.max(leave)));
+                    still |= contact.leave >= 1.0;
+                }
+            }
+        }
+        first.map(|first| (first, last.filter(|_| !still)))
+    }
+}
+
+/// The PET of two courses in s; none where the corridors do not overlap, or both are in the conflict area at once, as
+/// where one merges behind the other.
+pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<Second> {
+    let (a_enters, a_leaves) = a.contact(&b.corridor())?;
+    let (b_enters, b_leaves) = b.contact(&a.corridor())?;
+    if a_enters == b_enters {
+        return None;
+    }
+    let (leaves, enters) = if a_enters < b_enters { (a_leaves?, b_enters) } else { (b_leaves?, a_enters) };
+    (enters >= leaves).then_some(enters - leaves)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+
+    /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
+    fn course(heading: f64, arrives: f64) -> Course {
+        let axis = crate::geometry::rectangle::direction(heading);
+        let mut course = Course::default();
+        for step in 0..=20 {
+            let time = f64::from(step) * 0.5;
+            let front = Point::origin() + axis * ((time - arrives) * 10.0);
+            course.push(time, Rectangle::behind(front, axis, 4.0, 2.0));
+        }
+        course
+    }
+
+    #[test]
+    fn one_that_crosses_behind_another_leaves_the_time_between() {
+        // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
+        // enters the first's (1 m before the origin) at 5 − 0.1 s.
+        let found = post_encroachment_time(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
+        assert!((found - 2.4).abs() < 1e-9, "{found}");
+    }
+
+    #[test]
+    fn who_follows_on_the_same_way_has_none() {
+        assert_eq!(post_encroachment_time(&course(0.0, 2.0), &course(0.0, 4.0)), None);
+    }
+}
