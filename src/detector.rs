@@ -45,8 +45,8 @@ pub struct Work {
     pub in_line: u64,
     /// Swept.
     pub swept: u64,
-    /// Lanes asked for.
-    pub placed: u64,
+    /// Road users in pairs that were still on the path laid before.
+    pub known_paths: u64,
 }
 
 /// Finds the encounters of one step after the other.
@@ -141,7 +141,10 @@ impl Detector {
             let (a, b) = (a as usize, b as usize);
             let left_out = if states[a].speed <= STANDS && states[b].speed <= STANDS {
                 &mut work.both_stand
-            } else if (states[a].z - states[b].z).abs() > LEVEL {
+            } else if (states[a].z - states[b].z).abs() > LEVEL
+                && category(roster, frame, a) != Category::Obstacle
+                && category(roster, frame, b) != Category::Obstacle
+            {
                 &mut work.other_level
             } else if category(roster, frame, a) == Category::Person && category(roster, frame, b) == Category::Person {
                 &mut work.both_persons
@@ -159,7 +162,6 @@ impl Detector {
                 }
             }
         }
-        self.work.placed += self.unplaced.len() as u64;
         &self.unplaced
     }
 
@@ -206,6 +208,8 @@ impl Detector {
         self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
         if self.routes_may_change || !self.rows[row as usize].on_lanes {
             self.unplaced.push(row);
+        } else {
+            self.work.known_paths += 1;
         }
     }
 

@@ -8,12 +8,15 @@
 pub mod accurate;
 pub mod approach;
 pub mod braking;
+pub mod cli;
 pub mod conflict;
 pub mod detector;
 pub mod encounter;
 mod error;
+pub mod filter;
 pub mod frame;
 pub mod geometry;
+pub mod log;
 pub mod measures;
 pub mod net;
 pub mod options;
@@ -21,6 +24,8 @@ pub mod path;
 pub mod precollision;
 pub mod profile;
 pub mod run;
+pub mod scene;
+pub mod summary;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -1,2 +1,7 @@
-//! The command.
-fn main() {}
+//! The command without Python: everything but `closecall run`.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    ExitCode::from(closecall::cli::main(std::env::args_os(), None))
+}

@@ -260,14 +260,24 @@ fn plain(error: clap::Error) -> Error {
     Error::Value(text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned())
 }
 
-fn not_negative(text: &str) -> std::result::Result<f64, String> {
+/// A number of 0 or more.
+pub(crate) fn not_negative(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
         _ => Err("it must be a finite number, 0 or more".to_owned()),
     }
 }
 
-fn angle(text: &str) -> std::result::Result<f64, String> {
+/// A number above 0.
+pub(crate) fn positive(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+/// An angle in rad, 0 to π.
+pub(crate) fn angle(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..=std::f64::consts::PI).contains(&value) => Ok(value),
         _ => Err("it must be an angle in rad, 0 to π".to_owned()),

@@ -7,11 +7,19 @@
 use std::sync::Arc;
 
 use crate::Result;
+use crate::conflict::{Alarm, Conflict, Tracker};
 use crate::detector::Detector;
-use crate::encounter::{Encounter, Kind, Placement, Severity};
-use crate::frame::{Frame, Roster, UserIndex};
+use crate::encounter::{Encounter, Placement};
+use crate::filter::Filter;
+use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::geometry::Point;
+use crate::geometry::polygon::convex_parts;
+use crate::log::Log;
 use crate::net::Net;
 use crate::options::Options;
+use crate::profile::{Category, Profile};
+use crate::scene::{self, LeftOut};
+use crate::summary::Summary;
 use crate::units::Second;
 
 /// One run.
@@ -21,17 +29,111 @@ pub struct Run {
     /// The road users of the step under way.
     pub frame: Frame,
     detector: Detector,
+    net: Option<Arc<Net>>,
+    filter: Option<Filter>,
+    tracker: Tracker,
+    log: Option<Log>,
+    keeps: bool,
+    conflicts: Vec<Conflict>,
+    in_conflict: Vec<Encounter>,
+    leaving: Vec<UserIndex>,
+    obstacles: Vec<(UserIndex, Point)>,
+    summary: Summary,
 }
 
 impl Run {
-    /// A run that keeps its conflicts in memory and, where it gets a log, writes them there.
-    pub fn new(options: &Options, net: Option<Arc<Net>>) -> Self {
-        Self { roster: Roster::default(), frame: Frame::default(), detector: Detector::new(options, net) }
+    /// A run that keeps its conflicts in memory.
+    ///
+    /// # Errors
+    /// An error that names the filter's file and what is wrong with it.
+    pub fn new(options: &Options, net: Option<Arc<Net>>) -> Result<Self> {
+        let filter = match (&options.filter, &net) {
+            (Some(path), Some(net)) => Some(Filter::read(path, net)?),
+            (Some(path), None) => return Err(crate::Error::content(path, "a filter needs a net")),
+            (None, _) => None,
+        };
+        Ok(Self {
+            roster: Roster::default(),
+            frame: Frame::default(),
+            detector: Detector::new(options, net.clone()),
+            net,
+            filter,
+            tracker: Tracker::default(),
+            log: None,
+            keeps: true,
+            conflicts: Vec::new(),
+            in_conflict: Vec::new(),
+            leaving: Vec::new(),
+            obstacles: Vec::new(),
+            summary: Summary::default(),
+        })
+    }
+
+    /// Writes the conflicts to a log too, and no longer keeps them in memory unless `keeps`.
+    pub fn log_to(&mut self, log: Log, keeps: bool) {
+        self.log = Some(log);
+        self.keeps = keeps;
+    }
+
+    /// Says that no road user's route changes while it is in the scene.
+    pub fn routes_are_fixed(&mut self) {
+        self.detector.routes_are_fixed();
+    }
+
+    /// Takes a vehicle or person of a type that the roster has into the scene.
+    pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
+        let user = self.roster.enter(id, profile);
+        match self.roster.profile_of(user).category {
+            Category::Vehicle => self.summary.exposure.vehicles += 1,
+            Category::Person => self.summary.exposure.persons += 1,
+            Category::Obstacle => {}
+        }
+        user
+    }
+
+    /// Takes a static obstacle into the scene, where it stays: a polygon of this type and outline.
+    ///
+    /// # Errors
+    /// [`crate::Error::Value`] where the outline has fewer than three points or a point that is none.
+    pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
+        if outline.len() < 3 || outline.iter().any(|point| !(point.x + point.y).is_finite()) {
+            return Err(crate::Error::Value(format!("polygon \"{id}\" needs three points at least, all finite")));
+        }
+        let shape = convex_parts(outline).into();
+        let profile = self.roster.profile(Profile::obstacle(polygon_type))?;
+        self.obstacles.push((self.roster.enter_shaped(id, profile, shape), outline[0]));
+        Ok(())
+    }
+
+    /// Lets a road user leave the scene; it must not be in a later frame.
+    pub fn leave(&mut self, user: UserIndex) {
+        self.leaving.push(user);
     }
 
     /// Begins the step at `time`, with an empty frame.
     pub fn begin(&mut self, time: Second) {
+        if self.summary.steps == 0 {
+            self.summary.begin = time;
+        } else {
+            self.expose(time - self.frame.time);
+        }
+        self.summary.steps += 1;
+        self.summary.end = time;
         self.frame.begin(time);
+        for &(user, place) in &self.obstacles {
+            self.frame.push(user, State { x: place.x, y: place.y, z: 0.0, heading: 0.0, speed: 0.0 });
+        }
+    }
+
+    /// Counts the traffic of the step before, which lasted this long.
+    fn expose(&mut self, lasted: Second) {
+        let exposure = &mut self.summary.exposure;
+        for (user, state) in self.frame.users().iter().zip(self.frame.states()) {
+            if self.roster.profile_of(*user).category == Category::Vehicle {
+                exposure.vehicle_kilometres += state.speed * lasted / 1e3;
+                exposure.vehicle_hours += lasted / 3600.0;
+            }
+        }
     }
 
     /// Phase 1; returns the rows that phase 2 has to have placed.
@@ -40,20 +142,90 @@ impl Run {
     }
 
     /// Says where the road user of a row is on the net.
-    pub fn place(&mut self, row: u32, placement: Placement) {
-        self.detector.place(&self.frame, &self.roster, row, &placement);
+    pub fn place(&mut self, row: u32, placement: &Placement) {
+        self.detector.place(&self.frame, &self.roster, row, placement);
     }
 
-    /// Phase 2, the events and the log.
+    /// Phase 2, the events and the log; returns the pairs that are in conflict in this step.
     ///
     /// # Errors
     /// An error that names the log's file if it cannot be written.
     pub fn finish_step(&mut self) -> Result<&[Encounter]> {
-        Ok(self.detector.detect(&self.frame, &self.roster))
+        self.in_conflict.clear();
+        for found in self.detector.detect(&self.frame, &self.roster) {
+            if !found.in_conflict() {
+                continue;
+            }
+            let mut found = *found;
+            if let (None, Some(net)) = (found.lane, &self.net) {
+                found.lane = net.lane_at(Point::new(found.x, found.y));
+            }
+            if self.filter.as_ref().is_none_or(|filter| filter.holds(found.lane)) {
+                self.in_conflict.push(found);
+            }
+        }
+        let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict);
+        if let Some(log) = &mut self.log {
+            if !closed.is_empty() {
+                log.conflicts(closed, self.net.as_deref())?;
+            }
+            log.encounters(self.frame.time, &self.in_conflict, &self.roster)?;
+        }
+        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
+        // Only now may their indices be given to others: the events of this step have seen that they are gone.
+        for user in self.leaving.drain(..) {
+            self.roster.leave(user);
+            self.detector.forget(user);
+        }
+        Ok(&self.in_conflict)
     }
 
-    /// Who is in conflict in this step, each once: its worst severity and that conflict's kind.
-    pub fn alarms(&self) -> &[(UserIndex, Severity, Kind)] {
-        &[]
+    /// The conflicts that go on in this step.
+    pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
+        self.tracker.alarms()
+    }
+
+    /// The conflicts that are kept in memory.
+    pub fn conflicts(&self) -> &[Conflict] {
+        &self.conflicts
+    }
+
+    /// The net, if there is one.
+    pub fn net(&self) -> Option<&Net> {
+        self.net.as_deref()
+    }
+
+    /// What was found so far.
+    pub fn summary(&self) -> &Summary {
+        &self.summary
+    }
+
+    /// Closes what is still open and adds it to the log; what the caller did without is added to what was left out.
+    ///
+    /// # Errors
+    /// An error that names the log's file if it cannot be written.
+    pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<&Summary> {
+        let closed = self.tracker.finish();
+        if let Some(log) = &mut self.log {
+            log.conflicts(closed, self.net.as_deref())?;
+        }
+        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
+        self.summary.left_out = scene::left_out(&self.detector.work(), self.net.as_deref());
+        self.summary.left_out.extend(left_out);
+        Ok(&self.summary)
+    }
+
+    /// The log, taken away from the run.
+    pub fn take_log(&mut self) -> Option<Log> {
+        self.log.take()
+    }
+}
+
+fn settle(closed: &[Conflict], summary: &mut Summary, kept: Option<&mut Vec<Conflict>>) {
+    for conflict in closed {
+        summary.add(conflict);
+    }
+    if let Some(kept) = kept {
+        kept.extend_from_slice(closed);
     }
 }

@@ -2,9 +2,11 @@
 //!
 //! Only what paths, obstacles of the scene and places in the log need: lane shapes, what leads where, junctions.
 
+mod finder;
 mod reader;
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
@@ -105,6 +107,7 @@ pub struct Net {
     pub has_levels: bool,
     lane_ids: FxHashMap<String, LaneIndex>,
     edge_ids: FxHashMap<String, EdgeIndex>,
+    finder: OnceLock<finder::Finder>,
 }
 
 impl Net {
@@ -116,6 +119,16 @@ impl Net {
     /// The edge of this id.
     pub fn edge(&self, id: &str) -> Option<EdgeIndex> {
         self.edge_ids.get(id).copied()
+    }
+
+    /// The lane whose centre line is nearest to a place; none where that is far off.
+    pub fn lane_at(&self, place: Point2<Metre>) -> Option<LaneIndex> {
+        self.finder.get_or_init(|| finder::Finder::new(&self.lanes)).lane_at(&self.lanes, place)
+    }
+
+    /// The id of a lane.
+    pub fn lane_id(&self, lane: LaneIndex) -> &str {
+        &self.lanes[lane.0 as usize].id
     }
 
     /// Reads a net file.
@@ -161,6 +174,14 @@ mod tests {
         assert_eq!(net.lanes[bc.0 as usize].from, [via]);
         assert_eq!(net.edges[net.edge(":b_0").unwrap().0 as usize].junction, "b");
         assert!(!net.has_levels);
+    }
+
+    #[test]
+    fn a_place_is_on_the_nearest_lane() {
+        let net = net(CORNER).unwrap();
+        assert_eq!(net.lane_at(Point2::new(40.0, 1.0)), net.lane("ab_0"));
+        assert_eq!(net.lane_at(Point2::new(103.0, 30.0)), net.lane("bc_0"));
+        assert_eq!(net.lane_at(Point2::new(40.0, 30.0)), None);
     }
 
     #[test]

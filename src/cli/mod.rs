@@ -1,0 +1,106 @@
+//! The command line: parse, call the library, print.
+//!
+//! `closecall run` needs Python, which this crate does not know: whoever calls [`main`] passes in how to run a
+//! simulation, or nothing.
+
+mod mu;
+mod run;
+mod settings;
+
+use std::ffi::OsString;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+pub use run::{RunRequest, Simulate};
+
+use crate::{Error, Result};
+
+#[derive(Parser)]
+#[command(name = "closecall", version, about, args_override_self = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run a SUMO scenario with the checker attached
+    #[command(args_override_self = true)]
+    Run(run::RunArgs),
+    /// Print the minimal collision distance μ of two road users, by all three models
+    #[command(args_override_self = true)]
+    Mu(mu::MuArgs),
+}
+
+/// Runs the command that `words` (the program's name first) say; returns the exit status.
+///
+/// Messages go to standard error, one clear line each, results to standard output.
+pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Simulate>) -> u8 {
+    let words = words.into_iter().collect::<Vec<_>>();
+    let cli = match parse(words) {
+        Ok(cli) => cli,
+        Err(Stop::Clap(error)) => {
+            // Nothing can be done where even this cannot be printed.
+            let _ = error.print();
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+        Err(Stop::Error(error)) => return failed(&error),
+    };
+    let done = match cli.command {
+        Command::Run(arguments) => run::run(arguments, simulate),
+        Command::Mu(arguments) => mu::run(&arguments),
+    };
+    match done {
+        Ok(()) => 0,
+        Err(error) => failed(&error),
+    }
+}
+
+fn failed(error: &Error) -> u8 {
+    eprintln!("closecall: {error}");
+    error.exit_status()
+}
+
+/// Why a command line does not lead to a command.
+enum Stop {
+    /// clap's own: help, version, a usage error.
+    Clap(clap::Error),
+    /// The TOML file's.
+    Error(Error),
+}
+
+impl From<clap::Error> for Stop {
+    fn from(error: clap::Error) -> Self {
+        Self::Clap(error)
+    }
+}
+
+/// Parses the words; those of a TOML file that they name stand before them, so that what was typed wins.
+fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
+    let matches = Cli::command().try_get_matches_from(&words)?;
+    let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
+    let known = settings::long_options(&Cli::command(), name);
+    let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
+        Ok(Some(path)) => settings::read(&Cli::command(), path).map_err(Stop::Error)?,
+        _ => return Ok(Cli::from_arg_matches(&matches)?),
+    };
+    let place = words.iter().position(|word| word == name).map_or(words.len(), |place| place + 1);
+    let here = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
+    let (before, after) = words.split_at(place);
+    let all = before.iter().cloned().chain(file.words.iter().filter(here).map(OsString::from)).chain(after.to_vec());
+    let mut cli = Cli::from_arg_matches(&Cli::command().try_get_matches_from(all)?)?;
+    if let Command::Run(arguments) = &mut cli.command {
+        arguments.options.types = file.types;
+    }
+    Ok(cli)
+}
+
+/// One line for a value that is out of its range.
+fn value(message: impl Into<String>) -> Error {
+    Error::Value(message.into())
+}
+
+/// What the command returns where SUMO is not at hand.
+fn no_sumo() -> Result<()> {
+    Err(value("this binary was built without Python and cannot run SUMO; `pip install closecall` gives one that can"))
+}

@@ -1,0 +1,85 @@
+//! `closecall mu`: the minimal collision distance of two road users, by all three models.
+
+use clap::{Args, ValueEnum};
+
+use crate::Result;
+use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
+use crate::encounter::Kind;
+use crate::options::{angle, not_negative, positive};
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+
+/// Two road users that brake.
+#[derive(Args)]
+pub struct MuArgs {
+    /// The ego's speed in m/s.
+    #[arg(long, value_name = "V", value_parser = not_negative)]
+    speed: MetrePerSecond,
+    /// The foe's speed in m/s.
+    #[arg(long, value_name = "V", value_parser = not_negative)]
+    foe_speed: MetrePerSecond,
+    /// The ego's deceleration in m/s² (SUMO's emergencyDecel of a car).
+    #[arg(long, value_name = "A", default_value_t = 9.0, value_parser = positive)]
+    decel: MetrePerSecondSquared,
+    /// The foe's deceleration in m/s².
+    #[arg(long, value_name = "A", default_value_t = 9.0, value_parser = positive)]
+    foe_decel: MetrePerSecondSquared,
+    /// Response time t1 + t2 of both in s.
+    #[arg(long, value_name = "T", default_value_t = 1.05, value_parser = not_negative)]
+    response_time: Second,
+    /// Build-up time t3 of both in s.
+    #[arg(long, value_name = "T3", default_value_t = 0.1, value_parser = not_negative)]
+    build_up: Second,
+    /// Redundancy ε in m.
+    #[arg(long, value_name = "E", default_value_t = 0.5, value_parser = not_negative)]
+    epsilon: Metre,
+    /// Kind, which gives σ = cos α: 1 for rear_end, 0 for side, −1 for frontal.
+    #[arg(long, value_enum, default_value = "rear_end")]
+    kind: Kind,
+    /// Angle α between the headings in rad, instead of the kind.
+    #[arg(long, value_name = "RAD", value_parser = angle)]
+    angle: Option<Radian>,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+impl Kind {
+    /// σ = cos α of the kind's own angle.
+    pub fn sigma(self) -> f64 {
+        match self {
+            Self::RearEnd => 1.0,
+            Self::Side => 0.0,
+            Self::Frontal => -1.0,
+        }
+    }
+}
+
+/// Prints the three models.
+pub fn run(arguments: &MuArgs) -> Result<()> {
+    let brakes =
+        Brakes { response: arguments.response_time, build_up: arguments.build_up, deceleration: arguments.decel };
+    let foe_brakes = Brakes { deceleration: arguments.foe_decel, ..brakes };
+    let ego = Braking { speed: arguments.speed, brakes: &brakes };
+    let foe = Braking { speed: arguments.foe_speed, brakes: &foe_brakes };
+    let sigma = arguments.angle.map_or(arguments.kind.sigma(), f64::cos);
+    let found = MuModel::ALL.map(|model| (name(model), mu(model, ego, foe, sigma, arguments.epsilon)));
+    let stops = [stopping_distance(ego.speed, &brakes), stopping_distance(foe.speed, &foe_brakes)];
+    if arguments.json {
+        let mut object = serde_json::Map::new();
+        object.insert("sigma".to_owned(), sigma.into());
+        object.insert("stopping_distance".to_owned(), stops[0].into());
+        object.insert("foe_stopping_distance".to_owned(), stops[1].into());
+        object.extend(found.map(|(name, mu)| (name.replace('-', "_"), mu.into())));
+        println!("{}", serde_json::Value::Object(object));
+    } else {
+        println!("sigma {sigma}, stopping distances {} m and {} m", stops[0], stops[1]);
+        for (name, mu) in found {
+            println!("{name:<8} {mu} m");
+        }
+    }
+    Ok(())
+}
+
+fn name(model: MuModel) -> String {
+    model.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}

@@ -1,0 +1,115 @@
+//! `closecall run`: what is asked for, handed to whoever can run SUMO.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::no_sumo;
+use crate::options::{Options, not_negative, positive};
+use crate::summary::Summary;
+use crate::units::Second;
+use crate::{Error, Result};
+
+/// A SUMO scenario and how to run it.
+#[derive(Args)]
+pub struct RunArgs {
+    /// SUMO configuration file.
+    #[arg(value_name = "CONFIG", required_unless_present = "configuration_file")]
+    scenario: Option<PathBuf>,
+    /// The same, as SUMO spells it.
+    #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
+    configuration_file: Option<PathBuf>,
+    /// Show the run in sumo-gui, conflicts painted.
+    #[arg(long)]
+    gui: bool,
+    /// Folder of the log [default: closecall-out beside the scenario].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// First simulated second.
+    #[arg(short = 'b', long, value_name = "S", value_parser = not_negative)]
+    begin: Option<Second>,
+    /// Simulated second at which the run ends.
+    #[arg(short = 'e', long, value_name = "S", value_parser = not_negative)]
+    end: Option<Second>,
+    /// SUMO's random seed.
+    #[arg(long, value_name = "N")]
+    seed: Option<u32>,
+    /// Length of a step in s.
+    #[arg(long, value_name = "S", value_parser = positive)]
+    step_length: Option<Second>,
+    /// TOML file of options.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    pub(super) options: Options,
+    /// Options for SUMO itself.
+    #[arg(last = true, value_name = "SUMO OPTIONS")]
+    sumo_options: Vec<String>,
+}
+
+/// What `closecall run` was asked to do.
+#[derive(Clone, Debug)]
+pub struct RunRequest {
+    /// The SUMO configuration file.
+    pub scenario: PathBuf,
+    /// Whether to show the run in sumo-gui.
+    pub gui: bool,
+    /// Folder of the log.
+    pub out: PathBuf,
+    /// Simulated second at which the run ends; none for the scenario's own end.
+    pub end: Option<Second>,
+    /// Whether to print nothing but errors.
+    pub quiet: bool,
+    /// The detector's options.
+    pub options: Options,
+    /// Words for SUMO, after the program's name.
+    pub sumo_words: Vec<String>,
+}
+
+/// Runs SUMO with the checker attached.
+pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
+
+/// Runs the scenario and prints its summary.
+pub fn run(arguments: RunArgs, simulate: Option<&mut Simulate>) -> Result<()> {
+    let Some(simulate) = simulate else { return no_sumo() };
+    let request = request(arguments)?;
+    let summary = simulate(&request)?;
+    if !request.quiet {
+        print!("{summary}");
+        println!("log in {}", request.out.display());
+    }
+    Ok(())
+}
+
+fn request(arguments: RunArgs) -> Result<RunRequest> {
+    let scenario = arguments.configuration_file.or(arguments.scenario).unwrap_or_default();
+    // Opened here for the operating system's own words on why it cannot be.
+    std::fs::File::open(&scenario).map_err(|source| Error::file(&scenario, source))?;
+    if scenario.is_dir() {
+        return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
+    }
+    let beside = scenario.parent().unwrap_or(Path::new("")).join("closecall-out");
+    let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];
+    let times = [("--begin", arguments.begin), ("--end", arguments.end), ("--step-length", arguments.step_length)];
+    for (option, time) in times {
+        if let Some(time) = time {
+            sumo_words.extend([option.to_owned(), time.to_string()]);
+        }
+    }
+    if let Some(seed) = arguments.seed {
+        sumo_words.extend(["--seed".to_owned(), seed.to_string()]);
+    }
+    sumo_words.extend(arguments.sumo_options);
+    Ok(RunRequest {
+        scenario,
+        gui: arguments.gui,
+        out: arguments.out.unwrap_or(beside),
+        end: arguments.end,
+        quiet: arguments.quiet,
+        options: arguments.options.checked()?,
+        sumo_words,
+    })
+}

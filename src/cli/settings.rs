@@ -1,0 +1,30 @@
+//! Options from a TOML file, for every command.
+
+use std::path::Path;
+
+use clap::Command;
+
+use crate::Result;
+use crate::options::OptionsFile;
+
+/// Reads a TOML file whose keys may name any command's long options: one file can serve several commands.
+pub fn read(all: &Command, path: &Path) -> Result<OptionsFile> {
+    let known = all.get_subcommands().flat_map(|command| options_of(command)).collect::<Vec<_>>();
+    OptionsFile::read(path, &known)
+}
+
+/// The long options of one command.
+pub fn long_options(all: &Command, name: &str) -> Vec<String> {
+    all.find_subcommand(name).map(options_of).unwrap_or_default()
+}
+
+/// The option's name in a word such as `--mu=paper`.
+pub fn option_of(word: &str) -> &str {
+    let name = word.trim_start_matches('-');
+    name.split_once('=').map_or(name, |(name, _)| name)
+}
+
+fn options_of(command: &Command) -> Vec<String> {
+    let named = command.get_arguments().filter_map(|argument| argument.get_long());
+    named.filter(|name| !["config", "help", "version"].contains(name)).map(str::to_owned).collect()
+}

@@ -1,0 +1,273 @@
+//! What a run leaves on disk: `conflicts.csv`, `encounters.csv` on request, `run.json`.
+//!
+//! Rows are written as conflicts close, whole rows in one call each step, so that after a kill whatever closed before
+//! is there and no row is half.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::conflict::Conflict;
+use crate::encounter::Encounter;
+use crate::frame::Roster;
+use crate::net::Net;
+use crate::units::Second;
+use crate::{Error, Result};
+
+/// The name of the conflicts' file.
+pub const CONFLICTS: &str = "conflicts.csv";
+/// The name of the encounters' file.
+pub const ENCOUNTERS: &str = "encounters.csv";
+/// The name of the file that says how the run was made.
+pub const RUN: &str = "run.json";
+
+/// The columns of [`CONFLICTS`].
+pub const CONFLICT_COLUMNS: [&str; 23] = [
+    "id",
+    "ego",
+    "foe",
+    "kind",
+    "severity",
+    "begin",
+    "end",
+    "time",
+    "gap",
+    "mu",
+    "margin",
+    "clearance",
+    "ttc",
+    "drac",
+    "pet",
+    "delta_v",
+    "ego_speed",
+    "foe_speed",
+    "angle",
+    "x",
+    "y",
+    "lane",
+    "collision",
+];
+/// The columns of [`ENCOUNTERS`].
+pub const ENCOUNTER_COLUMNS: [&str; 10] =
+    ["time", "ego", "foe", "kind", "gap", "mu", "margin", "ttc", "drac", "severity"];
+
+/// The log of one run.
+#[derive(Debug)]
+pub struct Log {
+    folder: PathBuf,
+    made_folder: bool,
+    conflicts: Table,
+    encounters: Option<Table>,
+    written: u64,
+}
+
+impl Log {
+    /// Makes the folder where there is none, and the files' first lines in it.
+    ///
+    /// # Errors
+    /// [`Error::File`] that names what cannot be written.
+    pub fn create(folder: &Path, with_encounters: bool) -> Result<Self> {
+        let made_folder = !folder.exists();
+        fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
+        let encounters = folder.join(ENCOUNTERS);
+        // Those of an earlier run would be taken for this one's.
+        let stale = if with_encounters { vec![RUN] } else { vec![RUN, ENCOUNTERS] };
+        for name in stale {
+            let path = folder.join(name);
+            if path.is_file() {
+                fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
+            }
+        }
+        Ok(Self {
+            conflicts: Table::create(folder.join(CONFLICTS), &CONFLICT_COLUMNS)?,
+            encounters: with_encounters.then(|| Table::create(encounters, &ENCOUNTER_COLUMNS)).transpose()?,
+            folder: folder.to_owned(),
+            made_folder,
+            written: 0,
+        })
+    }
+
+    /// Appends conflicts that have closed.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the disk takes no more.
+    pub fn conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>) -> Result<()> {
+        for conflict in conflicts {
+            self.written += 1;
+            self.conflicts.row(&[
+                Cell::Count(self.written),
+                Cell::Text(&conflict.ego),
+                Cell::Text(&conflict.foe),
+                Cell::Text(conflict.kind.name()),
+                Cell::Text(conflict.severity.name()),
+                Cell::Number(conflict.begin),
+                Cell::Number(conflict.end),
+                Cell::Number(conflict.time),
+                Cell::Number(conflict.gap),
+                Cell::Number(conflict.mu),
+                Cell::Number(conflict.margin),
+                Cell::Number(conflict.clearance),
+                Cell::maybe(conflict.ttc),
+                Cell::maybe(conflict.drac),
+                Cell::maybe(conflict.pet),
+                Cell::Number(conflict.delta_v),
+                Cell::Number(conflict.ego_speed),
+                Cell::Number(conflict.foe_speed),
+                Cell::Number(conflict.angle),
+                Cell::Number(conflict.x),
+                Cell::Number(conflict.y),
+                match (conflict.lane, net) {
+                    (Some(lane), Some(net)) => Cell::Text(net.lane_id(lane)),
+                    _ => Cell::Empty,
+                },
+                Cell::Text(if conflict.collision { "true" } else { "false" }),
+            ])?;
+        }
+        self.conflicts.flush()
+    }
+
+    /// Appends the pairs in conflict of one step, where that was asked for.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the disk takes no more.
+    pub fn encounters(&mut self, time: Second, encounters: &[Encounter], roster: &Roster) -> Result<()> {
+        let Some(table) = &mut self.encounters else { return Ok(()) };
+        for found in encounters {
+            let Some(near) = &found.nearness else { continue };
+            table.row(&[
+                Cell::Number(time),
+                Cell::Text(&roster.user(found.ego).id),
+                Cell::Text(&roster.user(found.foe).id),
+                Cell::Text(found.kind.name()),
+                Cell::Number(found.gap),
+                Cell::Number(found.mu),
+                Cell::Number(found.margin),
+                Cell::maybe(near.ttc),
+                Cell::maybe(near.drac),
+                Cell::Text(near.severity.name()),
+            ])?;
+        }
+        table.flush()
+    }
+
+    /// Writes `run.json`, whole or not at all.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be written.
+    pub fn run(&self, content: &serde_json::Value) -> Result<()> {
+        let path = self.folder.join(RUN);
+        let draft = self.folder.join(format!("{RUN}.tmp"));
+        let text = format!("{content:#}\n");
+        fs::write(&draft, text).map_err(|source| Error::file(&draft, source))?;
+        fs::rename(&draft, &path).map_err(|source| Error::file(&path, source))
+    }
+
+    /// Takes back what was written: the input could not be used after all.
+    pub fn discard(self) {
+        // What cannot be removed stays: the error that led here is the one to be told.
+        for path in
+            [Some(&self.conflicts.path), self.encounters.as_ref().map(|table| &table.path)].into_iter().flatten()
+        {
+            let _ = fs::remove_file(path);
+        }
+        let _ = fs::remove_file(self.folder.join(RUN));
+        if self.made_folder {
+            let _ = fs::remove_dir(&self.folder);
+        }
+    }
+}
+
+/// One CSV file.
+#[derive(Debug)]
+struct Table {
+    path: PathBuf,
+    file: File,
+    rows: csv::Writer<Vec<u8>>,
+}
+
+/// One cell of a row.
+enum Cell<'a> {
+    Text(&'a str),
+    Number(f64),
+    Count(u64),
+    Empty,
+}
+
+impl Cell<'_> {
+    fn maybe(value: Option<f64>) -> Self {
+        value.map_or(Self::Empty, Self::Number)
+    }
+}
+
+impl Table {
+    fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
+        let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
+        let mut table = Self { path, file, rows: csv::Writer::from_writer(Vec::new()) };
+        table.row(&columns.iter().map(|column| Cell::Text(column)).collect::<Vec<_>>())?;
+        table.flush()?;
+        Ok(table)
+    }
+
+    fn row(&mut self, cells: &[Cell]) -> Result<()> {
+        let mut digits = String::new();
+        for cell in cells {
+            digits.clear();
+            let text = match cell {
+                Cell::Text(text) => text,
+                Cell::Number(value) => number(*value, &mut digits),
+                Cell::Count(count) => {
+                    digits.push_str(&count.to_string());
+                    &digits
+                }
+                Cell::Empty => "",
+            };
+            self.rows.write_field(text).map_err(|error| self.unwritable(error.into()))?;
+        }
+        self.rows.write_record(None::<&[u8]>).map_err(|error| self.unwritable(error.into()))
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        let empty = csv::Writer::from_writer(Vec::new());
+        let rows = std::mem::replace(&mut self.rows, empty)
+            .into_inner()
+            .map_err(|error| self.unwritable(std::io::Error::other(error.to_string())))?;
+        if rows.is_empty() {
+            return Ok(());
+        }
+        self.file.write_all(&rows).map_err(|source| self.unwritable(source))
+    }
+
+    fn unwritable(&self, source: std::io::Error) -> Error {
+        Error::file(&self.path, source)
+    }
+}
+
+/// A number with six decimals at most: micrometres and microseconds.
+fn number(value: f64, text: &mut String) -> &str {
+    use std::fmt::Write;
+    // Writing to a String does not fail.
+    let _ = write!(text, "{value:.6}");
+    let kept = text.trim_end_matches('0').trim_end_matches('.').len();
+    text.truncate(kept);
+    if text == "-0" { "0" } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_six_decimals_at_most() {
+        let text = |value| number(value, &mut String::new()).to_owned();
+        assert_eq!(
+            [text(1.0), text(0.1 + 0.2), text(-1e-9), text(-12.25), text(100.0)],
+            ["1", "0.3", "0", "-12.25", "100"]
+        );
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_made_is_named() {
+        let message = Log::create(Path::new("/proc/closecall"), false).unwrap_err().to_string();
+        assert!(message.starts_with("/proc/closecall: "), "{message}");
+    }
+}
