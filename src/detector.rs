@@ -106,10 +106,15 @@ impl Detector {
         }
     }
 
-    /// Says that no road user's route changes while it is in the scene, so that a path once laid holds until the road
-    /// user leaves it.
-    pub fn routes_are_fixed(&mut self) {
-        self.routes_may_change = false;
+    /// Says whether no road user's route changes while it is in the scene, so that a path once laid holds until the
+    /// road user leaves it; without such word routes may change.
+    pub fn set_fixed_routes(&mut self, fixed: bool) {
+        self.routes_may_change = !fixed;
+    }
+
+    /// Whether no road user's route changes while it is in the scene.
+    pub fn has_fixed_routes(&self) -> bool {
+        !self.routes_may_change
     }
 
     /// What was done so far.

@@ -60,6 +60,12 @@ pub enum Error {
         /// What SUMO says.
         message: String,
     },
+    /// The user ended the run.
+    #[error("interrupted at {time} s; what was found so far is in the log")]
+    Interrupted {
+        /// The simulated time that was reached.
+        time: f64,
+    },
 }
 
 impl Error {
@@ -79,11 +85,13 @@ impl Error {
     }
 
     /// The exit status of a command that ends with this error: 1 where SUMO failed in mid-run, 3 where a
-    /// recording was cut short, 2 for every other input that cannot be used.
+    /// recording was cut short, 130 where the user interrupted it, 2 for every other input that cannot be used.
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Failed { .. } => 1,
             Self::CutShort { .. } => 3,
+            // As shells say it: 128 + SIGINT.
+            Self::Interrupted { .. } => 130,
             _ => 2,
         }
     }

@@ -11,6 +11,7 @@ use crate::conflict::Conflict;
 use crate::encounter::Encounter;
 use crate::frame::Roster;
 use crate::net::Net;
+use crate::record::RunRecord;
 use crate::units::Second;
 use crate::{Error, Result};
 
@@ -154,11 +155,11 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where it cannot be written.
-    pub fn run(&self, content: &serde_json::Value) -> Result<()> {
+    pub fn run(&self, record: &RunRecord) -> Result<()> {
         let path = self.folder.join(RUN);
         let draft = self.folder.join(format!("{RUN}.tmp"));
-        let text = format!("{content:#}\n");
-        fs::write(&draft, text).map_err(|source| Error::file(&draft, source))?;
+        let text = serde_json::to_string_pretty(record).map_err(|error| Error::content(&path, error.to_string()))?;
+        fs::write(&draft, text + "\n").map_err(|source| Error::file(&draft, source))?;
         fs::rename(&draft, &path).map_err(|source| Error::file(&path, source))
     }
 

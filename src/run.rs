@@ -77,7 +77,17 @@ impl Run {
 
     /// Says that no road user's route changes while it is in the scene.
     pub fn routes_are_fixed(&mut self) {
-        self.detector.routes_are_fixed();
+        self.detector.set_fixed_routes(true);
+    }
+
+    /// Takes that back.
+    pub fn routes_may_change(&mut self) {
+        self.detector.set_fixed_routes(false);
+    }
+
+    /// Whether no road user's route changes while it is in the scene.
+    pub fn has_fixed_routes(&self) -> bool {
+        self.detector.has_fixed_routes()
     }
 
     /// Takes a vehicle or person of a type that the roster has into the scene.
@@ -185,9 +195,9 @@ impl Run {
         self.tracker.alarms()
     }
 
-    /// The conflicts that are kept in memory.
-    pub fn conflicts(&self) -> &[Conflict] {
-        &self.conflicts
+    /// The conflicts that are kept in memory, and those that go on as they are now.
+    pub fn conflicts(&self) -> Vec<Conflict> {
+        self.conflicts.iter().cloned().chain(self.tracker.open()).collect()
     }
 
     /// The net, if there is one.
@@ -195,16 +205,20 @@ impl Run {
         self.net.as_deref()
     }
 
-    /// What was found so far.
-    pub fn summary(&self) -> &Summary {
-        &self.summary
+    /// What was found so far, conflicts that go on included.
+    pub fn summary(&self) -> Summary {
+        let mut summary = self.summary.clone();
+        for conflict in self.tracker.open() {
+            summary.add(&conflict);
+        }
+        summary
     }
 
     /// Closes what is still open and adds it to the log; what the caller did without is added to what was left out.
     ///
     /// # Errors
     /// An error that names the log's file if it cannot be written.
-    pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<&Summary> {
+    pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
         let closed = self.tracker.finish();
         if let Some(log) = &mut self.log {
             log.conflicts(closed, self.net.as_deref())?;
@@ -212,7 +226,7 @@ impl Run {
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         self.summary.left_out = scene::left_out(&self.detector.work(), self.net.as_deref());
         self.summary.left_out.extend(left_out);
-        Ok(&self.summary)
+        Ok(self.summary.clone())
     }
 
     /// The log, taken away from the run.

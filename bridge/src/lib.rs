@@ -1,1 +1,32 @@
-//! The Python module.
+//! The Python module `closecall._closecall`: what it exports, as a list.
+//!
+//! The bridge moves data and decides nothing: [`pull`] takes road users out of libsumo or traci, the crate
+//! `closecall` finds the conflicts, [`paint`] shows them in sumo-gui.
+
+mod checker;
+mod error;
+mod frames;
+mod functions;
+mod paint;
+mod pull;
+mod run;
+
+use pyo3::prelude::*;
+
+/// What `import closecall` gets from Rust.
+#[pymodule]
+mod _closecall {
+    #[pymodule_export]
+    use super::checker::{Checker, Conflict};
+    #[pymodule_export]
+    use super::functions::{distance, mu, touches};
+    #[pymodule_export]
+    use super::run::main;
+
+    use super::{Bound, PyModule, PyModuleMethods, PyResult};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

@@ -40,9 +40,12 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
     let cli = match parse(words) {
         Ok(cli) => cli,
         Err(Stop::Clap(error)) => {
+            if error.use_stderr() {
+                return failed(&usage(&error));
+            }
             // Nothing can be done where even this cannot be printed.
             let _ = error.print();
-            return u8::try_from(error.exit_code()).unwrap_or(2);
+            return 0;
         }
         Err(Stop::Error(error)) => return failed(&error),
     };
@@ -93,6 +96,14 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
         arguments.options.types = file.types;
     }
     Ok(cli)
+}
+
+/// clap's message in one line, without the usage.
+fn usage(error: &clap::Error) -> Error {
+    let text = error.to_string();
+    let said = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
+    let line = said.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ");
+    value(line.trim_start_matches("error: "))
 }
 
 /// One line for a value that is out of its range.

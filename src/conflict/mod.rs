@@ -131,7 +131,7 @@ impl Tracker {
         self.follow(frame, roster);
         self.close(frame.time);
         self.settle(frame.time, false);
-        self.sort();
+        sort(&mut self.closed);
         &self.closed
     }
 
@@ -140,13 +140,21 @@ impl Tracker {
         self.closed.clear();
         self.waiting.extend(self.events.drain().map(|(_, event)| event));
         self.settle(f64::INFINITY, true);
-        self.sort();
+        sort(&mut self.closed);
         &self.closed
     }
 
     /// The events that go on, in no order that means anything.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.events.values().map(|event| event.alarm)
+    }
+
+    /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
+    pub fn open(&self) -> Vec<Conflict> {
+        let mut open =
+            self.events.values().chain(&self.waiting).map(|event| event.conflict.clone()).collect::<Vec<_>>();
+        sort(&mut open);
+        open
     }
 
     fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter) {
@@ -215,10 +223,10 @@ impl Tracker {
         });
         self.waiting = waiting;
     }
+}
 
-    fn sort(&mut self) {
-        self.closed.sort_by(|a, b| a.begin.total_cmp(&b.begin).then_with(|| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe))));
-    }
+fn sort(conflicts: &mut [Conflict]) {
+    conflicts.sort_by(|a, b| a.begin.total_cmp(&b.begin).then_with(|| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe))));
 }
 
 /// One step of a pair as a conflict of its own.

@@ -1,0 +1,75 @@
+"""Starting SUMO through libsumo, with its own error messages caught, so that the command can tell them in one line."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+import tempfile
+from contextlib import contextmanager
+from pathlib import Path
+from typing import IO, Any, Iterator
+
+GUI_SETTINGS = Path(__file__).with_name("gui-settings.xml")
+
+
+def start(words: list[str], gui: bool) -> Any:
+    """Start SUMO with the words of its command line after the program's name; returns the module libsumo.
+
+    Raises:
+        ImportError: libsumo is not installed.
+        RuntimeError: SUMO refuses, with what it says.
+    """
+    import libsumo
+
+    command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
+    with caught_stderr() as caught:
+        try:
+            libsumo.start([*command, *words])
+        except (libsumo.TraCIException, libsumo.exceptions.FatalTraCIError, RuntimeError) as error:
+            caught.seek(0)
+            raise RuntimeError(first_error(caught.read()) or str(error)) from error
+    return libsumo
+
+
+def gui_settings(words: list[str]) -> list[str]:
+    """Settings that let painted colours show, unless the user has settings of their own."""
+    has_own = any(word.startswith(("-g", "--gui-settings-file")) for word in words)
+    config = Path(words[words.index("-c") + 1])
+    if has_own or re.search(r"<(gui-settings-file|g)\b", config.read_text(errors="replace")):
+        return []
+    return ["--gui-settings-file", str(GUI_SETTINGS)]
+
+
+def first_error(text: str) -> str:
+    """The first error that SUMO told of, in one line, without the lines that only say that it quits."""
+    lines = [line.strip() for line in text.splitlines() if line.strip()]
+    at = next((number for number, line in enumerate(lines) if line.startswith("Error:")), None)
+    if at is None:
+        return ""
+    told = [lines[at].removeprefix("Error:").strip()] if sys.version_info >= (3, 9) else [lines[at]]
+    for line in lines[at + 1 :]:
+        if line.startswith(("Error:", "Warning:", "Quitting")):
+            break
+        told.append(line)
+    return " ".join(told)
+
+
+@contextmanager
+def caught_stderr() -> Iterator[IO[str]]:
+    """Standard error of the whole process, SUMO's C++ included, in a file; on success it is told afterwards."""
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with tempfile.TemporaryFile("w+", errors="replace") as caught:
+        os.dup2(caught.fileno(), 2)
+        try:
+            yield caught
+        except BaseException:
+            os.dup2(kept, 2)
+            raise
+        else:
+            os.dup2(kept, 2)
+            caught.seek(0)
+            sys.stderr.write(caught.read())
+        finally:
+            os.close(kept)

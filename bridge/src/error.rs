@@ -1,0 +1,27 @@
+//! closecall's errors as Python's own kinds of exception, and Python's as closecall's.
+
+use closecall::Error;
+use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+/// The exception that tells of an error: an `OSError` for files, a `RuntimeError` where SUMO failed, otherwise a
+/// `ValueError`.
+pub fn exception(error: Error) -> PyErr {
+    match error {
+        Error::File { path, source } => {
+            let text = source.to_string();
+            match source.raw_os_error() {
+                // With the number Python chooses the subclass: FileNotFoundError and so on.
+                Some(number) => PyOSError::new_err((number, text, path)),
+                None => PyOSError::new_err(format!("{}: {text}", path.display())),
+            }
+        }
+        Error::Refused(_) | Error::Failed { .. } => PyRuntimeError::new_err(error.to_string()),
+        _ => PyValueError::new_err(error.to_string()),
+    }
+}
+
+/// What an exception says, in one line.
+pub fn message(py: Python, exception: &PyErr) -> String {
+    exception.value(py).to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,109 @@
+//! Plain frames from Python: arrays of states, for those who have trajectories and no SUMO.
+
+use closecall::frame::{ProfileIndex, State, UserIndex};
+use closecall::options::Options;
+use closecall::profile::{Profile, SumoType};
+use closecall::run::Run;
+use numpy::{AllowTypeChange, PyArrayLike1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::error::exception;
+
+/// Length in m of a road user that comes without one: SUMO's passenger car.
+const LENGTH: f64 = 5.0;
+/// Its width in m.
+const WIDTH: f64 = 1.8;
+/// Its braking deceleration in m/s².
+const DECELERATION: f64 = 9.0;
+/// Its mass in kg.
+const MASS: f64 = 1500.0;
+
+/// Who was in the frames so far.
+pub struct Frames {
+    options: Options,
+    live: FxHashMap<String, (UserIndex, u64)>,
+    steps: u64,
+}
+
+type Column<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+
+impl Frames {
+    pub fn new(options: &Options) -> Self {
+        Self { options: options.clone(), live: FxHashMap::default(), steps: 0 }
+    }
+
+    /// Begins a step with the rows of `states`: a mapping of columns of equal length.
+    pub fn pull(&mut self, run: &mut Run, time: f64, states: &Bound<PyAny>) -> PyResult<()> {
+        let ids =
+            states.get_item("id")?.try_iter()?.map(|id| Ok(id?.str()?.to_string())).collect::<PyResult<Vec<_>>>()?;
+        let column = |name: &str| -> PyResult<Column> {
+            let column: Column = states.get_item(name)?.extract()?;
+            if column.as_array().len() == ids.len() {
+                Ok(column)
+            } else {
+                let (found, wanted) = (column.as_array().len(), ids.len());
+                Err(PyValueError::new_err(format!("\"{name}\" has {found} values, \"id\" has {wanted}")))
+            }
+        };
+        let optional = |name: &str| states.contains(name)?.then(|| column(name)).transpose();
+        let [x, y, heading, speed] = [column("x")?, column("y")?, column("heading")?, column("speed")?];
+        let [z, length, width, decel, mass] =
+            [optional("z")?, optional("length")?, optional("width")?, optional("decel")?, optional("mass")?];
+        if !time.is_finite() {
+            return Err(PyValueError::new_err(format!("time is {time}")));
+        }
+        run.begin(time);
+        self.steps += 1;
+        let value = |column: &Option<Column>, row: usize, default| {
+            column.as_ref().map_or(default, |column| column.as_array()[row])
+        };
+        for (row, id) in ids.iter().enumerate() {
+            let user = match self.live.get(id) {
+                Some(&(user, _)) => user,
+                None => {
+                    let size = [
+                        value(&length, row, LENGTH),
+                        value(&width, row, WIDTH),
+                        value(&decel, row, DECELERATION),
+                        value(&mass, row, MASS),
+                    ];
+                    let profile = self.profile(run, size)?;
+                    run.enter(id, profile)
+                }
+            };
+            self.live.insert(id.clone(), (user, self.steps));
+            let state = State {
+                x: x.as_array()[row],
+                y: y.as_array()[row],
+                z: value(&z, row, 0.0),
+                heading: heading.as_array()[row],
+                speed: speed.as_array()[row],
+            };
+            run.frame.push(user, state);
+        }
+        let steps = self.steps;
+        self.live.retain(|_, (user, seen)| {
+            if *seen != steps {
+                run.leave(*user);
+            }
+            *seen == steps
+        });
+        Ok(())
+    }
+
+    /// The profile of all road users of one size.
+    fn profile(&self, run: &mut Run, [length, width, decel, mass]: [f64; 4]) -> PyResult<ProfileIndex> {
+        let sumo = SumoType {
+            name: format!("{length} m x {width} m, {decel} m/s², {mass} kg"),
+            vehicle_class: "passenger".to_owned(),
+            length,
+            width,
+            mass,
+            emergency_decel: decel,
+            decel,
+        };
+        run.roster.profile(Profile::vehicle(&sumo, &self.options)).map_err(exception)
+    }
+}

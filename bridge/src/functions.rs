@@ -1,0 +1,141 @@
+//! Single formulas on arrays: μ, contact and distance of rectangles.
+
+use clap::ValueEnum;
+use closecall::braking::{self, Brakes, Braking, MuModel};
+use closecall::encounter::Kind;
+use closecall::geometry::Point;
+use closecall::geometry::rectangle::{self, Rectangle};
+use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
+use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
+type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
+
+/// The minimal collision distance, for arrays that broadcast.
+#[pyfunction]
+#[pyo3(signature = (
+    speed, foe_speed, *, decel=None, foe_decel=None, response_time=None, build_up=None, epsilon=None,
+    kind="rear_end", model="minimal", angle=None,
+))]
+#[expect(clippy::too_many_arguments, reason = "each is a keyword in Python")]
+pub fn mu<'py>(
+    py: Python<'py>,
+    speed: Numbers,
+    foe_speed: Numbers,
+    decel: Option<Numbers>,
+    foe_decel: Option<Numbers>,
+    response_time: Option<Numbers>,
+    build_up: Option<Numbers>,
+    epsilon: Option<Numbers>,
+    kind: &str,
+    model: &str,
+    angle: Option<Numbers>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let bad = |message: String| PyValueError::new_err(message);
+    let kind =
+        Kind::from_str(kind, false).map_err(|_| bad(format!("kind is \"{kind}\": rear_end, frontal or side")))?;
+    let model = MuModel::from_str(&model.replace('_', "-"), false)
+        .map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
+    let given = |numbers: Option<Numbers>, default: f64| {
+        numbers.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), default), |numbers| numbers.as_array().to_owned())
+    };
+    let columns = [
+        ("speed", given(Some(speed), 0.0)),
+        ("foe_speed", given(Some(foe_speed), 0.0)),
+        ("decel", given(decel, 9.0)),
+        ("foe_decel", given(foe_decel, 9.0)),
+        ("response_time", given(response_time, 1.05)),
+        ("build_up", given(build_up, 0.1)),
+        ("epsilon", given(epsilon, 0.5)),
+        ("angle", angle.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), f64::NAN), |angle| angle.as_array().to_owned())),
+    ];
+    for (name, values) in &columns {
+        let above = matches!(*name, "decel" | "foe_decel");
+        let fits = |value: &f64| value.is_finite() && *value >= 0.0 && !(above && *value == 0.0);
+        if let (false, Some(value)) = (*name == "angle", values.iter().find(|value| !fits(value))) {
+            return Err(bad(format!(
+                "{name} is {value}, it must be finite and {}",
+                if above { "above 0" } else { "0 or more" }
+            )));
+        }
+    }
+    let shape = columns.iter().try_fold(Vec::new(), |shape, (name, values)| {
+        broadcast(&shape, values.shape()).ok_or_else(|| bad(format!("{name} does not broadcast with the others")))
+    })?;
+    let views = columns.each_ref().map(|(_, values)| values.broadcast(IxDyn(&shape)));
+    let [Some(v), Some(vi), Some(a), Some(ai), Some(r), Some(t3), Some(e), Some(angles)] = views else {
+        return Err(bad("the arrays do not broadcast".to_owned()));
+    };
+    let found = py.detach(|| {
+        let at = |view: &ArrayViewD<f64>, index: &IxDyn| view[index.clone()];
+        ArrayD::from_shape_fn(IxDyn(&shape), |index| {
+            let brakes = Brakes { response: at(&r, &index), build_up: at(&t3, &index), deceleration: at(&a, &index) };
+            let foe_brakes = Brakes { deceleration: at(&ai, &index), ..brakes };
+            let angle = at(&angles, &index);
+            let sigma = if angle.is_nan() { kind.sigma() } else { angle.cos() };
+            let ego = Braking { speed: at(&v, &index), brakes: &brakes };
+            let foe = Braking { speed: at(&vi, &index), brakes: &foe_brakes };
+            braking::mu(model, ego, foe, sigma, at(&e, &index))
+        })
+    });
+    Ok(found.into_pyarray(py))
+}
+
+/// The shape that two shapes broadcast to, by NumPy's rules.
+fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
+    let length = a.len().max(b.len());
+    let at = |shape: &[usize], place: usize| (place + shape.len()).checked_sub(length).map_or(1, |place| shape[place]);
+    (0..length)
+        .map(|place| match (at(a, place), at(b, place)) {
+            (a, b) if a == b => Some(a),
+            (1, other) | (other, 1) => Some(other),
+            _ => None,
+        })
+        .collect()
+}
+
+/// Whether rectangles touch, row by row.
+#[pyfunction]
+pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
+    let pairs = pairs(&a, &b)?;
+    let found = py.detach(|| pairs.iter().map(|(a, b)| rectangle::touches(a, b)).collect::<Vec<_>>());
+    Ok(found.into_pyarray(py).into_any().unbind())
+}
+
+/// The smallest distance between rectangles, row by row.
+#[pyfunction]
+pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
+    let pairs = pairs(&a, &b)?;
+    let found = py.detach(|| pairs.iter().map(|(a, b)| rectangle::distance(a, b)).collect::<Vec<_>>());
+    Ok(found.into_pyarray(py).into_any().unbind())
+}
+
+fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
+    let (a, b) = (a.as_array(), b.as_array());
+    for (name, rows) in [("a", &a), ("b", &b)] {
+        if rows.ncols() != 5 {
+            let found = rows.ncols();
+            return Err(PyValueError::new_err(format!(
+                "{name} has {found} columns; x, y, heading, length, width are 5"
+            )));
+        }
+        if rows.nrows() != a.nrows() {
+            return Err(PyValueError::new_err(format!("a has {} rows, b has {}", a.nrows(), rows.nrows())));
+        }
+        if let Some((row, _)) = rows
+            .rows()
+            .into_iter()
+            .enumerate()
+            .find(|(_, row)| row.iter().any(|value| !value.is_finite()) || row[3] < 0.0 || row[4] < 0.0)
+        {
+            return Err(PyValueError::new_err(format!(
+                "{name}, row {row}: all values must be finite, length and width 0 or more"
+            )));
+        }
+    }
+    let rectangle =
+        |row: numpy::ndarray::ArrayView1<f64>| Rectangle::new(Point::new(row[0], row[1]), row[2], row[3], row[4]);
+    Ok(a.rows().into_iter().zip(b.rows()).map(|(a, b)| (rectangle(a), rectangle(b))).collect())
+}

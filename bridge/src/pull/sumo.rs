@@ -1,0 +1,126 @@
+//! What is asked of SUMO once, in the same words for libsumo and traci: options, types, polygons, routes.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use closecall::frame::ProfileIndex;
+use closecall::geometry::Point;
+use closecall::net::{EdgeIndex, Net};
+use closecall::options::Options;
+use closecall::profile::{Profile, SumoType};
+use closecall::run::Run;
+use closecall::units::Second;
+use pyo3::prelude::*;
+use rustc_hash::FxHashMap;
+
+use crate::error::exception;
+
+/// The value of a SUMO option; empty where it is not set.
+pub fn option(source: &Bound<PyAny>, name: &str) -> PyResult<String> {
+    source.getattr("simulation")?.call_method1("getOption", (name,))?.extract()
+}
+
+/// The net that the simulation runs on.
+pub fn net_of(source: &Bound<PyAny>) -> PyResult<Option<Arc<Net>>> {
+    let file = option(source, "net-file")?;
+    if file.is_empty() {
+        return Ok(None);
+    }
+    Net::read(&PathBuf::from(file)).map(|net| Some(Arc::new(net))).map_err(exception)
+}
+
+/// Adds the polygons of the wanted types as static obstacles.
+pub fn add_obstacles(source: &Bound<PyAny>, run: &mut Run, types: &[String]) -> PyResult<()> {
+    if types.is_empty() {
+        return Ok(());
+    }
+    let polygons = source.getattr("polygon")?;
+    for id in polygons.call_method0("getIDList")?.try_iter()? {
+        let id = id?;
+        let polygon_type: String = polygons.call_method1("getType", (&id,))?.extract()?;
+        if types.contains(&polygon_type) {
+            let shape: Vec<(f64, f64)> = polygons.call_method1("getShape", (&id,))?.extract()?;
+            let outline = shape.into_iter().map(|(x, y)| Point::new(x, y)).collect::<Vec<_>>();
+            run.enter_obstacle(id.extract::<&str>()?, &polygon_type, &outline).map_err(exception)?;
+        }
+    }
+    Ok(())
+}
+
+/// The types that were asked for once.
+pub struct Types {
+    domain: Py<PyAny>,
+    options: Options,
+    step_length: Second,
+    vehicles: FxHashMap<String, ProfileIndex>,
+    persons: FxHashMap<String, ProfileIndex>,
+}
+
+impl Types {
+    pub fn new(source: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
+        Ok(Self {
+            domain: source.getattr("vehicletype")?.unbind(),
+            options: options.clone(),
+            step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
+            vehicles: FxHashMap::default(),
+            persons: FxHashMap::default(),
+        })
+    }
+
+    /// A vehicle type's profile.
+    pub fn vehicle(&mut self, py: Python, run: &mut Run, name: &str) -> PyResult<ProfileIndex> {
+        if let Some(&known) = self.vehicles.get(name) {
+            return Ok(known);
+        }
+        let profile = Profile::vehicle(&self.ask(py, name)?, &self.options);
+        let index = run.roster.profile(profile).map_err(exception)?;
+        self.vehicles.insert(name.to_owned(), index);
+        Ok(index)
+    }
+
+    /// A person type's profile.
+    pub fn person(&mut self, py: Python, run: &mut Run, name: &str) -> PyResult<ProfileIndex> {
+        if let Some(&known) = self.persons.get(name) {
+            return Ok(known);
+        }
+        let profile = Profile::person(&self.ask(py, name)?, &self.options, self.step_length);
+        let index = run.roster.profile(profile).map_err(exception)?;
+        self.persons.insert(name.to_owned(), index);
+        Ok(index)
+    }
+
+    fn ask(&self, py: Python, name: &str) -> PyResult<SumoType> {
+        let domain = self.domain.bind(py);
+        let number = |getter: &str| domain.call_method1(getter, (name,))?.extract::<f64>();
+        Ok(SumoType {
+            name: name.to_owned(),
+            vehicle_class: domain.call_method1("getVehicleClass", (name,))?.extract()?,
+            length: number("getLength")?,
+            width: number("getWidth")?,
+            mass: number("getMass")?,
+            emergency_decel: number("getEmergencyDecel")?,
+            decel: number("getDecel")?,
+        })
+    }
+}
+
+/// A route as the net's edges; what the net does not know ends it.
+pub fn route(net: &Net, edges: &Bound<PyAny>) -> PyResult<Arc<[EdgeIndex]>> {
+    let mut route = Vec::new();
+    for edge in edges.try_iter()? {
+        let Some(edge) = net.edge(edge?.extract::<&str>()?) else { break };
+        route.push(edge);
+    }
+    Ok(route.into())
+}
+
+/// The time that SUMO's own outputs give to the states of now: `getTime` is one step ahead of them.
+pub fn time_of_states(time: Second, step_length: Second) -> Second {
+    // SUMO counts whole milliseconds.
+    ((time - step_length) * 1e3).round() / 1e3
+}
+
+/// SUMO's angle, in degrees clockwise from north, as a heading in rad counter-clockwise from +x.
+pub fn heading(angle: f64) -> f64 {
+    (90.0 - angle).to_radians()
+}

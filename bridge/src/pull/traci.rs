@@ -1,0 +1,200 @@
+//! From traci, over its socket: everything by subscription, since each single question costs a round trip.
+
+use std::sync::Arc;
+
+use closecall::encounter::Placement;
+use closecall::frame::{State, UserIndex};
+use closecall::net::EdgeIndex;
+use closecall::options::Options;
+use closecall::run::Run;
+use closecall::units::Second;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString, PyTuple};
+use rustc_hash::FxHashMap;
+
+use super::sumo::{self, Types};
+
+/// A traci connection and who is in the scene.
+pub struct Traci {
+    source: Py<PyAny>,
+    vehicles: Domain,
+    persons: Domain,
+    types: Types,
+    step_length: Second,
+    with_heights: bool,
+    variable: Variables,
+}
+
+/// traci's numbers of what is subscribed to.
+struct Variables {
+    position: i32,
+    angle: i32,
+    speed: i32,
+    lane: i32,
+    lane_position: i32,
+    lateral_speed: i32,
+    route_id: i32,
+    route_index: i32,
+    stop_state: i32,
+    vehicle: i32,
+}
+
+/// The bit of traci's stop state that says: parked off the road.
+const PARKED: i32 = 2;
+
+/// Vehicles or persons.
+struct Domain {
+    domain: Py<PyAny>,
+    variables: Vec<i32>,
+    live: FxHashMap<String, Live>,
+    /// The id of who stands in each row of the frame from `first_row` on.
+    rows: Vec<String>,
+    first_row: u32,
+}
+
+/// Somebody in the scene.
+struct Live {
+    user: UserIndex,
+    seen: bool,
+    route: Option<(String, Arc<[EdgeIndex]>)>,
+    latest: Option<Py<PyDict>>,
+}
+
+impl Traci {
+    pub fn new(source: &Bound<PyAny>, options: &Options, with_heights: bool) -> PyResult<Self> {
+        let constants = source.py().import("traci.constants")?;
+        let number = |name: &str| constants.getattr(name)?.extract::<i32>();
+        let variable = Variables {
+            position: number(if with_heights { "VAR_POSITION3D" } else { "VAR_POSITION" })?,
+            angle: number("VAR_ANGLE")?,
+            speed: number("VAR_SPEED")?,
+            lane: number("VAR_LANE_ID")?,
+            lane_position: number("VAR_LANEPOSITION")?,
+            lateral_speed: number("VAR_SPEED_LAT")?,
+            route_id: number("VAR_ROUTE_ID")?,
+            route_index: number("VAR_ROUTE_INDEX")?,
+            stop_state: number("VAR_STOPSTATE")?,
+            vehicle: number("VAR_VEHICLE")?,
+        };
+        let Variables { position, angle, speed, lane, lane_position, .. } = variable;
+        let Variables { lateral_speed, route_id, route_index, stop_state, vehicle, .. } = variable;
+        let domain = |name: &str, variables: Vec<i32>| -> PyResult<Domain> {
+            let domain = source.getattr(name)?.unbind();
+            Ok(Domain { domain, variables, live: FxHashMap::default(), rows: Vec::new(), first_row: 0 })
+        };
+        let of_vehicles =
+            vec![position, angle, speed, lane, lane_position, lateral_speed, route_id, route_index, stop_state];
+        Ok(Self {
+            vehicles: domain("vehicle", of_vehicles)?,
+            persons: domain("person", vec![position, angle, speed, vehicle])?,
+            types: Types::new(source, options)?,
+            step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
+            source: source.clone().unbind(),
+            with_heights,
+            variable,
+        })
+    }
+
+    pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        let time: Second = self.source.bind(py).getattr("simulation")?.call_method0("getTime")?.extract()?;
+        run.begin(sumo::time_of_states(time, self.step_length));
+        let types = &mut self.types;
+        self.vehicles.read(py, run, &self.variable, self.with_heights, |run, name| types.vehicle(py, run, name))?;
+        let types = &mut self.types;
+        self.persons.read(py, run, &self.variable, self.with_heights, |run, name| types.person(py, run, name))
+    }
+
+    pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
+        let domain = self.vehicles.domain.bind(py).clone();
+        for &row in rows {
+            let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
+            let Some(id) = self.vehicles.rows.get(place as usize) else { continue };
+            let Some(live) = self.vehicles.live.get_mut(id) else { continue };
+            let (Some(net), Some(latest)) = (run.net(), &live.latest) else { continue };
+            let latest = latest.bind(py);
+            let value = |variable: i32| latest.as_any().get_item(variable);
+            let Some(lane) = net.lane(value(self.variable.lane)?.extract::<&str>()?) else { continue };
+            let route_id: String = value(self.variable.route_id)?.extract()?;
+            let route = match &live.route {
+                Some((known, route)) if *known == route_id => route.clone(),
+                _ => {
+                    let route = sumo::route(net, &domain.call_method1("getRoute", (id,))?)?;
+                    live.route = Some((route_id, route.clone()));
+                    route
+                }
+            };
+            let placement = Placement {
+                lane,
+                position: value(self.variable.lane_position)?.extract()?,
+                route,
+                route_position: usize::try_from(value(self.variable.route_index)?.extract::<i64>()?).unwrap_or(0),
+                lateral_speed: value(self.variable.lateral_speed)?.extract()?,
+            };
+            run.place(row, &placement);
+        }
+        Ok(())
+    }
+}
+
+impl Domain {
+    fn read(
+        &mut self,
+        py: Python,
+        run: &mut Run,
+        variable: &Variables,
+        with_heights: bool,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::frame::ProfileIndex>,
+    ) -> PyResult<()> {
+        let domain = self.domain.bind(py);
+        for live in self.live.values_mut() {
+            live.seen = false;
+        }
+        self.rows.clear();
+        self.first_row = run.frame.len() as u32;
+        let ids = domain.call_method0("getIDList")?.cast_into::<PyTuple>()?;
+        for id in ids.iter() {
+            if !self.live.contains_key(id.extract::<&str>()?) {
+                domain.call_method1("subscribe", (&id, self.variables.clone()))?;
+                let type_id = domain.call_method1("getTypeID", (&id,))?;
+                let profile = profile(run, type_id.extract::<&str>()?)?;
+                let user = run.enter(id.extract::<&str>()?, profile);
+                self.live.insert(id.extract()?, Live { user, seen: false, route: None, latest: None });
+            }
+        }
+        let results = domain.call_method0("getAllSubscriptionResults")?;
+        for id in ids.iter() {
+            let id: Bound<PyString> = id.cast_into()?;
+            let Some(live) = self.live.get_mut(id.extract::<&str>()?) else { continue };
+            live.seen = true;
+            let Ok(latest) = results.get_item(&id) else { continue };
+            let latest = latest.cast_into::<PyDict>()?;
+            let value = |variable: i32| latest.as_any().get_item(variable);
+            let inside =
+                self.variables.contains(&variable.vehicle) && !value(variable.vehicle)?.extract::<&str>()?.is_empty();
+            let parked = self.variables.contains(&variable.stop_state)
+                && value(variable.stop_state)?.extract::<i32>()? & PARKED != 0;
+            if inside || parked {
+                continue;
+            }
+            let point = value(variable.position)?.cast_into::<PyTuple>()?;
+            let state = State {
+                x: point.get_item(0)?.extract()?,
+                y: point.get_item(1)?.extract()?,
+                z: if with_heights { point.get_item(2)?.extract()? } else { 0.0 },
+                heading: sumo::heading(value(variable.angle)?.extract()?),
+                speed: value(variable.speed)?.extract()?,
+            };
+            if run.frame.push(live.user, state) {
+                self.rows.push(id.extract()?);
+            }
+            live.latest = Some(latest.unbind());
+        }
+        self.live.retain(|_, live| {
+            if !live.seen {
+                run.leave(live.user);
+            }
+            live.seen
+        });
+        Ok(())
+    }
+}

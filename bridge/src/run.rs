@@ -1,0 +1,223 @@
+//! `closecall run`: SUMO through libsumo, step by step, with the checker attached.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use closecall::cli::{self, RunRequest};
+use closecall::inputs::{self, Input};
+use closecall::log::Log;
+use closecall::net::Net;
+use closecall::progress::Progress;
+use closecall::record::{RunRecord, Versions};
+use closecall::run::Run;
+use closecall::scene::LeftOut;
+use closecall::summary::Summary;
+use closecall::{Error, Result};
+use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt};
+use pyo3::prelude::*;
+
+use crate::error::message;
+use crate::paint::Painter;
+use crate::pull::{self, Source};
+
+/// The command `closecall`; returns its exit status.
+#[pyfunction]
+pub fn main(py: Python, words: Vec<OsString>) -> u8 {
+    let mut simulate = |request: &RunRequest| simulate(py, request);
+    cli::main(words, Some(&mut simulate))
+}
+
+/// Runs the scenario to its end.
+fn simulate(py: Python, request: &RunRequest) -> Result<Summary> {
+    let sumo = start(py, request)?;
+    let result = attach(&sumo, request);
+    // Whatever went wrong is told already; SUMO has nothing to add when it is closed.
+    let _ = sumo.call_method0("close");
+    result
+}
+
+fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
+    let refused = |error: PyErr| {
+        if error.is_instance_of::<PyImportError>(py) {
+            Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
+        } else {
+            Error::Refused(message(py, &error))
+        }
+    };
+    let starter = py.import("closecall._sumo").map_err(refused)?;
+    starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
+}
+
+/// One run of a simulation that has been started.
+struct Session<'a, 'py> {
+    sumo: &'a Bound<'py, PyAny>,
+    request: &'a RunRequest,
+    run: Run,
+    source: Source,
+    painter: Option<Painter>,
+    step_length: f64,
+}
+
+fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
+    let said = |error: PyErr| Error::Refused(message(sumo.py(), &error));
+    let files = files(sumo, request).map_err(said)?;
+    for path in &files.checked {
+        inputs::check_xml(path)?;
+    }
+    let net = files.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
+    let with_heights = net.as_ref().is_none_or(|net| net.has_levels);
+    let mut run = Run::new(&request.options, net)?;
+    pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;
+    if has_no_rerouters(sumo).map_err(said)? {
+        run.routes_are_fixed();
+    }
+    let step_length = sumo.getattr("simulation").and_then(|simulation| simulation.call_method0("getDeltaT"));
+    let step_length = step_length.and_then(|length| length.extract::<f64>()).map_err(said)?;
+    let source = Source::new(sumo, &request.options, with_heights).map_err(said)?;
+    let painter = request.gui.then(|| Painter::new(sumo));
+    let mut record = RunRecord {
+        versions: Versions::with_sumo(Some(version(sumo).map_err(said)?)),
+        scenario: request.scenario.clone(),
+        seed: pull::option(sumo, "seed").ok(),
+        step_length: Some(step_length),
+        options: request.options.clone(),
+        sumo_words: request.sumo_words.clone(),
+        inputs: files.all.iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
+        complete: false,
+        error: None,
+        summary: Summary::default(),
+    };
+    let log = Log::create(&request.out, request.options.log_encounters)?;
+    log.run(&record)?;
+    run.log_to(log, false);
+    let mut session = Session { sumo, request, run, source, painter, step_length };
+    let ended = session.steps();
+    let exposure = session.run.summary().exposure;
+    if ended.is_ok() && exposure.vehicles + exposure.persons == 0 {
+        if let Some(log) = session.run.take_log() {
+            log.discard();
+        }
+        return Err(Error::content(&request.scenario, "the scenario is empty: no road user ever enters it"));
+    }
+    record.summary = session.run.finish(left_out(request, exposure.persons))?;
+    record.complete = ended.is_ok();
+    record.error = ended.as_ref().err().map(ToString::to_string);
+    if let Some(log) = session.run.take_log() {
+        log.run(&record)?;
+    }
+    ended.map(|()| record.summary)
+}
+
+impl Session<'_, '_> {
+    /// From step to step until the scenario ends.
+    fn steps(&mut self) -> Result<()> {
+        let py = self.sumo.py();
+        let simulation = self.sumo.getattr("simulation");
+        let time = |name: &str| -> PyResult<f64> {
+            simulation.as_ref().map_err(|error| error.clone_ref(py))?.call_method0(name)?.extract()
+        };
+        let begin = time("getTime").map_err(|error| self.failed(f64::NAN, &error))?;
+        let end = time("getEndTime").ok().filter(|end| *end >= 0.0);
+        let mut progress = Progress::new(begin, end, !self.request.quiet);
+        let mut now = begin;
+        loop {
+            match self.step(&mut now) {
+                Ok(true) => {}
+                Ok(false) => return Ok(()),
+                Err(Stop::Python(error)) => return Err(self.failed(now, &error)),
+                Err(Stop::Own(error)) => return Err(error),
+            }
+            progress.show(now, self.run.frame.len(), self.run.summary().count(None, None));
+            if end.is_some_and(|end| now + self.step_length / 2.0 > end) {
+                return Ok(());
+            }
+        }
+    }
+
+    /// One step; whether there is another.
+    fn step(&mut self, now: &mut f64) -> std::result::Result<bool, Stop> {
+        let py = self.sumo.py();
+        py.check_signals()?;
+        self.sumo.call_method0("simulationStep")?;
+        let simulation = self.sumo.getattr("simulation")?;
+        *now = simulation.call_method0("getTime")?.extract()?;
+        self.source.pull(py, &mut self.run)?;
+        let rows = py.detach(|| self.run.approach().to_vec());
+        self.source.place(py, &mut self.run, &rows)?;
+        py.detach(|| self.run.finish_step().map(|_| ()))?;
+        if let Some(painter) = &mut self.painter {
+            painter.paint(py, &self.run)?;
+        }
+        Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
+    }
+
+    fn failed(&self, time: f64, error: &PyErr) -> Error {
+        let py = self.sumo.py();
+        if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            return Error::Interrupted { time };
+        }
+        Error::Failed { time, message: message(py, error) }
+    }
+}
+
+/// Why a step was the last.
+enum Stop {
+    Python(PyErr),
+    Own(Error),
+}
+
+impl From<PyErr> for Stop {
+    fn from(error: PyErr) -> Self {
+        Self::Python(error)
+    }
+}
+
+impl From<Error> for Stop {
+    fn from(error: Error) -> Self {
+        Self::Own(error)
+    }
+}
+
+/// The files that a simulation reads.
+struct Files {
+    net: Option<PathBuf>,
+    all: Vec<PathBuf>,
+    checked: Vec<PathBuf>,
+}
+
+fn files(sumo: &Bound<PyAny>, request: &RunRequest) -> PyResult<Files> {
+    let named = |option: &str| -> PyResult<Vec<PathBuf>> {
+        let names = pull::option(sumo, option)?;
+        let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
+        Ok(names.map(PathBuf::from).collect())
+    };
+    let net = named("net-file")?.into_iter().next();
+    let (routes, additional) = (named("route-files")?, named("additional-files")?);
+    let checked = routes.into_iter().chain(additional).filter(|path| is_xml(path)).collect::<Vec<_>>();
+    let all = [Some(request.scenario.clone()), net.clone()].into_iter().flatten().chain(checked.clone()).collect();
+    Ok(Files { net, all, checked })
+}
+
+fn is_xml(path: &Path) -> bool {
+    path.is_file()
+}
+
+fn has_no_rerouters(sumo: &Bound<PyAny>) -> PyResult<bool> {
+    sumo.getattr("rerouter")?.call_method0("getIDList")?.is_empty()
+}
+
+fn version(sumo: &Bound<PyAny>) -> PyResult<String> {
+    sumo.call_method0("getVersion")?.get_item(1)?.extract()
+}
+
+fn left_out(request: &RunRequest, persons: u64) -> Vec<LeftOut> {
+    let mut left_out = Vec::new();
+    if !request.gui {
+        left_out.push(LeftOut::altogether("painting", "no sumo-gui"));
+    }
+    if persons == 0 {
+        left_out.push(LeftOut::altogether("persons", "none enters the scene"));
+    }
+    left_out
+}

@@ -1,0 +1,116 @@
+//! The input files of a run: whether they are whole, and their SHA-256, so that `run.json` says what was run.
+
+use std::io::BufReader;
+use std::path::{Path, PathBuf};
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+use serde::Serialize;
+use sha2::{Digest, Sha256};
+
+use crate::{Error, Result};
+
+/// One input file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Input {
+    /// Its path as it was given.
+    pub path: PathBuf,
+    /// Its SHA-256 in hexadecimal digits.
+    pub sha256: String,
+}
+
+impl Input {
+    /// Reads a file for its hash.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be read.
+    pub fn of(path: &Path) -> Result<Self> {
+        let fail = |source| Error::file(path, source);
+        let mut file = std::fs::File::open(path).map_err(fail)?;
+        let mut hasher = Sha256::new();
+        std::io::copy(&mut file, &mut HashWriter(&mut hasher)).map_err(fail)?;
+        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { path: path.to_owned(), sha256 })
+    }
+}
+
+struct HashWriter<'a>(&'a mut Sha256);
+
+impl std::io::Write for HashWriter<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only in
+/// mid-run.
+///
+/// # Errors
+/// An error that names the file, the line and what is wrong.
+pub fn check_xml(path: &Path) -> Result<()> {
+    let mut reader = Reader::from_reader(crate::net::open(path)?);
+    reader.config_mut().check_end_names = true;
+    let mut buffer = Vec::new();
+    let mut depth = 0_i64;
+    let mut elements = 0_u64;
+    loop {
+        buffer.clear();
+        match reader.read_event_into(&mut buffer) {
+            Ok(Event::Start(_)) => (depth, elements) = (depth + 1, elements + 1),
+            Ok(Event::Empty(_)) => elements += 1,
+            Ok(Event::End(_)) => depth -= 1,
+            Ok(Event::Eof) => break,
+            Ok(_) => {}
+            Err(error) => {
+                let line = line_of(path, reader.error_position())?;
+                return Err(Error::line(path, line, error.to_string().replace('\n', " ")));
+            }
+        }
+    }
+    if depth != 0 || elements == 0 {
+        return Err(Error::content(path, "the file ends before its elements do"));
+    }
+    Ok(())
+}
+
+fn line_of(path: &Path, position: u64) -> Result<u64> {
+    use std::io::{BufRead, Read};
+    let before = BufReader::new(crate::net::open(path)?.take(position));
+    let lines = before.split(b'\n').filter(std::result::Result::is_ok).count();
+    Ok(lines.max(1) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn with_file<T>(name: &str, text: &str, action: impl FnOnce(&Path) -> T) -> T {
+        let path = std::env::temp_dir().join(format!("closecall-{}-{name}", std::process::id()));
+        std::fs::write(&path, text).unwrap();
+        let result = action(&path);
+        std::fs::remove_file(&path).unwrap();
+        result
+    }
+
+    #[test]
+    fn the_hash_is_that_of_sha256sum() {
+        let hash = with_file("hash", "abc", |path| Input::of(path).unwrap().sha256);
+        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+
+    #[test]
+    fn a_fault_at_the_end_of_a_route_file_is_named_with_its_line() {
+        let message = with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", |path| check_xml(path))
+            .unwrap_err()
+            .to_string();
+        assert!(message.contains("bad.rou.xml, line 3: "), "{message}");
+        let message =
+            with_file("cut.rou.xml", "<routes>\n<vehicle/>\n", |path| check_xml(path)).unwrap_err().to_string();
+        assert!(message.contains("the file ends before its elements do"), "{message}");
+    }
+}
