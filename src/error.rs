@@ -50,8 +50,13 @@ pub enum Error {
     #[error("{0}")]
     Value(String),
     /// SUMO refused to start: its configuration, net or demand cannot be used.
-    #[error("SUMO: {0}")]
-    Refused(String),
+    #[error("{}: SUMO says: {message}", path.display())]
+    Refused {
+        /// The SUMO configuration.
+        path: PathBuf,
+        /// What SUMO says.
+        message: String,
+    },
     /// SUMO failed while it ran.
     #[error("SUMO failed at {time} s: {message}")]
     Failed {

@@ -48,11 +48,23 @@ impl Roster {
     /// Adds a type, or finds it by its name.
     ///
     /// # Errors
-    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
+    /// As [`Roster::check`] has them.
     pub fn profile(&mut self, profile: Profile) -> Result<ProfileIndex> {
         if let Some(&known) = self.by_name.get(&profile.name) {
             return Ok(known);
         }
+        self.check(&profile)?;
+        let index = ProfileIndex(self.profiles.len() as u32);
+        self.by_name.insert(profile.name.clone(), index);
+        self.profiles.push(profile);
+        Ok(index)
+    }
+
+    /// Whether a type is possible.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
+    pub fn check(&self, profile: &Profile) -> Result<()> {
         let checks = [
             ("length", profile.length, false),
             ("width", profile.width, false),
@@ -71,10 +83,7 @@ impl Roster {
                 )));
             }
         }
-        let index = ProfileIndex(self.profiles.len() as u32);
-        self.by_name.insert(profile.name.clone(), index);
-        self.profiles.push(profile);
-        Ok(index)
+        Ok(())
     }
 
     /// The type that was added under this name.

@@ -1,6 +1,5 @@
 //! The input files of a run: whether they are whole, and their SHA-256, so that `run.json` says what was run.
 
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use quick_xml::Reader;
@@ -8,6 +7,7 @@ use quick_xml::events::Event;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use crate::net::Net;
 use crate::{Error, Result};
 
 /// One input file.
@@ -78,11 +78,54 @@ pub fn check_xml(path: &Path) -> Result<()> {
     Ok(())
 }
 
+/// What is wrong with the files that a SUMO configuration names, if that can be told: SUMO's own messages do not always
+/// name the file.
+pub fn fault(configuration: &Path) -> Option<Error> {
+    check_xml(configuration).err().or_else(|| {
+        let named = files_of(configuration).ok()?;
+        named.into_iter().find_map(|(option, path)| {
+            let checked = if option == "net-file" { Net::read(&path).map(|_| ()) } else { check_xml(&path) };
+            checked.err()
+        })
+    })
+}
+
+/// The files that a configuration names, each with the option that names it.
+fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
+    const OPTIONS: [(&str, &str); 6] = [
+        ("net-file", "net-file"),
+        ("n", "net-file"),
+        ("route-files", "route-files"),
+        ("r", "route-files"),
+        ("additional-files", "additional-files"),
+        ("a", "additional-files"),
+    ];
+    let folder = configuration.parent().unwrap_or(Path::new(""));
+    let mut reader = Reader::from_reader(crate::net::open(configuration)?);
+    let mut buffer = Vec::new();
+    let mut files = Vec::new();
+    loop {
+        buffer.clear();
+        let event = reader
+            .read_event_into(&mut buffer)
+            .map_err(|error| Error::content(configuration, error.to_string().replace('\n', " ")))?;
+        let tag = match event {
+            Event::Start(tag) | Event::Empty(tag) => tag,
+            Event::Eof => return Ok(files),
+            _ => continue,
+        };
+        let known = OPTIONS.iter().find(|(name, _)| *name == tag.name().as_ref());
+        if let (Some((_, option)), Ok(Some(value))) = (known, tag.try_get_attribute("value")) {
+            let names = value.value.split(',').map(str::trim).filter(|name| !name.is_empty());
+            files.extend(names.map(|name| (*option, folder.join(name))));
+        }
+    }
+}
+
 fn line_of(path: &Path, position: u64) -> Result<u64> {
-    use std::io::{BufRead, Read};
-    let before = BufReader::new(crate::net::open(path)?.take(position));
-    let lines = before.split(b'\n').filter(std::result::Result::is_ok).count();
-    Ok(lines.max(1) as u64)
+    use std::io::Read;
+    let before = crate::net::open(path)?.take(position).bytes();
+    Ok(1 + before.filter(|byte| matches!(byte, Ok(b'\n'))).count() as u64)
 }
 
 #[cfg(test)]

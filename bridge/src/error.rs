@@ -16,7 +16,7 @@ pub fn exception(error: Error) -> PyErr {
                 None => PyOSError::new_err(format!("{}: {text}", path.display())),
             }
         }
-        Error::Refused(_) | Error::Failed { .. } => PyRuntimeError::new_err(error.to_string()),
+        Error::Refused { .. } | Error::Failed { .. } => PyRuntimeError::new_err(error.to_string()),
         _ => PyValueError::new_err(error.to_string()),
     }
 }

@@ -42,7 +42,8 @@ fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>
         if error.is_instance_of::<PyImportError>(py) {
             Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
         } else {
-            Error::Refused(message(py, &error))
+            let refusal = Error::Refused { path: request.scenario.clone(), message: message(py, &error) };
+            inputs::fault(&request.scenario).unwrap_or(refusal)
         }
     };
     let starter = py.import("closecall._sumo").map_err(refused)?;
@@ -60,7 +61,7 @@ struct Session<'a, 'py> {
 }
 
 fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
-    let said = |error: PyErr| Error::Refused(message(sumo.py(), &error));
+    let said = |error: PyErr| Error::Refused { path: request.scenario.clone(), message: message(sumo.py(), &error) };
     let files = files(sumo, request).map_err(said)?;
     for path in &files.checked {
         inputs::check_xml(path)?;
@@ -74,7 +75,10 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     }
     let step_length = sumo.getattr("simulation").and_then(|simulation| simulation.call_method0("getDeltaT"));
     let step_length = step_length.and_then(|length| length.extract::<f64>()).map_err(said)?;
-    let source = Source::new(sumo, &request.options, with_heights).map_err(said)?;
+    let mut source = Source::new(sumo, &request.options, with_heights).map_err(said)?;
+    source
+        .check_types(sumo.py(), &mut run)
+        .map_err(|error| Error::content(&request.scenario, message(sumo.py(), &error)))?;
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
         versions: Versions::with_sumo(Some(version(sumo).map_err(said)?)),

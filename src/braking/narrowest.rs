@@ -83,6 +83,10 @@ pub fn on_the_way<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N
         return Needed { distance: n(0.0), scale: 0.0 };
     }
     let root = (foe_brakes + inside.root()) / a * t3;
+    if root.value() > build_up.min(ego_stands - response) {
+        // The ego stands before: g never was above 0, but for rounding.
+        return at_rest(ego, foe, sigma);
+    }
     let further = (speed + (foe_brakes / n(2.0) - a * root / t3 / n(6.0)) * root) * root;
     Needed { distance: ahead + further, scale: terms.over(response + root.value()) }
 }

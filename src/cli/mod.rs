@@ -78,20 +78,30 @@ impl From<clap::Error> for Stop {
     }
 }
 
+/// clap's command; a negative number is a value, which the option's own check may refuse.
+fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|command| {
+        command.mut_args(|argument| {
+            let takes_value = argument.get_action().takes_values() && !argument.is_positional();
+            if takes_value { argument.allow_negative_numbers(true) } else { argument }
+        })
+    })
+}
+
 /// Parses the words; those of a TOML file that they name stand before them, so that what was typed wins.
 fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
-    let matches = Cli::command().try_get_matches_from(&words)?;
+    let matches = command().try_get_matches_from(&words)?;
     let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
-    let known = settings::long_options(&Cli::command(), name);
+    let known = settings::long_options(&command(), name);
     let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
-        Ok(Some(path)) => settings::read(&Cli::command(), path).map_err(Stop::Error)?,
+        Ok(Some(path)) => settings::read(&command(), path).map_err(Stop::Error)?,
         _ => return Ok(Cli::from_arg_matches(&matches)?),
     };
     let place = words.iter().position(|word| word == name).map_or(words.len(), |place| place + 1);
     let here = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
     let (before, after) = words.split_at(place);
     let all = before.iter().cloned().chain(file.words.iter().filter(here).map(OsString::from)).chain(after.to_vec());
-    let mut cli = Cli::from_arg_matches(&Cli::command().try_get_matches_from(all)?)?;
+    let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
     if let Command::Run(arguments) = &mut cli.command {
         arguments.options.types = file.types;
     }

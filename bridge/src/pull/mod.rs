@@ -32,6 +32,14 @@ impl Source {
         })
     }
 
+    /// Asks for all vehicle types that SUMO knows so far, so that an impossible one is told of before the first step.
+    pub fn check_types(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        match self {
+            Self::Libsumo(source) => source.types().check(py, run),
+            Self::Traci(source) => source.types().check(py, run),
+        }
+    }
+
     /// Begins a step of the run with every road user's state of now.
     pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
         match self {

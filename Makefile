@@ -1,0 +1,48 @@
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
+	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
+
+.PHONY: demo test lint docs clean help
+
+demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
+	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
+
+test: $(VENV)/wheel $(VENV)/tests ## set everything up and run all tests, Rust and Python
+	cargo test --workspace --exclude closecall-bridge
+	$(BIN)/pytest
+
+lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
+	cargo fmt --all --check
+	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
+	$(BIN)/ruff format --check bridge/python tests
+	$(BIN)/ruff check bridge/python tests
+	$(BIN)/mypy
+	$(BIN)/stubtest closecall --ignore-missing-stub
+
+docs: ## the documentation of the crate, without a broken link
+	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge
+	$(PYTHON) .ci/links.py
+
+clean: ## remove what the targets made
+	rm -rf $(VENV) target closecall-out
+
+help: ## list the targets
+	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+
+$(VENV)/made:
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/pip install --quiet --disable-pip-version-check "maturin>=1.9,<2"
+	touch $@
+
+$(VENV)/wheel: $(VENV)/made $(SOURCES)
+	rm -rf target/wheels
+	PYO3_PYTHON=$(CURDIR)/$(BIN)/python $(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
+	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps target/wheels/*.whl
+	$(BIN)/pip install --quiet --disable-pip-version-check "$$(ls target/wheels/*.whl)[sumo]"
+	touch $@
+
+$(VENV)/tests: $(VENV)/made tests/requirements.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check -r tests/requirements.txt
+	touch $@

@@ -1,0 +1,56 @@
+"""What the tests of the command and the Python module share."""
+
+from __future__ import annotations
+
+import csv
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, Callable
+
+import pytest
+
+NETS = Path(__file__).parents[2] / "sumo_nets"
+
+Row = dict[str, str]
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item: Any, call: Any) -> Any:
+    """Where nothing may be skipped, a skip is a failure."""
+    outcome = yield
+    report = outcome.get_result()
+    if report.skipped and os.environ.get("CLOSECALL_SKIP_NOTHING"):
+        report.outcome = "failed"
+
+
+def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run the command and return what it said."""
+    command = [sys.executable, "-m", "closecall", *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+
+
+def python(script: str, *words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run a script in a process of its own: libsumo allows one simulation per process."""
+    command = [sys.executable, "-c", script, *map(str, words)]
+    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+
+
+def rows(path: Path) -> list[Row]:
+    """The rows of a CSV file."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture
+def scenario(tmp_path: Path) -> Callable[[str], Path]:
+    """A copy of a scenario in sumo_nets, to be changed at will: the path of its configuration."""
+
+    def copy(name: str) -> Path:
+        folder = tmp_path / name
+        shutil.copytree(NETS / name, folder, ignore=shutil.ignore_patterns("expected", "closecall-out"))
+        return folder / f"{name}.sumocfg"
+
+    return copy

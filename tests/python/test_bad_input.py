@@ -1,0 +1,123 @@
+"""Bad input gets one clear line that names the file and what is wrong, exit status 2, and nothing half-written."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Callable
+
+import pytest
+from conftest import closecall, python
+
+Copy = Callable[[str], Path]
+
+
+def refused(config: Path, *words: str, names: str) -> None:
+    """Run it and expect a refusal."""
+    done = closecall("run", config, *words)
+    assert done.returncode == 2, (done.returncode, done.stderr)
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1, done.stderr
+    assert re.search(names, done.stderr), done.stderr
+    assert not (config.parent / "closecall-out").exists()
+
+
+def change(path: Path, pattern: str, to: str) -> None:
+    """Replace something in a file that must be there."""
+    text = path.read_text()
+    changed = re.sub(pattern, to, text, count=1)
+    assert changed != text
+    path.write_text(changed)
+
+
+def test_a_missing_configuration(tmp_path: Path) -> None:
+    refused(tmp_path / "none.sumocfg", names=r"none\.sumocfg: No such file")
+
+
+def test_a_malformed_configuration(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    config.write_text("<configuration><input>")
+    refused(config, names=r"rear_end\.sumocfg")
+
+
+def test_a_missing_net(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    (config.parent / "rear_end.net.xml").unlink()
+    refused(config, names=r"rear_end\.net\.xml")
+
+
+def test_a_malformed_net(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    net = config.parent / "rear_end.net.xml"
+    net.write_text(net.read_text()[:-200])
+    refused(config, names=r"rear_end\.net\.xml")
+
+
+def test_a_net_without_geometry(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    change(config.parent / "rear_end.net.xml", r'(<lane id="road_0"[^>]*shape=)"[^"]*"', r'\1""')
+    refused(config, names=r"road_0")
+
+
+def test_a_missing_route_file(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    (config.parent / "rear_end.rou.xml").unlink()
+    refused(config, names=r"rear_end\.rou\.xml")
+
+
+def test_a_route_file_that_is_malformed_at_its_end(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    routes = config.parent / "rear_end.rou.xml"
+    routes.write_text(routes.read_text().replace("</routes>", "<vehicle>\n</routes>"))
+    refused(config, names=r"rear_end\.rou\.xml")
+
+
+def test_an_empty_scenario(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    (config.parent / "rear_end.rou.xml").write_text("<routes/>\n")
+    refused(config, names=r"rear_end\.sumocfg: the scenario is empty")
+
+
+@pytest.mark.parametrize(("name", "value"), [("length", "-5"), ("width", "nan"), ("emergencyDecel", "0")])
+def test_impossible_dimensions(name: str, value: str, scenario: Copy) -> None:
+    config = scenario("rear_end")
+    routes = config.parent / "rear_end.rou.xml"
+    text = re.sub(rf' {name}="[^"]*"', "", routes.read_text())
+    routes.write_text(re.sub(r"<vType ", f'<vType {name}="{value}" ', text))
+    refused(config, names=name)
+
+
+@pytest.mark.parametrize(("option", "value"), [("--mu", "big"), ("--epsilon", "-1"), ("--step-length", "0")])
+def test_an_impossible_option(option: str, value: str, scenario: Copy) -> None:
+    refused(scenario("rear_end"), option, value, names=option)
+
+
+def test_an_output_folder_that_cannot_be_written(scenario: Copy, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    refused(scenario("rear_end"), "--out", str(tmp_path / "file" / "out"), names="file/out")
+
+
+def test_libsumo_that_is_not_installed(scenario: Copy) -> None:
+    script = """
+import sys
+sys.modules["libsumo"] = None
+from closecall.__main__ import main
+sys.argv = ["closecall", "run", sys.argv[1]]
+sys.exit(main())
+"""
+    done = python(script, scenario("rear_end"))
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert "pip install libsumo" in done.stderr
+
+
+def test_sumo_that_fails_in_mid_run(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    routes = config.parent / "rear_end.rou.xml"
+    # SUMO finds out that there is no such lane when the vehicle is to depart.
+    late = '<vehicle id="late" depart="10" departLane="7"><route edges="road"/></vehicle>\n</routes>'
+    text = re.sub(r"</routes>", late, routes.read_text())
+    routes.write_text(text)
+    done = closecall("run", config, "--out", tmp_path / "out")
+    assert done.returncode == 1, done.stderr
+    assert "SUMO failed at" in done.stderr
+    assert (tmp_path / "out" / "conflicts.csv").read_text().count("\n") == 2

@@ -1,0 +1,167 @@
+"""`closecall run` on real scenarios, through real libsumo."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Callable
+
+import pytest
+from conftest import closecall, rows
+
+CONFLICT_COLUMNS = (
+    "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
+    "ego_speed,foe_speed,angle,x,y,lane,collision"
+)
+ENCOUNTER_COLUMNS = "time,ego,foe,kind,gap,mu,margin,ttc,drac,severity"
+
+Copy = Callable[[str], Path]
+
+
+@pytest.mark.parametrize("kind", ["frontal", "rear_end", "side"])
+def test_each_kind_is_found_on_its_own_scene(kind: str, scenario: Copy) -> None:
+    config = scenario(kind)
+    done = closecall("run", config)
+    assert done.returncode == 0, done.stderr
+    found = rows(config.parent / "closecall-out" / "conflicts.csv")
+    assert [row["kind"] for row in found] == [kind]
+    assert float(found[0]["margin"]) < 0
+    assert kind in done.stdout
+
+
+def test_the_log_has_the_columns_and_counts_that_it_promises(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    out = tmp_path / "log"
+    done = closecall("run", "-c", config, "--out", out, "--log-encounters", "--quiet", "-e", "8")
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
+    assert (out / "conflicts.csv").read_text().splitlines()[0] == CONFLICT_COLUMNS
+    assert (out / "encounters.csv").read_text().splitlines()[0] == ENCOUNTER_COLUMNS
+    record = json.loads((out / "run.json").read_text())
+    assert record["complete"] is True
+    assert record["options"]["epsilon"] == 0.5
+    assert record["versions"]["sumo"].startswith("SUMO 1.")
+    assert {Path(file["path"]).name for file in record["inputs"]} == {
+        "rear_end.sumocfg",
+        "rear_end.net.xml",
+        "rear_end.rou.xml",
+    }
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+    steps = rows(out / "encounters.csv")
+    assert all(float(row["margin"]) < 0 for row in steps)
+    conflict = rows(out / "conflicts.csv")[0]
+    assert float(conflict["margin"]) == min(float(row["margin"]) for row in steps)
+
+
+def test_equal_input_gives_equal_bytes(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("reckless")
+    for out in ("first", "second"):
+        assert closecall("run", config, "--out", tmp_path / out).returncode == 0
+    first, second = ((tmp_path / out / "conflicts.csv").read_bytes() for out in ("first", "second"))
+    assert first == second
+    assert len(first.splitlines()) > 10
+
+
+def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_path: Path) -> None:
+    import xml.etree.ElementTree as ET
+
+    config = scenario("reckless")
+    reported = tmp_path / "collisions.xml"
+    done = closecall("run", config, "--", "--collision-output", reported)
+    assert done.returncode == 0, done.stderr
+    found = rows(config.parent / "closecall-out" / "conflicts.csv")
+    collisions = ET.parse(reported).getroot().findall("collision")
+    assert len(collisions) >= 3
+    for collision in collisions:
+        pair = {collision.get("collider"), collision.get("victim")}
+        when = float(collision.get("time", "nan"))
+        announced = [float(row["begin"]) for row in found if {row["ego"], row["foe"]} == pair]
+        assert any(begin <= when for begin in announced), (pair, when, announced)
+
+
+def test_options_come_from_toml_too_and_what_is_typed_wins(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    settings = tmp_path / "closecall.toml"
+    settings.write_text('epsilon = 2.0\nmu = "at-rest"\n[type.truck]\nbuild_up = 0.2\n')
+    assert closecall("run", config, "--config", settings, "--mu", "minimal", "--out", tmp_path / "o").returncode == 0
+    options = json.loads((tmp_path / "o" / "run.json").read_text())["options"]
+    assert (options["epsilon"], options["mu"], options["types"]["truck"]["build_up"]) == (2.0, "minimal", 0.2)
+    settings.write_text("epsilom = 2.0\n")
+    refused = closecall("run", config, "--config", settings)
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "epsilom" in refused.stderr
+
+
+def test_a_filter_keeps_only_what_happens_there(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("side")
+    wanted = tmp_path / "selection.txt"
+    wanted.write_text("junction:crossing\n")
+    assert closecall("run", config, "--filter", wanted, "--out", tmp_path / "in").returncode == 0
+    assert len(rows(tmp_path / "in" / "conflicts.csv")) == 1
+    wanted.write_text("edge:no_such_edge\n")
+    refused = closecall("run", config, "--filter", wanted, "--out", tmp_path / "out")
+    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
+    assert "no_such_edge" in refused.stderr
+
+
+def test_paper_mode_runs_the_flow_chart_as_printed(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    assert closecall("run", config, "--mode", "paper", "--out", tmp_path / "paper").returncode == 0
+    found = rows(tmp_path / "paper" / "conflicts.csv")
+    assert [row["kind"] for row in found] == ["rear_end"]
+
+
+def test_polygons_of_the_named_types_are_obstacles(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("obstacles")
+    assert closecall("run", config, "--out", tmp_path / "without").returncode == 0
+    assert closecall("run", config, "--obstacles", "obstacle", "--out", tmp_path / "with").returncode == 0
+    without, with_them = (rows(tmp_path / out / "conflicts.csv") for out in ("without", "with"))
+    polygons = {row["foe"] for row in with_them} - {row["foe"] for row in without}
+    assert polygons
+    assert all(row["kind"] == "frontal" for row in with_them if row["foe"] in polygons)
+
+
+def start(config: Path, *words: str) -> subprocess.Popen[str]:
+    """A run in the background."""
+    command = [sys.executable, "-m", "closecall", "run", str(config), *words]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
+    """Until so many rows are on disk."""
+    deadline = time.monotonic() + 60
+    while not log.exists() or log.read_bytes().count(b"\n") < count:
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(0.02)
+
+
+def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
+    config = scenario("town")
+    process = start(config)
+    out = config.parent / "closecall-out"
+    wait_for_rows(out / "conflicts.csv", process, 50)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert "interrupted at" in said
+    assert "Traceback" not in said
+    record = json.loads((out / "run.json").read_text())
+    assert record["complete"] is False
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+
+
+def test_after_a_kill_the_rows_of_closed_conflicts_are_there_and_whole(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("town")
+    process = start(config, "--out", str(tmp_path / "killed"))
+    wait_for_rows(tmp_path / "killed" / "conflicts.csv", process, 400)
+    os.kill(process.pid, signal.SIGKILL)
+    process.communicate(timeout=60)
+    killed = (tmp_path / "killed" / "conflicts.csv").read_text()
+    assert closecall("run", config, "--out", tmp_path / "whole").returncode == 0
+    whole = (tmp_path / "whole" / "conflicts.csv").read_text()
+    assert killed.endswith("\n")
+    assert whole.startswith(killed)
