@@ -19,7 +19,7 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	$(BIN)/ruff format --check bridge/python tests
 	$(BIN)/ruff check bridge/python tests
 	$(BIN)/mypy
-	$(BIN)/stubtest closecall --ignore-missing-stub
+	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
 
 docs: ## the documentation of the crate, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge

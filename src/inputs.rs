@@ -148,12 +148,10 @@ mod tests {
 
     #[test]
     fn a_fault_at_the_end_of_a_route_file_is_named_with_its_line() {
-        let message = with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", |path| check_xml(path))
-            .unwrap_err()
-            .to_string();
-        assert!(message.contains("bad.rou.xml, line 3: "), "{message}");
         let message =
-            with_file("cut.rou.xml", "<routes>\n<vehicle/>\n", |path| check_xml(path)).unwrap_err().to_string();
+            with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", check_xml).unwrap_err().to_string();
+        assert!(message.contains("bad.rou.xml, line 3: "), "{message}");
+        let message = with_file("cut.rou.xml", "<routes>\n<vehicle/>\n", check_xml).unwrap_err().to_string();
         assert!(message.contains("the file ends before its elements do"), "{message}");
     }
 }

@@ -1,5 +1,7 @@
 //! Scenes of two, straight on and without a net: what DESIGN.md's definitions give by hand.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
 use closecall::detector::Detector;
 use closecall::encounter::{Encounter, Kind};
 use closecall::frame::{Frame, Roster, State};

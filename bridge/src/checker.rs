@@ -15,7 +15,19 @@ use crate::frames::Frames;
 use crate::paint::Painter;
 use crate::pull::{self, Source};
 
-/// Python's `Checker`; what the package offers is derived from it.
+/// Finds the conflicts of a simulation, or of plain frames, step by step.
+///
+/// Args:
+///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None where
+///         frames are given to `step`.
+///     net: the net file; by default the simulation's own.
+///     out: a folder for the log (conflicts.csv, and encounters.csv with `log_encounters=True`); by default none.
+///     paint: whether to colour the vehicles in conflict; by default where there is a sumo-gui.
+///     **options: what the command line has as long options, with underscores: `mu="at-rest"`, `epsilon=1.0`.
+///
+/// Raises:
+///     ValueError: an unknown option or one out of its range, a net that cannot be used; the message says which.
+///     OSError: a file or folder that cannot be read or written.
 #[pyclass(subclass, module = "closecall._closecall", name = "Checker")]
 pub struct Checker {
     run: Run,
@@ -66,6 +78,20 @@ impl Checker {
         Ok(Self { run, input, painter, is_closed: false })
     }
 
+    /// Check one step; a simulation calls this itself where the checker is its step listener.
+    ///
+    /// Args:
+    ///     time: simulated time in s; only with `states`.
+    ///     states: where there is no simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper
+    ///         centre, m), `heading` (rad, counter-clockwise from +x), `speed` (m/s) and where they are known `z`,
+    ///         `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row that is not finite is no road user.
+    ///
+    /// Returns:
+    ///     True: the listener wants the next step too.
+    ///
+    /// Raises:
+    ///     ValueError: columns of different lengths, a type with impossible dimensions.
+    ///     RuntimeError: the checker is closed.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
         if self.is_closed {
@@ -95,6 +121,7 @@ impl Checker {
         Ok(true)
     }
 
+    /// End the run: what is still open is closed and written, painted vehicles get their colours back.
     fn close(&mut self, py: Python) -> PyResult<()> {
         if std::mem::replace(&mut self.is_closed, true) {
             return Ok(());
@@ -107,12 +134,14 @@ impl Checker {
         }
     }
 
+    /// All conflicts so far, those that still go on as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let conflicts = self.run.conflicts();
         PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.run.net())))
     }
 
+    /// Counts by kind and severity, the traffic that was checked, and what was left out, as in `run.json`.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text =
@@ -141,7 +170,10 @@ fn has_gui(source: &Bound<PyAny>) -> bool {
     source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
 }
 
-/// One conflict, as Python sees it.
+/// One conflict: a pair of road users and a run of steps in which they were closer than they can safely be.
+///
+/// SI units; everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and
+/// `pet`, which are the event's extremes. None where a measure does not exist.
 #[pyclass(frozen, get_all, module = "closecall", name = "Conflict")]
 pub struct Conflict {
     ego: String,

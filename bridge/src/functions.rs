@@ -13,7 +13,20 @@ use pyo3::prelude::*;
 type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 
-/// The minimal collision distance, for arrays that broadcast.
+/// The minimal collision distance of an ego and a foe in m; arrays broadcast as in NumPy.
+///
+/// Args:
+///     speed, foe_speed: m/s, 0 or more.
+///     decel, foe_decel: braking decelerations in m/s², above 0; 9.0 by default.
+///     response_time: full speed until it is over, t1 + t2, in s; 1.05 by default.
+///     build_up: time t3 in which the deceleration builds up, in s; 0.1 by default.
+///     epsilon: redundancy in m; 0.5 by default.
+///     kind: "rear_end", "side" or "frontal": the cosine of the angle between the headings is 1, 0 or -1.
+///     model: "minimal", "at_rest" or "paper".
+///     angle: the angle between the headings in rad, instead of the kind.
+///
+/// Raises:
+///     ValueError: a value out of its range, which the message names.
 #[pyfunction]
 #[pyo3(signature = (
     speed, foe_speed, *, decel=None, foe_decel=None, response_time=None, build_up=None, epsilon=None,
@@ -96,7 +109,16 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
         .collect()
 }
 
-/// Whether rectangles touch, row by row.
+/// Whether rectangles touch, row by row; touching counts as contact.
+///
+/// Args:
+///     a, b: n rows `x, y, heading, length, width`: centre in m, heading in rad, dimensions in m.
+///
+/// Returns:
+///     n booleans.
+///
+/// Raises:
+///     ValueError: not 5 columns, different numbers of rows, a value that is not finite, a negative dimension.
 #[pyfunction]
 pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
@@ -104,7 +126,9 @@ pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
-/// The smallest distance between rectangles, row by row.
+/// The smallest distance between rectangles in m, row by row; 0 where they touch or overlap.
+///
+/// Args and errors as for `touches`.
 #[pyfunction]
 pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;

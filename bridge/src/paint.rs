@@ -1,6 +1,8 @@
 //! Conflicts in sumo-gui: a vehicle takes the colour of its worst conflict's severity and a highlight ring of the
 //! kind's own colour, for as long as the conflict lasts; afterwards its former colour is back and the ring gone.
 
+use std::collections::hash_map::Entry;
+
 use closecall::conflict::Alarm;
 use closecall::encounter::{Kind, Severity};
 use closecall::frame::{Roster, UserIndex};
@@ -89,12 +91,12 @@ impl Painter {
             let size = profile.length / 2.0 + RING_MARGIN;
             domain.call_method1("highlight", (&id, ring_of(kind), size))?;
         }
-        if !self.painted.contains_key(&user) {
-            let former = domain.call_method1("getColor", (&id,))?.unbind();
-            self.painted.insert(user, Painted { id: id.clone(), domain: name, former, severity, kind });
-        }
-        if let Some(painted) = self.painted.get_mut(&user) {
-            (painted.severity, painted.kind) = (severity, kind);
+        match self.painted.entry(user) {
+            Entry::Occupied(mut known) => (known.get_mut().severity, known.get_mut().kind) = (severity, kind),
+            Entry::Vacant(entry) => {
+                let former = domain.call_method1("getColor", (&id,))?.unbind();
+                entry.insert(Painted { id: id.clone(), domain: name, former, severity, kind });
+            }
         }
         domain.call_method1("setColor", (&id, colour_of(severity)))?;
         Ok(())

@@ -3,6 +3,8 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
 
 use closecall::cli::{self, RunRequest};
 use closecall::inputs::{self, Input};
@@ -21,6 +23,11 @@ use crate::error::message;
 use crate::paint::Painter;
 use crate::pull::{self, Source};
 
+/// Least time that sumo-gui shows a step: libsumo's own does not wait.
+const SHOWN: Duration = Duration::from_millis(50);
+/// sumo-gui that does not close within this time never will.
+const CLOSES_WITHIN: Duration = Duration::from_secs(10);
+
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
 pub fn main(py: Python, words: Vec<OsString>) -> u8 {
@@ -32,9 +39,26 @@ pub fn main(py: Python, words: Vec<OsString>) -> u8 {
 fn simulate(py: Python, request: &RunRequest) -> Result<Summary> {
     let sumo = start(py, request)?;
     let result = attach(&sumo, request);
-    // Whatever went wrong is told already; SUMO has nothing to add when it is closed.
-    let _ = sumo.call_method0("close");
+    close(py, request.gui);
     result
+}
+
+/// Closes SUMO; whatever went wrong is told already.
+fn close(py: Python, gui: bool) {
+    let (closed, waits) = std::sync::mpsc::channel::<()>();
+    let watch = gui.then(|| {
+        std::thread::spawn(move || {
+            if waits.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("closecall: sumo-gui does not close; the log is complete");
+                std::process::exit(1);
+            }
+        })
+    });
+    let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method1("close", (gui,)));
+    drop(closed);
+    if let Some(watch) = watch {
+        let _ = watch.join();
+    }
 }
 
 fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
@@ -142,6 +166,7 @@ impl Session<'_, '_> {
     /// One step; whether there is another.
     fn step(&mut self, now: &mut f64) -> std::result::Result<bool, Stop> {
         let py = self.sumo.py();
+        let started = Instant::now();
         py.check_signals()?;
         self.sumo.call_method0("simulationStep")?;
         let simulation = self.sumo.getattr("simulation")?;
@@ -152,6 +177,7 @@ impl Session<'_, '_> {
         py.detach(|| self.run.finish_step().map(|_| ()))?;
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.run)?;
+            py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
         }
         Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
     }

@@ -26,7 +26,7 @@ struct Cli {
 enum Command {
     /// Run a SUMO scenario with the checker attached
     #[command(args_override_self = true)]
-    Run(run::RunArgs),
+    Run(Box<run::RunArgs>),
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
@@ -50,7 +50,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Err(Stop::Error(error)) => return failed(&error),
     };
     let done = match cli.command {
-        Command::Run(arguments) => run::run(arguments, simulate),
+        Command::Run(arguments) => run::run(*arguments, simulate),
         Command::Mu(arguments) => mu::run(&arguments),
     };
     match done {

@@ -9,7 +9,7 @@ use crate::options::OptionsFile;
 
 /// Reads a TOML file whose keys may name any command's long options: one file can serve several commands.
 pub fn read(all: &Command, path: &Path) -> Result<OptionsFile> {
-    let known = all.get_subcommands().flat_map(|command| options_of(command)).collect::<Vec<_>>();
+    let known = all.get_subcommands().flat_map(options_of).collect::<Vec<_>>();
     OptionsFile::read(path, &known)
 }
 

@@ -29,13 +29,15 @@ def pytest_runtest_makereport(item: Any, call: Any) -> Any:
 def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run the command and return what it said."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, **options)
 
 
 def python(script: str, *words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run a script in a process of its own: libsumo allows one simulation per process."""
     command = [sys.executable, "-c", script, *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, **options)
+    beside = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
+    environment = {**os.environ, **beside}
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, env=environment, **options)
 
 
 def rows(path: Path) -> list[Row]:

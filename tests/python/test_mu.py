@@ -5,13 +5,13 @@ from __future__ import annotations
 import json
 import math
 import random
+from typing import Any
 
+import closecall as cc
 import mpmath as mp
 import numpy as np
 import pytest
 from conftest import closecall
-
-import closecall as cc
 
 mp.mp.dps = 60
 
@@ -78,7 +78,7 @@ def reference(case: dict[str, float], sigma: mp.mpf, model: str) -> mp.mpf:
     return v * delay + v * v / (2 * a) - vi * vi / (2 * ai) + mp.mpf(case["epsilon"])
 
 
-def cases(count: int, seed: int) -> list[dict[str, float]]:
+def cases(count: int, seed: int) -> list[dict[str, Any]]:
     """Random ones, and ones where S − Si cancels or something is extreme."""
     chance = random.Random(seed)
     found = []
@@ -151,13 +151,15 @@ def test_arrays_broadcast_as_in_numpy() -> None:
         ({"model": "best"}, "minimal, at_rest or paper"),
     ],
 )
-def test_a_value_out_of_its_range_is_named(changed: dict[str, float], said: str) -> None:
+def test_a_value_out_of_its_range_is_named(changed: dict[str, Any], said: str) -> None:
     with pytest.raises(ValueError, match=said):
-        cc.mu(**{"speed": 10.0, "foe_speed": 5.0, **changed})
+        values: dict[str, Any] = {"speed": 10.0, "foe_speed": 5.0, **changed}
+        cc.mu(**values)
 
 
 def test_the_command_prints_all_three_models() -> None:
-    words = "--speed 30 --foe-speed 25 --decel 8 --foe-decel 4 --response-time 1 --build-up 0 --epsilon 0".split()
+    speeds = ["--speed", "30", "--foe-speed", "25", "--decel", "8", "--foe-decel", "4"]
+    words = [*speeds, "--response-time", "1", "--build-up", "0", "--epsilon", "0"]
     found = json.loads(closecall("mu", *words, "--json").stdout)
     assert (found["minimal"], found["at_rest"], found["paper"]) == (17.125, 8.125, 8.125)
     assert "minimal  17.125 m" in closecall("mu", *words).stdout
@@ -165,7 +167,7 @@ def test_the_command_prints_all_three_models() -> None:
 
 def test_published_stopping_distances_are_met() -> None:
     """ad-rss-lib's tests: 64.3 m from 100 km/h at 6 m/s²; UK Highway Code, rule 126: 12, 23, 36, 53, 73, 96 m."""
-    stop = {"kind": "side", "build_up": 0.0, "epsilon": 0.0, "foe_speed": 0.0}
+    stop: dict[str, Any] = {"kind": "side", "build_up": 0.0, "epsilon": 0.0, "foe_speed": 0.0}
     assert round(float(cc.mu(100 / 3.6, decel=6.0, response_time=0.0, **stop)), 1) == 64.3
     mile_per_hour = 0.44704
     speeds = np.arange(20, 71, 10) * mile_per_hour

@@ -1,0 +1,101 @@
+"""The step listener, with libsumo, with traci and with plain frames."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Callable
+
+import closecall as cc
+import numpy as np
+import pytest
+from conftest import closecall, python, rows
+
+Copy = Callable[[str], Path]
+
+LISTEN = """
+import json, sys
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--no-warnings"])
+checker = closecall.Checker(sumo)
+sumo.addStepListener(checker)
+while sumo.simulation.getMinExpectedNumber() > 0 and sumo.simulation.getTime() < 60:
+    sumo.simulationStep()
+conflicts, summary = checker.conflicts, checker.summary
+sumo.close()
+fields = ["ego", "foe", "kind", "severity", "begin", "margin", "ttc", "drac", "lane"]
+print(json.dumps([[getattr(conflict, field) for field in fields] for conflict in conflicts]))
+print(json.dumps(summary), file=sys.stderr)
+"""
+
+
+def listen(module: str, config: Path) -> list[list[Any]]:
+    """The conflicts that a listener finds."""
+    done = python(LISTEN.replace("{module}", module), config)
+    assert done.returncode == 0, done.stderr
+    found: list[list[Any]] = json.loads(done.stdout.splitlines()[-1])
+    return found
+
+
+def test_a_listener_finds_with_libsumo_and_traci_what_the_command_finds(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("reckless")
+    with_libsumo, with_traci = listen("libsumo", config), listen("traci", config)
+    assert len(with_libsumo) > 10
+    assert with_traci == with_libsumo
+    assert closecall("run", config, "--end", "60", "--out", tmp_path / "out").returncode == 0
+    logged = rows(tmp_path / "out" / "conflicts.csv")
+    assert {(row["ego"], row["foe"], row["kind"]) for row in logged} == {tuple(row[:3]) for row in with_libsumo}
+
+
+CAR = {"id": ["a", "b"], "heading": [0.0, 0.0], "speed": [20.0, 5.0], "y": [0.0, 0.0]}
+
+
+def test_plain_frames_give_one_conflict_per_pair_and_episode() -> None:
+    with cc.Checker(epsilon=1.0) as checker:
+        for step in range(30):
+            time = step / 10
+            checker.step(time, {**CAR, "x": np.array([0.0, 40.0]) + np.array([20.0, 5.0]) * time})
+        assert [conflict.kind for conflict in checker.conflicts] == ["rear_end"]
+    (conflict,) = checker.conflicts
+    assert (conflict.ego, conflict.foe, conflict.begin) == ("a", "b", 0.0)
+    assert conflict.collision == (conflict.severity == "critical")
+    assert conflict.ttc is not None and conflict.pet is None
+    assert checker.summary["exposure"]["vehicles"] == 2
+    with pytest.raises(RuntimeError, match="closed"):
+        checker.step(9.9, {**CAR, "x": [0.0, 40.0]})
+
+
+def test_a_row_that_is_not_finite_is_no_road_user() -> None:
+    checker = cc.Checker()
+    checker.step(0.0, {**CAR, "x": [0.0, np.nan]})
+    assert checker.conflicts == []
+
+
+@pytest.mark.parametrize(
+    ("states", "said"),
+    [
+        ({"x": [0.0]}, '"x" has 1 values, "id" has 2'),
+        ({"x": [0.0, 9.0], "length": [-5.0, 5.0]}, "length is -5"),
+    ],
+)
+def test_impossible_frames_are_refused(states: dict[str, Any], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        cc.Checker().step(0.0, {**CAR, **states})
+
+
+def test_an_unknown_option_is_named() -> None:
+    with pytest.raises(ValueError, match="--colour"):
+        cc.Checker(colour="red")
+
+
+def test_a_net_that_is_missing_is_a_file_that_is_not_found(tmp_path: Path) -> None:
+    with pytest.raises(FileNotFoundError):
+        cc.Checker(net=tmp_path / "none.net.xml")
+
+
+def test_the_log_is_written_on_request(tmp_path: Path) -> None:
+    with cc.Checker(out=tmp_path, log_encounters=True) as checker:
+        checker.step(0.0, {**CAR, "x": [0.0, 20.0]})
+    assert [row["ego"] for row in rows(tmp_path / "conflicts.csv")] == ["a"]
+    assert len(rows(tmp_path / "encounters.csv")) == 1

@@ -1,0 +1,93 @@
+"""Painting in real sumo-gui, under Xvfb: colours and rings while a conflict lasts, nothing of them afterwards."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+from pathlib import Path
+from typing import Callable
+
+import pytest
+from conftest import python
+from PIL import Image
+
+Copy = Callable[[str], Path]
+
+RINGS = {"rear_end": (60, 120, 255), "frontal": (230, 0, 230), "side": (0, 205, 205)}
+SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (235, 0, 0)}
+
+needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
+
+WATCH = """
+import json, os, subprocess, sys, time
+from pathlib import Path
+
+config, shot = sys.argv[1:3]
+display = f":{90 + os.getpid() % 900}"
+server = subprocess.Popen(["Xvfb", display, "-screen", "0", "1000x700x24"], stderr=subprocess.DEVNULL)
+try:
+    while not Path(f"/tmp/.X11-unix/X{display[1:]}").exists():
+        time.sleep(0.05)
+    os.environ["DISPLAY"] = display
+    from closecall import _sumo, Checker
+
+    sumo = _sumo.start(["-c", config, "--no-warnings"], gui=True)
+    checker = Checker(sumo)
+    states, ids = [], {"before": {}}
+    while sumo.simulation.getMinExpectedNumber() > 0:
+        sumo.simulationStep()
+        for vehicle in sumo.vehicle.getIDList():
+            ids["before"].setdefault(vehicle, sumo.vehicle.getColor(vehicle))
+        checker.step()
+        rings = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+        colours = {vehicle: sumo.vehicle.getColor(vehicle) for vehicle in sumo.vehicle.getIDList()}
+        states.append({"time": sumo.simulation.getTime(), "rings": rings, "colours": colours})
+        if rings and len([state for state in states if state["rings"]]) == 6:
+            vehicle = rings[0][: -len("_hl0")]
+            x, y = sumo.vehicle.getPosition(vehicle)
+            sumo.gui.setBoundary("View #0", x - 40, y - 28, x + 40, y + 28)
+            sumo.gui.screenshot("View #0", shot)
+    checker.close()
+    left = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+    conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
+                 for conflict in checker.conflicts]
+    _sumo.close(gui=True)
+    print(json.dumps({"states": states, "before": ids["before"], "left": left, "conflicts": conflicts}))
+finally:
+    server.kill()
+"""
+
+
+def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
+    """How many pixels have about this colour (rings are drawn half transparent over the road)."""
+    image = Image.open(picture).convert("RGB")
+    data = image.tobytes()
+    near = range(0, len(data), 3)
+    return sum(max(abs(data[at + channel] - colour[channel]) for channel in range(3)) < 25 for at in near)
+
+
+@needs_xvfb
+@pytest.mark.parametrize("kind", ["frontal", "rear_end", "side"])
+def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_path: Path) -> None:
+    shot = tmp_path / f"{kind}.png"
+    done = python(WATCH, scenario(kind), shot)
+    assert done.returncode == 0, done.stderr
+    seen = json.loads(done.stdout.splitlines()[-1])
+    ((ego, foe, found, begin, end),) = seen["conflicts"]
+    assert found == kind
+    during = [state for state in seen["states"] if state["rings"]]
+    assert begin <= during[0]["time"] - 0.05 <= begin + 0.2
+    assert during[-1]["time"] <= end + 1.2
+    assert set(during[0]["rings"]) == {f"{ego}_hl0", f"{foe}_hl0"}
+    severities = [list(colour) for colour in SEVERITIES.values()]
+    assert all(list(state["colours"][ego])[:3] in severities for state in during if ego in state["colours"])
+    assert seen["left"] == []
+    for state in seen["states"]:
+        if not state["rings"]:
+            assert all(state["colours"][vehicle] == seen["before"][vehicle] for vehicle in state["colours"])
+    assert shot.exists()
+    assert sum(pixels_like(shot, colour) for colour in SEVERITIES.values()) > 20
+    assert pixels_like(shot, RINGS[kind]) > 20
+    if pictures := os.environ.get("CLOSECALL_PICTURES"):
+        shutil.copy(shot, pictures)
