@@ -214,6 +214,11 @@ impl Run {
         summary
     }
 
+    /// How many conflicts have closed so far.
+    pub fn conflicts_so_far(&self) -> u64 {
+        self.summary.count(None, None)
+    }
+
     /// Closes what is still open and adds it to the log; what the caller did without is added to what was left out.
     ///
     /// # Errors

@@ -156,7 +156,7 @@ impl Session<'_, '_> {
                 Err(Stop::Python(error)) => return Err(self.failed(now, &error)),
                 Err(Stop::Own(error)) => return Err(error),
             }
-            progress.show(now, self.run.frame.len(), self.run.summary().count(None, None));
+            progress.show(now, self.run.frame.len(), self.run.conflicts_so_far());
             if end.is_some_and(|end| now + self.step_length / 2.0 > end) {
                 return Ok(());
             }

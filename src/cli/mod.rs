@@ -4,6 +4,7 @@
 //! simulation, or nothing.
 
 mod mu;
+mod replay;
 mod run;
 mod settings;
 
@@ -27,6 +28,9 @@ enum Command {
     /// Run a SUMO scenario with the checker attached
     #[command(args_override_self = true)]
     Run(Box<run::RunArgs>),
+    /// Check a recording: SUMO's fcd-output, in XML or CSV, also gzipped
+    #[command(args_override_self = true)]
+    Replay(Box<replay::ReplayArgs>),
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
@@ -51,6 +55,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
     };
     let done = match cli.command {
         Command::Run(arguments) => run::run(*arguments, simulate),
+        Command::Replay(arguments) => replay::run(*arguments),
         Command::Mu(arguments) => mu::run(&arguments),
     };
     match done {
@@ -102,8 +107,10 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     let (before, after) = words.split_at(place);
     let all = before.iter().cloned().chain(file.words.iter().filter(here).map(OsString::from)).chain(after.to_vec());
     let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
-    if let Command::Run(arguments) = &mut cli.command {
-        arguments.options.types = file.types;
+    match &mut cli.command {
+        Command::Run(arguments) => arguments.options.types = file.types,
+        Command::Replay(arguments) => arguments.options.types = file.types,
+        Command::Mu(_) => {}
     }
     Ok(cli)
 }

@@ -14,7 +14,7 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::units::Metre;
 
-pub(crate) use reader::open;
+pub(crate) use reader::{LineCounter, open};
 
 /// SUMO's default width of a lane in m.
 const LANE_WIDTH: Metre = 3.2;

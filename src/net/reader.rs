@@ -54,7 +54,7 @@ struct Connection {
 
 impl NetReader<'_> {
     fn read(mut self, source: Box<dyn BufRead>) -> Result<Net> {
-        let mut reader = Reader::from_reader(LineCounter { source, lines: 1 });
+        let mut reader = Reader::from_reader(LineCounter::new(source));
         let mut buffer = Vec::new();
         let mut root = false;
         let mut depth = 0_usize;
@@ -74,7 +74,7 @@ impl NetReader<'_> {
                 Event::Eof => break,
                 _ => {}
             }
-            self.line = reader.get_ref().lines;
+            self.line = reader.get_ref().line();
         }
         if !root || depth > 0 {
             return Err(self.wrong("the file ends before its elements do"));
@@ -272,9 +272,21 @@ pub fn xml_message(error: &quick_xml::Error) -> String {
 }
 
 /// Counts lines as they are read: messages name them.
-struct LineCounter {
+pub struct LineCounter {
     source: Box<dyn BufRead>,
     lines: u64,
+}
+
+impl LineCounter {
+    /// Counts from 1.
+    pub fn new(source: Box<dyn BufRead>) -> Self {
+        Self { source, lines: 1 }
+    }
+
+    /// The line that is read next.
+    pub fn line(&self) -> u64 {
+        self.lines
+    }
 }
 
 impl Read for LineCounter {

@@ -1,0 +1,91 @@
+//! `closecall replay`: the same checks on a recording; no SUMO is needed.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+
+use crate::inputs::Input;
+use crate::log::Log;
+use crate::net::Net;
+use crate::options::Options;
+use crate::progress::Progress;
+use crate::record::{RunRecord, Versions};
+use crate::replay::Replay;
+use crate::run::Run;
+use crate::summary::Summary;
+use crate::{Error, Result};
+
+/// A recording and how to check it.
+#[derive(Args)]
+pub struct ReplayArgs {
+    /// SUMO's fcd-output: XML, CSV, or either gzipped.
+    #[arg(value_name = "FCD")]
+    recording: PathBuf,
+    /// The net on which it was recorded.
+    #[arg(short = 'n', long, value_name = "NET")]
+    net: PathBuf,
+    /// Route and additional files with the vehicle types; others are SUMO's own.
+    #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
+    route_files: Vec<PathBuf>,
+    /// Folder of the log [default: closecall-out beside the recording].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// TOML file of options.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    pub(super) options: Options,
+}
+
+/// Checks the recording and prints the summary.
+pub fn run(arguments: ReplayArgs) -> Result<()> {
+    let options = arguments.options.clone().checked()?;
+    let recording = &arguments.recording;
+    let net = Arc::new(Net::read(&arguments.net)?);
+    let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
+    let mut run = Run::new(&options, Some(net))?;
+    run.routes_are_fixed();
+    let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
+    let mut record = RunRecord {
+        versions: Versions::with_sumo(None),
+        scenario: recording.clone(),
+        seed: None,
+        step_length: None,
+        options,
+        sumo_words: Vec::new(),
+        inputs: files.map(|path| Input::of(&path)).collect::<Result<_>>()?,
+        complete: false,
+        error: None,
+        summary: Summary::default(),
+    };
+    let beside = recording.parent().unwrap_or(Path::new("")).join("closecall-out");
+    let out = arguments.out.unwrap_or(beside);
+    let log = Log::create(&out, arguments.options.log_encounters)?;
+    log.run(&record)?;
+    run.log_to(log, false);
+    let ended = steps(&mut replay, &mut run, arguments.quiet);
+    record.summary = run.finish(Vec::new())?;
+    record.complete = ended.is_ok();
+    record.error = ended.as_ref().err().map(ToString::to_string);
+    if let Some(log) = run.take_log() {
+        log.run(&record)?;
+    }
+    if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
+        print!("{}", record.summary);
+        println!("log in {}", out.display());
+    }
+    ended
+}
+
+fn steps(replay: &mut Replay, run: &mut Run, quiet: bool) -> Result<()> {
+    let mut progress = None;
+    while let Some(time) = replay.next(run)? {
+        let progress = progress.get_or_insert_with(|| Progress::new(time, None, !quiet));
+        progress.show(time, replay.road_users(), run.conflicts_so_far());
+    }
+    Ok(())
+}
