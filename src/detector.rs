@@ -55,6 +55,7 @@ pub struct Detector {
     options: Options,
     net: Option<Arc<Net>>,
     routes_may_change: bool,
+    sublane: bool,
     search: Search,
     memory: Vec<Memory>,
     circles: Vec<Circle>,
@@ -94,6 +95,7 @@ impl Detector {
             options: options.clone(),
             net,
             routes_may_change: true,
+            sublane: false,
             search: Search::default(),
             memory: Vec::new(),
             circles: Vec::new(),
@@ -115,6 +117,11 @@ impl Detector {
     /// Whether no road user's route changes while it is in the scene.
     pub fn has_fixed_routes(&self) -> bool {
         !self.routes_may_change
+    }
+
+    /// Says whether road users move to the side without changing lanes (SUMO's sublane model).
+    pub fn set_sublane(&mut self, sublane: bool) {
+        self.sublane = sublane;
     }
 
     /// What was done so far.
@@ -231,7 +238,9 @@ impl Detector {
             front: Point::new(state.x, state.y),
             axis: self.rows[row as usize].axis,
             length: roster.profile_of(user).length,
+            width: roster.profile_of(user).width,
             speed: state.speed,
+            sublane: self.sublane,
         };
         memory.path.lay(net, &start, placement);
         self.rows[row as usize].on_lanes = memory.path.track.is_laid();

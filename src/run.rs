@@ -85,6 +85,11 @@ impl Run {
         self.detector.set_fixed_routes(false);
     }
 
+    /// Says that road users move to the side without changing lanes (SUMO's sublane model).
+    pub fn has_sublanes(&mut self) {
+        self.detector.set_sublane(true);
+    }
+
     /// Whether no road user's route changes while it is in the scene.
     pub fn has_fixed_routes(&self) -> bool {
         self.detector.has_fixed_routes()

@@ -58,7 +58,6 @@ impl Checker {
             (None, Some(source)) => pull::net_of(source)?,
             (None, None) => None,
         };
-        let with_heights = net.as_ref().is_none_or(|net| net.has_levels);
         let mut run = Run::new(&options, net).map_err(exception)?;
         if let Some(folder) = out {
             run.log_to(Log::create(&folder, options.log_encounters).map_err(exception)?, true);
@@ -66,7 +65,7 @@ impl Checker {
         let input = match source {
             Some(source) => {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
-                Input::Simulation(Source::new(source, &options, with_heights)?)
+                Input::Simulation(Source::new(source, &mut run, &options)?)
             }
             None => Input::Frames(Frames::new(&options)),
         };

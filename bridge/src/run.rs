@@ -16,7 +16,7 @@ use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
 use closecall::{Error, Result};
-use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt};
+use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::message;
@@ -91,7 +91,6 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         inputs::check_xml(path)?;
     }
     let net = files.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
-    let with_heights = net.as_ref().is_none_or(|net| net.has_levels);
     let mut run = Run::new(&request.options, net)?;
     pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;
     if has_no_rerouters(sumo).map_err(said)? {
@@ -99,10 +98,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     }
     let step_length = sumo.getattr("simulation").and_then(|simulation| simulation.call_method0("getDeltaT"));
     let step_length = step_length.and_then(|length| length.extract::<f64>()).map_err(said)?;
-    let mut source = Source::new(sumo, &request.options, with_heights).map_err(said)?;
-    source
-        .check_types(sumo.py(), &mut run)
-        .map_err(|error| Error::content(&request.scenario, message(sumo.py(), &error)))?;
+    let source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
         versions: Versions::with_sumo(Some(version(sumo).map_err(said)?)),
@@ -122,11 +118,19 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     let mut session = Session { sumo, request, run, source, painter, step_length };
     let ended = session.steps();
     let exposure = session.run.summary().exposure;
-    if ended.is_ok() && exposure.vehicles + exposure.persons == 0 {
+    let empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
+    let unusable = match &ended {
+        Ok(()) if empty => {
+            Some(Error::content(&request.scenario, "the scenario is empty: no road user ever enters it"))
+        }
+        Err(Error::Value(message)) => Some(Error::content(&request.scenario, message.clone())),
+        _ => None,
+    };
+    if let Some(error) = unusable {
         if let Some(log) = session.run.take_log() {
             log.discard();
         }
-        return Err(Error::content(&request.scenario, "the scenario is empty: no road user ever enters it"));
+        return Err(error);
     }
     record.summary = session.run.finish(left_out(request, exposure.persons))?;
     record.complete = ended.is_ok();
@@ -186,6 +190,10 @@ impl Session<'_, '_> {
         let py = self.sumo.py();
         if error.is_instance_of::<PyKeyboardInterrupt>(py) {
             return Error::Interrupted { time };
+        }
+        if error.is_instance_of::<PyValueError>(py) {
+            // The one thing that the bridge itself refuses: a type with impossible dimensions.
+            return Error::Value(message(py, error));
         }
         Error::Failed { time, message: message(py, error) }
     }

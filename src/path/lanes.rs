@@ -74,8 +74,12 @@ pub struct Start {
     pub axis: Vector,
     /// Length of the road user in m.
     pub length: Metre,
+    /// Its width in m.
+    pub width: Metre,
     /// Speed in m/s.
     pub speed: MetrePerSecond,
+    /// Whether it may move to the side without changing lanes (SUMO's sublane model).
+    pub sublane: bool,
 }
 
 impl LanePath {
@@ -298,7 +302,8 @@ impl Foot {
     }
 }
 
-/// The offset of now, and where a lane change that is under way leads: to the centre of this lane or the next one.
+/// The offset of now, and where a movement to the side leads: to the centre of this lane or the next one, or (sublane
+/// model) to the border of this one.
 fn offset(net: &Net, start: &Start, placement: &Placement, foot: &Foot, against: bool) -> Offset {
     let sign = if against { -1.0 } else { 1.0 };
     let now = sign * if foot.aside.abs() < 1e-3 { 0.0 } else { foot.aside };
@@ -307,7 +312,15 @@ fn offset(net: &Net, start: &Start, placement: &Placement, foot: &Foot, against:
         return Offset { now, target: now, over: 0.0 };
     }
     let width = net.lanes[placement.lane.0 as usize].width;
-    let target = if now * speed < 0.0 { 0.0 } else { width.copysign(speed) };
+    // As far aside as it can be within its lane.
+    let inside = (width - start.width).max(0.0) / 2.0;
+    let target = if now * speed < 0.0 {
+        0.0
+    } else if start.sublane && now.abs() < inside {
+        inside.copysign(speed)
+    } else {
+        width.copysign(speed)
+    };
     Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed }
 }
 

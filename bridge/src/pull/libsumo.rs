@@ -115,10 +115,6 @@ impl Libsumo {
         })
     }
 
-    pub fn types(&mut self) -> &mut Types {
-        &mut self.types
-    }
-
     pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
         let time: Second = self.time.bind(py).call0()?.extract()?;
         run.begin(sumo::time_of_states(time, self.step_length));

@@ -22,22 +22,19 @@ pub enum Source {
 }
 
 impl Source {
-    /// The source that a Python object is: the module libsumo, the module traci or one of traci's connections.
-    pub fn new(source: &Bound<PyAny>, options: &Options, with_heights: bool) -> PyResult<Self> {
+    /// The source that a Python object is: the module libsumo, the module traci or one of traci's connections; the
+    /// run is told what the simulation says of itself.
+    pub fn new(source: &Bound<PyAny>, run: &mut Run, options: &Options) -> PyResult<Self> {
+        let with_heights = run.net().is_none_or(|net| net.has_levels);
+        if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
+            run.has_sublanes();
+        }
         let is_libsumo = source.getattr("__name__").is_ok_and(|name| name.to_string() == "libsumo");
         Ok(if is_libsumo {
             Self::Libsumo(Box::new(Libsumo::new(source, options, with_heights)?))
         } else {
             Self::Traci(Box::new(Traci::new(source, options, with_heights)?))
         })
-    }
-
-    /// Asks for all vehicle types that SUMO knows so far, so that an impossible one is told of before the first step.
-    pub fn check_types(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        match self {
-            Self::Libsumo(source) => source.types().check(py, run),
-            Self::Traci(source) => source.types().check(py, run),
-        }
     }
 
     /// Begins a step of the run with every road user's state of now.

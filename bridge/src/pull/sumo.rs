@@ -67,15 +67,6 @@ impl Types {
         })
     }
 
-    /// Whether every type that SUMO knows so far is possible.
-    pub fn check(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let names: Vec<String> = self.domain.bind(py).call_method0("getIDList")?.extract()?;
-        names.iter().try_for_each(|name| {
-            let profile = Profile::vehicle(&self.ask(py, name)?, &self.options);
-            run.roster.check(&profile).map_err(exception)
-        })
-    }
-
     /// A vehicle type's profile.
     pub fn vehicle(&mut self, py: Python, run: &mut Run, name: &str) -> PyResult<ProfileIndex> {
         if let Some(&known) = self.vehicles.get(name) {

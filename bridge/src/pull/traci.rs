@@ -95,10 +95,6 @@ impl Traci {
         })
     }
 
-    pub fn types(&mut self) -> &mut Types {
-        &mut self.types
-    }
-
     pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
         let time: Second = self.source.bind(py).getattr("simulation")?.call_method0("getTime")?.extract()?;
         run.begin(sumo::time_of_states(time, self.step_length));

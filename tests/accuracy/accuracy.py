@@ -1,0 +1,116 @@
+"""Precision and recall of closecall on a scenario, against the paths that were really driven.
+
+    python tests/accuracy/accuracy.py SCENARIO.sumocfg ... [--end S] [--every S] [--at-least PERCENT]
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import subprocess
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+from recording import Recording, record
+from truth import Verdict, step_truth
+
+KINDS = ("rear_end", "frontal", "side")
+NEAR = 0.75
+"""Pairs within this of the limit are left aside, in m."""
+
+
+def reported(words: list[str], options: list[str]) -> dict[tuple[int, frozenset[str]], dict[str, str]]:
+    """What closecall says, by time in ms and pair."""
+    with tempfile.TemporaryDirectory() as folder:
+        config, rest = words[1], words[2:]
+        command = [sys.executable, "-m", "closecall", "run", config, "--quiet", "--log-encounters", "--out", folder]
+        subprocess.run([*command, *options, "--", *rest, "--no-warnings"], check=True)
+        with (Path(folder) / "encounters.csv").open(newline="") as file:
+            rows = list(csv.DictReader(file))
+    return {(round(float(row["time"]) * 1000), frozenset((row["ego"], row["foe"]))): row for row in rows}
+
+
+class Tally:
+    """Counts of one scenario."""
+
+    def __init__(self) -> None:
+        self.counts: Counter[tuple[str, str]] = Counter()
+        self.aside: Counter[str] = Counter()
+        self.wrong: list[tuple[float, str, Verdict | None, dict[str, str] | None]] = []
+
+    def add(self, time: float, truth: Verdict | None, row: dict[str, str] | None) -> None:
+        """One pair in one step."""
+        if truth is not None and truth.aside:
+            self.aside[truth.aside] += 1
+            return
+        if truth is not None and abs(truth.margin) <= NEAR:
+            self.aside["near the limit"] += 1
+            return
+        if row is not None and abs(float(row["margin"])) <= NEAR:
+            self.aside["near the limit"] += 1
+            return
+        is_true = truth is not None and truth.margin < 0
+        if row is not None:
+            fits = is_true and truth is not None and truth.kind in ("", row["kind"])
+            self.counts[row["kind"], "right" if fits else "false"] += 1
+            if not fits:
+                self.wrong.append((time, "false", truth, row))
+        elif is_true and truth is not None:
+            self.counts[truth.kind or "side", "missed"] += 1
+            self.wrong.append((time, "missed", truth, None))
+
+    def share(self, kind: str, against: str) -> float:
+        """Precision (against "false") or recall (against "missed") in percent."""
+        right, other = self.counts[kind, "right"], self.counts[kind, against]
+        return 100.0 * right / (right + other) if right + other else float("nan")
+
+
+def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[str, str]], every: float) -> Tally:
+    """Truth and report, pair by pair, in steps that are `every` s apart."""
+    tally = Tally()
+    stride = max(round(every / recording.step), 1)
+    for step in range(0, recording.steps, stride):
+        time = recording.begin + step * recording.step
+        key = round(time * 1000)
+        truth = step_truth(recording, step)
+        pairs = {pair for at, pair in rows if at == key} | set(truth)
+        for pair in sorted(pairs, key=sorted):
+            tally.add(time, truth.get(pair), rows.get((key, pair)))
+    return tally
+
+
+def main() -> int:
+    """Exit status 1 where a figure of 20 cases or more is too low."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
+    parser.add_argument("scenarios", nargs="+", type=Path)
+    parser.add_argument("--end", type=float, default=100.0, help="simulated second at which to end")
+    parser.add_argument("--every", type=float, default=1.0, help="seconds between the steps that are compared")
+    parser.add_argument("--step-length", type=float, default=0.1, help="length of a step in s")
+    parser.add_argument("--at-least", type=float, default=0.0, help="percent that each figure must reach")
+    parser.add_argument("--show", type=int, default=0, help="how many disagreements to print")
+    parser.add_argument("--path", default="lanes", help="closecall's path model")
+    options = parser.parse_args()
+    low = 0
+    print(f"{'scenario':<12} {'kind':<9} {'right':>6} {'false':>6} {'missed':>6} {'precision':>10} {'recall':>8}")
+    for scenario in options.scenarios:
+        words = ["-c", str(scenario), "--end", str(options.end), "--step-length", str(options.step_length)]
+        recording = record(words)
+        tally = compare(recording, reported(words, ["--path", options.path]), options.every)
+        for kind in KINDS:
+            right, false, missed = (tally.counts[kind, what] for what in ("right", "false", "missed"))
+            precision, recall = tally.share(kind, "false"), tally.share(kind, "missed")
+            print(
+                f"{scenario.stem:<12} {kind:<9} {right:>6} {false:>6} {missed:>6} {precision:>8.1f} % {recall:>6.1f} %"
+            )
+            low += right + false >= 20 and precision < options.at_least
+            low += right + missed >= 20 and recall < options.at_least
+        print(f"{scenario.stem:<12} left aside: {dict(tally.aside)}", flush=True)
+        for time, what, truth, row in tally.wrong[: options.show]:
+            print(f"  {time:.1f} s {what}: truth {truth}, closecall {row}")
+    return 1 if low else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
