@@ -28,11 +28,16 @@ fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
         let bounds = step_bounds(&step);
         if bounds.meet(&foe.bounds) {
             let mut enter = f64::INFINITY;
-            each_part_of_area(foe, &bounds, |part| {
-                if let Some(contact) = step.contact(part) {
+            for part in foe.shape.iter().filter(|part| part.bounds.meet(&bounds)) {
+                if let Some(contact) = step.contact(&part.outline) {
                     enter = enter.min(contact.enter);
                 }
-            });
+            }
+            for part in area(foe).filter(|part| step_bounds(part).meet(&bounds)) {
+                if let Some(touch) = step.first_touch(&part) {
+                    enter = enter.min(touch);
+                }
+            }
             if enter <= 1.0 {
                 let next = ego.poses[index + 1].way;
                 return Some((pose.way + (next - pose.way) * enter, step.rectangle(enter)));
@@ -42,32 +47,21 @@ fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
     None
 }
 
-/// Calls with every convex part of the area that the foe covers now and still needs to stop, as far as it reaches
-/// into `window`.
-fn each_part_of_area(foe: &Mover, window: &Bounds, mut visit: impl FnMut(&Outline)) {
-    for polygon in foe.shape.iter().filter(|polygon| polygon.bounds.meet(window)) {
-        visit(&polygon.outline);
-    }
-    if !foe.shape.is_empty() {
-        return;
-    }
-    if foe.stop <= 0.0 {
-        visit(&Outline::rectangle(&foe.rectangle));
-        return;
-    }
-    for (pose, step) in steps(foe.poses, foe) {
-        if pose.way >= foe.stop {
-            break;
-        }
-        if step_bounds(&step).meet(window) {
-            visit(&step.area());
-        }
-    }
+/// The steps over which the foe covers the area that it is in now and still needs to stop; none of an obstacle.
+fn area(foe: &Mover) -> impl Iterator<Item = Step> {
+    let stands = foe.shape.is_empty() && foe.stop <= 0.0;
+    let now = Pose {
+        way: 0.0,
+        front: foe.rectangle.centre + foe.rectangle.axis * foe.rectangle.half_length,
+        axis: foe.rectangle.axis,
+    };
+    let moving = steps(foe.poses, foe).take_while(|(pose, _)| pose.way < foe.stop).map(|(_, step)| step);
+    stands.then(|| now.step_to(&now, foe.length(), foe.width())).into_iter().chain(moving)
 }
 
 /// The foe's way to the ego's rectangle at the meeting place, and its axis there.
 ///
-/// The two touch there to within rounding and the sweep's tolerance, so the rectangle is taken larger by that.
+/// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
 fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
     let ego = Outline::rectangle(&grown(ego));
     for (index, (pose, step)) in steps(foe.poses, foe).enumerate() {
@@ -109,8 +103,8 @@ pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -
 
 fn grown(rectangle: &Rectangle) -> Rectangle {
     Rectangle {
-        half_length: rectangle.half_length + TOLERANCE,
-        half_width: rectangle.half_width + TOLERANCE,
+        half_length: rectangle.half_length + 2.0 * TOLERANCE,
+        half_width: rectangle.half_width + 2.0 * TOLERANCE,
         ..*rectangle
     }
 }

@@ -64,7 +64,7 @@ impl Course {
             bounds.join(&step.rectangle(1.0).bounds());
             bounds
         };
-        self.steps().map(|(_, _, step)| (bounds(&step), step.area())).collect()
+        self.steps().map(|(_, _, step)| (bounds(&step), step.hull())).collect()
     }
 
     /// The first and the last time at which it touches a corridor; the last is none where it still does at the end.

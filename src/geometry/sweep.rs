@@ -75,9 +75,27 @@ impl Step {
         Rectangle::behind(self.from + (self.to - self.from) * part, axis, self.length, self.width)
     }
 
-    /// A convex outline of the area that the step covers.
-    pub fn area(&self) -> Outline {
+    /// A convex outline around the area that the step covers.
+    pub fn hull(&self) -> Outline {
         Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0))
+    }
+
+    /// How far the hull reaches beyond what the step covers: on the inner side of a turn it cuts the corner between
+    /// the sides of the first and the last rectangle.
+    fn excess(&self) -> Metre {
+        (self.to_axis - self.from_axis).norm() * self.length / 4.0
+    }
+
+    /// The part of this step at which its rectangle first touches the area that another step covers.
+    ///
+    /// The other's hull decides quickly where they do not; where they do, the hull is cut in halves until it fits.
+    pub fn first_touch(&self, other: &Self) -> Option<f64> {
+        let contact = self.contact(&other.hull())?;
+        if other.excess() <= TOLERANCE {
+            return Some(contact.enter);
+        }
+        let halves = [other.between(0.0, 0.5), other.between(0.5, 1.0)];
+        halves.iter().filter_map(|half| self.first_touch(half)).min_by(f64::total_cmp)
     }
 
     /// The same step between two of its parts.
@@ -105,7 +123,7 @@ impl Step {
             let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
             return translation(&Outline::rectangle(&start), &by, fixed);
         }
-        translation(&self.area(), &Vector::zeros(), fixed)?;
+        translation(&self.hull(), &Vector::zeros(), fixed)?;
         let first =
             self.between(0.0, 0.5).contact(fixed).map(|c| Contact { enter: c.enter / 2.0, leave: c.leave / 2.0 });
         match first {

@@ -115,6 +115,27 @@ def contacts(a: Course, b: Course, a_until: float, b_until: float) -> Mask:
     return matrix
 
 
+def first_touch(ego: Course, foe: Course, at: int, foe_stop: float) -> tuple[float, Course]:
+    """The ego's way to the area that the foe needs to stop, to the millimetre, and the ego there: pose `at` touches."""
+    columns = np.arange(max(int((foe.ways <= foe_stop + 1e-9).sum()), 1))
+    low, high = (at - 1, at) if at > 0 else (0, 0)
+
+    def pose(part: float) -> Course:
+        def between(values: Numbers) -> Numbers:
+            return values[low : low + 1] * (1 - part) + values[high : high + 1] * part
+
+        axis = between(ego.axes)
+        axis /= np.linalg.norm(axis)
+        return Course(ego.kind, ego.speed, between(ego.ways), between(ego.centres), axis, 0.0, 0.0)
+
+    before, after = 0.0, 1.0
+    for _ in range(8):
+        middle = (before + after) / 2
+        touches = touching(pose(middle), foe, np.zeros_like(columns), columns).any()
+        before, after = (before, middle) if touches else (middle, after)
+    return float(pose(after).ways[0]), pose(after)
+
+
 @dataclass
 class Verdict:
     """What is true of a pair in a step; `aside` says why it is left aside."""
@@ -156,15 +177,18 @@ def judge(names: tuple[str, str], a: Course, b: Course) -> Verdict | None:
     if not met:
         return Verdict(*names, "", math.inf, math.inf, aside) if aside else None
     met.sort(key=lambda found: (-found[0], found[1][0]))
-    way, order, ego, foe, at, table = met[0]
-    arrives = int(np.flatnonzero(table[at])[0])
-    cosine = float(np.clip((ego.axes[at] * foe.axes[arrives]).sum(), -1, 1))
+    _, order, ego, foe, at, table = met[0]
+    foe_stop = stops[1] if foe is b else stops[0]
+    way, place = first_touch(ego, foe, at, foe_stop)
+    everywhere = np.arange(len(foe.ways))
+    there = touching(place, foe, np.zeros_like(everywhere), everywhere, grown=0.02)
+    arrives = int(np.flatnonzero(there)[0])
+    cosine = float(np.clip((place.axes[0] * foe.axes[arrives]).sum(), -1, 1))
     foe_way = float(foe.ways[arrives])
     if cosine > 0:
-        later = np.arange(arrives, len(foe.ways))
-        out = ~touching(ego, foe, np.full(len(later), at), later)
-        foe_way = float(foe.ways[later[np.flatnonzero(out)[0]]]) if out.any() else float(foe.ways[-1])
-        if not out.any() and not math.isinf(foe.known):
+        out = np.flatnonzero(~there[arrives:])
+        foe_way = float(foe.ways[arrives + out[0]]) if len(out) else float(foe.ways[-1])
+        if not len(out) and not math.isinf(foe.known):
             aside = aside or "path not known"
         if arrives == 0 and foe_way <= 2 * SPACING:
             foe_way = 0.0
