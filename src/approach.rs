@@ -70,8 +70,8 @@ pub fn time_to_fixed(a: &Course, fixed: &[Outline]) -> Option<Second> {
     for (pose, next) in a.poses.windows(2).map(|pair| (pair[0], pair[1])) {
         let step = pose.step_to(&next, a.length, a.width);
         for outline in fixed {
-            if let Some(contact) = step.contact(outline) {
-                let time = (pose.way + (next.way - pose.way) * contact.enter) / a.speed;
+            if let Some(enter) = step.enter(outline) {
+                let time = (pose.way + (next.way - pose.way) * enter) / a.speed;
                 first = Some(first.map_or(time, |earliest| earliest.min(time)));
             }
         }

@@ -26,6 +26,9 @@ pub struct Summary {
     pub exposure: Exposure,
     /// What the scene did not need.
     pub left_out: Vec<LeftOut>,
+    /// Where the time went: what, and how many seconds; not part of the result.
+    #[serde(skip)]
+    pub spent: Vec<(&'static str, f64)>,
 }
 
 /// How many conflicts of one kind and severity.
@@ -101,6 +104,10 @@ impl fmt::Display for Summary {
         )?;
         for left_out in &self.left_out {
             writeln!(f, "{left_out}")?;
+        }
+        let parts = self.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.2} s"));
+        if !self.spent.is_empty() {
+            writeln!(f, "time: {}", parts.collect::<Vec<_>>().join(", "))?;
         }
         Ok(())
     }

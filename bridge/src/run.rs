@@ -82,6 +82,25 @@ struct Session<'a, 'py> {
     source: Source,
     painter: Option<Painter>,
     step_length: f64,
+    spent: Spent,
+}
+
+/// Where the time goes.
+#[derive(Default)]
+struct Spent {
+    parts: [Duration; PARTS.len()],
+}
+
+/// The parts of a step, in their order.
+const PARTS: [&str; 6] = ["SUMO", "pull", "phase 1", "paths", "phase 2, events, log", "painting"];
+
+impl Spent {
+    /// Adds the time since the last part ended to this one.
+    fn add(&mut self, part: usize, since: &mut Instant) {
+        let now = Instant::now();
+        self.parts[part] += now - *since;
+        *since = now;
+    }
 }
 
 fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
@@ -115,7 +134,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     let log = Log::create(&request.out, request.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
-    let mut session = Session { sumo, request, run, source, painter, step_length };
+    let mut session = Session { sumo, request, run, source, painter, step_length, spent: Spent::default() };
     let ended = session.steps();
     let exposure = session.run.summary().exposure;
     let empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
@@ -133,6 +152,8 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         return Err(error);
     }
     record.summary = session.run.finish(left_out(request, exposure.persons))?;
+    let spent = PARTS.into_iter().zip(session.spent.parts.map(|part| part.as_secs_f64()));
+    record.summary.spent = spent.filter(|(_, seconds)| *seconds > 0.0).collect();
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
     if let Some(log) = session.run.take_log() {
@@ -172,16 +193,23 @@ impl Session<'_, '_> {
         let py = self.sumo.py();
         let started = Instant::now();
         py.check_signals()?;
+        let mut since = started;
         self.sumo.call_method0("simulationStep")?;
+        self.spent.add(0, &mut since);
         let simulation = self.sumo.getattr("simulation")?;
         *now = simulation.call_method0("getTime")?.extract()?;
         self.source.pull(py, &mut self.run)?;
+        self.spent.add(1, &mut since);
         let rows = py.detach(|| self.run.approach().to_vec());
+        self.spent.add(2, &mut since);
         self.source.place(py, &mut self.run, &rows)?;
+        self.spent.add(3, &mut since);
         py.detach(|| self.run.finish_step().map(|_| ()))?;
+        self.spent.add(4, &mut since);
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.run)?;
             py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
+            self.spent.add(5, &mut since);
         }
         Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
     }

@@ -1,10 +1,10 @@
 //! Side, and whatever else is not in line: swept rectangles.
 
 use super::{Meeting, Mover};
+use crate::geometry::Vector;
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{Step, TOLERANCE, translation};
-use crate::geometry::{Bounds, Vector};
 use crate::path::Pose;
 use crate::units::Metre;
 
@@ -25,15 +25,15 @@ pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
 /// The ego's way to the foe's area and its rectangle there.
 fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
     for (index, (pose, step)) in steps(ego.poses, ego).enumerate() {
-        let bounds = step_bounds(&step);
+        let bounds = step.bounds();
         if bounds.meet(&foe.bounds) {
             let mut enter = f64::INFINITY;
             for part in foe.shape.iter().filter(|part| part.bounds.meet(&bounds)) {
-                if let Some(contact) = step.contact(&part.outline) {
-                    enter = enter.min(contact.enter);
+                if let Some(touch) = step.enter(&part.outline) {
+                    enter = enter.min(touch);
                 }
             }
-            for part in area(foe).filter(|part| step_bounds(part).meet(&bounds)) {
+            for part in area(foe).filter(|part| part.bounds().meet(&bounds)) {
                 if let Some(touch) = step.first_touch(&part) {
                     enter = enter.min(touch);
                 }
@@ -65,9 +65,9 @@ fn area(foe: &Mover) -> impl Iterator<Item = Step> {
 fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
     let ego = Outline::rectangle(&grown(ego));
     for (index, (pose, step)) in steps(foe.poses, foe).enumerate() {
-        if let Some(contact) = step.contact(&ego) {
+        if let Some(enter) = step.enter(&ego) {
             let next = foe.poses[index + 1].way;
-            return (pose.way + (next - pose.way) * contact.enter, step.rectangle(contact.enter).axis);
+            return (pose.way + (next - pose.way) * enter, step.rectangle(enter).axis);
         }
         if pose.way >= foe.stop {
             break;
@@ -87,14 +87,14 @@ pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -
         if next.way < arrival {
             continue;
         }
-        let Some(contact) = step.contact(&ego) else {
+        let Some(leave) = step.leave(&ego) else {
             if pose.way > arrival {
                 return left;
             }
             continue;
         };
-        left = pose.way + (next.way - pose.way) * contact.leave.min(1.0);
-        if contact.leave < 1.0 {
+        left = pose.way + (next.way - pose.way) * leave.min(1.0);
+        if leave < 1.0 {
             return left;
         }
     }
@@ -112,12 +112,6 @@ fn grown(rectangle: &Rectangle) -> Rectangle {
 fn steps<'a>(poses: &'a [Pose], of: &Mover) -> impl Iterator<Item = (Pose, Step)> + 'a {
     let (length, width) = (of.length(), of.width());
     poses.windows(2).map(move |pair| (pair[0], pair[0].step_to(&pair[1], length, width)))
-}
-
-fn step_bounds(step: &Step) -> Bounds {
-    let mut bounds = step.rectangle(0.0).bounds();
-    bounds.join(&step.rectangle(1.0).bounds());
-    bounds
 }
 
 /// Whether two rectangles-with-shapes overlap or touch now.

@@ -59,12 +59,7 @@ impl Course {
 
     /// The area that it covered, in convex parts.
     fn corridor(&self) -> Vec<(Bounds, Outline)> {
-        let bounds = |step: &Step| {
-            let mut bounds = step.rectangle(0.0).bounds();
-            bounds.join(&step.rectangle(1.0).bounds());
-            bounds
-        };
-        self.steps().map(|(_, _, step)| (bounds(&step), step.hull())).collect()
+        self.steps().map(|(_, _, step)| (step.bounds(), step.hull())).collect()
     }
 
     /// The first and the last time at which it touches a corridor; the last is none where it still does at the end.
@@ -73,19 +68,18 @@ impl Course {
         let mut last = None;
         let mut still = false;
         for (from, to, step) in self.steps() {
-            let mut bounds = step.rectangle(0.0).bounds();
-            bounds.join(&step.rectangle(1.0).bounds());
+            let bounds = step.bounds();
             still = false;
             for (part_bounds, part) in corridor {
                 if !part_bounds.meet(&bounds) {
                     continue;
                 }
-                if let Some(contact) = step.contact(part) {
-                    let enter = from + (to - from) * contact.enter;
-                    let leave = from + (to - from) * contact.leave.min(1.0);
+                if let (Some(enters), Some(leaves)) = (step.enter(part), step.leave(part)) {
+                    let enter = from + (to - from) * enters;
+                    let leave = from + (to - from) * leaves.min(1.0);
                     first = Some(first.map_or(enter, |known: Second| known.min(enter)));
                     last = Some(last.map_or(leave, |known: Second| known.max(leave)));
-                    still |= contact.leave >= 1.0;
+                    still |= leaves >= 1.0;
                 }
             }
         }

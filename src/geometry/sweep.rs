@@ -6,7 +6,7 @@
 
 use super::outline::Outline;
 use super::rectangle::Rectangle;
-use super::{Point, Vector};
+use super::{Bounds, Point, Vector};
 use crate::units::Metre;
 
 /// How far a corner of a sweeping rectangle may be from where it really goes, in m.
@@ -90,9 +90,12 @@ impl Step {
     ///
     /// The other's hull decides quickly where they do not; where they do, the hull is cut in halves until it fits.
     pub fn first_touch(&self, other: &Self) -> Option<f64> {
-        let contact = self.contact(&other.hull())?;
+        if !self.bounds().meet(&other.bounds()) {
+            return None;
+        }
+        let enter = self.enter(&other.hull())?;
         if other.excess() <= TOLERANCE {
-            return Some(contact.enter);
+            return Some(enter);
         }
         let halves = [other.between(0.0, 0.5), other.between(0.5, 1.0)];
         halves.iter().filter_map(|half| self.first_touch(half)).min_by(f64::total_cmp)
@@ -115,29 +118,57 @@ impl Step {
         (self.to_axis - self.from_axis).norm() * (self.length + self.width) / 2.0
     }
 
-    /// Contact of the moving rectangle with a fixed outline; none if they do not touch on the way.
-    pub fn contact(&self, fixed: &Outline) -> Option<Contact> {
+    /// The part of the step at which the moving rectangle first touches a fixed outline; none if it does not.
+    pub fn enter(&self, fixed: &Outline) -> Option<f64> {
+        self.enter_within(fixed, &fixed.bounds())
+    }
+
+    fn enter_within(&self, fixed: &Outline, bounds: &Bounds) -> Option<f64> {
         if self.bend() <= TOLERANCE {
-            let middle = self.rectangle(0.5);
-            let by = self.to - self.from;
-            let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
-            return translation(&Outline::rectangle(&start), &by, fixed);
+            return self.as_translation(fixed).map(|contact| contact.enter);
         }
-        translation(&self.hull(), &Vector::zeros(), fixed)?;
-        let first =
-            self.between(0.0, 0.5).contact(fixed).map(|c| Contact { enter: c.enter / 2.0, leave: c.leave / 2.0 });
-        match first {
-            Some(contact) if contact.leave < 0.5 => Some(contact),
-            _ => {
-                let second = self.between(0.5, 1.0).contact(fixed);
-                let second = second.map(|c| Contact { enter: 0.5 + c.enter / 2.0, leave: 0.5 + c.leave / 2.0 });
-                match (first, second) {
-                    (Some(first), Some(second)) => Some(Contact { enter: first.enter, leave: second.leave }),
-                    (Some(first), None) => Some(Contact { leave: first.leave.min(0.5), ..first }),
-                    (None, second) => second,
-                }
-            }
+        if self.misses(fixed, bounds) {
+            return None;
         }
+        let first = self.between(0.0, 0.5).enter_within(fixed, bounds).map(|enter| enter / 2.0);
+        first.or_else(|| self.between(0.5, 1.0).enter_within(fixed, bounds).map(|enter| 0.5 + enter / 2.0))
+    }
+
+    /// The part of the step at which the moving rectangle touches a fixed outline last; above 1 where it still does
+    /// at the end, none if it never does.
+    pub fn leave(&self, fixed: &Outline) -> Option<f64> {
+        self.leave_within(fixed, &fixed.bounds())
+    }
+
+    fn leave_within(&self, fixed: &Outline, bounds: &Bounds) -> Option<f64> {
+        if self.bend() <= TOLERANCE {
+            return self.as_translation(fixed).map(|contact| contact.leave);
+        }
+        if self.misses(fixed, bounds) {
+            return None;
+        }
+        let second = self.between(0.5, 1.0).leave_within(fixed, bounds).map(|leave| 0.5 + leave / 2.0);
+        second.or_else(|| self.between(0.0, 0.5).leave_within(fixed, bounds).map(|leave| (leave / 2.0).min(0.5)))
+    }
+
+    /// A step that hardly turns, as a translation of the rectangle in its middle.
+    fn as_translation(&self, fixed: &Outline) -> Option<Contact> {
+        let middle = self.rectangle(0.5);
+        let by = self.to - self.from;
+        let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
+        translation(&Outline::rectangle(&start), &by, fixed)
+    }
+
+    /// Whether the step stays clear of a fixed outline: by the boxes around both, then by the hull.
+    fn misses(&self, fixed: &Outline, bounds: &Bounds) -> bool {
+        !self.bounds().meet(bounds) || translation(&self.hull(), &Vector::zeros(), fixed).is_none()
+    }
+
+    /// The box around the area that the step covers.
+    pub fn bounds(&self) -> Bounds {
+        let mut bounds = self.rectangle(0.0).bounds();
+        bounds.join(&self.rectangle(1.0).bounds());
+        bounds
     }
 }
 
@@ -185,7 +216,7 @@ mod tests {
             width: 2.0,
         };
         let fixed = Outline::rectangle(&Rectangle::new(Point::new(-3.0, -2.5), 0.0, 1.0, 1.0));
-        let found = step.contact(&fixed).unwrap().enter;
+        let found = step.enter(&fixed).unwrap();
         let touching =
             |part| translation(&Outline::rectangle(&step.rectangle(part)), &Vector::zeros(), &fixed).is_some();
         let sampled = (0..=10_000).map(|i| f64::from(i) / 10_000.0).find(|&part| touching(part)).unwrap();
