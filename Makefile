@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
 
-.PHONY: demo test lint docs clean help
+.PHONY: demo test lint accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -20,6 +20,18 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	$(BIN)/ruff check bridge/python tests
 	$(BIN)/mypy
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
+
+NETS := reckless priority left_turn roundabout signals curves overtaking crowd
+
+accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths really driven
+	rm -rf target/game && cp -r $(VENV)/lib/python*/site-packages/sumo/tools/game target/game
+	$(BIN)/python tests/accuracy/accuracy.py --at-least 98 --end 300 \
+		$(foreach net,$(NETS),sumo_nets/$(net)/$(net).sumocfg) target/game/cross.sumocfg
+	$(BIN)/python tests/accuracy/accuracy.py --at-least 98 --end 60 --every 2 \
+		sumo_nets/town/town.sumocfg target/game/ramp.sumocfg target/game/corridor.sumocfg
+
+bench: $(VENV)/wheel $(VENV)/tests ## what the checker costs, beside plain SUMO and device.ssm
+	$(BIN)/python benches/attached.py
 
 docs: ## the documentation of the crate, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge

@@ -12,6 +12,8 @@ pub struct CsvRecording {
     path: PathBuf,
     reader: csv::Reader<Whole>,
     record: csv::StringRecord,
+    /// The row after `record`, if there is one: only then `record` is known to be whole.
+    next: Option<csv::StringRecord>,
     /// Whether `record` holds a row that belongs to the next step.
     ahead: bool,
     time: usize,
@@ -45,8 +47,10 @@ impl CsvRecording {
             }
         }
         let columns = header.iter().map(column).collect();
-        let (path, record) = (path.to_owned(), csv::StringRecord::new());
-        Ok(Self { path, reader, record, ahead: false, time, columns, last: None })
+        let (path, record, next) = (path.to_owned(), csv::StringRecord::new(), Some(csv::StringRecord::new()));
+        let mut recording = Self { path, reader, record, next, ahead: false, time, columns, last: None };
+        recording.look_ahead()?;
+        Ok(recording)
     }
 
     pub(super) fn next_step(&mut self, step: &mut Step) -> Result<bool> {
@@ -83,21 +87,30 @@ impl CsvRecording {
         Ok(begun)
     }
 
-    /// Reads a row; `false` at the end of the file.
+    /// Goes on to the next row; `false` at the end of the file.
     fn read(&mut self) -> Result<bool> {
-        let cut_short = |last: Option<Second>, message: &str| Error::CutShort {
-            path: self.path.clone(),
-            time: last.unwrap_or(f64::NAN),
-            message: message.to_owned(),
-        };
-        match self.reader.read_record(&mut self.record) {
-            Ok(true) if self.reader.get_ref().ends_in_row && self.reader.is_done() => {
-                Err(cut_short(self.last, "the last row is incomplete"))
-            }
-            Ok(more) => Ok(more),
-            Err(error) if error.is_io_error() => Err(cut_short(self.last, &error.to_string())),
-            Err(error) => Err(Error::content(&self.path, error.to_string())),
+        let Some(next) = &mut self.next else { return Ok(false) };
+        std::mem::swap(&mut self.record, next);
+        self.look_ahead()?;
+        if self.next.is_none() && self.reader.get_ref().ends_in_row {
+            return Err(self.cut_short("the last row is incomplete"));
         }
+        Ok(true)
+    }
+
+    fn look_ahead(&mut self) -> Result<()> {
+        let Some(next) = &mut self.next else { return Ok(()) };
+        match self.reader.read_record(next) {
+            Ok(true) => {}
+            Ok(false) => self.next = None,
+            Err(error) if error.is_io_error() => return Err(self.cut_short(&error.to_string())),
+            Err(error) => return Err(Error::content(&self.path, error.to_string())),
+        }
+        Ok(())
+    }
+
+    fn cut_short(&self, message: &str) -> Error {
+        Error::CutShort { path: self.path.clone(), time: self.last.unwrap_or(f64::NAN), message: message.to_owned() }
     }
 }
 

@@ -1,6 +1,6 @@
 """Precision and recall of closecall on a scenario, against the paths that were really driven.
 
-    python tests/accuracy/accuracy.py SCENARIO.sumocfg ... [--end S] [--every S] [--at-least PERCENT]
+python tests/accuracy/accuracy.py SCENARIO.sumocfg ... [--end S] [--every S] [--at-least PERCENT]
 """
 
 from __future__ import annotations

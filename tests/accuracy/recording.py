@@ -71,7 +71,7 @@ def run(words: list[str]) -> Recording:
         libsumo.simulationStep()
         for domain, is_person in ((vehicle, False), (person, True)):
             for who in domain.getIDList():
-                if is_person and domain.getVehicle(who) or not is_person and domain.isStoppedParking(who):
+                if (is_person and domain.getVehicle(who)) or (not is_person and domain.isStoppedParking(who)):
                     continue
                 x, y = domain.getPosition(who)
                 if x <= -(2**30):

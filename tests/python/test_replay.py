@@ -1,0 +1,105 @@
+"""Replay of recordings: the same conflicts as the live run, and what is wrong with a recording."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from pathlib import Path
+from typing import Callable
+
+import pytest
+from conftest import Row, closecall, rows
+
+Copy = Callable[[str], Path]
+
+FULL = ("--fcd-output.attributes", "all", "--precision", "9")
+
+
+def record(config: Path, name: str, *words: str) -> Path:
+    """Run a scenario live and record it; the log is in `live`."""
+    recording = config.parent / name
+    log = config.parent / "live"
+    done = closecall("run", config, *words, "--quiet", "--out", log, "--", "--fcd-output", recording, *FULL)
+    assert done.returncode == 0, done.stderr
+    return recording
+
+
+def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, str]:
+    """Exit status and messages of a replay."""
+    net, routes = config.with_suffix(".net.xml"), config.with_suffix(".rou.xml")
+    done = closecall("replay", recording, "--net", net, "--route-files", routes, "--out", out, *words)
+    return done.returncode, done.stderr
+
+
+def same(live: list[Row], again: list[Row]) -> None:
+    """Equal to the last digit but one of what a recording holds."""
+    texts = ("ego", "foe", "kind", "severity", "lane", "collision")
+    assert [[row[name] for name in texts] for row in again] == [[row[name] for name in texts] for row in live]
+    for name in ("begin", "end", "time", "gap", "mu", "margin", "clearance", "ttc", "pet", "angle", "x", "y"):
+        for one, other in zip(live, again):
+            if one[name]:
+                assert float(other[name]) == pytest.approx(float(one[name]), abs=2e-6), (name, one, other)
+            else:
+                assert not other[name]
+
+
+@pytest.mark.parametrize("name", ["fcd.xml", "fcd.xml.gz", "fcd.csv"])
+def test_a_replay_finds_what_the_live_run_finds(name: str, scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("reckless")
+    recording = record(config, name, "--end", "900")
+    assert replay(config, recording, tmp_path) == (0, "")
+    live = rows(config.parent / "live" / "conflicts.csv")
+    assert len(live) > 100
+    same(live, rows(tmp_path / "conflicts.csv"))
+
+
+def test_a_recording_cut_short_is_checked_as_far_as_it_goes(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    recording = record(config, "fcd.xml")
+    text = recording.read_text()
+    recording.write_text(text[: int(len(text) * 0.8)])
+    status, said = replay(config, recording, tmp_path)
+    assert status == 3
+    assert said.count("\n") == 1
+    assert "fcd.xml: cut short after time" in said
+    assert [row["kind"] for row in rows(tmp_path / "conflicts.csv")] == ["rear_end"]
+    assert json.loads((tmp_path / "run.json").read_text())["complete"] is False
+
+
+def test_a_gzip_and_a_csv_cut_short_are_noticed_too(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    plain = record(config, "fcd.xml").read_bytes()
+    packed = tmp_path / "fcd.xml.gz"
+    packed.write_bytes(gzip.compress(plain)[:-2000])
+    status, said = replay(config, packed, tmp_path / "packed")
+    assert (status, said.count("\n")) == (3, 1), said
+    table = record(config, "fcd.csv")
+    table.write_text(table.read_text().rstrip("\n")[:-3])
+    status, said = replay(config, table, tmp_path / "table")
+    assert (status, said.count("\n")) == (3, 1), said
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "the file is empty"),
+        ("<routes/>", "no fcd-output"),
+        ("a;b\n1;2\n", "timestep_time"),
+        ('<fcd-export><timestep time="0"><vehicle id="a" x="1"/></timestep></fcd-export>', '"a" has no attribute y'),
+        ("timestep_time;vehicle_id;vehicle_x\n", "vehicle_y"),
+    ],
+)
+def test_what_is_no_recording_is_refused(text: str, said: str, scenario: Copy, tmp_path: Path) -> None:
+    recording = tmp_path / "fcd"
+    recording.write_text(text)
+    status, message = replay(scenario("rear_end"), recording, tmp_path / "out")
+    assert status == 2
+    assert message.count("\n") == 1
+    assert said in message
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_missing_recording_is_named(scenario: Copy, tmp_path: Path) -> None:
+    status, message = replay(scenario("rear_end"), tmp_path / "none.xml", tmp_path / "out")
+    assert (status, message.count("\n")) == (2, 1)
+    assert "none.xml: No such file" in message
