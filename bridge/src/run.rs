@@ -25,6 +25,8 @@ use crate::pull::{self, Source};
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
+/// With fewer road users than this phase 2 is done sooner than a thread has started (some 20 µs).
+const WORTH_A_THREAD: usize = 100;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
@@ -83,6 +85,8 @@ struct Session<'a, 'py> {
     painter: Option<Painter>,
     step_length: f64,
     spent: Spent,
+    /// Whether phase 2 of the last step is still to be done.
+    is_unfinished: bool,
 }
 
 /// Where the time goes.
@@ -92,7 +96,14 @@ struct Spent {
 }
 
 /// The parts of a step, in their order.
-const PARTS: [&str; 6] = ["SUMO", "pull", "phase 1", "paths", "phase 2, events, log", "painting"];
+const PARTS: [&str; 6] =
+    ["SUMO", "pull", "phase 1", "paths", "painting", "beside SUMO's next step: phase 2, events and log"];
+const SUMO: usize = 0;
+const PULL: usize = 1;
+const PHASE_1: usize = 2;
+const PATHS: usize = 3;
+const PAINTING: usize = 4;
+const PHASE_2: usize = 5;
 
 impl Spent {
     /// Adds the time since the last part ended to this one.
@@ -134,8 +145,10 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     let log = Log::create(&request.out, request.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
-    let mut session = Session { sumo, request, run, source, painter, step_length, spent: Spent::default() };
+    let mut session =
+        Session { sumo, request, run, source, painter, step_length, spent: Spent::default(), is_unfinished: false };
     let ended = session.steps();
+    let ended = session.finish_step().and(ended);
     let exposure = session.run.summary().exposure;
     let empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
     let unusable = match &ended {
@@ -193,25 +206,65 @@ impl Session<'_, '_> {
         let py = self.sumo.py();
         let started = Instant::now();
         py.check_signals()?;
-        let mut since = started;
-        self.sumo.call_method0("simulationStep")?;
-        self.spent.add(0, &mut since);
+        self.simulate()?;
+        let mut since = Instant::now();
         let simulation = self.sumo.getattr("simulation")?;
         *now = simulation.call_method0("getTime")?.extract()?;
         self.source.pull(py, &mut self.run)?;
-        self.spent.add(1, &mut since);
+        self.spent.add(PULL, &mut since);
         let rows = py.detach(|| self.run.approach().to_vec());
-        self.spent.add(2, &mut since);
+        self.spent.add(PHASE_1, &mut since);
         self.source.place(py, &mut self.run, &rows)?;
-        self.spent.add(3, &mut since);
-        py.detach(|| self.run.finish_step().map(|_| ()))?;
-        self.spent.add(4, &mut since);
+        self.is_unfinished = true;
+        self.spent.add(PATHS, &mut since);
+        if self.painter.is_some() || self.run.frame.len() < WORTH_A_THREAD {
+            self.finish_step()?;
+            since = Instant::now();
+        }
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.run)?;
             py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
-            self.spent.add(5, &mut since);
+            self.spent.add(PAINTING, &mut since);
         }
         Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
+    }
+
+    /// SUMO's next step, while another thread finishes the last one: phase 2 needs nothing of SUMO any more.
+    fn simulate(&mut self) -> std::result::Result<(), Stop> {
+        let sumo = self.sumo;
+        let (run, spent) = (&mut self.run, &mut self.spent);
+        let unfinished = std::mem::take(&mut self.is_unfinished);
+        let mut since = Instant::now();
+        let (stepped, finished) = std::thread::scope(|scope| {
+            let worker = unfinished.then(|| {
+                scope.spawn(|| {
+                    let started = Instant::now();
+                    (run.finish_step().map(|_| ()), started.elapsed())
+                })
+            });
+            let stepped = sumo.call_method0("simulationStep").map(|_| ());
+            spent.add(SUMO, &mut since);
+            (stepped, worker.map(std::thread::ScopedJoinHandle::join))
+        });
+        match finished {
+            Some(Ok((done, lasted))) => {
+                self.spent.parts[PHASE_2] += lasted;
+                done?;
+            }
+            Some(Err(panic)) => std::panic::resume_unwind(panic),
+            None => {}
+        }
+        Ok(stepped?)
+    }
+
+    /// Phase 2, events and log of the step under way, if that is still to be done.
+    fn finish_step(&mut self) -> Result<()> {
+        if std::mem::take(&mut self.is_unfinished) {
+            let (run, mut since) = (&mut self.run, Instant::now());
+            self.sumo.py().detach(|| run.finish_step().map(|_| ()))?;
+            self.spent.add(PHASE_2, &mut since);
+        }
+        Ok(())
     }
 
     fn failed(&self, time: f64, error: &PyErr) -> Error {
