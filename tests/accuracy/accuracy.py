@@ -14,11 +14,9 @@ from collections import Counter
 from pathlib import Path
 
 from recording import Recording, record
-from truth import Verdict, step_truth
+from truth import NEAR, Verdict, step_truth
 
 KINDS = ("rear_end", "frontal", "side")
-NEAR = 0.75
-"""Pairs within this of the limit are left aside, in m."""
 
 
 def reported(words: list[str], options: list[str]) -> dict[tuple[int, frozenset[str]], dict[str, str]]:

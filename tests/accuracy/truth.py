@@ -16,6 +16,8 @@ from recording import Kind, Numbers, Recording, Track
 
 SPACING = 0.15
 EPSILON = 0.5
+NEAR = 0.75
+"""Pairs within this of a limit are left aside, in m."""
 SIDEWAYS = 0.6
 """A front that moves further across its heading in one step was moved by SUMO, not driven; in m."""
 
@@ -161,7 +163,7 @@ def judge(names: tuple[str, str], a: Course, b: Course) -> Verdict | None:
         aside = "path not known"
     if a.jumps < stops[0] + EPSILON or b.jumps < stops[1] + EPSILON:
         aside = "moved sideways"
-    reach_a, reach_b = stops[0] + EPSILON, stops[1] + EPSILON
+    reach_a, reach_b = stops[0] + EPSILON + NEAR, stops[1] + EPSILON + NEAR
     matrix = contacts(a, b, reach_a, reach_b)
     if matrix[0, 0]:
         first, second = sorted(names)
@@ -180,6 +182,9 @@ def judge(names: tuple[str, str], a: Course, b: Course) -> Verdict | None:
     _, order, ego, foe, at, table = met[0]
     foe_stop = stops[1] if foe is b else stops[0]
     way, place = first_touch(ego, foe, at, foe_stop)
+    if abs(way - (stops[0] if ego is a else stops[1]) - EPSILON) <= NEAR:
+        # It is the end of the ego's way that decides whether they meet.
+        aside = aside or "near the limit"
     everywhere = np.arange(len(foe.ways))
     there = touching(place, foe, np.zeros_like(everywhere), everywhere, grown=0.02)
     arrives = int(np.flatnonzero(there)[0])
