@@ -5,6 +5,11 @@
 //! circles meet, so no pair that is an encounter is dropped. Which circles to compare says a hashed grid: a circle's
 //! box is entered in every cell that it overlaps, and a pair is looked at only in the cell that holds the corner
 //! where both boxes begin, hence once.
+//!
+//! Measured (`cargo bench --bench library`, 2 cores of a virtual machine, one road user on 400 m², reach 5 to 30 m):
+//! 353, 424 and 458 ns per road user at 10³, 10⁴ and 10⁵, parry2d's `Bvh` built and traversed against itself 355, 441
+//! and 520 ns. The grid is no slower, keeps its memory from step to step, and compares circles rather than boxes, so
+//! that phase 2 gets 21 % fewer pairs.
 
 use crate::units::Metre;
 

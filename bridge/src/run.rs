@@ -73,6 +73,10 @@ fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>
         }
     };
     let starter = py.import("closecall._sumo").map_err(refused)?;
+    if request.gui && starter.call_method0("has_display").is_ok_and(|has| !has.is_truthy().unwrap_or(true)) {
+        let message = "sumo-gui needs a display: set DISPLAY, or run closecall under xvfb-run";
+        return Err(Error::Value(message.to_owned()));
+    }
     starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
 }
 

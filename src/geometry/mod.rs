@@ -1,7 +1,7 @@
 //! Rectangles, convex outlines, and where moving ones touch.
 //!
 //! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`rectangle::distance`],
-//! [`polygon::convex_parts`]), and the conversion to its types is in one place, [`parry`].
+//! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
 pub mod outline;
 pub(crate) mod parry;

@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import subprocess
+import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import python
+from conftest import closecall, python, rows
 from PIL import Image
 
 Copy = Callable[[str], Path]
@@ -20,43 +23,55 @@ SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (2
 needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
 
 WATCH = """
-import json, os, subprocess, sys, time
-from pathlib import Path
+import json, sys
+from closecall import _sumo, Checker
 
 config, shot = sys.argv[1:3]
-display = f":{90 + os.getpid() % 900}"
-server = subprocess.Popen(["Xvfb", display, "-screen", "0", "1000x700x24"], stderr=subprocess.DEVNULL)
-try:
-    while not Path(f"/tmp/.X11-unix/X{display[1:]}").exists():
-        time.sleep(0.05)
-    os.environ["DISPLAY"] = display
-    from closecall import _sumo, Checker
-
-    sumo = _sumo.start(["-c", config, "--no-warnings"], gui=True)
-    checker = Checker(sumo)
-    states, ids = [], {"before": {}}
-    while sumo.simulation.getMinExpectedNumber() > 0:
-        sumo.simulationStep()
-        for vehicle in sumo.vehicle.getIDList():
-            ids["before"].setdefault(vehicle, sumo.vehicle.getColor(vehicle))
-        checker.step()
-        rings = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
-        colours = {vehicle: sumo.vehicle.getColor(vehicle) for vehicle in sumo.vehicle.getIDList()}
-        states.append({"time": sumo.simulation.getTime(), "rings": rings, "colours": colours})
-        if rings and len([state for state in states if state["rings"]]) == 6:
-            vehicle = rings[0][: -len("_hl0")]
-            x, y = sumo.vehicle.getPosition(vehicle)
-            sumo.gui.setBoundary("View #0", x - 40, y - 28, x + 40, y + 28)
-            sumo.gui.screenshot("View #0", shot)
-    checker.close()
-    left = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
-    conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
-                 for conflict in checker.conflicts]
-    _sumo.close(gui=True)
-    print(json.dumps({"states": states, "before": ids["before"], "left": left, "conflicts": conflicts}))
-finally:
-    server.kill()
+sumo = _sumo.start(["-c", config, "--no-warnings", "--window-size", "900,500"], gui=True)
+checker = Checker(sumo)
+states, before = [], {}
+while sumo.simulation.getMinExpectedNumber() > 0:
+    sumo.simulationStep()
+    for vehicle in sumo.vehicle.getIDList():
+        before.setdefault(vehicle, sumo.vehicle.getColor(vehicle))
+    checker.step()
+    rings = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+    colours = {vehicle: sumo.vehicle.getColor(vehicle) for vehicle in sumo.vehicle.getIDList()}
+    states.append({"time": sumo.simulation.getTime(), "rings": rings, "colours": colours})
+    if rings and len([state for state in states if state["rings"]]) == 6:
+        places = [sumo.vehicle.getPosition(ring[: -len("_hl0")]) for ring in rings]
+        x, y = (sum(place[axis] for place in places) / len(places) for axis in (0, 1))
+        sumo.gui.setBoundary("View #0", x - 45, y - 25, x + 45, y + 25)
+        sumo.gui.screenshot("View #0", shot)
+checker.close()
+left = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
+             for conflict in checker.conflicts]
+_sumo.close(gui=True)
+print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}))
 """
+
+
+@pytest.fixture
+def display() -> Iterator[None]:
+    """An X server of our own, in DISPLAY."""
+    name = f":{100 + os.getpid() % 900}"
+    command = ["Xvfb", name, "-screen", "0", "1000x700x24"]
+    server = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    former = os.environ.get("DISPLAY")
+    try:
+        while not Path(f"/tmp/.X11-unix/X{name[1:]}").exists():
+            assert server.poll() is None
+            time.sleep(0.05)
+        os.environ["DISPLAY"] = name
+        yield
+    finally:
+        server.kill()
+        server.wait()
+        if former is None:
+            del os.environ["DISPLAY"]
+        else:
+            os.environ["DISPLAY"] = former
 
 
 def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
@@ -68,6 +83,7 @@ def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
 
 
 @needs_xvfb
+@pytest.mark.usefixtures("display")
 @pytest.mark.parametrize("kind", ["frontal", "rear_end", "side"])
 def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_path: Path) -> None:
     shot = tmp_path / f"{kind}.png"
@@ -91,3 +107,20 @@ def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_pat
     assert pixels_like(shot, RINGS[kind]) > 20
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
         shutil.copy(shot, pictures)
+
+
+@needs_xvfb
+@pytest.mark.usefixtures("display")
+def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("side")
+    done = closecall("run", config, "--gui", "--end", "8", "--out", tmp_path / "shown")
+    assert done.returncode == 0, done.stderr
+    assert closecall("run", config, "--end", "8", "--out", tmp_path / "unseen").returncode == 0
+    assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
+
+
+def test_without_a_display_it_says_so(scenario: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("DISPLAY", raising=False)
+    done = closecall("run", scenario("side"), "--gui")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "needs a display" in done.stderr

@@ -125,6 +125,23 @@ def test_polygons_of_the_named_types_are_obstacles(scenario: Copy, tmp_path: Pat
     assert all(row["kind"] == "frontal" for row in with_them if row["foe"] in polygons)
 
 
+def test_who_is_parked_off_the_road_is_no_road_user(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    routes = config.parent / "rear_end.rou.xml"
+    stop = '<stop lane="road_0" endPos="{}" duration="900" parking="{}"/>'
+    for parking, expected in (("true", 0), ("false", 1)):
+        routes.write_text(
+            '<routes><vType id="car"/><route id="r" edges="road"/>'
+            f'<vehicle id="parked" type="car" route="r" depart="0" departPos="20">{stop.format(40, parking)}</vehicle>'
+            '<vehicle id="passing" type="car" route="r" depart="8" departPos="5" departSpeed="20" insertionChecks="none"/>'
+            "</routes>"
+        )
+        out = tmp_path / parking
+        assert closecall("run", config, "--end", "20", "--out", out).returncode == 0
+        pairs = [row for row in rows(out / "conflicts.csv") if "parked" in (row["ego"], row["foe"])]
+        assert bool(pairs) == bool(expected), (parking, pairs)
+
+
 def start(config: Path, *words: str) -> subprocess.Popen[str]:
     """A run in the background."""
     command = [sys.executable, "-m", "closecall", "run", str(config), *words]

@@ -33,6 +33,15 @@ def start(words: list[str], gui: bool) -> Any:
     return libsumo
 
 
+def has_display() -> bool:
+    """Whether there is a display to draw on: without one sumo-gui ends the whole process and says nothing."""
+    if sys.platform in ("win32", "darwin"):
+        return True
+    display = os.environ.get("DISPLAY", "")
+    local = re.match(r":(\d+)", display)
+    return bool(display) and (local is None or Path(f"/tmp/.X11-unix/X{local.group(1)}").exists())
+
+
 def close(gui: bool) -> None:
     """Close SUMO.
 

@@ -1,0 +1,105 @@
+//! What parry2d does beside what closecall does itself: candidate search, contact of two rectangles, first contact of
+//! two moving ones. `cargo bench --bench library`.
+
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use closecall::geometry::outline::Outline;
+use closecall::geometry::rectangle::{Rectangle, touches};
+use closecall::geometry::sweep::translation;
+use closecall::geometry::{Point, Vector};
+use closecall::precollision::{Circle, Search};
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
+use parry2d_f64::query::{self, ShapeCastOptions};
+use parry2d_f64::shape::Cuboid;
+
+/// A linear congruential generator: the same numbers on every machine.
+struct Chance(u64);
+
+impl Chance {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
+    }
+}
+
+fn nanoseconds(items: usize, mut action: impl FnMut()) -> f64 {
+    let mut best = f64::INFINITY;
+    for _ in 0..7 {
+        let started = Instant::now();
+        action();
+        best = best.min(started.elapsed().as_secs_f64());
+    }
+    best / items as f64 * 1e9
+}
+
+fn candidates(chance: &mut Chance) {
+    for count in [1_000, 10_000, 100_000] {
+        // Dense traffic: one road user on 400 m², each with 30 m around it.
+        let side = (count as f64 * 400.0).sqrt();
+        let mut circle =
+            || Circle { x: chance.between(0.0, side), y: chance.between(0.0, side), radius: chance.between(5.0, 30.0) };
+        let circles = (0..count).map(|_| circle()).collect::<Vec<_>>();
+        let (mut search, mut pairs) = (Search::default(), Vec::new());
+        let ours = nanoseconds(count, || search.pairs(&circles, &mut pairs));
+        let mut found = 0;
+        let theirs = nanoseconds(count, || {
+            let boxes = circles.iter().map(|circle| {
+                let reach = ParryVector::new(circle.radius, circle.radius);
+                let centre = ParryVector::new(circle.x, circle.y);
+                Aabb::new(centre - reach, centre + reach)
+            });
+            let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes.collect::<Vec<_>>());
+            found = 0;
+            tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |_, _| found += 1);
+        });
+        println!(
+            "candidates of {count}: grid {ours:.0} ns, parry2d's tree {theirs:.0} ns per road user ({} and {found} pairs)",
+            pairs.len()
+        );
+    }
+}
+
+fn contacts(chance: &mut Chance) {
+    const PAIRS: usize = 100_000;
+    let mut rectangle = || {
+        let centre = Point::new(chance.between(0.0, 12.0), chance.between(0.0, 12.0));
+        Rectangle::new(centre, chance.between(-3.0, 3.0), 5.0, 2.0)
+    };
+    let pairs = (0..PAIRS).map(|_| (rectangle(), rectangle())).collect::<Vec<_>>();
+    let shape = Cuboid::new(ParryVector::new(2.5, 1.0));
+    let pose = |r: &Rectangle| Pose {
+        rotation: Rotation { re: r.axis.x, im: r.axis.y },
+        translation: ParryVector::new(r.centre.x, r.centre.y),
+    };
+    let ours = nanoseconds(PAIRS, || pairs.iter().for_each(|(a, b)| _ = black_box(touches(a, b))));
+    let theirs = nanoseconds(PAIRS, || {
+        pairs.iter().for_each(|(a, b)| _ = black_box(query::intersection_test(&pose(a), &shape, &pose(b), &shape)));
+    });
+    println!("contact: separating axes {ours:.0} ns, parry2d's intersection_test {theirs:.0} ns");
+    let by = Vector::new(20.0, 3.0);
+    let ours = nanoseconds(PAIRS, || {
+        pairs.iter().for_each(|(a, b)| {
+            _ = black_box(translation(&Outline::rectangle(a), &by, &Outline::rectangle(b)));
+        });
+    });
+    let still = ParryVector::new(0.0, 0.0);
+    let moving = ParryVector::new(by.x, by.y);
+    let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+    let theirs = nanoseconds(PAIRS, || {
+        pairs.iter().for_each(|(a, b)| {
+            _ = black_box(query::cast_shapes(&pose(a), moving, &shape, &pose(b), still, &shape, options));
+        });
+    });
+    println!("first contact: swept separating axes {ours:.0} ns, parry2d's cast_shapes {theirs:.0} ns");
+}
+
+fn main() {
+    let mut chance = Chance(1);
+    candidates(&mut chance);
+    contacts(&mut chance);
+}
