@@ -237,7 +237,7 @@ impl Detector {
         let start = Start {
             front: Point::new(state.x, state.y),
             axis: self.rows[row as usize].axis,
-            length: roster.profile_of(user).length,
+            length: roster.profile_of(user).chord,
             width: roster.profile_of(user).width,
             speed: state.speed,
             sublane: self.sublane,
@@ -316,14 +316,14 @@ impl Detector {
             && let Some(net) = &self.net
         {
             let furthest = ways.last().copied().unwrap_or(0.0);
-            memory.path.reach(net, profile.length, furthest);
-            memory.path.track.poses(axis, profile.length, ways, beyond, poses);
+            memory.path.reach(net, profile.chord, furthest);
+            memory.path.track.poses(axis, profile.chord, ways, beyond, poses);
             return;
         }
         poses.push(Pose { way: 0.0, front, axis });
         let ways = ways.iter().copied().skip_while(|way| *way <= 0.0).collect::<Vec<_>>();
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, memory.curvature, profile.length, &ways, poses);
+            arc::poses(front, axis, memory.curvature, profile.chord, &ways, poses);
         } else {
             straight::poses(front, axis, &ways, poses);
         }

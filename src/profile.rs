@@ -26,6 +26,8 @@ pub struct Profile {
     pub length: Metre,
     /// Width in m.
     pub width: Metre,
+    /// Length in m of what its heading is the direction of: the first carriage, or all of it.
+    pub chord: Metre,
     /// Mass in kg.
     pub mass: Kilogram,
     /// How it brakes.
@@ -39,6 +41,8 @@ pub struct SumoType {
     pub name: String,
     /// SUMO's `vClass`.
     pub vehicle_class: String,
+    /// SUMO's `guiShape`.
+    pub shape: String,
     /// Length in m.
     pub length: Metre,
     /// Width in m.
@@ -56,6 +60,16 @@ const PNEUMATIC_CLASSES: [&str; 6] = ["truck", "trailer", "bus", "coach", "army"
 
 /// A person walks on for the step under way and then stands: with this deceleration within millimetres.
 const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
+
+/// The length of the first carriage of SUMO's articulated shapes, in m: SUMO's heading is the chord from its rear to
+/// the front bumper, however long the rest. (Measured on a bend with SUMO 1.28.)
+const FIRST_CARRIAGES: [(&str, Metre); 3] =
+    [("truck/trailer", 9.25), ("truck/semitrailer", 2.5), ("bus/flexible", 8.25)];
+
+fn chord(shape: &str, length: Metre) -> Metre {
+    let carriage = FIRST_CARRIAGES.iter().find(|(known, _)| *known == shape);
+    carriage.map_or(length, |(_, carriage)| carriage.min(length))
+}
 
 impl Profile {
     /// The profile of a vehicle type: `[type.NAME]` first, then the general settings, then SUMO.
@@ -76,10 +90,12 @@ impl Profile {
             Deceleration::Emergency => sumo.emergency_decel,
             Deceleration::Decel => sumo.decel,
         });
+        let length = set.length.unwrap_or(sumo.length);
         Self {
             name: sumo.name.clone(),
             category: Category::Vehicle,
-            length: set.length.unwrap_or(sumo.length),
+            length,
+            chord: chord(&sumo.shape, length),
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or(sumo.mass),
             brakes: Brakes {
@@ -97,6 +113,7 @@ impl Profile {
             name: sumo.name.clone(),
             category: Category::Person,
             length: set.length.unwrap_or(sumo.length),
+            chord: set.length.unwrap_or(sumo.length),
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or(sumo.mass),
             brakes: Brakes { response: step_length, build_up: 0.0, deceleration: PERSON_DECELERATION },
@@ -109,6 +126,7 @@ impl Profile {
             name: format!("polygon:{polygon_type}"),
             category: Category::Obstacle,
             length: 0.0,
+            chord: 0.0,
             width: 0.0,
             mass: f64::MAX,
             brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },

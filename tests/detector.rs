@@ -13,6 +13,7 @@ fn car(options: &Options) -> Profile {
     let sumo = SumoType {
         name: "car".to_owned(),
         vehicle_class: "passenger".to_owned(),
+        shape: "passenger".to_owned(),
         length: 5.0,
         width: 2.0,
         mass: 1500.0,

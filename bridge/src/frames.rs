@@ -98,6 +98,7 @@ impl Frames {
         let sumo = SumoType {
             name: format!("{length} m x {width} m, {decel} m/s², {mass} kg"),
             vehicle_class: "passenger".to_owned(),
+            shape: "passenger".to_owned(),
             length,
             width,
             mass,

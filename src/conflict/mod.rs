@@ -303,6 +303,7 @@ mod tests {
             let sumo = SumoType {
                 name: "car".to_owned(),
                 vehicle_class: "passenger".to_owned(),
+                shape: "passenger".to_owned(),
                 length: 5.0,
                 width: 2.0,
                 mass: 1500.0,

@@ -70,6 +70,7 @@ fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
     };
     let id = text("id")?.ok_or("a vType without id")?;
     let mut found = of_class(&id, text("vClass")?.as_deref().unwrap_or("passenger"));
+    found.shape = text("guiShape")?.unwrap_or(found.shape);
     found.length = number("length")?.unwrap_or(found.length);
     found.width = number("width")?.unwrap_or(found.width);
     found.mass = number("mass")?.unwrap_or(found.mass);
@@ -86,7 +87,17 @@ fn unescaped(text: &str) -> std::result::Result<String, String> {
 fn of_class(name: &str, class: &str) -> SumoType {
     let known = CLASSES.iter().find(|(known, ..)| *known == class).unwrap_or(&CLASSES[0]);
     let (_, length, width, mass, emergency_decel, decel) = *known;
-    SumoType { name: name.to_owned(), vehicle_class: class.to_owned(), length, width, mass, emergency_decel, decel }
+    let shape = if class == "trailer" { "truck/trailer" } else { class }.to_owned();
+    SumoType {
+        name: name.to_owned(),
+        vehicle_class: class.to_owned(),
+        shape,
+        length,
+        width,
+        mass,
+        emergency_decel,
+        decel,
+    }
 }
 
 /// SUMO's defaults by vehicle class, as SUMO 1.28 tells them: length and width in m, mass in kg, `emergencyDecel` and

@@ -95,6 +95,7 @@ impl Types {
         Ok(SumoType {
             name: name.to_owned(),
             vehicle_class: domain.call_method1("getVehicleClass", (name,))?.extract()?,
+            shape: domain.call_method1("getShapeClass", (name,))?.extract()?,
             length: number("getLength")?,
             width: number("getWidth")?,
             mass: number("getMass")?,
