@@ -183,6 +183,8 @@ impl Log {
 struct Table {
     path: PathBuf,
     file: File,
+    /// How many bytes are on disk, in whole rows.
+    written: u64,
     rows: csv::Writer<Vec<u8>>,
 }
 
@@ -203,7 +205,7 @@ impl Cell<'_> {
 impl Table {
     fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
         let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
-        let mut table = Self { path, file, rows: csv::Writer::from_writer(Vec::new()) };
+        let mut table = Self { path, file, written: 0, rows: csv::Writer::from_writer(Vec::new()) };
         table.row(&columns.iter().map(|column| Cell::Text(column)).collect::<Vec<_>>())?;
         table.flush()?;
         Ok(table)
@@ -235,7 +237,13 @@ impl Table {
         if rows.is_empty() {
             return Ok(());
         }
-        self.file.write_all(&rows).map_err(|source| self.unwritable(source))
+        if let Err(source) = self.file.write_all(&rows) {
+            // No row is left half where the disk is full; if not even that can be done, that is no news.
+            let _ = self.file.set_len(self.written);
+            return Err(self.unwritable(source));
+        }
+        self.written += rows.len() as u64;
+        Ok(())
     }
 
     fn unwritable(&self, source: std::io::Error) -> Error {

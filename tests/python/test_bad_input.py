@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import resource
 from pathlib import Path
 from typing import Callable
 
@@ -95,6 +96,19 @@ def test_an_impossible_option(option: str, value: str, scenario: Copy) -> None:
 def test_an_output_folder_that_cannot_be_written(scenario: Copy, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     refused(scenario("rear_end"), "--out", str(tmp_path / "file" / "out"), names="file/out")
+
+
+def test_a_disk_that_is_full(scenario: Copy, tmp_path: Path) -> None:
+    def limit() -> None:
+        # To the program the same as a full disk: a write beyond this fails.
+        resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
+
+    done = closecall("run", scenario("reckless"), "--out", tmp_path, "--", "--no-warnings", preexec_fn=limit)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert "conflicts.csv: " in done.stderr
+    written = (tmp_path / "conflicts.csv").read_text()
+    assert written.endswith("\n")
+    assert len({line.count(",") for line in written.splitlines()}) == 1
 
 
 def test_libsumo_that_is_not_installed(scenario: Copy) -> None:

@@ -133,8 +133,8 @@ def test_who_is_parked_off_the_road_is_no_road_user(scenario: Copy, tmp_path: Pa
         routes.write_text(
             '<routes><vType id="car"/><route id="r" edges="road"/>'
             f'<vehicle id="parked" type="car" route="r" depart="0" departPos="20">{stop.format(40, parking)}</vehicle>'
-            '<vehicle id="passing" type="car" route="r" depart="8" departPos="5" departSpeed="20" insertionChecks="none"/>'
-            "</routes>"
+            '<vehicle id="passing" type="car" route="r" depart="8" departPos="5" departSpeed="20" '
+            'insertionChecks="none"/></routes>'
         )
         out = tmp_path / parking
         assert closecall("run", config, "--end", "20", "--out", out).returncode == 0
