@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::geometry::outline::Outline;
-use closecall::geometry::rectangle::{Rectangle, touches};
+use closecall::geometry::rectangle::{Rectangle, plainly_touches, touches};
 use closecall::geometry::sweep::translation;
 use closecall::geometry::{Point, Vector};
 use closecall::precollision::{Circle, Search};
@@ -80,7 +80,8 @@ fn contacts(chance: &mut Chance) {
     let theirs = nanoseconds(PAIRS, || {
         pairs.iter().for_each(|(a, b)| _ = black_box(query::intersection_test(&pose(a), &shape, &pose(b), &shape)));
     });
-    println!("contact: separating axes {ours:.0} ns, parry2d's intersection_test {theirs:.0} ns");
+    let plain = nanoseconds(PAIRS, || pairs.iter().for_each(|(a, b)| _ = black_box(plainly_touches(a, b))));
+    println!("contact: exact {ours:.0} ns, separating axes {plain:.0} ns, parry2d's intersection_test {theirs:.0} ns");
     let by = Vector::new(20.0, 3.0);
     let ours = nanoseconds(PAIRS, || {
         pairs.iter().for_each(|(a, b)| {

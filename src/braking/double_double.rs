@@ -38,10 +38,11 @@ pub struct DoubleDouble {
     low: f64,
 }
 
-fn two_sum(a: f64, b: f64) -> DoubleDouble {
+/// a + b as the nearest f64 and exactly what that leaves out (Knuth).
+pub(crate) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let high = a + b;
     let part = high - a;
-    DoubleDouble { high, low: (a - (high - part)) + (b - part) }
+    (high, (a - (high - part)) + (b - part))
 }
 
 /// The same for |a| ≥ |b|.
@@ -50,10 +51,11 @@ fn quick_two_sum(a: f64, b: f64) -> DoubleDouble {
     DoubleDouble { high, low: b - (high - a) }
 }
 
-fn two_product(a: f64, b: f64) -> DoubleDouble {
+/// a · b as the nearest f64 and exactly what that leaves out (Dekker), as long as neither leaves the normal range.
+pub(crate) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let high = a * b;
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
-    DoubleDouble { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
+    (high, ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low)
 }
 
 fn split(a: f64) -> (f64, f64) {
@@ -72,9 +74,9 @@ impl From<f64> for DoubleDouble {
 impl Add for DoubleDouble {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        let (sum, rest) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
-        let sum = quick_two_sum(sum.high, sum.low + rest.high);
-        quick_two_sum(sum.high, sum.low + rest.low)
+        let ((high, low), rest) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
+        let sum = quick_two_sum(high, low + rest.0);
+        quick_two_sum(sum.high, sum.low + rest.1)
     }
 }
 
@@ -95,8 +97,8 @@ impl Sub for DoubleDouble {
 impl Mul for DoubleDouble {
     type Output = Self;
     fn mul(self, other: Self) -> Self {
-        let product = two_product(self.high, other.high);
-        quick_two_sum(product.high, product.low + (self.high * other.low + self.low * other.high))
+        let (high, low) = two_product(self.high, other.high);
+        quick_two_sum(high, low + (self.high * other.low + self.low * other.high))
     }
 }
 
@@ -122,7 +124,8 @@ impl Number for DoubleDouble {
             return Self::from(0.0);
         }
         let root = self.high.sqrt();
-        let rest = self - two_product(root, root);
+        let (high, low) = two_product(root, root);
+        let rest = self - Self { high, low };
         quick_two_sum(root, rest.high / (2.0 * root))
     }
 }

@@ -3,6 +3,7 @@
 //! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`rectangle::distance`],
 //! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
+pub mod exact;
 pub mod outline;
 pub(crate) mod parry;
 pub mod polygon;

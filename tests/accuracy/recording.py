@@ -5,6 +5,7 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -51,8 +52,10 @@ class Recording:
 
 def record(words: list[str]) -> Recording:
     """Run SUMO with these words in another process and record it."""
-    done = subprocess.run([sys.executable, __file__, *words], stdout=subprocess.PIPE, check=True)
-    recording = pickle.loads(done.stdout)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "recording.pickle"
+        subprocess.run([sys.executable, __file__, str(file), *words], stdout=subprocess.DEVNULL, check=True)
+        recording = pickle.loads(file.read_bytes())
     assert isinstance(recording, Recording)
     return recording
 
@@ -112,4 +115,4 @@ if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parent))
     import recording
 
-    sys.stdout.buffer.write(pickle.dumps(recording.run(sys.argv[1:])))
+    Path(sys.argv[1]).write_bytes(pickle.dumps(recording.run(sys.argv[2:])))

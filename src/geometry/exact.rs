@@ -1,0 +1,185 @@
+//! Whether two rectangles touch, decided without error: by separating axes, first in f64 with a bound on what rounding
+//! can have done, and only where that bound does not decide in exact arithmetic (Shewchuk 1997, adaptive predicates).
+//!
+//! The rectangles are those whose corners follow from the f64 centre, axis and half dimensions, computed exactly: their
+//! sides are at right angles, but the axis need not be of length 1.
+
+use super::rectangle::Rectangle;
+use super::{Vector, left_of};
+use crate::braking::double_double::{two_product, two_sum};
+
+/// Rounding of the f64 form errs by less than this part of the largest term: some twenty operations, each by 2⁻⁵³.
+const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// Terms of one axis: the distance of the centres, and what both rectangles reach.
+const TERMS: usize = 40;
+
+/// Whether two rectangles share a point; touching counts.
+pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
+    let (across_a, across_b) = (left_of(&a.axis), left_of(&b.axis));
+    [a.axis, across_a, b.axis, across_b].iter().all(|axis| meet_along(a, b, axis))
+}
+
+/// Whether the projections on an axis share a point.
+fn meet_along(a: &Rectangle, b: &Rectangle, axis: &Vector) -> bool {
+    let between = (b.centre - a.centre).dot(axis).abs();
+    let reach = |rectangle: &Rectangle| {
+        rectangle.axis.dot(axis).abs() * rectangle.half_length
+            + left_of(&rectangle.axis).dot(axis).abs() * rectangle.half_width
+    };
+    let room = between - reach(a) - reach(b);
+    // The difference of the centres rounds as well, relative to itself: it is part of `between`.
+    let parts = (b.centre - a.centre).abs().dot(&axis.abs());
+    let sizes = a.half_length + a.half_width + b.half_length + b.half_width;
+    let bound = ROUNDING * (parts + 2.0 * sizes);
+    if room.abs() > bound { room < 0.0 } else { meet_along_exactly(a, b, axis) }
+}
+
+fn meet_along_exactly(a: &Rectangle, b: &Rectangle, axis: &Vector) -> bool {
+    let mut sum = Sum::default();
+    let centres = [(a.centre.x, b.centre.x, axis.x), (a.centre.y, b.centre.y, axis.y)];
+    let between = |sum: &mut Sum, sign: f64| {
+        for (from, to, factor) in centres {
+            let difference = two_sum(to, -from);
+            sum.add_product(sign * factor, difference.0);
+            sum.add_product(sign * factor, difference.1);
+        }
+    };
+    let mut distance = Sum::default();
+    between(&mut distance, 1.0);
+    // |distance| − reach of both ≤ 0
+    between(&mut sum, distance.sign());
+    for rectangle in [a, b] {
+        for (side, half) in [(rectangle.axis, rectangle.half_length), (left_of(&rectangle.axis), rectangle.half_width)]
+        {
+            let mut along = Sum::default();
+            along.add_product(side.x, axis.x);
+            along.add_product(side.y, axis.y);
+            let sign = along.sign();
+            for term in along.terms() {
+                sum.add_product(-sign * half, *term);
+            }
+        }
+    }
+    sum.sign() <= 0.0
+}
+
+/// An exact sum of f64 as an expansion: terms that do not overlap, smallest first.
+struct Sum {
+    terms: [f64; TERMS],
+    count: usize,
+}
+
+impl Default for Sum {
+    fn default() -> Self {
+        Self { terms: [0.0; TERMS], count: 0 }
+    }
+}
+
+impl Sum {
+    fn terms(&self) -> &[f64] {
+        &self.terms[..self.count]
+    }
+
+    /// Shewchuk's Grow-Expansion, without the zeros.
+    fn add(&mut self, value: f64) {
+        let mut carry = value;
+        let mut kept = 0;
+        for index in 0..self.count {
+            let (high, low) = two_sum(carry, self.terms[index]);
+            if low != 0.0 {
+                self.terms[kept] = low;
+                kept += 1;
+            }
+            carry = high;
+        }
+        if carry != 0.0 {
+            self.terms[kept] = carry;
+            kept += 1;
+        }
+        self.count = kept;
+    }
+
+    fn add_product(&mut self, a: f64, b: f64) {
+        let (high, low) = two_product(a, b);
+        self.add(low);
+        self.add(high);
+    }
+
+    /// −1, 0 or 1: the largest term's.
+    fn sign(&self) -> f64 {
+        self.terms().last().map_or(0.0, |largest| largest.signum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Point;
+    use num_rational::BigRational;
+    use num_traits::Signed;
+    use proptest::prelude::*;
+
+    fn exact(value: f64) -> BigRational {
+        BigRational::from_float(value).unwrap()
+    }
+
+    /// The definition, in rational arithmetic.
+    fn reference(a: &Rectangle, b: &Rectangle) -> bool {
+        let dot = |u: &Vector, v: &Vector| exact(u.x) * exact(v.x) + exact(u.y) * exact(v.y);
+        [a.axis, left_of(&a.axis), b.axis, left_of(&b.axis)].iter().all(|axis| {
+            let between = (exact(b.centre.x) - exact(a.centre.x)) * exact(axis.x)
+                + (exact(b.centre.y) - exact(a.centre.y)) * exact(axis.y);
+            let reach = |r: &Rectangle| {
+                dot(&r.axis, axis).abs() * exact(r.half_length)
+                    + dot(&left_of(&r.axis), axis).abs() * exact(r.half_width)
+            };
+            between.abs() <= reach(a) + reach(b)
+        })
+    }
+
+    /// A second rectangle that touches the first with its rear, but for some units in the last place.
+    fn nearly_touching(a: &Rectangle, heading: f64, length: f64, width: f64, nudge: i32) -> Rectangle {
+        let mut b = Rectangle::new(a.centre, heading, length, width);
+        let reach = a.half_length
+            + b.half_length * a.axis.dot(&b.axis).abs()
+            + b.half_width * a.axis.dot(&left_of(&b.axis)).abs();
+        let x = a.centre.x + a.axis.x * reach;
+        b.centre = Point::new(x * (1.0 + f64::from(nudge) * f64::EPSILON), a.centre.y + a.axis.y * reach);
+        b
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(3000))]
+        #[test]
+        fn no_decision_is_wrong_where_two_touch_to_the_last_place(
+            x in -1e7..1e7, y in -1e3..1e3, heading in -4.0..4.0, turn in prop_oneof![Just(0.0), Just(1e-16), -4.0..4.0],
+            length in 0.0..20.0, width in 0.0..3.0, other in 0.001..100.0, nudge in -4..=4,
+        ) {
+            let a = Rectangle::new(Point::new(x, y), heading, length, width);
+            let b = nearly_touching(&a, heading + turn, other, width, nudge);
+            prop_assert_eq!(touches(&a, &b), reference(&a, &b));
+            prop_assert_eq!(touches(&b, &a), reference(&a, &b));
+        }
+
+        #[test]
+        fn random_pairs_are_decided_as_in_rational_arithmetic(
+            x in -10.0..10.0, y in -10.0..10.0, heading in -4.0..4.0, turn in -4.0..4.0,
+        ) {
+            let a = Rectangle::new(Point::origin(), heading, 5.0, 1.8);
+            let b = Rectangle::new(Point::new(x, y), heading + turn, 12.0, 2.5);
+            prop_assert_eq!(touches(&a, &b), reference(&a, &b));
+        }
+    }
+
+    #[test]
+    fn what_plain_separating_axes_get_wrong_is_right_here() {
+        let wrong = (0..20_000_u32).filter(|number| {
+            let heading = f64::from(*number) * 1e-4;
+            let a = Rectangle::new(Point::new(0.3, 0.2), heading, 5.0, 1.8);
+            let b = nearly_touching(&a, heading * 3.0, 4.0, 2.0, 0);
+            assert_eq!(touches(&a, &b), reference(&a, &b));
+            crate::geometry::rectangle::plainly_touches(&a, &b) != reference(&a, &b)
+        });
+        assert!(wrong.count() > 100);
+    }
+}
