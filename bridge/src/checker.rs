@@ -22,7 +22,7 @@ use crate::pull::{self, Source};
 ///         frames are given to `step`.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, and encounters.csv with `log_encounters=True`); by default none.
-///     paint: whether to colour the vehicles in conflict; by default where there is a sumo-gui.
+///     paint: whether to colour the vehicles in conflict; by default where libsumo runs sumo-gui.
 ///     **options: what the command line has as long options, with underscores: `mu="at-rest"`, `epsilon=1.0`.
 ///
 /// Raises:
@@ -165,8 +165,9 @@ pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
     Options::from_settings(settings.iter().map(|(name, value)| (name.as_str(), value.clone()))).map_err(exception)
 }
 
+/// Whether libsumo runs sumo-gui. traci is not asked: a plain SUMO would print an error.
 fn has_gui(source: &Bound<PyAny>) -> bool {
-    source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
+    pull::is_libsumo(source) && source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
 }
 
 /// One conflict: a pair of road users and a run of steps in which they were closer than they can safely be.

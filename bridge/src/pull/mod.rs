@@ -29,8 +29,7 @@ impl Source {
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
             run.has_sublanes();
         }
-        let is_libsumo = source.getattr("__name__").is_ok_and(|name| name.to_string() == "libsumo");
-        Ok(if is_libsumo {
+        Ok(if is_libsumo(source) {
             Self::Libsumo(Box::new(Libsumo::new(source, options, with_heights)?))
         } else {
             Self::Traci(Box::new(Traci::new(source, options, with_heights)?))
@@ -52,4 +51,9 @@ impl Source {
             Self::Traci(source) => source.place(py, run, rows),
         }
     }
+}
+
+/// Whether a source is the module libsumo.
+pub fn is_libsumo(source: &Bound<PyAny>) -> bool {
+    source.getattr("__name__").is_ok_and(|name| name.to_string() == "libsumo")
 }
