@@ -3,8 +3,8 @@
 use clap::ValueEnum;
 use closecall::braking::{self, Brakes, Braking, MuModel};
 use closecall::encounter::Kind;
-use closecall::geometry::Point;
 use closecall::geometry::rectangle::{self, Rectangle};
+use closecall::geometry::{Point, Vector};
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
 use pyo3::exceptions::PyValueError;
@@ -159,7 +159,11 @@ fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
             )));
         }
     }
-    let rectangle =
-        |row: numpy::ndarray::ArrayView1<f64>| Rectangle::new(Point::new(row[0], row[1]), row[2], row[3], row[4]);
+    let rectangle = |row: numpy::ndarray::ArrayView1<f64>| {
+        // The axis is the heading's cosine and sine as they are, so that who checks this can form the same corners.
+        let (sine, cosine) = row[2].sin_cos();
+        let (centre, axis) = (Point::new(row[0], row[1]), Vector::new(cosine, sine));
+        Rectangle { centre, axis, half_length: row[3] / 2.0, half_width: row[4] / 2.0 }
+    };
     Ok(a.rows().into_iter().zip(b.rows()).map(|(a, b)| (rectangle(a), rectangle(b))).collect())
 }

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import math
+import random
+from fractions import Fraction
+
 import numpy as np
 import pytest
 import shapely
@@ -44,6 +48,45 @@ def test_touching_counts() -> None:
     first = [[0.0, 0.0, 0.0, 4.0, 2.0]]
     assert geometry.touches(first, [[4.0, 0.0, 0.0, 4.0, 2.0]]).tolist() == [True]
     assert geometry.touches(first, [[4.0 + 1e-12, 0.0, 0.0, 4.0, 2.0]]).tolist() == [False]
+
+
+Row = list[float]
+
+
+def exactly_touch(a: Row, b: Row) -> bool:
+    """The definition in rational arithmetic, for the corners that follow from the f64 cosine and sine."""
+    first, second = (
+        [Fraction(value) for value in (x, y, math.cos(h), math.sin(h), *size)] for x, y, h, *size in (a, b)
+    )
+    sides = [((c, s), (-s, c), length / 2, width / 2) for _, _, c, s, length, width in (first, second)]
+    for axis in [side for along, across, _, _ in sides for side in (along, across)]:
+
+        def onto(vector: tuple[Fraction, Fraction], axis: tuple[Fraction, Fraction] = axis) -> Fraction:
+            return abs(vector[0] * axis[0] + vector[1] * axis[1])
+
+        reach = sum(onto(along) * half + onto(across) * other for along, across, half, other in sides)
+        if onto((second[0] - first[0], second[1] - first[1])) > reach:
+            return False
+    return True
+
+
+def test_contact_is_decided_as_in_rational_arithmetic() -> None:
+    chance = random.Random(3)
+    pairs: list[tuple[Row, Row]] = []
+    for _ in range(4000):
+        heading = chance.choice([chance.uniform(-4, 4), math.pi / 2, math.pi, 0.0])
+        first = [chance.uniform(-9, 9), chance.uniform(-9, 9), heading, chance.uniform(0, 9), chance.uniform(0, 3)]
+        turn = chance.choice([0.0, 1e-16, math.pi / 2, chance.uniform(-4, 4)])
+        length = chance.choice([0.001, 4.0, 100.0])
+        # One behind the other and touching, but for some units in the last place.
+        way = first[3] / 2 + length / 2 * abs(math.cos(turn)) + abs(math.sin(turn))
+        x, y = first[0] + math.cos(heading) * way, first[1] + math.sin(heading) * way
+        nudged = x * (1 + chance.randint(-3, 3) * 2**-52)
+        pairs.append((first, [nudged, y, heading + turn, length, 2.0]))
+    found = geometry.touches([a for a, _ in pairs], [b for _, b in pairs])
+    wanted = [exactly_touch(a, b) for a, b in pairs]
+    assert found.tolist() == wanted
+    assert 0.2 < sum(wanted) / len(wanted) < 0.9
 
 
 def test_rows_that_are_no_rectangles_are_refused() -> None:
