@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
+import signal
 import subprocess
 import time
 from collections.abc import Iterator
@@ -23,7 +24,7 @@ SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (2
 needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
 
 WATCH = """
-import json, sys
+import json, signal, sys
 from closecall import _sumo, Checker
 
 config, shot = sys.argv[1:3]
@@ -47,8 +48,9 @@ checker.close()
 left = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
 conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
              for conflict in checker.conflicts]
+print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}), flush=True)
+signal.alarm(10)  # sumo-gui 1.28 does not always close; the system then ends the process
 _sumo.close(gui=True)
-print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}))
 """
 
 
@@ -88,7 +90,7 @@ def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
 def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_path: Path) -> None:
     shot = tmp_path / f"{kind}.png"
     done = python(WATCH, scenario(kind), shot)
-    assert done.returncode == 0, done.stderr
+    assert done.returncode in (0, -signal.SIGALRM), done.stderr
     seen = json.loads(done.stdout.splitlines()[-1])
     ((ego, foe, found, begin, end),) = seen["conflicts"]
     assert found == kind
@@ -114,7 +116,7 @@ def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_pat
 def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
     done = closecall("run", config, "--gui", "--end", "8", "--out", tmp_path / "shown")
-    assert done.returncode == 0, done.stderr
+    assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr
     assert closecall("run", config, "--end", "8", "--out", tmp_path / "unseen").returncode == 0
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
 
