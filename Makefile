@@ -4,14 +4,18 @@ BIN := $(VENV)/bin
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
 
-.PHONY: demo test lint accuracy bench docs clean help
+.PHONY: demo test stress lint accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
 
 test: $(VENV)/wheel $(VENV)/tests ## set everything up and run all tests, Rust and Python
 	cargo test --workspace --exclude closecall-bridge
+	$(BIN)/closecall stress --cases 100000
 	$(BIN)/pytest
+
+stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a million of them
+	$(BIN)/closecall stress --cases 1000000
 
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	cargo fmt --all --check

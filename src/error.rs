@@ -49,6 +49,9 @@ pub enum Error {
     /// A value that a caller or an option gives is out of its range.
     #[error("{0}")]
     Value(String),
+    /// What was measured does not keep a bound that it should.
+    #[error("{0}")]
+    Exceeded(String),
     /// SUMO refused to start: its configuration, net or demand cannot be used.
     #[error("{}: SUMO says: {message}", path.display())]
     Refused {
@@ -89,11 +92,11 @@ impl Error {
         Self::Content { path: path.to_owned(), message: message.into() }
     }
 
-    /// The exit status of a command that ends with this error: 1 where SUMO failed in mid-run, 3 where a
+    /// The exit status of a command that ends with this error: 1 where SUMO failed in mid-run or a bound was exceeded, 3 where a
     /// recording was cut short, 130 where the user interrupted it, 2 for every other input that cannot be used.
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::Failed { .. } => 1,
+            Self::Failed { .. } | Self::Exceeded(_) => 1,
             Self::CutShort { .. } => 3,
             // As shells say it: 128 + SIGINT.
             Self::Interrupted { .. } => 130,

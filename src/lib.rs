@@ -26,9 +26,15 @@ pub mod precollision;
 pub mod profile;
 pub mod progress;
 pub mod record;
+#[cfg(feature = "study")]
+pub mod reference;
 pub mod replay;
 pub mod run;
 pub mod scene;
+#[cfg(feature = "study")]
+pub mod stress;
+#[cfg(feature = "study")]
+pub mod study;
 pub mod summary;
 pub mod units;
 

@@ -45,17 +45,14 @@ pub fn on_paper<N: Number>(ego: Braking, foe: Braking) -> Needed<N> {
 pub fn on_the_way<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
     let Brakes { response, build_up, deceleration } = *ego.brakes;
     let ramp_is_enough = ego.speed < deceleration * build_up / 2.0;
-    let ego_stands = response
-        + if ramp_is_enough {
-            (2.0 * ego.speed / deceleration * build_up).sqrt()
-        } else {
-            ego.speed / deceleration + build_up / 2.0
-        };
-    if foe.speed / foe.brakes.deceleration <= ego_stands {
-        return at_rest(ego, foe, sigma);
-    }
     let n = N::from;
     let (a, t3) = (n(deceleration), n(build_up));
+    // Who stands first decides which moment is the narrowest: in twice the precision a tie is told from a near one.
+    let left = if ramp_is_enough { (n(2.0) * n(ego.speed) / a * t3).root() } else { n(ego.speed) / a + t3 / n(2.0) };
+    let foe_stands = n(foe.speed) / n(foe.brakes.deceleration);
+    if (foe_stands - n(response) - left).value() <= 0.0 {
+        return at_rest(ego, foe, sigma);
+    }
     let foe_brakes = n(sigma) * n(foe.brakes.deceleration);
     // Relative speed and f at the end of the response.
     let (start, r) = (n(ego.speed) - n(sigma) * n(foe.speed), n(response));
@@ -67,7 +64,7 @@ pub fn on_the_way<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N
     let closing = a - foe_brakes;
     let rest = after / closing;
     if !ramp_is_enough && after.value() > 0.0 {
-        if closing.value() <= 0.0 || rest.value() > (ego.speed - deceleration * build_up / 2.0) / deceleration {
+        if closing.value() <= 0.0 || (rest - (left - t3)).value() > 0.0 {
             // Both stand at the same time, but for rounding.
             return at_rest(ego, foe, sigma);
         }
@@ -83,7 +80,7 @@ pub fn on_the_way<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N
         return Needed { distance: n(0.0), scale: 0.0 };
     }
     let root = (foe_brakes + inside.root()) / a * t3;
-    if root.value() > build_up.min(ego_stands - response) {
+    if root.value() > build_up || (root - left).value() > 0.0 {
         // The ego stands before: g never was above 0, but for rounding.
         return at_rest(ego, foe, sigma);
     }

@@ -7,6 +7,8 @@ mod mu;
 mod replay;
 mod run;
 mod settings;
+#[cfg(feature = "study")]
+mod stress;
 
 use std::ffi::OsString;
 
@@ -34,6 +36,9 @@ enum Command {
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
+    /// Check stiff and extreme cases against exact references
+    #[cfg(feature = "study")]
+    Stress(stress::StressArgs),
 }
 
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
@@ -57,6 +62,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Command::Run(arguments) => run::run(*arguments, simulate),
         Command::Replay(arguments) => replay::run(*arguments),
         Command::Mu(arguments) => mu::run(&arguments),
+        #[cfg(feature = "study")]
+        Command::Stress(arguments) => stress::run(&arguments),
     };
     match done {
         Ok(()) => 0,
@@ -110,7 +117,7 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     match &mut cli.command {
         Command::Run(arguments) => arguments.options.types = file.types,
         Command::Replay(arguments) => arguments.options.types = file.types,
-        Command::Mu(_) => {}
+        _ => {}
     }
     Ok(cli)
 }

@@ -139,7 +139,15 @@ impl Net {
     /// An error that names the file, line and what is wrong: unreadable, no SUMO net, a lane without geometry, a
     /// connection to nowhere.
     pub fn read(path: &Path) -> Result<Self> {
-        reader::read(path)
+        reader::read(path, reader::open(path)?)
+    }
+
+    /// The net in a text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Net::read`] has them.
+    pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
+        reader::read(path, Box::new(std::io::Cursor::new(text.into())))
     }
 }
 
@@ -148,14 +156,7 @@ mod tests {
     use super::*;
 
     fn net(text: &str) -> Result<Net> {
-        use std::sync::atomic::{AtomicU32, Ordering};
-        static COUNT: AtomicU32 = AtomicU32::new(0);
-        let number = COUNT.fetch_add(1, Ordering::Relaxed);
-        let path = std::env::temp_dir().join(format!("closecall-net-{}-{number}.net.xml", std::process::id()));
-        std::fs::write(&path, text).unwrap();
-        let net = Net::read(&path);
-        std::fs::remove_file(&path).unwrap();
-        net
+        Net::parse(Path::new("corner.net.xml"), text)
     }
 
     const CORNER: &str = r#"<net>

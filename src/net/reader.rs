@@ -30,10 +30,10 @@ pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
     })
 }
 
-/// Reads a net file.
-pub fn read(path: &Path) -> Result<Net> {
+/// Reads a net; `path` is what errors call it.
+pub fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
     NetReader { path, line: 1, net: Net::default(), connections: Vec::new(), heights: (f64::MAX, f64::MIN) }
-        .read(open(path)?)
+        .read(source)
 }
 
 struct NetReader<'a> {

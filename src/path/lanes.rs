@@ -155,14 +155,18 @@ impl LanePath {
             let behind = self.lanes.partition_point(|(start, _)| *start <= 0.0).saturating_sub(1);
             self.lanes.drain(..behind);
         }
-        while self.track.end() - self.track.front() < way + SPARE {
+        // A ring of lanes of length 0 would go on for ever.
+        let mut in_vain = 0;
+        while self.track.end() - self.track.front() < way + SPARE && in_vain <= net.lanes.len() {
             let Some(next) = self.tip.and_then(|tip| self.next(net, tip)) else { break };
+            let before = self.track.end();
             self.lanes.push((self.track.end(), next.lane));
             for point in &net.lanes[next.lane.0 as usize].shape {
                 self.push_ahead(*point);
             }
             self.flush();
             self.tip = Some(next);
+            in_vain = if self.track.end() > before { 0 } else { in_vain + 1 };
         }
     }
 

@@ -180,6 +180,7 @@ fn push_merged(poses: &mut Vec<Pose>, start: usize, pose: Pose, asked: &[Metre])
         && last.axis == before.axis
         && (pose.axis - last.axis).norm() < SAME_DIRECTION
         && !asked.contains(&last.way)
+        && (pose.front - before.front).norm() > (pose.way - before.way) * (1.0 - SAME_DIRECTION)
     {
         let index = poses.len() - 1;
         poses[index] = Pose { axis: before.axis, ..pose };
@@ -311,6 +312,12 @@ mod tests {
         assert!(corner.follow(Point::new(10.0, 3.0)));
         assert_eq!(corner.front(), 13.0);
         assert!(!corner.follow(Point::new(11.0, 4.0)));
+    }
+
+    #[test]
+    fn where_the_line_turns_back_the_front_has_been() {
+        let back = track(&[(0.0, 0.0), (50.0, 0.0), (47.0, 0.0)], 40.0);
+        assert!(poses(&back, &[13.0]).iter().any(|pose| pose.front == Point::new(50.0, 0.0)));
     }
 
     #[test]

@@ -1,0 +1,32 @@
+//! `closecall stress`: stiff and extreme cases against exact references.
+
+use clap::Args;
+
+use crate::stress::{self, Group};
+use crate::{Error, Result};
+
+/// How many cases, and which.
+#[derive(Args)]
+pub struct StressArgs {
+    /// Inputs in all, shared out to the named cases.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..))]
+    cases: u64,
+    /// Seed of the random inputs.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Only the cases of one group.
+    #[arg(long, value_enum, value_name = "GROUP")]
+    only: Option<Group>,
+}
+
+/// Prints the table of worst errors; fails where a bound is exceeded.
+pub fn run(arguments: &StressArgs) -> Result<()> {
+    let rows = stress::run(arguments.cases, arguments.seed, arguments.only);
+    print!("{}", stress::table(&rows));
+    let exceeded = rows.iter().filter(|row| !row.holds()).count();
+    if exceeded > 0 {
+        return Err(Error::Exceeded(format!("{exceeded} of {} bounds are exceeded", rows.len())));
+    }
+    println!("all {} bounds hold", rows.len());
+    Ok(())
+}

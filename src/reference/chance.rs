@@ -1,0 +1,44 @@
+//! Random numbers that are the same on every machine.
+
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+/// A stream of random numbers.
+pub struct Chance(ChaCha8Rng);
+
+impl Chance {
+    /// The stream of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    /// A number from `low` to `high`.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        if low < high { self.0.random_range(low..high) } else { low }
+    }
+
+    /// A number from `low` to `high`, both above 0, every order of magnitude alike.
+    pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
+        (self.between(low.ln(), high.ln()).exp()).clamp(low, high)
+    }
+
+    /// A whole number below `count`.
+    pub fn below(&mut self, count: usize) -> usize {
+        self.0.random_range(0..count.max(1))
+    }
+
+    /// A whole number from −`most` to `most`.
+    pub fn around(&mut self, most: i32) -> i32 {
+        self.0.random_range(-most..=most)
+    }
+
+    /// One of these; `T::default()` of none.
+    pub fn pick<T: Copy + Default>(&mut self, from: &[T]) -> T {
+        from.get(self.below(from.len())).copied().unwrap_or_default()
+    }
+
+    /// An angle, −π to π.
+    pub fn angle(&mut self) -> f64 {
+        self.between(-std::f64::consts::PI, std::f64::consts::PI)
+    }
+}

@@ -1,0 +1,122 @@
+//! Stiff brakes: stopping distance and μ where terms are of very different size, cancel, or are hardly numbers.
+
+use super::tally::{Property, Tally, Unit};
+use super::{Case, Group};
+use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
+use crate::reference::braking as reference;
+use crate::reference::chance::Chance;
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+
+/// The largest relative error of a published μ (issue: "≤ 1e-12 over the whole stress domain").
+const BOUND: f64 = 1e-12;
+const STOPPING: Property = Property::within("stopping distance", BOUND, Unit::Relative);
+const MINIMAL: Property = Property::within("mu minimal", BOUND, Unit::Relative);
+const AT_REST: Property = Property::within("mu at_rest", BOUND, Unit::Relative);
+const PAPER: Property = Property::within("mu paper", BOUND, Unit::Relative);
+const ORDER: Property = Property::always("minimal >= at_rest >= epsilon");
+const MONOTONE: Property = Property::always("more speed, less braking, more response: never less");
+
+pub(super) const CASES: &[Case] = &[
+    Case::new(Group::Braking, "deceleration 1e-9 to 1e9", |chance, tally| {
+        let pair = Pair { a: chance.magnitude(1e-9, 1e9), ai: chance.magnitude(1e-9, 1e9), ..usual(chance) };
+        check(chance, &pair, tally);
+    }),
+    Case::new(Group::Braking, "build-up 0 to 100 s", |chance, tally| {
+        let pair = Pair { t3: chance.magnitude(1e-9, 100.0), ..usual(chance) };
+        check(chance, &pair, tally);
+    }),
+    Case::new(Group::Braking, "speed 5e-324 to 300 m/s", |chance, tally| {
+        let least = f64::from_bits(1);
+        let speeds = [0.0, least, chance.magnitude(f64::MIN_POSITIVE, 1e-200), chance.magnitude(1e-200, 300.0)];
+        let pair = Pair { v: chance.pick(&speeds), vi: chance.pick(&speeds), ..usual(chance) };
+        check(chance, &pair, tally);
+    }),
+    Case::new(Group::Braking, "equal speeds and brakes", |chance, tally| {
+        let base = usual(chance);
+        let last_places = |chance: &mut Chance, value: f64| value * (1.0 + f64::from(chance.around(4)) * f64::EPSILON);
+        let (vi, ai) = (last_places(chance, base.v), last_places(chance, base.a));
+        let pair =
+            Pair { vi, ai, r: chance.pick(&[0.0, 1e-12, 1.0]), t3: chance.pick(&[0.0, 1e-9, 0.1]), sigma: 1.0, ..base };
+        check(chance, &pair, tally);
+    }),
+    Case::new(Group::Braking, "no response, no build-up", |chance, tally| {
+        let pair = Pair { r: 0.0, t3: 0.0, ..usual(chance) };
+        check(chance, &pair, tally);
+    }),
+    Case::new(Group::Braking, "all at once", |chance, tally| {
+        let sigmas = [1.0, 1.0 - f64::EPSILON, 1e-300, 0.0, -1e-300, -1.0];
+        let pair = Pair {
+            v: chance.magnitude(1e-12, 300.0),
+            vi: chance.magnitude(1e-12, 300.0),
+            a: chance.magnitude(1e-9, 1e9),
+            ai: chance.magnitude(1e-9, 1e9),
+            r: chance.magnitude(1e-9, 10.0),
+            t3: chance.magnitude(1e-9, 100.0),
+            sigma: chance.pick(&sigmas),
+            epsilon: 0.0,
+        };
+        check(chance, &pair, tally);
+    }),
+];
+
+/// The inputs of a μ.
+#[derive(Clone, Copy, Debug)]
+struct Pair {
+    v: MetrePerSecond,
+    vi: MetrePerSecond,
+    a: MetrePerSecondSquared,
+    ai: MetrePerSecondSquared,
+    r: Second,
+    t3: Second,
+    sigma: f64,
+    epsilon: Metre,
+}
+
+impl Pair {
+    fn with<T>(&self, use_it: impl FnOnce(&Braking, &Braking) -> T) -> T {
+        let brakes = Brakes { response: self.r, build_up: self.t3, deceleration: self.a };
+        let foe_brakes = Brakes { deceleration: self.ai, ..brakes };
+        use_it(&Braking { speed: self.v, brakes: &brakes }, &Braking { speed: self.vi, brakes: &foe_brakes })
+    }
+
+    fn mu(&self, model: MuModel) -> f64 {
+        self.with(|ego, foe| mu(model, *ego, *foe, self.sigma, self.epsilon))
+    }
+}
+
+fn usual(chance: &mut Chance) -> Pair {
+    Pair {
+        v: chance.between(0.0, 60.0),
+        vi: chance.between(0.0, 60.0),
+        a: chance.between(1.0, 12.0),
+        ai: chance.between(1.0, 12.0),
+        r: chance.between(0.0, 3.0),
+        t3: chance.between(0.0, 1.0),
+        sigma: chance.angle().cos(),
+        epsilon: chance.pick(&[0.0, 0.5]),
+    }
+}
+
+fn check(chance: &mut Chance, pair: &Pair, tally: &mut Tally) {
+    pair.with(|ego, foe| {
+        tally.compare(STOPPING, stopping_distance(ego.speed, ego.brakes), &reference::stopping_distance(ego), pair);
+        for (model, property) in [(MuModel::Minimal, MINIMAL), (MuModel::AtRest, AT_REST), (MuModel::Paper, PAPER)] {
+            let expected = reference::mu(model, ego, foe, pair.sigma, pair.epsilon);
+            tally.compare(property, pair.mu(model), &expected, pair);
+        }
+    });
+    let (minimal, at_rest) = (pair.mu(MuModel::Minimal), pair.mu(MuModel::AtRest));
+    tally.holds(ORDER, minimal >= at_rest * (1.0 - BOUND) && at_rest >= pair.epsilon, pair);
+    let factor = 1.0 + chance.magnitude(1e-6, 1.0);
+    let worse = [
+        Pair { v: pair.v * factor, ..*pair },
+        Pair { a: pair.a / factor, ..*pair },
+        Pair { r: pair.r * factor, ..*pair },
+    ];
+    for changed in worse {
+        // With σ < 0 one response time is both's, and more of it is more for both.
+        let more = [(MuModel::Minimal, minimal), (MuModel::AtRest, at_rest)];
+        let holds = more.iter().all(|(model, before)| changed.mu(*model) >= before * (1.0 - BOUND));
+        tally.holds(MONOTONE, holds, &(pair, changed));
+    }
+}

@@ -1,0 +1,170 @@
+//! Rectangles that hardly touch, hardly differ, are hardly there, or are far away.
+
+use super::tally::{Property, Tally, Unit};
+use super::{Case, Group, scene};
+use crate::frame::{Frame, SUMO_INVALID, State, UserIndex};
+use crate::geometry::rectangle::{Rectangle, distance, touches};
+use crate::geometry::{Point, Vector, left_of};
+use crate::path::rotated;
+use crate::reference::chance::Chance;
+use crate::reference::contact as reference;
+use crate::units::Metre;
+
+const DECIDED: Property = Property::always("contact as in exact arithmetic");
+const EXCHANGED: Property = Property::always("the same for foe and ego");
+const MIRRORED: Property = Property::always("the same in the mirror");
+const AGREES: Property = Property::always("distance 0 where they touch");
+/// In units in the last place of the largest coordinate: rounding the corners alone takes some of these.
+const ULPS: f64 = 8.0;
+const APART: Property = Property::within("distance, in ulps of the place", ULPS, Unit::Ulps);
+const MOVED: Property = Property::within("change of distance when moved", ULPS, Unit::Ulps);
+const TURNED: Property = Property::within("change of distance when turned", ULPS, Unit::Ulps);
+const REFUSED: Property = Property::always("no road user in this step");
+const CLOSER: Property = Property::always("a foe that is closer leaves less gap");
+
+pub(super) const CASES: &[Case] = &[
+    Case::new(Group::Geometry, "random", |chance, tally| {
+        let place = |chance: &mut Chance| Point::new(chance.between(0.0, 12.0), chance.between(0.0, 12.0));
+        let a = Rectangle::new(place(chance), chance.angle(), 5.0, 1.8);
+        let b = Rectangle::new(place(chance), chance.angle(), chance.between(1.0, 12.0), 2.5);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "touching to the last place", |chance, tally| {
+        let (a, turn) = (car(chance), chance.angle());
+        let b = beside(chance, &a, turn);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "nearly parallel", |chance, tally| {
+        let a = car(chance);
+        let turn = chance.pick(&[0.0, 1e-16, 1e-12, 1e-8]);
+        let b = beside(chance, &a, turn);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "identical", |chance, tally| {
+        let a = car(chance);
+        check(chance, a, a, tally);
+    }),
+    Case::new(Group::Geometry, "nested", |chance, tally| {
+        let a = car(chance);
+        let share = chance.magnitude(1e-9, 1.0);
+        let b = Rectangle {
+            centre: a.centre + a.axis * a.half_length * (1.0 - share),
+            half_length: a.half_length * share,
+            half_width: a.half_width * share,
+            ..a
+        };
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "cross without a corner inside", |chance, tally| {
+        let a = Rectangle { half_length: 50.0, ..car(chance) };
+        let axis = rotated(&left_of(&a.axis), chance.between(-0.5, 0.5));
+        let b = Rectangle { axis, centre: a.centre + a.axis * chance.between(-60.0, 60.0), ..a };
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "no width or no length", |chance, tally| {
+        let a = flat(chance);
+        let turn = chance.angle();
+        let b = Rectangle { axis: rotated(&a.axis, turn), ..flat(chance) };
+        let b = against(chance, &a, b);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "1 mm beside 100 m", |chance, tally| {
+        let a = Rectangle { half_length: 50.0, ..car(chance) };
+        let axis = rotated(&a.axis, chance.angle());
+        let b = Rectangle { axis, half_length: 5e-4, half_width: 5e-4, ..a };
+        let b = against(chance, &a, b);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "far from the origin", |chance, tally| {
+        let utm = Vector::new(chance.pick(&[3.6e5, 6.9e5, 1e7, -1e7]), chance.pick(&[5.3e6, 5.8e6, 1e7, -1e7]));
+        let a = car(chance);
+        let a = Rectangle { centre: a.centre + utm, ..a };
+        let turn = chance.angle();
+        let b = beside(chance, &a, turn);
+        check(chance, a, b, tally);
+    }),
+    Case::new(Group::Geometry, "no place, no number", |chance, tally| {
+        let mut values = [chance.between(-1e7, 1e7), 3.0, 0.0, chance.angle(), chance.between(0.0, 300.0)];
+        let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, SUMO_INVALID];
+        // Heights and headings have no value of SUMO's for "none".
+        let column = chance.below(5);
+        values[column] = bad[chance.below(if column < 2 { 4 } else { 3 })];
+        let [x, y, z, heading, speed] = values;
+        let mut frame = Frame::default();
+        let taken = frame.push(UserIndex(0), State { x, y, z, heading, speed });
+        tally.holds(REFUSED, !taken && frame.is_empty(), &values);
+    }),
+    Case::new(Group::Geometry, "a foe that comes closer", |chance, tally| {
+        let (v, vi, turn) =
+            (chance.between(5.0, 40.0), chance.between(0.0, 5.0), chance.pick(&[0.0, 1.5, std::f64::consts::PI]));
+        let distance = chance.between(2.0, 20.0);
+        let gap = |ahead: Metre| scene::gap((v, 0.0), (ahead, 0.0, turn, vi));
+        let (near, far) = (gap(distance), gap(distance + chance.magnitude(1e-6, 1.0)));
+        // One that is too far to be met leaves all the room there is.
+        let holds = near.unwrap_or(f64::INFINITY) <= far.unwrap_or(f64::INFINITY);
+        tally.holds(CLOSER, holds, &(v, vi, turn, distance, near, far));
+    })
+    .costing(4),
+];
+
+fn car(chance: &mut Chance) -> Rectangle {
+    let place = Point::new(chance.between(-100.0, 100.0), chance.between(-100.0, 100.0));
+    Rectangle::new(place, chance.angle(), chance.between(0.5, 20.0), chance.between(0.3, 3.0))
+}
+
+fn flat(chance: &mut Chance) -> Rectangle {
+    let all = car(chance);
+    match chance.below(3) {
+        0 => Rectangle { half_width: 0.0, ..all },
+        1 => Rectangle { half_length: 0.0, ..all },
+        _ => Rectangle { half_length: 0.0, half_width: 0.0, ..all },
+    }
+}
+
+/// One of the same size, turned, that touches the first with a corner but for some units in the last place.
+fn beside(chance: &mut Chance, a: &Rectangle, turn: f64) -> Rectangle {
+    let axis = rotated(&a.axis, turn);
+    against(chance, a, Rectangle { axis, ..*a })
+}
+
+/// The second moved to where it touches the first's front, but for some units in the last place.
+fn against(chance: &mut Chance, a: &Rectangle, b: Rectangle) -> Rectangle {
+    let reach =
+        a.half_length + b.half_length * a.axis.dot(&b.axis).abs() + b.half_width * a.axis.dot(&left_of(&b.axis)).abs();
+    let aside = a.half_width * chance.between(-1.0, 1.0);
+    let centre = a.centre + a.axis * reach + left_of(&a.axis) * aside;
+    let nudge = |chance: &mut Chance, value: f64| value + value.abs() * f64::EPSILON * f64::from(chance.around(4));
+    Rectangle { centre: Point::new(nudge(chance, centre.x), nudge(chance, centre.y)), ..b }
+}
+
+fn check(chance: &mut Chance, a: Rectangle, b: Rectangle, tally: &mut Tally) {
+    let inputs = (a, b);
+    let (touching, apart) = (touches(&a, &b), distance(&a, &b));
+    tally.holds(DECIDED, touching == reference::touches(&a, &b), &inputs);
+    tally.holds(EXCHANGED, touching == touches(&b, &a), &inputs);
+    tally.holds(MIRRORED, touching == touches(&mirrored(&a), &mirrored(&b)), &inputs);
+    tally.holds(AGREES, apart == 0.0 || !touching, &inputs);
+    let ulp = |extra: Metre| largest(&a).max(largest(&b)).max(extra) * f64::EPSILON;
+    tally.error(APART, crate::reference::deviation(apart, &reference::distance(&a, &b)).absolute / ulp(0.0), &inputs);
+    let by = Vector::new(chance.between(-1e4, 1e4), chance.between(-1e4, 1e4));
+    let moved = |r: &Rectangle| Rectangle { centre: r.centre + by, ..*r };
+    let change = (distance(&moved(&a), &moved(&b)) - apart).abs();
+    tally.error(MOVED, change / ulp(by.norm()), &(inputs, by));
+    let angle = chance.angle();
+    let turned = |r: &Rectangle| Rectangle {
+        centre: Point::from(rotated(&r.centre.coords, angle)),
+        axis: rotated(&r.axis, angle),
+        ..*r
+    };
+    let change = (distance(&turned(&a), &turned(&b)) - apart).abs();
+    tally.error(TURNED, change / ulp(0.0), &(inputs, angle));
+}
+
+fn mirrored(r: &Rectangle) -> Rectangle {
+    Rectangle { centre: Point::new(r.centre.x, -r.centre.y), axis: Vector::new(r.axis.x, -r.axis.y), ..*r }
+}
+
+/// The largest coordinate that a corner may have.
+fn largest(r: &Rectangle) -> Metre {
+    r.centre.coords.amax() + r.half_length + r.half_width
+}

@@ -1,0 +1,167 @@
+//! Lines on the ground as no net should have them, but some do, and the poses along them.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use super::scene::Scene;
+use super::tally::{Property, Tally, Unit};
+use super::{Case, Group};
+use crate::encounter::Placement;
+use crate::frame::State;
+use crate::geometry::{Point, Vector};
+use crate::net::Net;
+use crate::path::Pose;
+use crate::path::track::Track;
+use crate::reference::chance::Chance;
+use crate::reference::contact::distance_to_line;
+use crate::reference::nearest;
+use crate::units::{Metre, MetrePerSecond};
+
+const UNIT: Property = Property::within("axis a unit vector", 1e-12, Unit::Metre);
+const ASCENDING: Property = Property::always("ways ascend to where they should");
+const ON_LINE: Property = Property::within("front bumper on the line, in ulps of the place", 64.0, Unit::Ulps);
+const EVEN: Property = Property::within("way as long as the line, in ulps of the place", 64.0, Unit::Ulps);
+const LAID: Property = Property::always("paths end, every value a finite number");
+const BOUNDED: Property = Property::always("no more poses than the line has points and turns");
+
+pub(super) const CASES: &[Case] = &[
+    Case::new(Group::Paths, "lanes of length 0, repeated points", |chance, tally| {
+        let mut points = winding(chance, 1.0, 100.0);
+        for _ in 0..10 {
+            let at = chance.below(points.len());
+            // Nearer than a front bumper can be told from the line, too.
+            let near = Vector::new(chance.pick(&[0.0, 1e-9, 5e-4]), 0.0);
+            points.insert(at, points[at] + near);
+        }
+        check(chance, &points, tally);
+    })
+    .costing(10),
+    Case::new(Group::Paths, "joints that turn by 180 degrees", |chance, tally| {
+        let mut points = winding(chance, 1.0, 50.0);
+        let at = chance.below(points.len() - 2) + 1;
+        let back = points[at - 1];
+        points.insert(at + 1, back);
+        check(chance, &points, tally);
+    })
+    .costing(10),
+    Case::new(Group::Paths, "a net of a million metres", |chance, tally| {
+        let mut points = winding(chance, 1e3, 1e5);
+        let by = Vector::new(chance.between(-1e6, 1e6), chance.between(-1e6, 1e6));
+        points.iter_mut().for_each(|point| *point += by);
+        check(chance, &points, tally);
+    })
+    .costing(10),
+    Case::new(Group::Paths, "points millimetres apart", |chance, tally| {
+        let points = winding(chance, 1e-3, 1e-1);
+        check(chance, &points, tally);
+    })
+    .costing(10),
+    Case::new(Group::Paths, "a net of lanes without length", |chance, tally| {
+        let degenerate = [chance.below(4), chance.below(4)];
+        let (position, speed) = (chance.between(0.0, 60.0), chance.between(0.0, 60.0));
+        let found = along_a_ring(degenerate, position, speed);
+        tally.holds(LAID, found, &(degenerate, position, speed));
+    })
+    .costing(20),
+];
+
+/// Two cars, one behind the other, on a ring of four lanes of which some have no length.
+fn along_a_ring(degenerate: [usize; 2], position: Metre, speed: MetrePerSecond) -> bool {
+    let corners = [(0.0, 0.0), (60.0, 0.0), (60.0, 60.0), (0.0, 60.0)];
+    let mut text = String::from("<net>");
+    for (index, (x, y)) in corners.iter().enumerate() {
+        let (to_x, to_y) = if degenerate.contains(&index) { (*x, *y) } else { corners[(index + 1) % 4] };
+        let length = if degenerate.contains(&index) { 0.0 } else { 60.0 };
+        text += &format!(
+            "<edge id='e{index}' from='j{index}' to='j'><lane id='e{index}_0' index='0' length='{length}' shape='{x},{y} {to_x},{to_y}'/></edge>"
+        );
+    }
+    for index in 0..4 {
+        let to = (index + 1) % 4;
+        text += &format!("<connection from='e{index}' to='e{to}' fromLane='0' toLane='0'/>");
+    }
+    let Ok(net) = Net::parse(Path::new("ring.net.xml"), text + "</net>") else { return false };
+    let Some(lane) = net.lane("e0_0") else { return false };
+    let placement = Placement { lane, position, route: Arc::new([]), route_position: 0, lateral_speed: 0.0 };
+    let Ok(mut scene) = Scene::new(Some(Arc::new(net))) else { return false };
+    let users = [scene.enter("leader"), scene.enter("follower")];
+    for step in 0..3 {
+        let x = position + f64::from(step) * speed;
+        let at = |x: Metre| State { x, y: 0.0, z: 0.0, heading: 0.0, speed };
+        scene.step_placed(f64::from(step), &[(users[0], at(x)), (users[1], at(x - 10.0))], &placement);
+    }
+    scene.finite
+}
+
+/// How many poses of a line are compared with it.
+const SAMPLES: usize = 4;
+
+/// A line of up to thirty points, so far apart, that may turn any way.
+fn winding(chance: &mut Chance, least: Metre, most: Metre) -> Vec<Point> {
+    let mut at = Point::new(chance.between(-1e3, 1e3), chance.between(-1e3, 1e3));
+    let mut heading = chance.angle();
+    let mut points = vec![at];
+    for _ in 0..chance.below(28) + 3 {
+        heading += chance.between(-1.0, 1.0);
+        at += Vector::new(heading.cos(), heading.sin()) * chance.magnitude(least, most);
+        points.push(at);
+    }
+    points
+}
+
+fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
+    let mut track = Track::default();
+    points.iter().for_each(|point| track.push(*point));
+    if !track.is_laid() {
+        return;
+    }
+    track.set_front(track.end() * chance.between(0.0, 1.0));
+    let room = track.end() - track.front();
+    let length = chance.between(0.5, 20.0);
+    let ways = [room * chance.between(0.0, 1.0), room];
+    let mut poses = Vec::new();
+    track.poses(Vector::x(), length, &ways, false, &mut poses);
+    let inputs = (points, track.front(), length, ways);
+    let unit = poses.iter().map(|pose| (pose.axis.norm() - 1.0).abs()).fold(0.0, worse);
+    tally.error(UNIT, unit, &inputs);
+    let ascending = poses.windows(2).all(|pair| pair[0].way < pair[1].way);
+    let last = poses.last().map_or(f64::NAN, |pose| pose.way);
+    tally.holds(ASCENDING, ascending && (last - room).abs() <= 1e-9 * track.end().max(1.0), &inputs);
+    // A track leaves out points that are nearer than this to the last one (a millimetre): the line may be off by it.
+    let kept = laid(points);
+    // High precision takes its time: some poses of every line.
+    let some = (0..SAMPLES).filter_map(|_| poses.get(chance.below(poses.len())).copied()).collect::<Vec<_>>();
+    let off = some.iter().map(|pose| ulps_off(pose, &kept)).fold(0.0, worse);
+    tally.error(ON_LINE, off, &inputs);
+    let uneven = |pair: &[Pose]| (pair[1].front - pair[0].front).norm() - (pair[1].way - pair[0].way);
+    let uneven = poses.windows(2).map(|pair| uneven(pair).abs() / ulp(&kept)).fold(0.0, worse);
+    tally.error(EVEN, uneven, &inputs);
+    // Both bumpers turn at every point, by half a turn at most, in parts of some hundredths of a rad.
+    tally.holds(BOUNDED, poses.len() < 4 * 100 * points.len(), &inputs);
+}
+
+/// The points that a track keeps.
+fn laid(points: &[Point]) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for point in points {
+        if kept.last().is_none_or(|last| (point - last).norm() >= 1e-3) {
+            kept.push(*point);
+        }
+    }
+    kept
+}
+
+fn ulps_off(pose: &Pose, line: &[Point]) -> f64 {
+    nearest(&distance_to_line(pose.front, line)) / ulp(line)
+}
+
+/// A unit in the last place of the largest coordinate or way.
+fn ulp(line: &[Point]) -> f64 {
+    let way = line.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
+    line.iter().map(|point| point.coords.amax()).fold(way.max(1.0), f64::max) * f64::EPSILON
+}
+
+/// The larger; a NaN is the largest of all.
+fn worse(a: f64, b: f64) -> f64 {
+    if b.is_nan() || b > a { b } else { a }
+}

@@ -1,0 +1,122 @@
+//! Small scenes for the whole detector and its events: cars without a net.
+
+use std::sync::Arc;
+
+use crate::braking::Brakes;
+use crate::conflict::Conflict;
+use crate::detector::Detector;
+use crate::encounter::{Encounter, Placement};
+use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::net::Net;
+use crate::options::Options;
+use crate::profile::{Category, Profile};
+use crate::run::Run;
+use crate::units::{Metre, MetrePerSecond, Radian, Second};
+
+/// A car of 5 m by 2 m.
+pub(super) fn car() -> Profile {
+    Profile {
+        name: "car".to_owned(),
+        category: Category::Vehicle,
+        length: 5.0,
+        width: 2.0,
+        chord: 5.0,
+        mass: 1500.0,
+        brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
+    }
+}
+
+/// The gap of an ego at the origin (speed, heading) and a foe (x, y, heading, speed); none where they do not meet.
+pub(super) fn gap(
+    (v, heading): (MetrePerSecond, Radian),
+    (x, y, turn, vi): (Metre, Metre, Radian, MetrePerSecond),
+) -> Option<Metre> {
+    encounter(State { x: 0.0, y: 0.0, z: 0.0, heading, speed: v }, State { x, y, z: 0.0, heading: turn, speed: vi })
+        .map(|found| found.gap)
+}
+
+/// The encounter of two cars, if they would meet.
+pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
+    let mut roster = Roster::default();
+    let profile = roster.profile(car()).ok()?;
+    let mut frame = Frame::default();
+    frame.begin(0.0);
+    for (name, state) in [("a", first), ("b", second)] {
+        let user = roster.enter(name, profile);
+        frame.push(user, state);
+    }
+    let mut detector = Detector::new(&Options::default(), None);
+    detector.approach(&frame, &roster);
+    detector.detect(&frame, &roster).first().copied()
+}
+
+/// A run of cars, step by step.
+pub(super) struct Scene {
+    run: Run,
+    profile: ProfileIndex,
+    /// Whether every value that came out was a finite number.
+    pub finite: bool,
+}
+
+impl Scene {
+    /// A run on a net, or on none.
+    pub fn new(net: Option<Arc<Net>>) -> crate::Result<Self> {
+        let mut run = Run::new(&Options::default(), net)?;
+        let profile = run.roster.profile(car())?;
+        Ok(Self { run, profile, finite: true })
+    }
+
+    /// A car enters.
+    pub fn enter(&mut self, id: &str) -> UserIndex {
+        self.run.enter(id, self.profile)
+    }
+
+    /// A car leaves.
+    pub fn leave(&mut self, user: UserIndex) {
+        self.run.leave(user);
+    }
+
+    /// One step with these cars in it; returns how many pairs are in conflict.
+    pub fn step(&mut self, time: Second, states: &[(UserIndex, State)]) -> usize {
+        self.advance(time, states, None)
+    }
+
+    /// The same, with all of them on one lane.
+    pub fn step_placed(&mut self, time: Second, states: &[(UserIndex, State)], placement: &Placement) -> usize {
+        self.advance(time, states, Some(placement))
+    }
+
+    fn advance(&mut self, time: Second, states: &[(UserIndex, State)], placement: Option<&Placement>) -> usize {
+        self.run.begin(time);
+        for &(user, state) in states {
+            self.run.frame.push(user, state);
+        }
+        let unplaced = self.run.approach().to_vec();
+        if let Some(placement) = placement {
+            unplaced.into_iter().for_each(|row| self.run.place(row, placement));
+        }
+        match self.run.finish_step() {
+            Ok(found) => {
+                self.finite &= found.iter().all(is_finite);
+                found.len()
+            }
+            Err(_) => {
+                self.finite = false;
+                0
+            }
+        }
+    }
+
+    /// All conflicts, after the last step.
+    pub fn finish(mut self) -> Vec<Conflict> {
+        // Without a log nothing can fail.
+        let _ = self.run.finish(Vec::new());
+        self.run.conflicts()
+    }
+}
+
+fn is_finite(found: &Encounter) -> bool {
+    let nearness =
+        found.nearness.map_or(0.0, |near| near.clearance + near.ttc.unwrap_or(0.0) + near.drac.unwrap_or(0.0));
+    (found.gap + found.mu + found.angle + found.ego_way + found.foe_way + found.x + found.y + nearness).is_finite()
+}

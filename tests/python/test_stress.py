@@ -1,0 +1,23 @@
+"""`closecall stress`: what it prints and how it ends."""
+
+from __future__ import annotations
+
+from conftest import closecall
+
+
+def test_the_same_seed_gives_the_same_table() -> None:
+    first = closecall("stress", "--cases", "2000", "--seed", "5")
+    assert first.returncode == 0, first.stdout
+    assert closecall("stress", "--cases", "2000", "--seed", "5").stdout == first.stdout
+    assert "all " in first.stdout.splitlines()[-1]
+
+
+def test_one_group_can_be_chosen() -> None:
+    lines = closecall("stress", "--cases", "600", "--only", "braking").stdout.splitlines()
+    assert {line.split()[0] for line in lines[1:-1]} == {"braking"}
+
+
+def test_no_cases_are_refused() -> None:
+    run = closecall("stress", "--cases", "0")
+    assert run.returncode == 2
+    assert len(run.stderr.splitlines()) == 1
