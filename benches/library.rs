@@ -58,7 +58,7 @@ fn candidates(chance: &mut Chance) {
             tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |_, _| found += 1);
         });
         println!(
-            "candidates of {count}: grid {ours:.0} ns, parry2d's tree {theirs:.0} ns per road user ({} and {found} pairs)",
+            "candidates of {count}: strips {ours:.0} ns, parry2d's tree {theirs:.0} ns per road user ({} and {found} pairs)",
             pairs.len()
         );
     }

@@ -195,6 +195,11 @@ impl Run {
         Ok(&self.in_conflict)
     }
 
+    /// The pairs that were in conflict in the last step.
+    pub fn in_conflict(&self) -> &[Encounter] {
+        &self.in_conflict
+    }
+
     /// The conflicts that go on in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()

@@ -9,6 +9,8 @@ mod run;
 mod settings;
 #[cfg(feature = "study")]
 mod stress;
+#[cfg(feature = "study")]
+mod study;
 
 use std::ffi::OsString;
 
@@ -39,6 +41,9 @@ enum Command {
     /// Check stiff and extreme cases against exact references
     #[cfg(feature = "study")]
     Stress(stress::StressArgs),
+    /// Measure error against run time, for every choice that closecall makes
+    #[cfg(feature = "study")]
+    Study(study::StudyArgs),
 }
 
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
@@ -64,6 +69,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Command::Mu(arguments) => mu::run(&arguments),
         #[cfg(feature = "study")]
         Command::Stress(arguments) => stress::run(&arguments),
+        #[cfg(feature = "study")]
+        Command::Study(arguments) => study::run(&arguments, simulate),
     };
     match done {
         Ok(()) => 0,

@@ -5,7 +5,7 @@
 //! sides are at right angles, but the axis need not be of length 1.
 
 use super::rectangle::Rectangle;
-use super::{Vector, left_of};
+use super::{Vector, cross, left_of};
 use crate::braking::double_double::{two_product, two_sum};
 
 /// Rounding of the f64 form errs by less than this part of the largest term: some twenty operations, each by 2⁻⁵³.
@@ -14,24 +14,30 @@ const ROUNDING: f64 = 32.0 * f64::EPSILON;
 const TERMS: usize = 40;
 
 /// Whether two rectangles share a point; touching counts.
+///
+/// All four axes need no more than the products of the two rectangles' own axes: across one's side the other reaches
+/// as far as along it, with sine and cosine exchanged.
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
-    let (across_a, across_b) = (left_of(&a.axis), left_of(&b.axis));
-    [a.axis, across_a, b.axis, across_b].iter().all(|axis| meet_along(a, b, axis))
-}
-
-/// Whether the projections on an axis share a point.
-fn meet_along(a: &Rectangle, b: &Rectangle, axis: &Vector) -> bool {
-    let between = (b.centre - a.centre).dot(axis).abs();
-    let reach = |rectangle: &Rectangle| {
-        rectangle.axis.dot(axis).abs() * rectangle.half_length
-            + left_of(&rectangle.axis).dot(axis).abs() * rectangle.half_width
-    };
-    let room = between - reach(a) - reach(b);
-    // The difference of the centres rounds as well, relative to itself: it is part of `between`.
-    let parts = (b.centre - a.centre).abs().dot(&axis.abs());
+    let between = b.centre - a.centre;
+    let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
+    let (square_a, square_b) = (a.axis.norm_squared(), b.axis.norm_squared());
+    let (along_a, across_a) = (between.dot(&a.axis).abs(), cross(&a.axis, &between).abs());
+    let (along_b, across_b) = (between.dot(&b.axis).abs(), cross(&b.axis, &between).abs());
+    let room = [
+        along_a - (a.half_length * square_a + b.half_length * cosine + b.half_width * sine),
+        across_a - (a.half_width * square_a + b.half_length * sine + b.half_width * cosine),
+        along_b - (b.half_length * square_b + a.half_length * cosine + a.half_width * sine),
+        across_b - (b.half_width * square_b + a.half_length * sine + a.half_width * cosine),
+    ];
+    // The difference of the centres rounds as well, relative to itself.
     let sizes = a.half_length + a.half_width + b.half_length + b.half_width;
-    let bound = ROUNDING * (parts + 2.0 * sizes);
-    if room.abs() > bound { room < 0.0 } else { meet_along_exactly(a, b, axis) }
+    let bound = ROUNDING * (between.x.abs() + between.y.abs() + 2.0 * sizes) * square_a.max(square_b).max(1.0);
+    let widest = room[0].max(room[1]).max(room[2].max(room[3]));
+    if widest.abs() > bound {
+        return widest < 0.0;
+    }
+    let axes = [a.axis, left_of(&a.axis), b.axis, left_of(&b.axis)];
+    axes.iter().zip(room).all(|(axis, room)| room < -bound || meet_along_exactly(a, b, axis))
 }
 
 fn meet_along_exactly(a: &Rectangle, b: &Rectangle, axis: &Vector) -> bool {

@@ -4,6 +4,7 @@
 pub mod braking;
 pub mod chance;
 pub mod contact;
+pub mod pairs;
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;

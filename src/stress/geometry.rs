@@ -4,10 +4,11 @@ use super::tally::{Property, Tally, Unit};
 use super::{Case, Group, scene};
 use crate::frame::{Frame, SUMO_INVALID, State, UserIndex};
 use crate::geometry::rectangle::{Rectangle, distance, touches};
-use crate::geometry::{Point, Vector, left_of};
+use crate::geometry::{Point, Vector};
 use crate::path::rotated;
 use crate::reference::chance::Chance;
 use crate::reference::contact as reference;
+use crate::reference::pairs::{self, against, beside, car};
 use crate::units::Metre;
 
 const DECIDED: Property = Property::always("contact as in exact arithmetic");
@@ -24,56 +25,42 @@ const CLOSER: Property = Property::always("a foe that is closer leaves less gap"
 
 pub(super) const CASES: &[Case] = &[
     Case::new(Group::Geometry, "random", |chance, tally| {
-        let place = |chance: &mut Chance| Point::new(chance.between(0.0, 12.0), chance.between(0.0, 12.0));
-        let a = Rectangle::new(place(chance), chance.angle(), 5.0, 1.8);
-        let b = Rectangle::new(place(chance), chance.angle(), chance.between(1.0, 12.0), 2.5);
-        check(chance, a, b, tally);
+        let pair = pairs::random(chance);
+        check(chance, pair, tally);
     }),
     Case::new(Group::Geometry, "touching to the last place", |chance, tally| {
-        let (a, turn) = (car(chance), chance.angle());
-        let b = beside(chance, &a, turn);
-        check(chance, a, b, tally);
+        let pair = pairs::touching(chance);
+        check(chance, pair, tally);
     }),
     Case::new(Group::Geometry, "nearly parallel", |chance, tally| {
-        let a = car(chance);
-        let turn = chance.pick(&[0.0, 1e-16, 1e-12, 1e-8]);
-        let b = beside(chance, &a, turn);
-        check(chance, a, b, tally);
+        let pair = pairs::nearly_parallel(chance);
+        check(chance, pair, tally);
     }),
     Case::new(Group::Geometry, "identical", |chance, tally| {
         let a = car(chance);
-        check(chance, a, a, tally);
+        check(chance, (a, a), tally);
     }),
     Case::new(Group::Geometry, "nested", |chance, tally| {
-        let a = car(chance);
-        let share = chance.magnitude(1e-9, 1.0);
-        let b = Rectangle {
-            centre: a.centre + a.axis * a.half_length * (1.0 - share),
-            half_length: a.half_length * share,
-            half_width: a.half_width * share,
-            ..a
-        };
-        check(chance, a, b, tally);
+        let pair = pairs::nested(chance);
+        check(chance, pair, tally);
     }),
     Case::new(Group::Geometry, "cross without a corner inside", |chance, tally| {
-        let a = Rectangle { half_length: 50.0, ..car(chance) };
-        let axis = rotated(&left_of(&a.axis), chance.between(-0.5, 0.5));
-        let b = Rectangle { axis, centre: a.centre + a.axis * chance.between(-60.0, 60.0), ..a };
-        check(chance, a, b, tally);
+        let pair = pairs::cross(chance);
+        check(chance, pair, tally);
     }),
     Case::new(Group::Geometry, "no width or no length", |chance, tally| {
         let a = flat(chance);
         let turn = chance.angle();
         let b = Rectangle { axis: rotated(&a.axis, turn), ..flat(chance) };
         let b = against(chance, &a, b);
-        check(chance, a, b, tally);
+        check(chance, (a, b), tally);
     }),
     Case::new(Group::Geometry, "1 mm beside 100 m", |chance, tally| {
         let a = Rectangle { half_length: 50.0, ..car(chance) };
         let axis = rotated(&a.axis, chance.angle());
         let b = Rectangle { axis, half_length: 5e-4, half_width: 5e-4, ..a };
         let b = against(chance, &a, b);
-        check(chance, a, b, tally);
+        check(chance, (a, b), tally);
     }),
     Case::new(Group::Geometry, "far from the origin", |chance, tally| {
         let utm = Vector::new(chance.pick(&[3.6e5, 6.9e5, 1e7, -1e7]), chance.pick(&[5.3e6, 5.8e6, 1e7, -1e7]));
@@ -81,7 +68,7 @@ pub(super) const CASES: &[Case] = &[
         let a = Rectangle { centre: a.centre + utm, ..a };
         let turn = chance.angle();
         let b = beside(chance, &a, turn);
-        check(chance, a, b, tally);
+        check(chance, (a, b), tally);
     }),
     Case::new(Group::Geometry, "no place, no number", |chance, tally| {
         let mut values = [chance.between(-1e7, 1e7), 3.0, 0.0, chance.angle(), chance.between(0.0, 300.0)];
@@ -107,11 +94,6 @@ pub(super) const CASES: &[Case] = &[
     .costing(4),
 ];
 
-fn car(chance: &mut Chance) -> Rectangle {
-    let place = Point::new(chance.between(-100.0, 100.0), chance.between(-100.0, 100.0));
-    Rectangle::new(place, chance.angle(), chance.between(0.5, 20.0), chance.between(0.3, 3.0))
-}
-
 fn flat(chance: &mut Chance) -> Rectangle {
     let all = car(chance);
     match chance.below(3) {
@@ -121,24 +103,8 @@ fn flat(chance: &mut Chance) -> Rectangle {
     }
 }
 
-/// One of the same size, turned, that touches the first with a corner but for some units in the last place.
-fn beside(chance: &mut Chance, a: &Rectangle, turn: f64) -> Rectangle {
-    let axis = rotated(&a.axis, turn);
-    against(chance, a, Rectangle { axis, ..*a })
-}
-
-/// The second moved to where it touches the first's front, but for some units in the last place.
-fn against(chance: &mut Chance, a: &Rectangle, b: Rectangle) -> Rectangle {
-    let reach =
-        a.half_length + b.half_length * a.axis.dot(&b.axis).abs() + b.half_width * a.axis.dot(&left_of(&b.axis)).abs();
-    let aside = a.half_width * chance.between(-1.0, 1.0);
-    let centre = a.centre + a.axis * reach + left_of(&a.axis) * aside;
-    let nudge = |chance: &mut Chance, value: f64| value + value.abs() * f64::EPSILON * f64::from(chance.around(4));
-    Rectangle { centre: Point::new(nudge(chance, centre.x), nudge(chance, centre.y)), ..b }
-}
-
-fn check(chance: &mut Chance, a: Rectangle, b: Rectangle, tally: &mut Tally) {
-    let inputs = (a, b);
+fn check(chance: &mut Chance, inputs: (Rectangle, Rectangle), tally: &mut Tally) {
+    let (a, b) = inputs;
     let (touching, apart) = (touches(&a, &b), distance(&a, &b));
     tally.holds(DECIDED, touching == reference::touches(&a, &b), &inputs);
     tally.holds(EXCHANGED, touching == touches(&b, &a), &inputs);

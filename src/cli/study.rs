@@ -1,0 +1,86 @@
+//! `closecall study`: error against run time, axis by axis.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::run::{RunRequest, Simulate};
+use crate::Result;
+use crate::options::Options;
+use crate::study::{self, Axis, Plan};
+use crate::units::Second;
+
+/// What to measure, and where to write it.
+#[derive(Args)]
+pub struct StudyArgs {
+    /// Folder for study.csv, study.md and the charts.
+    #[arg(long, value_name = "DIR", default_value = "closecall-study")]
+    out: PathBuf,
+    /// Fewer items and repetitions: under two minutes.
+    #[arg(long)]
+    quick: bool,
+    /// Only this axis.
+    #[arg(long, value_enum, value_name = "AXIS")]
+    only: Option<Axis>,
+    /// Folder of the scenarios that the path axis runs.
+    #[arg(long, value_name = "DIR", default_value = "sumo_nets")]
+    nets: PathBuf,
+}
+
+/// Measures and writes; each axis is written as soon as it is measured.
+pub fn run(arguments: &StudyArgs, simulate: Option<&mut Simulate>) -> Result<()> {
+    let plan = Plan { quick: arguments.quick, nets: arguments.nets.clone() };
+    let (mut rows, mut simulate) = (Vec::new(), simulate);
+    for axis in Axis::ALL.into_iter().filter(|axis| arguments.only.is_none_or(|only| only == *axis)) {
+        eprintln!("{} …", axis.name());
+        let measured = match &mut simulate {
+            Some(simulate) => {
+                let mut record = |scenario: &Path, recording: &Path, end: Second| {
+                    simulate(&recorded(scenario, recording, end)).map(|_| ())
+                };
+                study::measure(axis, &plan, Some(&mut record))?
+            }
+            None if axis == Axis::Path && arguments.only.is_none() => {
+                eprintln!("left out: this binary was built without Python and cannot run SUMO");
+                continue;
+            }
+            None => study::measure(axis, &plan, None)?,
+        };
+        rows.extend(measured);
+        study::write(&arguments.out, &rows)?;
+    }
+    println!("{} rows in {}", rows.len(), arguments.out.join("study.csv").display());
+    let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);
+    for row in off {
+        println!("off the Pareto front: {} {} ({})", row.axis.name(), row.method, row.parameter);
+    }
+    Ok(())
+}
+
+/// A run of a scenario whose every step goes to an fcd-output.
+fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
+    let words = [
+        "-c",
+        &scenario.display().to_string(),
+        "--end",
+        &end.to_string(),
+        "--step-length",
+        "0.1",
+        "--fcd-output",
+        &recording.display().to_string(),
+        "--fcd-output.attributes",
+        "all",
+        "--precision",
+        "9",
+        "--no-warnings",
+    ];
+    RunRequest {
+        scenario: scenario.to_owned(),
+        gui: false,
+        out: recording.with_extension("log"),
+        end: Some(end),
+        quiet: true,
+        options: Options::default(),
+        sumo_words: words.map(str::to_owned).to_vec(),
+    }
+}

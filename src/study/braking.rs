@@ -1,0 +1,175 @@
+//! μ by its three models in closed form, and by integrating the braking equations step by step.
+
+use std::hint::black_box;
+
+use super::clock::{Timed, interleaved};
+use super::{Axis, Measurement, Plan};
+use crate::braking::{Brakes, Braking, MuModel, mu};
+use crate::reference::chance::Chance;
+use crate::reference::{braking, deviation};
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+
+const DEFAULT: &str = "minimal";
+/// σ of the three kinds.
+const SCENES: [(&str, f64); 3] = [("rear-end", 1.0), ("side, 60 degrees", 0.5), ("frontal", -1.0)];
+const STEPS: [Second; 4] = [1e-1, 1e-2, 1e-3, 1e-4];
+/// A μ that errs by more than this is too short or too long, in m.
+const NOTICED: Metre = 1e-3;
+
+struct Pair {
+    speeds: [MetrePerSecond; 2],
+    brakes: [Brakes; 2],
+}
+
+impl Pair {
+    fn draw(chance: &mut Chance) -> Self {
+        let ego = Brakes {
+            response: chance.between(0.5, 1.5),
+            build_up: chance.between(0.0, 0.5),
+            deceleration: chance.between(3.0, 9.0),
+        };
+        let foe = Brakes { deceleration: chance.between(3.0, 9.0), ..ego };
+        Self { speeds: [chance.between(0.0, 50.0), chance.between(0.0, 50.0)], brakes: [ego, foe] }
+    }
+
+    fn braking(&self) -> [Braking<'_>; 2] {
+        [0, 1].map(|who| Braking { speed: self.speeds[who], brakes: &self.brakes[who] })
+    }
+}
+
+/// How to integrate.
+#[derive(Clone, Copy, PartialEq)]
+enum Scheme {
+    Euler,
+    RungeKutta,
+}
+
+/// What is compared.
+#[derive(Clone, Copy)]
+enum Method {
+    Closed(MuModel),
+    Integrated(Scheme, Second),
+}
+
+impl Method {
+    fn mu(self, pair: &Pair, sigma: f64) -> Metre {
+        let [ego, foe] = pair.braking();
+        match self {
+            Self::Closed(model) => mu(model, ego, foe, sigma, 0.0),
+            Self::Integrated(scheme, step) => integrated(scheme, step, ego, foe, sigma),
+        }
+    }
+}
+
+/// The largest travel_ego − σ travel_foe at any of the steps.
+fn integrated(scheme: Scheme, step: Second, ego: Braking, foe: Braking, sigma: f64) -> Metre {
+    let foe_brakes = if sigma > 0.0 { foe.brakes.at_once() } else { *foe.brakes };
+    let (mut own, mut other) = ((0.0, ego.speed), (0.0, foe.speed));
+    let (mut most, mut steps) = (0.0, 0_u32);
+    while own.1 > 0.0 || other.1 > 0.0 {
+        let time = f64::from(steps) * step;
+        own = advance(scheme, own, time, step, ego.brakes);
+        other = advance(scheme, other, time, step, &foe_brakes);
+        most = f64::max(most, own.0 - sigma * other.0);
+        steps += 1;
+    }
+    most
+}
+
+/// (way, speed) after a step of x' = v, v' = −a(t), as long as v > 0.
+fn advance(
+    scheme: Scheme,
+    (way, speed): (Metre, MetrePerSecond),
+    time: Second,
+    step: Second,
+    brakes: &Brakes,
+) -> (Metre, MetrePerSecond) {
+    if speed <= 0.0 {
+        return (way, 0.0);
+    }
+    let brake = |time| deceleration(brakes, time);
+    match scheme {
+        Scheme::Euler => (way + speed * step, (speed - brake(time) * step).max(0.0)),
+        Scheme::RungeKutta => {
+            // The four slopes of v depend on the time alone; those of x are the speeds that they lead to.
+            let [start, middle, end] = [0.0, 0.5, 1.0].map(|part| brake(time + part * step));
+            let second = speed - start * step / 2.0;
+            let third = speed - middle * step / 2.0;
+            let fourth = speed - middle * step;
+            let slope = [speed, 2.0 * second, 2.0 * third, fourth].map(|speed| speed.max(0.0));
+            let after = speed - (start + 4.0 * middle + end) * step / 6.0;
+            (way + slope.iter().sum::<f64>() * step / 6.0, after.max(0.0))
+        }
+    }
+}
+
+fn deceleration(brakes: &Brakes, time: Second) -> MetrePerSecondSquared {
+    let since = time - brakes.response;
+    if since < 0.0 {
+        0.0
+    } else if since < brakes.build_up {
+        brakes.deceleration * since / brakes.build_up
+    } else {
+        brakes.deceleration
+    }
+}
+
+pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
+    let (count, rounds) = if plan.quick { (50, 3) } else { (1_000, 5) };
+    let models = [(DEFAULT, MuModel::Minimal), ("at_rest", MuModel::AtRest), ("paper", MuModel::Paper)];
+    let mut methods =
+        models.map(|(name, model)| (name, String::new(), Method::Closed(model))).into_iter().collect::<Vec<_>>();
+    for (name, scheme) in [("Euler", Scheme::Euler), ("RK4", Scheme::RungeKutta)] {
+        methods.extend(STEPS.map(|step| (name, format!(", step {step} s"), Method::Integrated(scheme, step))));
+    }
+    let mut rows = Vec::new();
+    for (scene, sigma) in SCENES {
+        let mut chance = Chance::new(1);
+        let pairs = (0..count).map(|_| Pair::draw(&mut chance)).collect::<Vec<_>>();
+        let truth = pairs.iter().map(|pair| {
+            let [ego, foe] = pair.braking();
+            braking::mu(MuModel::Minimal, &ego, &foe, sigma, 0.0)
+        });
+        let truth = truth.collect::<Vec<_>>();
+        let mut timed = methods
+            .iter()
+            .map(|(_, _, method)| {
+                // A closed form is done before the clock has ticked: it works through all pairs again and again.
+                let again = if matches!(method, Method::Closed(_)) { 200 } else { 1 };
+                Timed::new(count * again, || {
+                    for pair in std::iter::repeat_n(&pairs, again).flatten() {
+                        black_box(method.mu(black_box(pair), sigma));
+                    }
+                })
+            })
+            .collect::<Vec<_>>();
+        let times = interleaved(&mut timed, rounds);
+        drop(timed);
+        for ((name, parameter, method), ns_per_item) in methods.iter().zip(times) {
+            let (mut worst, mut short, mut long) = (0.0, 0, 0);
+            for (pair, truth) in pairs.iter().zip(&truth) {
+                let found = method.mu(pair, sigma);
+                let off = deviation(found, truth).absolute;
+                worst = f64::max(worst, off);
+                if off > NOTICED {
+                    *(if found < crate::reference::nearest(truth) { &mut short } else { &mut long }) += 1;
+                }
+            }
+            rows.push(Measurement {
+                axis: Axis::Braking,
+                method: name,
+                parameter: format!("{scene}{parameter}"),
+                error_name: "largest error of mu, m",
+                error: worst,
+                false_negative_rate: f64::from(short) / count as f64,
+                false_positive_rate: f64::from(long) / count as f64,
+                ns_per_item,
+                items: count,
+                on_pareto_front: false,
+                scene: scene.to_owned(),
+                default: *name == DEFAULT,
+            });
+        }
+    }
+    rows
+}

@@ -1,0 +1,235 @@
+//! The charts of a study: error over run time, both logarithmic, one panel per set of items. SVG and PNG alike.
+
+use std::ops::Range;
+use std::path::Path;
+
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::{FontStyle, register_font};
+
+use super::{Axis, Measurement, scenes};
+use crate::{Error, Result};
+
+const FONT: &str = "sans-serif";
+/// The few letters that charts need of DejaVu Sans: nothing has to be installed.
+const LETTERS: &[u8] = include_bytes!("fonts/DejaVuSans-subset.ttf");
+
+/// Colours that the colour-blind can tell apart (Okabe and Ito 2008).
+const COLOURS: [RGBColor; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(230, 159, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(213, 94, 0),
+    RGBColor(110, 110, 110),
+    RGBColor(0, 0, 0),
+];
+const PANEL: (u32, u32) = (360, 280);
+const LEGEND: u32 = 84;
+const MOST_COLUMNS: usize = 3;
+
+type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
+
+/// Draws one axis as `<axis>.svg` and `<axis>.png`.
+pub(super) fn draw(folder: &Path, axis: Axis, rows: &[Measurement]) -> Result<()> {
+    // A second registration changes nothing, and the font is a valid one: a test draws with it.
+    let _ = register_font(FONT, FontStyle::Normal, LETTERS);
+    let panels = panels(axis, rows);
+    let columns = panels.len().clamp(1, MOST_COLUMNS);
+    let lines = panels.len().div_ceil(columns) as u32;
+    let size = (PANEL.0 * columns as u32, PANEL.1 * lines + LEGEND);
+    for ending in ["svg", "png"] {
+        let path = folder.join(format!("{}.{ending}", axis.name()));
+        let drawn = if ending == "svg" {
+            page(SVGBackend::new(&path, size).into_drawing_area(), axis, &panels, columns, rows)
+        } else {
+            page(BitMapBackend::new(&path, size).into_drawing_area(), axis, &panels, columns, rows)
+        };
+        drawn.map_err(|error| Error::content(&path, error.to_string()))?;
+    }
+    Ok(())
+}
+
+/// One panel: a title and its points.
+struct Panel<'a> {
+    title: String,
+    across: &'static str,
+    up: &'static str,
+    rows: Vec<Point<'a>>,
+}
+
+struct Point<'a> {
+    x: f64,
+    y: f64,
+    row: &'a Measurement,
+}
+
+/// Error over run time for every scene. All candidate searches are exact: there it is run time over road users.
+fn panels(axis: Axis, rows: &[Measurement]) -> Vec<Panel<'_>> {
+    if axis == Axis::Candidates {
+        let mut kinds = scenes(rows).iter().filter_map(|scene| scene.split(", ").next()).collect::<Vec<_>>();
+        kinds.dedup();
+        let of = |kind: &str| {
+            let same = rows.iter().filter(|row| row.scene.starts_with(kind));
+            let rows = same.map(|row| Point { x: row.items as f64, y: row.ns_per_item, row }).collect();
+            Panel { title: kind.to_owned(), across: "road users", up: "ns per road user", rows }
+        };
+        return kinds.into_iter().map(of).collect();
+    }
+    let of = |scene: &&str| {
+        let same = rows.iter().filter(|row| row.scene == *scene);
+        let rows = same.map(|row| Point { x: row.ns_per_item, y: row.error, row }).collect::<Vec<_>>();
+        let up = rows.first().map_or("", |point| point.row.error_name);
+        Panel { title: (*scene).to_owned(), across: "ns per item", up, rows }
+    };
+    scenes(rows).iter().map(of).collect()
+}
+
+fn methods(rows: &[Measurement]) -> Vec<&'static str> {
+    let mut methods = Vec::new();
+    for row in rows {
+        if !methods.contains(&row.method) {
+            methods.push(row.method);
+        }
+    }
+    methods
+}
+
+fn page<DB: DrawingBackend>(
+    area: DrawingArea<DB, Shift>,
+    axis: Axis,
+    panels: &[Panel],
+    columns: usize,
+    rows: &[Measurement],
+) -> Drawn<()>
+where
+    DB::ErrorType: 'static,
+{
+    area.fill(&WHITE)?;
+    let methods = methods(rows);
+    let height = area.dim_in_pixel().1 - LEGEND;
+    let (charts, legend) = area.split_vertically(height);
+    for (panel, place) in panels.iter().zip(charts.split_evenly((panels.len().div_ceil(columns), columns))) {
+        draw_panel(&place, axis, panel, &methods)?;
+    }
+    draw_legend(&legend, axis, &methods)?;
+    area.present()?;
+    Ok(())
+}
+
+fn draw_panel<DB: DrawingBackend>(
+    area: &DrawingArea<DB, Shift>,
+    axis: Axis,
+    panel: &Panel,
+    methods: &[&str],
+) -> Drawn<()>
+where
+    DB::ErrorType: 'static,
+{
+    let floor = floor(panel);
+    let height = |point: &Point| if point.y > 0.0 { point.y } else { floor };
+    let across = decades(panel.rows.iter().map(|point| point.x));
+    let up = decades(panel.rows.iter().map(height));
+    let mut chart = ChartBuilder::on(area)
+        .margin(8)
+        .caption(&panel.title, (FONT, 15))
+        .x_label_area_size(34)
+        .y_label_area_size(58)
+        .build_cartesian_2d(across.log_scale(), up.log_scale())?;
+    let label = |value: &f64| match value / floor {
+        part if part < 0.99 => String::new(),
+        part if part < 1.01 => "0".to_owned(),
+        _ => power_of_ten(*value),
+    };
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(RGBColor(230, 230, 230))
+        .x_desc(panel.across)
+        .y_desc(panel.up)
+        .x_label_formatter(&|value| power_of_ten(*value))
+        .y_label_formatter(&label)
+        .label_style((FONT, 11))
+        .axis_desc_style((FONT, 12))
+        .draw()?;
+    if axis != Axis::Candidates {
+        let mut front = panel.rows.iter().filter(|point| point.row.on_pareto_front).collect::<Vec<_>>();
+        front.sort_by(|a, b| a.x.total_cmp(&b.x));
+        let steps = front.iter().enumerate().flat_map(|(index, point)| {
+            let corner = front.get(index + 1).map(|next| (next.x, height(point)));
+            [Some((point.x, height(point))), corner].into_iter().flatten()
+        });
+        chart.draw_series(LineSeries::new(steps, RGBColor(170, 170, 170).stroke_width(2)))?;
+    }
+    for (index, method) in methods.iter().enumerate() {
+        let colour = COLOURS[index % COLOURS.len()];
+        let points = panel.rows.iter().filter(|point| point.row.method == *method).collect::<Vec<_>>();
+        chart.draw_series(LineSeries::new(points.iter().map(|point| (point.x, height(point))), colour.mix(0.6)))?;
+        for point in points {
+            let place = (point.x, height(point));
+            chart.draw_series([Circle::new(place, 4, colour.filled())])?;
+            if point.row.default {
+                chart.draw_series([Circle::new(place, 7, BLACK.stroke_width(1))])?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn draw_legend<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, axis: Axis, methods: &[&str]) -> Drawn<()>
+where
+    DB::ErrorType: 'static,
+{
+    let width = area.dim_in_pixel().0 as i32;
+    let per_line = (width / 190).max(1);
+    for (index, method) in methods.iter().enumerate() {
+        let (column, line) = (index as i32 % per_line, index as i32 / per_line);
+        let place = (16 + column * 190, 14 + line * 20);
+        area.draw(&Circle::new(place, 4, COLOURS[index % COLOURS.len()].filled()))?;
+        area.draw(&Text::new((*method).to_owned(), (place.0 + 12, place.1 - 7), (FONT, 13)))?;
+    }
+    let lines = (methods.len() as i32).div_euclid(per_line) + 1;
+    let place = (16, 14 + lines * 20);
+    area.draw(&Circle::new(place, 7, BLACK.stroke_width(1)))?;
+    let note = match axis {
+        Axis::Candidates => "what closecall does; no method loses a pair",
+        _ => "what closecall does; grey: the Pareto front; left and below is better",
+    };
+    area.draw(&Text::new(note, (place.0 + 12, place.1 - 7), (FONT, 13)))?;
+    Ok(())
+}
+
+/// Where no error at all is drawn: a decade below the smallest.
+fn floor(panel: &Panel) -> f64 {
+    let errors = panel.rows.iter().map(|point| point.y).filter(|error| *error > 0.0);
+    let least = errors.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { 10_f64.powf(least.log10().floor() - 1.0) } else { 1e-3 }
+}
+
+/// Whole decades around these values.
+fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values {
+        low = low.min(value.log10());
+        high = high.max(value.log10());
+    }
+    if !low.is_finite() || !high.is_finite() {
+        return 0.1..10.0;
+    }
+    10_f64.powf((low - 0.1).floor())..10_f64.powf((high + 0.1).ceil().max(low.floor() + 1.0))
+}
+
+fn power_of_ten(value: f64) -> String {
+    let power = value.log10();
+    match power.round() as i32 {
+        _ if (power - power.round()).abs() > 1e-6 => String::new(),
+        0 => "1".to_owned(),
+        1 => "10".to_owned(),
+        power => {
+            let digits = power.abs().to_string();
+            let raised = digits.chars().filter_map(|digit| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().nth(digit.to_digit(10)? as usize));
+            format!("10{}{}", if power < 0 { "⁻" } else { "" }, raised.collect::<String>())
+        }
+    }
+}

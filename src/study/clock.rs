@@ -1,0 +1,43 @@
+//! Run times of several methods, taken in turns so that what slows the machine down slows all of them.
+
+use std::time::Instant;
+
+/// A method to be timed: it works through all its items once.
+pub(super) struct Timed<'a> {
+    pub items: usize,
+    pub action: Box<dyn FnMut() + 'a>,
+}
+
+impl<'a> Timed<'a> {
+    pub fn new(items: usize, action: impl FnMut() + 'a) -> Self {
+        Self { items, action: Box::new(action) }
+    }
+}
+
+/// The median time per item of each method in ns, over so many rounds in which each has its turn.
+pub(super) fn interleaved(methods: &mut [Timed], rounds: usize) -> Vec<f64> {
+    let mut times = vec![Vec::with_capacity(rounds); methods.len()];
+    for _ in 0..rounds {
+        for (method, times) in methods.iter_mut().zip(&mut times) {
+            let started = Instant::now();
+            (method.action)();
+            times.push(started.elapsed().as_secs_f64() * 1e9 / method.items.max(1) as f64);
+        }
+    }
+    times.iter_mut().map(|times| median(times)).collect()
+}
+
+/// The middle one; NaN of none.
+pub(super) fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+/// The machine's name: its processor and how many threads it runs.
+pub fn machine() -> String {
+    let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = information.lines().find(|line| line.starts_with("model name"));
+    let model = model.and_then(|line| line.split_once(':')).map_or("unknown processor", |(_, name)| name.trim());
+    format!("{model}, {threads} threads, {}", std::env::consts::OS)
+}

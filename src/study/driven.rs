@@ -1,0 +1,189 @@
+//! Where the vehicles of a recording really drove, and which pairs were in conflict on those ways.
+//!
+//! Phase 2 is closecall's own; its poses are those that followed in the recording, so that what differs from a path
+//! model's result is the path model's doing.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+
+use crate::Result;
+use crate::accurate::{self, Meeting, Mover, side};
+use crate::braking::{MuModel, stopping_distance};
+use crate::frame::{Frame, Roster, State, UserIndex};
+use crate::geometry::rectangle::{Rectangle, direction};
+use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::{Bounds, Point, Vector, cross};
+use crate::options::Options;
+use crate::path::Pose;
+use crate::precollision::{Circle, Search};
+use crate::replay::recording::{Recording, Step};
+use crate::units::{Metre, Second};
+
+/// Two within this of the limit are left aside: steps and sizes are rounded in a recording.
+const NEAR: Metre = 0.75;
+/// Who moves further to the side than this in one step was moved, not driven.
+const SIDEWAYS: Metre = 0.3;
+/// Two positions nearer than this are one: a vehicle that stands.
+const STANDS: Metre = 1e-3;
+
+/// Everybody's front-bumper centre and heading, step by step.
+pub(super) struct Driven {
+    traces: FxHashMap<String, Vec<(Second, Point, Vector)>>,
+}
+
+/// What really was of a pair in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Truth {
+    /// In conflict, with this gap.
+    Conflict(Metre),
+    /// Not in conflict.
+    None,
+    /// Not known: one left, stood, was moved to the side, or it is a matter of centimetres.
+    Aside,
+}
+
+/// Both ids, the smaller first.
+pub(super) type Pair = (Arc<str>, Arc<str>);
+
+/// The pair of two road users.
+pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> Pair {
+    let (a, b) = (roster.user(a).id.clone(), roster.user(b).id.clone());
+    if a <= b { (a, b) } else { (b, a) }
+}
+
+impl Driven {
+    /// Reads a recording.
+    pub fn read(path: &Path) -> Result<Self> {
+        let (mut recording, mut step) = (Recording::open(path)?, Step::default());
+        let mut traces: FxHashMap<String, Vec<_>> = FxHashMap::default();
+        while recording.next_step(&mut step)? {
+            for row in step.rows() {
+                let axis = direction((90.0 - row.angle).to_radians());
+                let place = (step.time, Point::new(row.x, row.y), axis);
+                match traces.get_mut(&row.id) {
+                    Some(trace) => trace.push(place),
+                    None => _ = traces.insert(row.id.clone(), vec![place]),
+                }
+            }
+        }
+        Ok(Self { traces })
+    }
+
+    /// What really was of all pairs of a step that are near each other.
+    pub fn truth(&self, frame: &Frame, roster: &Roster, options: &Options) -> FxHashMap<Pair, Truth> {
+        let stops = frame.users().iter().zip(frame.states()).map(|(user, state)| {
+            if state.speed > 0.0 { stopping_distance(state.speed, &roster.profile_of(*user).brakes) } else { 0.0 }
+        });
+        let stops = stops.collect::<Vec<_>>();
+        let circles = frame.users().iter().zip(frame.states()).zip(&stops).map(|((user, state), stop)| {
+            let profile = roster.profile_of(*user);
+            Circle { x: state.x, y: state.y, radius: stop + profile.length + profile.width + options.epsilon }
+        });
+        let mut pairs = Vec::new();
+        Search::default().pairs(&circles.collect::<Vec<_>>(), &mut pairs);
+        let ways = (0..frame.len()).map(|row| {
+            let profile = roster.profile_of(frame.users()[row]);
+            let beyond = profile.length + profile.width + 30.0;
+            let reach = [stops[row], stops[row] + options.epsilon, stops[row] + options.epsilon + beyond];
+            self.ahead(&roster.user(frame.users()[row]).id, frame.time, &reach)
+        });
+        let ways = ways.collect::<Vec<_>>();
+        let judged = pairs.into_iter().filter(|(a, b)| {
+            let speed = |row: &u32| frame.states()[*row as usize].speed;
+            speed(a) > 0.0 || speed(b) > 0.0
+        });
+        let judge = |(a, b): (u32, u32)| {
+            let (a, b) = (a as usize, b as usize);
+            let truth = match (&ways[a], &ways[b]) {
+                (Some(a_ways), Some(b_ways)) => {
+                    let mover = |row: usize, ways| Way::of(frame, roster, row, stops[row], options.epsilon, ways);
+                    judge(&mover(a, a_ways), &mover(b, b_ways), options)
+                }
+                _ => Truth::Aside,
+            };
+            (pair(roster, frame.users()[a], frame.users()[b]), truth)
+        };
+        judged.map(judge).collect()
+    }
+
+    /// The poses that followed on a time: where these ways end (the last one may not be reached) and at every step;
+    /// none where the second is not reached, or somebody was moved to the side.
+    fn ahead(&self, id: &str, time: Second, ways: &[Metre; 3]) -> Option<Vec<Pose>> {
+        let trace = self.traces.get(id)?;
+        let start = trace.partition_point(|(at, ..)| *at < time - 1e-6);
+        let (_, front, axis) = *trace.get(start)?;
+        let mut poses = vec![Pose { way: 0.0, front, axis }];
+        for (_, front, axis) in &trace[start + 1..] {
+            let last = poses[poses.len() - 1];
+            let moved = front - last.front;
+            let length = moved.norm();
+            if length < STANDS {
+                continue;
+            }
+            if cross(&last.axis, &moved).abs() > SIDEWAYS + 0.5 * length {
+                return None;
+            }
+            let way = last.way + length;
+            for asked in ways.iter().filter(|asked| last.way < **asked && **asked < way) {
+                let part = (asked - last.way) / length;
+                let turned = (last.axis + (axis - last.axis) * part).normalize();
+                poses.push(Pose { way: *asked, front: last.front + moved * part, axis: turned });
+            }
+            poses.push(Pose { way, front: *front, axis: *axis });
+            if way > ways[2] {
+                break;
+            }
+        }
+        (poses[poses.len() - 1].way >= ways[1]).then_some(poses)
+    }
+}
+
+/// A road user on the way that it drove.
+struct Way<'a> {
+    mover: Mover<'a>,
+    /// Poses beyond where it would stand.
+    all: &'a [Pose],
+}
+
+impl<'a> Way<'a> {
+    fn of(frame: &Frame, roster: &'a Roster, row: usize, stop: Metre, epsilon: Metre, all: &'a [Pose]) -> Self {
+        let profile = roster.profile_of(frame.users()[row]);
+        let State { x, y, heading, speed, .. } = frame.states()[row];
+        let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
+        let end = all.partition_point(|pose| pose.way <= stop + epsilon);
+        let poses = &all[..end.max(1)];
+        let mut bounds = Bounds::EMPTY;
+        for pose in poses {
+            bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
+        }
+        let bounds = bounds.grown(TOLERANCE);
+        let mover =
+            Mover { rectangle, shape: &[], poses, straight: false, bounds, speed, brakes: &profile.brakes, stop };
+        Self { mover, all }
+    }
+}
+
+fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
+    if side::touch_now(&a.mover, &b.mover) {
+        return Truth::Conflict(0.0);
+    }
+    let (_, met) = accurate::meet(&a.mover, &b.mover, || true);
+    let Some((ego_is_a, meeting)) = met else { return Truth::None };
+    let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
+    let sigma = meeting.angle().cos();
+    let foe_way = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_way };
+    let gap = accurate::gap(meeting.ego_way, foe_way, sigma);
+    let margin = gap - accurate::mu(MuModel::Minimal, &ego.mover, &foe.mover, sigma, options.epsilon);
+    match margin {
+        _ if margin.abs() < NEAR => Truth::Aside,
+        _ if margin < 0.0 => Truth::Conflict(gap),
+        _ => Truth::None,
+    }
+}
+
+/// The foe's way until it has left the meeting place; a leader is there now.
+fn way_out(foe: &Way, meeting: &Meeting) -> Metre {
+    if meeting.foe_way <= 0.0 { 0.0 } else { side::departure(foe.all, &foe.mover, &meeting.ego, meeting.foe_way) }
+}

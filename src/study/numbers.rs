@@ -1,0 +1,94 @@
+//! Contact decided in f32 and f64, near and far from the origin, with and without a local one.
+
+use std::hint::black_box;
+
+use nalgebra::{RealField, Vector2, convert};
+
+use super::clock::{Timed, interleaved};
+use super::volume::rates;
+use super::{Axis, Measurement, Plan};
+use crate::geometry::Vector;
+use crate::geometry::rectangle::{Rectangle, touches};
+use crate::reference::chance::Chance;
+use crate::reference::{contact, pairs};
+
+type Pair = (Rectangle, Rectangle);
+type Method = (&'static str, fn(&Pair) -> bool);
+
+const DEFAULT: &str = "f64, exact where it is close";
+const METHODS: [Method; 5] = [
+    ("f32", |pair| separating_axes::<f32>(pair)),
+    ("f32, local origin", |pair| separating_axes::<f32>(&local(pair))),
+    ("f64", |pair| separating_axes::<f64>(pair)),
+    ("f64, local origin", |pair| separating_axes::<f64>(&local(pair))),
+    (DEFAULT, |(a, b)| touches(a, b)),
+];
+/// How far from the origin, in m: a small net, UTM's easting, its northing.
+const PLACES: [(&str, f64); 3] = [("at the origin", 0.0), ("at 1e5 m", 1e5), ("at 1e7 m", 1e7)];
+
+pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
+    let (count, rounds) = if plan.quick { (20_000, 15) } else { (200_000, 31) };
+    let mut rows = Vec::new();
+    for (scene, far) in PLACES {
+        let mut chance = Chance::new(1);
+        let pairs = (0..count).map(|_| pair(&mut chance, far)).collect::<Vec<_>>();
+        let truth = pairs.iter().map(|(a, b)| contact::touches(a, b)).collect::<Vec<_>>();
+        let mut timed = METHODS
+            .iter()
+            .map(|(_, method)| {
+                Timed::new(count, || pairs.iter().for_each(|pair| _ = black_box(method(black_box(pair)))))
+            })
+            .collect::<Vec<_>>();
+        let times = interleaved(&mut timed, rounds);
+        for ((name, method), ns_per_item) in METHODS.into_iter().zip(times) {
+            let found = pairs.iter().map(method).collect::<Vec<_>>();
+            let [missed, invented] = rates(&found, &truth);
+            let wrong = found.iter().zip(&truth).filter(|(found, truth)| found != truth).count();
+            rows.push(Measurement {
+                axis: Axis::Numbers,
+                method: name,
+                parameter: scene.to_owned(),
+                error_name: "share of wrong decisions",
+                error: wrong as f64 / count as f64,
+                false_negative_rate: missed,
+                false_positive_rate: invented,
+                ns_per_item,
+                items: count,
+                on_pareto_front: false,
+                scene: scene.to_owned(),
+                default: name == DEFAULT,
+            });
+        }
+    }
+    rows
+}
+
+/// Two that are apart, or overlap, by 1e-12 to 1 m, every order of magnitude alike.
+fn pair(chance: &mut Chance, far: f64) -> Pair {
+    let (a, b) = pairs::touching(chance);
+    let apart = a.axis * (chance.magnitude(1e-12, 1.0) * chance.pick(&[-1.0, 1.0]));
+    let by = Vector::new(far, far);
+    (Rectangle { centre: a.centre + by, ..a }, Rectangle { centre: b.centre + by + apart, ..b })
+}
+
+/// The same pair as seen from the first one's centre.
+fn local((a, b): &Pair) -> Pair {
+    let origin = a.centre.coords;
+    (Rectangle { centre: a.centre - origin, ..*a }, Rectangle { centre: b.centre - origin, ..*b })
+}
+
+/// Separating axes in any kind of number; the inputs are rounded to it.
+fn separating_axes<T: RealField + Copy>((a, b): &Pair) -> bool {
+    let number = convert::<f64, T>;
+    let vector = |vector: &Vector| Vector2::new(number(vector.x), number(vector.y));
+    let side = |axis: Vector2<T>| Vector2::new(-axis.y, axis.x);
+    let between = vector(&b.centre.coords) - vector(&a.centre.coords);
+    let (axis_a, axis_b) = (vector(&a.axis), vector(&b.axis));
+    let halves = [a, b].map(|r| (vector(&r.axis), number(r.half_length), number(r.half_width)));
+    [axis_a, side(axis_a), axis_b, side(axis_b)].iter().all(|axis| {
+        let reach = halves.iter().fold(number(0.0), |sum, (along, length, width)| {
+            sum + along.dot(axis).abs() * *length + side(*along).dot(axis).abs() * *width
+        });
+        between.dot(axis).abs() <= reach
+    })
+}

@@ -1,0 +1,168 @@
+//! Where a road user will go: the paper's rule and three path models, on recorded runs, against where it then went.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rustc_hash::FxHashMap;
+
+use super::clock::median;
+use super::driven::{Driven, Pair, Truth, pair};
+use super::{Axis, Measurement, Plan, Record};
+use crate::net::Net;
+use crate::options::{Mode, Options, PathModel};
+use crate::replay::Replay;
+use crate::run::Run;
+use crate::units::{Metre, Second};
+use crate::{Error, Result};
+
+const DEFAULT: &str = "lanes";
+const METHODS: [(&str, Mode, PathModel); 4] = [
+    ("paper", Mode::Paper, PathModel::Straight),
+    ("straight", Mode::Closecall, PathModel::Straight),
+    ("arc", Mode::Closecall, PathModel::Arc),
+    (DEFAULT, Mode::Closecall, PathModel::Lanes),
+];
+/// Scenarios with bends, crossings and opposite traffic; the first of them for a quick study.
+const NETS: [&str; 6] = ["curves", "priority", "left_turn", "roundabout", "signals", "overtaking"];
+/// Every so many steps of 0.1 s are compared: those between differ little.
+const EVERY: u64 = 10;
+/// Gaps that differ by less are the same: a recording has nine digits.
+const ROUNDING: Metre = 1e-6;
+
+pub(super) fn measure(plan: &Plan, record: &mut Record) -> Result<Vec<Measurement>> {
+    let (nets, end, rounds) = if plan.quick { (&NETS[..3], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
+    let scratch = std::env::temp_dir().join(format!("closecall-study-{}", std::process::id()));
+    std::fs::create_dir_all(&scratch).map_err(|source| Error::file(&scratch, source))?;
+    let measured = nets.iter().map(|net| {
+        let scene = Scene::record(plan, net, &scratch, end, record)?;
+        scene.measure(rounds)
+    });
+    let rows = measured.collect::<Result<Vec<_>>>();
+    // What is left of it does no harm.
+    let _ = std::fs::remove_dir_all(&scratch);
+    Ok(rows?.into_iter().flatten().collect())
+}
+
+/// A recorded run of a scenario.
+struct Scene {
+    name: &'static str,
+    recording: PathBuf,
+    types: Vec<PathBuf>,
+    net: Arc<Net>,
+    driven: Driven,
+}
+
+/// The gap of every pair in conflict, by step.
+type Found = Vec<FxHashMap<Pair, Metre>>;
+
+impl Scene {
+    fn record(plan: &Plan, name: &'static str, scratch: &Path, end: Second, record: &mut Record) -> Result<Self> {
+        let folder = plan.nets.join(name);
+        let recording = scratch.join(format!("{name}.fcd.xml"));
+        record(&folder.join(format!("{name}.sumocfg")), &recording, end)?;
+        let file = |ending: &str| folder.join(format!("{name}.{ending}"));
+        Ok(Self {
+            name,
+            types: vec![file("rou.xml")],
+            net: Arc::new(Net::read(&file("net.xml"))?),
+            driven: Driven::read(&recording)?,
+            recording,
+        })
+    }
+
+    fn measure(&self, rounds: usize) -> Result<Vec<Measurement>> {
+        let mut times = vec![Vec::new(); METHODS.len()];
+        let mut found = vec![Found::new(); METHODS.len()];
+        let (mut truth, mut items) = (Vec::new(), 0);
+        for round in 0..rounds {
+            for (index, (_, mode, path)) in METHODS.into_iter().enumerate() {
+                let options = Options { mode, path, ..Options::default() };
+                let started = Instant::now();
+                let mut replay = Replay::open(&self.recording, &self.types, &self.net, &options)?;
+                let mut run = Run::new(&options, Some(self.net.clone()))?;
+                run.routes_are_fixed();
+                let (mut rows, mut steps, mut aside) = (0, 0_u64, 0.0);
+                while replay.next(&mut run)?.is_some() {
+                    rows += run.frame.len();
+                    steps += 1;
+                    if round == 0 && steps.is_multiple_of(EVERY) {
+                        let paused = Instant::now();
+                        found[index].push(conflicts(&run));
+                        if index == 0 {
+                            truth.push(self.driven.truth(&run.frame, &run.roster, &options));
+                        }
+                        aside += paused.elapsed().as_secs_f64();
+                    }
+                }
+                items = rows;
+                times[index].push((started.elapsed().as_secs_f64() - aside) * 1e9 / rows.max(1) as f64);
+            }
+        }
+        let mut measured = Vec::new();
+        for (((name, ..), found), times) in METHODS.iter().zip(&found).zip(&mut times) {
+            let score = Score::of(found, &truth);
+            let ns_per_item = median(times);
+            let errors = [
+                ("share of conflicts missed or invented", score.wrong(), self.name.to_owned()),
+                ("median error of the gap, m", score.gap_error, format!("{}, gap", self.name)),
+            ];
+            // Without a single pair that both found there is no gap to be right about.
+            let errors = errors.into_iter().take(if score.right > 0 { 2 } else { 1 });
+            measured.extend(errors.map(|(error_name, error, scene)| Measurement {
+                axis: Axis::Path,
+                method: name,
+                parameter: self.name.to_owned(),
+                error_name,
+                error,
+                false_negative_rate: score.missed as f64 / (score.right + score.missed).max(1) as f64,
+                false_positive_rate: score.invented as f64 / (score.right + score.invented).max(1) as f64,
+                ns_per_item,
+                items,
+                on_pareto_front: false,
+                scene,
+                default: *name == DEFAULT,
+            }));
+        }
+        Ok(measured)
+    }
+}
+
+fn conflicts(run: &Run) -> FxHashMap<Pair, Metre> {
+    run.in_conflict().iter().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
+}
+
+/// What a method found, beside what was.
+struct Score {
+    right: usize,
+    missed: usize,
+    invented: usize,
+    gap_error: Metre,
+}
+
+impl Score {
+    fn of(found: &Found, truth: &[FxHashMap<Pair, Truth>]) -> Self {
+        let (mut right, mut missed, mut invented, mut gaps) = (0, 0, 0, Vec::new());
+        for (found, truth) in found.iter().zip(truth) {
+            for (pair, truth) in truth {
+                match (truth, found.get(pair)) {
+                    (Truth::Conflict(gap), Some(found)) => {
+                        right += 1;
+                        let off = (gap - found).abs();
+                        gaps.push(if off < ROUNDING { 0.0 } else { off });
+                    }
+                    (Truth::Conflict(_), None) => missed += 1,
+                    (Truth::None, Some(_)) => invented += 1,
+                    (Truth::None, None) | (Truth::Aside, _) => {}
+                }
+            }
+        }
+        let gap_error = if gaps.is_empty() { 0.0 } else { median(&mut gaps) };
+        Self { right, missed, invented, gap_error }
+    }
+
+    /// The share of all that are or were said to be conflicts of which only one holds.
+    fn wrong(&self) -> f64 {
+        (self.missed + self.invented) as f64 / (self.right + self.missed + self.invented).max(1) as f64
+    }
+}
