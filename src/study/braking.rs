@@ -136,8 +136,9 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
             .map(|(_, _, method)| {
                 // A closed form is done before the clock has ticked: it works through all pairs again and again.
                 let again = if matches!(method, Method::Closed(_)) { 200 } else { 1 };
-                Timed::new(count * again, || {
-                    for pair in std::iter::repeat_n(&pairs, again).flatten() {
+                let pairs = &pairs;
+                Timed::new(count * again, move || {
+                    for pair in std::iter::repeat_n(pairs, again).flatten() {
                         black_box(method.mu(black_box(pair), sigma));
                     }
                 })
