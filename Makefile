@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
 
-.PHONY: demo test stress lint accuracy bench docs clean help
+.PHONY: demo test stress study fuzz lint accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -16,6 +16,16 @@ test: $(VENV)/wheel $(VENV)/tests ## set everything up and run all tests, Rust a
 
 stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a million of them
 	$(BIN)/closecall stress --cases 1000000
+
+study: $(VENV)/wheel ## error against run time, for every choice that closecall makes
+	$(BIN)/closecall study --out closecall-study
+
+FUZZ := PATH=$(CURDIR)/target/tools/bin:$$PATH cargo +nightly fuzz run
+
+fuzz: target/tools/bin/cargo-fuzz ## random files into the readers, a minute each
+	mkdir -p fuzz/corpus/fcd && $(FUZZ) fcd fuzz/corpus/fcd tests/fuzz/fcd -- -max_total_time=60
+	mkdir -p fuzz/corpus/net && $(FUZZ) net fuzz/corpus/net tests/fuzz/net -- -max_total_time=60
+	mkdir -p fuzz/corpus/config && $(FUZZ) config fuzz/corpus/config tests/fuzz/config -- -max_total_time=60
 
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	cargo fmt --all --check
@@ -46,6 +56,10 @@ clean: ## remove what the targets made
 
 help: ## list the targets
 	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+
+target/tools/bin/cargo-fuzz:
+	rustup toolchain list | grep -q nightly || rustup toolchain install nightly --profile minimal
+	cargo install cargo-fuzz --quiet --root target/tools
 
 $(VENV)/made:
 	$(PYTHON) -m venv $(VENV)

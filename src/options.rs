@@ -198,7 +198,15 @@ impl OptionsFile {
     /// An error that names the file and the line or key: unreadable, no TOML, an unknown key.
     pub fn read(path: &Path, known: &[String]) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
-        let table: toml::Table = toml::from_str(&text).map_err(|error| toml_error(path, &text, &error))?;
+        Self::parse(path, &text, known)
+    }
+
+    /// The same of a text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`OptionsFile::read`] has them.
+    pub fn parse(path: &Path, text: &str, known: &[String]) -> Result<Self> {
+        let table: toml::Table = toml::from_str(text).map_err(|error| toml_error(path, text, &error))?;
         let mut file = Self::default();
         for (key, value) in table {
             match (key.as_str(), value) {

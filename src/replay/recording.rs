@@ -1,5 +1,6 @@
 //! SUMO's fcd-output, step by step: XML or CSV, plain or gzipped, in memory that does not grow with the file.
 
+use std::io::BufRead;
 use std::path::Path;
 
 use super::csv::CsvRecording;
@@ -141,7 +142,18 @@ impl Recording {
     /// # Errors
     /// An error that names the file: unreadable, empty, no fcd-output, a column that is missing.
     pub fn open(path: &Path) -> Result<Self> {
-        let mut source = crate::net::open(path)?;
+        Self::from_source(path, crate::net::open(path)?)
+    }
+
+    /// The recording in a text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Recording::open`] has them.
+    pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
+        Self::from_source(path, Box::new(std::io::Cursor::new(text.into())))
+    }
+
+    fn from_source(path: &Path, mut source: Box<dyn BufRead>) -> Result<Self> {
         let start = source.fill_buf().map_err(|error| Error::file(path, error))?;
         let first = start.iter().find(|byte| !byte.is_ascii_whitespace() && !b"\xef\xbb\xbf".contains(byte));
         match first {

@@ -1,0 +1,17 @@
+//! Any bytes as an fcd-output: steps or an error, never a panic.
+
+#![no_main]
+
+use std::path::Path;
+
+use closecall::replay::recording::{Recording, Step};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    let Ok(mut recording) = Recording::parse(Path::new("fuzz"), bytes) else { return };
+    let mut step = Step::default();
+    while let Ok(true) = recording.next_step(&mut step) {
+        assert!(step.time.is_finite());
+        assert!(step.rows().iter().all(|row| !row.id.is_empty()));
+    }
+});
