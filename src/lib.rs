@@ -26,6 +26,7 @@ pub mod precollision;
 pub mod profile;
 pub mod progress;
 pub mod record;
+pub mod regress;
 pub mod replay;
 pub mod run;
 pub mod scene;
