@@ -19,7 +19,7 @@ use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::message;
+use crate::error::{exception, message};
 use crate::paint::Painter;
 use crate::pull::{self, Source};
 
@@ -37,6 +37,15 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let mut interrupted = || py.check_signals().is_err();
     let sumo = Sumo { simulate: &mut simulate, closecall: closecall(py)?, interrupted: &mut interrupted };
     Ok(cli::main(words, Some(sumo)))
+}
+
+/// The scenario at a path, for the pytest plugin: its folder, the words of its command line to be run there, the options
+/// for SUMO that end them, and its first seed.
+#[pyfunction]
+pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>, u32)> {
+    let scenario = cli::scenario(&path).map_err(exception)?;
+    let seed = scenario.settings.seeds.first().copied().unwrap_or_default();
+    Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
 }
 
 /// The command line that starts closecall in a process of its own: that of this interpreter, from wherever it imports

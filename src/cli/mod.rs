@@ -10,11 +10,13 @@ mod run;
 mod settings;
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use run::{RunRequest, Simulate};
 
+use crate::regress::Scenario;
 use crate::{Error, Result};
 
 #[derive(Parser)]
@@ -76,6 +78,14 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Ok(status) => status,
         Err(error) => failed(&error),
     }
+}
+
+/// The scenario at a path: a folder, or a SUMO configuration with the settings beside it.
+///
+/// # Errors
+/// Those of [`Scenario::read`].
+pub fn scenario(path: &Path) -> Result<Scenario> {
+    Scenario::at(path, &settings::known(&command()))
 }
 
 fn failed(error: &Error) -> u8 {

@@ -4,6 +4,10 @@ use super::matching::matched;
 use super::outcome::{Outcome, Row, SeedSummary};
 use crate::log::CONFLICT_COLUMNS;
 
+/// The columns that say how bad a conflict was, and where.
+const TELLING: [&str; 12] =
+    ["severity", "collision", "begin", "end", "gap", "mu", "margin", "ttc", "drac", "pet", "delta_v", "lane"];
+
 /// What differs between what is expected and what was found.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Differences {
@@ -81,17 +85,20 @@ fn place(row: &Row) -> String {
     )
 }
 
-/// The columns that differ, old and new; the number of the row is none.
+/// What differs, old and new: the columns that say how bad it was and where, or, if they are the same, the others.
 fn changed(before: &Row, now: &Row) -> Option<String> {
     let value = |row: &Row, column: &str| match row.text(column) {
         "" => "none".to_owned(),
         text => text.to_owned(),
     };
-    let columns = CONFLICT_COLUMNS.iter().filter(|column| **column != "id");
-    let differing = columns.filter(|column| before.text(column) != now.text(column));
-    let told = differing.map(|column| format!("{column} {} → {}", value(before, column), value(now, column)));
-    let told = told.collect::<Vec<_>>().join(", ");
-    (!told.is_empty()).then(|| format!("{}: {told}", place(now)))
+    let told = |columns: &[&str]| {
+        // The number of the row says nothing.
+        let differing = columns.iter().filter(|column| **column != "id" && before.text(column) != now.text(column));
+        let told = differing.map(|column| format!("{column} {} → {}", value(before, column), value(now, column)));
+        told.collect::<Vec<_>>().join(", ")
+    };
+    let told = [told(&TELLING), told(&CONFLICT_COLUMNS)].into_iter().find(|told| !told.is_empty())?;
+    Some(format!("{}: {told}", place(now)))
 }
 
 fn traffic(before: &SeedSummary, now: &SeedSummary) -> Option<String> {

@@ -2,13 +2,13 @@
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
-use super::scenario::{SETTINGS, Scenario};
+use super::scenario::Scenario;
 use crate::{Error, Result};
 
 /// How often a process is asked whether it has ended.
@@ -98,7 +98,7 @@ fn one(closecall: &[OsString], job: &Job, stop: &AtomicBool) -> Ended {
     Err(last.map_or_else(|| format!("closecall run ended with {status}"), str::to_owned))
 }
 
-fn start(closecall: &[OsString], job: &Job, told: &PathBuf) -> Result<Child> {
+fn start(closecall: &[OsString], job: &Job, told: &Path) -> Result<Child> {
     let Some((program, words)) = closecall.split_first() else {
         return Err(Error::Value("there is no command that runs SUMO".to_owned()));
     };
@@ -106,15 +106,12 @@ fn start(closecall: &[OsString], job: &Job, told: &PathBuf) -> Result<Child> {
     let stderr = File::create(told).map_err(|source| Error::file(told, source))?;
     let scenario = job.scenario;
     let mut command = Command::new(program);
-    command.args(words).arg("run").arg(&scenario.sumocfg);
-    if scenario.has_settings {
-        command.args(["--config", SETTINGS]);
-    }
+    command.args(words).args(scenario.words());
     command.args(["--quiet", "--seed", &job.seed.to_string(), "--out"]).arg(&job.log);
     if !scenario.settings.sumo_options.is_empty() {
         command.arg("--").args(&scenario.settings.sumo_options);
     }
     // In the scenario's folder, so that what its settings name is found, and the same is logged wherever it lies.
     command.current_dir(&scenario.folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(stderr);
-    command.spawn().map_err(|source| Error::file(std::path::Path::new(program), source))
+    command.spawn().map_err(|source| Error::file(Path::new(program), source))
 }

@@ -1,5 +1,6 @@
 //! A scenario: a folder with a SUMO configuration, `closecall.toml` and what is expected of it.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -107,6 +108,24 @@ impl Scenario {
     /// An error that names the folder, or the file and the key in it: no such folder, no configuration, a setting that
     /// is unknown or out of its range.
     pub fn read(folder: &Path, known: &[String]) -> Result<Self> {
+        Self::with_configuration(folder, None, known)
+    }
+
+    /// The scenario in a folder, or of a SUMO configuration with the settings beside it.
+    ///
+    /// # Errors
+    /// Those of [`Scenario::read`].
+    pub fn at(path: &Path, known: &[String]) -> Result<Self> {
+        match (path.parent(), path.file_name()) {
+            (Some(folder), Some(name)) if path.is_file() => {
+                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+                Self::with_configuration(folder, Some(PathBuf::from(name)), known)
+            }
+            _ => Self::read(path, known),
+        }
+    }
+
+    fn with_configuration(folder: &Path, sumocfg: Option<PathBuf>, known: &[String]) -> Result<Self> {
         let folder = folder.canonicalize().map_err(|source| Error::file(folder, source))?;
         let path = folder.join(SETTINGS);
         let has_settings = path.is_file();
@@ -127,13 +146,22 @@ impl Scenario {
         }
         check(&settings).map_err(|message| Error::content(&path, format!("[regress]: {message}")))?;
         let name = folder.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let sumocfg = match &settings.sumocfg {
-            Some(given) => given.clone(),
+        let sumocfg = match sumocfg.or_else(|| settings.sumocfg.clone()) {
+            Some(given) => given,
             None => configuration(&folder, &name)?,
         };
         let full = folder.join(&sumocfg);
         std::fs::File::open(&full).map_err(|source| Error::file(&full, source))?;
         Ok(Self { name, folder, sumocfg, has_settings, settings })
+    }
+
+    /// The command line of a run in the folder, after the program's name, up to its own options.
+    pub fn words(&self) -> Vec<OsString> {
+        let mut words = vec!["run".into(), self.sumocfg.clone().into_os_string()];
+        if self.has_settings {
+            words.extend(["--config", SETTINGS].map(OsString::from));
+        }
+        words
     }
 
     /// The same with other seeds, where there are any.
