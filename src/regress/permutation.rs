@@ -20,7 +20,7 @@ pub fn adjusted_p(expected: &[Vec<f64>], found: &[Vec<f64>]) -> Vec<f64> {
     let runs = standardised(expected, found, measures);
     let of_found = |run: usize| run >= expected.len();
     let real = sums(&runs, measures, of_found);
-    // A column that a difference has been added to as it is in `real`, counted in how many splits it is reached.
+    // In how many splits the largest statistic reaches a measure's own.
     let mut reached = vec![0_u64; measures];
     let mut splits = 0_u64;
     let mut count = |split: &[f64]| {
@@ -40,7 +40,7 @@ pub fn adjusted_p(expected: &[Vec<f64>], found: &[Vec<f64>]) -> Vec<f64> {
             let mut split = vec![0.0; measures];
             for place in 0..found.len() {
                 order.swap(place, place + generator.below(runs.len() - place));
-                add(&mut split, &runs[order[place]], 1.0);
+                add(&mut split, &runs[order[place]]);
             }
             count(&split);
         }
@@ -82,14 +82,14 @@ fn standardised(expected: &[Vec<f64>], found: &[Vec<f64>], measures: usize) -> V
 fn sums(runs: &[Vec<f64>], measures: usize, is_in: impl Fn(usize) -> bool) -> Vec<f64> {
     let mut sums = vec![0.0; measures];
     for run in runs.iter().enumerate().filter(|(run, _)| is_in(*run)).map(|(_, run)| run) {
-        add(&mut sums, run, 1.0);
+        add(&mut sums, run);
     }
     sums
 }
 
-fn add(sums: &mut [f64], run: &[f64], factor: f64) {
+fn add(sums: &mut [f64], run: &[f64]) {
     for (sum, value) in sums.iter_mut().zip(run) {
-        *sum += factor * value;
+        *sum += value;
     }
 }
 
@@ -100,7 +100,7 @@ fn enumerate(runs: &[Vec<f64>], wanted: usize, sums: &mut Vec<f64>, count: &mut 
     }
     for (place, run) in runs.iter().enumerate().take((runs.len() + 1).saturating_sub(wanted)) {
         let before = sums.clone();
-        add(sums, run, 1.0);
+        add(sums, run);
         enumerate(&runs[place + 1..], wanted - 1, sums, count);
         *sums = before;
     }
@@ -159,8 +159,8 @@ mod tests {
     }
 
     #[test]
-    fn five_seeds_are_the_fewest_for_one_percent() {
-        assert_eq!(fewest_seeds(0.01), 5);
+    fn six_seeds_are_the_fewest_for_half_a_percent() {
+        assert_eq!((fewest_seeds(0.01), fewest_seeds(0.005)), (5, 6));
         assert!(smallest_p(8, 8) < 0.001);
     }
 
