@@ -212,6 +212,22 @@ def test_junit_says_what_failed_and_what_could_not_run(blessed: Copy, tmp_path: 
     assert error is not None and "rear_end.rou.xml, line 1" in (error.get("message") or "")
 
 
+@pytest.mark.parametrize("folder", sorted(path.parent for path in NETS.glob("*/closecall.toml")), ids=lambda f: f.name)
+def test_each_readme_states_the_counts_that_are_blessed(folder: Path) -> None:
+    line = re.search(
+        r"\*\*Blessed\*\* .*: (\d+) rear-end, (\d+) frontal, (\d+) side conflicts; (\d+) with a collision",
+        (folder / "README.md").read_text(),
+    )
+    assert line
+    summary = json.loads((folder / "expected" / "summary.json").read_text())
+    (run,) = (run for run in summary["seeds"] if run["seed"] == 42)
+    counts = [
+        sum(count["count"] for count in run["conflicts"] if count["kind"] == kind)
+        for kind in ("rear_end", "frontal", "side")
+    ]
+    assert [int(number) for number in line.groups()] == [*counts, run["collisions"]]
+
+
 @pytest.mark.parametrize(
     ("text", "named"),
     [
