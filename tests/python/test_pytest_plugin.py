@@ -5,9 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from conftest import NETS
-
 from closecall.pytest_plugin import RunScenario
+from conftest import NETS
 
 pytest_plugins = ["pytester"]
 

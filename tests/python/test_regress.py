@@ -91,7 +91,7 @@ def test_a_stop_sign_that_is_gone_is_named(blessed: Copy) -> None:
     folder = blessed("priority")
     edit(folder / "priority.nod.xml", "priority_stop", "priority")
     netconvert = Path(sys.executable).with_name("netconvert")
-    command = [netconvert, "-c", "priority.netccfg", "-o", "priority.net.xml"]
+    command = [str(netconvert), "-c", "priority.netccfg", "-o", "priority.net.xml"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=60)
     said = differs(folder)
     assert "changed since blessed: priority.net.xml: junction stop: type priority_stop → priority" in said

@@ -1,8 +1,8 @@
 """A pytest plugin: the fixture `closecall_scenario` runs a SUMO scenario with the checker attached.
 
-    def test_nobody_is_hit_from_the_side(closecall_scenario):
-        run = closecall_scenario("nets/crossing", end=300, seed=7)
-        assert not [conflict for conflict in run.conflicts if conflict.kind == "side"]
+def test_nobody_is_hit_from_the_side(closecall_scenario):
+    run = closecall_scenario("nets/crossing", end=300, seed=7)
+    assert not [conflict for conflict in run.conflicts if conflict.kind == "side"]
 """
 
 from __future__ import annotations
