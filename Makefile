@@ -4,7 +4,7 @@ BIN := $(VENV)/bin
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
 
-.PHONY: demo test stress study fuzz lint accuracy bench docs clean help
+.PHONY: demo test lint regress stress study fuzz accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -34,6 +34,9 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	$(BIN)/ruff check bridge/python tests
 	$(BIN)/mypy
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
+
+regress: $(VENV)/wheel ## run the scenarios in sumo_nets/ and compare with what is blessed
+	$(BIN)/closecall regress sumo_nets
 
 NETS := reckless priority left_turn roundabout signals curves overtaking crowd
 

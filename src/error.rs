@@ -74,6 +74,9 @@ pub enum Error {
         /// The simulated time that was reached.
         time: f64,
     },
+    /// The user ended a command before it had come to a result.
+    #[error("interrupted; nothing was compared or written")]
+    Stopped,
 }
 
 impl Error {
@@ -99,7 +102,7 @@ impl Error {
             Self::Failed { .. } | Self::Exceeded(_) => 1,
             Self::CutShort { .. } => 3,
             // As shells say it: 128 + SIGINT.
-            Self::Interrupted { .. } => 130,
+            Self::Interrupted { .. } | Self::Stopped => 130,
             _ => 2,
         }
     }

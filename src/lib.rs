@@ -28,6 +28,7 @@ pub mod progress;
 pub mod record;
 #[cfg(feature = "study")]
 pub mod reference;
+pub mod regress;
 pub mod replay;
 pub mod run;
 pub mod scene;

@@ -18,6 +18,7 @@ fi
 [ $# -gt 0 ] || set -- $(cd "$here" && ls -d */ | tr -d /)
 for name in "$@"; do
     for config in "$here/$name"/*.netccfg; do
+        [ -e "$config" ] || continue # the folder runs another one's net
         net=${config%.netccfg}.net.xml
         (cd "$here/$name" && "$netconvert" -c "$config" -o "$net" >/dev/null)
         sed '/^<!-- generated on/,/-->$/d' "$net" >"$net.tmp"

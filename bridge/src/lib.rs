@@ -21,7 +21,7 @@ mod _closecall {
     #[pymodule_export]
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
-    use super::run::main;
+    use super::run::{main, scenario};
 
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
-use closecall::cli::{self, RunRequest};
+use closecall::cli::{self, RunRequest, Sumo};
 use closecall::inputs::{self, Input};
 use closecall::log::Log;
 use closecall::net::Net;
@@ -19,7 +19,7 @@ use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
-use crate::error::message;
+use crate::error::{exception, message};
 use crate::paint::Painter;
 use crate::pull::{self, Source};
 
@@ -32,9 +32,29 @@ const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
-pub fn main(py: Python, words: Vec<OsString>) -> u8 {
+pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let mut simulate = |request: &RunRequest| simulate(py, request);
-    cli::main(words, Some(&mut simulate))
+    let mut interrupted = || py.check_signals().is_err();
+    let sumo = Sumo { simulate: &mut simulate, closecall: closecall(py)?, interrupted: &mut interrupted };
+    Ok(cli::main(words, Some(sumo)))
+}
+
+/// The scenario at a path, for the pytest plugin: its folder, the words of its command line to be run there, the options
+/// for SUMO that end them, and its first seed.
+#[pyfunction]
+pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>, u32)> {
+    let scenario = cli::scenario(&path).map_err(exception)?;
+    let seed = scenario.settings.seeds.first().copied().unwrap_or_default();
+    Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
+}
+
+/// The command line that starts closecall in a process of its own: that of this interpreter, from wherever it imports
+/// closecall, but never from the folder in which it is started.
+fn closecall(py: Python) -> PyResult<Vec<OsString>> {
+    const START: &str = "import sys; sys.path[:] = filter(None, sys.path); \
+                         from closecall.__main__ import main; sys.exit(main())";
+    let python: OsString = py.import("sys")?.getattr("executable")?.extract()?;
+    Ok(vec![python, "-c".into(), START.into()])
 }
 
 /// Runs the scenario to its end.

@@ -1,9 +1,10 @@
 //! The command line: parse, call the library, print.
 //!
 //! `closecall run` needs Python, which this crate does not know: whoever calls [`main`] passes in how to run a
-//! simulation, or nothing.
+//! simulation ([`Sumo`]), or nothing.
 
 mod mu;
+mod regress;
 mod replay;
 mod run;
 mod settings;
@@ -13,11 +14,13 @@ mod stress;
 mod study;
 
 use std::ffi::OsString;
+use std::path::Path;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use run::{RunRequest, Simulate};
 
+use crate::regress::Scenario;
 use crate::{Error, Result};
 
 #[derive(Parser)]
@@ -35,6 +38,8 @@ enum Command {
     /// Check a recording: SUMO's fcd-output, in XML or CSV, also gzipped
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
+    /// Run scenarios and compare the conflicts with those blessed
+    Regress(regress::RegressArgs),
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
@@ -46,10 +51,20 @@ enum Command {
     Study(study::StudyArgs),
 }
 
+/// What the commands that run SUMO need of whoever knows it.
+pub struct Sumo<'a> {
+    /// Runs a simulation in this process.
+    pub simulate: &'a mut Simulate<'a>,
+    /// The command line that starts closecall in a process of its own, without arguments.
+    pub closecall: Vec<OsString>,
+    /// Whether the user has asked to stop.
+    pub interrupted: &'a mut dyn FnMut() -> bool,
+}
+
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
 ///
 /// Messages go to standard error, one clear line each, results to standard output.
-pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Simulate>) -> u8 {
+pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
     let words = words.into_iter().collect::<Vec<_>>();
     let cli = match parse(words) {
         Ok(cli) => cli,
@@ -64,18 +79,27 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Err(Stop::Error(error)) => return failed(&error),
     };
     let done = match cli.command {
-        Command::Run(arguments) => run::run(*arguments, simulate),
-        Command::Replay(arguments) => replay::run(*arguments),
-        Command::Mu(arguments) => mu::run(&arguments),
+        Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
+        Command::Replay(arguments) => replay::run(*arguments).map(|()| 0),
+        Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
+        Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),
         #[cfg(feature = "study")]
-        Command::Stress(arguments) => stress::run(&arguments),
+        Command::Stress(arguments) => stress::run(&arguments).map(|()| 0),
         #[cfg(feature = "study")]
-        Command::Study(arguments) => study::run(&arguments, simulate),
+        Command::Study(arguments) => study::run(&arguments, sumo).map(|()| 0),
     };
     match done {
-        Ok(()) => 0,
+        Ok(status) => status,
         Err(error) => failed(&error),
     }
+}
+
+/// The scenario at a path: a folder, or a SUMO configuration with the settings beside it.
+///
+/// # Errors
+/// Those of [`Scenario::read`].
+pub fn scenario(path: &Path) -> Result<Scenario> {
+    Scenario::at(path, &settings::known(&command()))
 }
 
 fn failed(error: &Error) -> u8 {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::no_sumo;
+use super::{Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
 use crate::summary::Summary;
 use crate::units::Second;
@@ -73,10 +73,10 @@ pub struct RunRequest {
 pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
 
 /// Runs the scenario and prints its summary.
-pub fn run(arguments: RunArgs, simulate: Option<&mut Simulate>) -> Result<()> {
-    let Some(simulate) = simulate else { return no_sumo() };
+pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
+    let Some(sumo) = sumo else { return no_sumo() };
     let request = request(arguments)?;
-    let summary = simulate(&request)?;
+    let summary = (sumo.simulate)(&request)?;
     if !request.quiet {
         print!("{summary}");
         println!("log in {}", request.out.display());

@@ -9,8 +9,12 @@ use crate::options::OptionsFile;
 
 /// Reads a TOML file whose keys may name any command's long options: one file can serve several commands.
 pub fn read(all: &Command, path: &Path) -> Result<OptionsFile> {
-    let known = all.get_subcommands().flat_map(options_of).collect::<Vec<_>>();
-    OptionsFile::read(path, &known)
+    OptionsFile::read(path, &known(all))
+}
+
+/// The long options of all commands.
+pub fn known(all: &Command) -> Vec<String> {
+    all.get_subcommands().flat_map(options_of).collect()
 }
 
 /// The long options of one command.

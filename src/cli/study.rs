@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::run::{RunRequest, Simulate};
+use super::Sumo;
+use super::run::RunRequest;
 use crate::Result;
 use crate::options::Options;
 use crate::study::{self, Axis, Plan};
@@ -28,15 +29,15 @@ pub struct StudyArgs {
 }
 
 /// Measures and writes; each axis is written as soon as it is measured.
-pub fn run(arguments: &StudyArgs, simulate: Option<&mut Simulate>) -> Result<()> {
+pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
     let plan = Plan { quick: arguments.quick, nets: arguments.nets.clone() };
-    let (mut rows, mut simulate) = (Vec::new(), simulate);
+    let mut rows = Vec::new();
     for axis in Axis::ALL.into_iter().filter(|axis| arguments.only.is_none_or(|only| only == *axis)) {
         eprintln!("{} …", axis.name());
-        let measured = match &mut simulate {
-            Some(simulate) => {
+        let measured = match &mut sumo {
+            Some(sumo) => {
                 let mut record = |scenario: &Path, recording: &Path, end: Second| {
-                    simulate(&recorded(scenario, recording, end)).map(|_| ())
+                    (sumo.simulate)(&recorded(scenario, recording, end)).map(|_| ())
                 };
                 study::measure(axis, &plan, Some(&mut record))?
             }

@@ -9,6 +9,7 @@ from typing_extensions import disjoint_base
 __version__: str
 
 def main(words: list[str]) -> int: ...
+def scenario(path: str) -> tuple[str, list[str], list[str], int]: ...
 def mu(
     speed: ArrayLike,
     foe_speed: ArrayLike,

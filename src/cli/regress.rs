@@ -1,0 +1,97 @@
+//! `closecall regress`: scenarios in, reports out.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::{Sumo, no_sumo, value};
+use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
+use crate::{Error, Result};
+
+/// Scenarios and how to compare them.
+#[derive(Args)]
+pub struct RegressArgs {
+    /// Folders of scenarios, or folders that hold such folders.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// Make what is found now what is expected.
+    #[arg(long)]
+    bless: bool,
+    /// Write the result as JUnit XML too.
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Runs at once [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    jobs: Option<u16>,
+    /// Only the scenario of this name; may be given several times.
+    #[arg(long, value_name = "NAME", action = clap::ArgAction::Append)]
+    only: Vec<String>,
+    /// Other seeds than the scenarios' own; compared by statistics then.
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    seeds: Vec<u32>,
+    /// Keep the logs of all runs in this folder.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Show every difference, not only the first ten of a sort.
+    #[arg(long)]
+    all: bool,
+}
+
+/// Runs the scenarios and prints their reports; returns the exit status. `known` are the long options that a scenario's
+/// settings may name.
+pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Result<u8> {
+    let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
+    let mut folders = Vec::new();
+    for path in &arguments.folders {
+        folders.extend(scenario::folders(path)?);
+    }
+    let name = |folder: &Path| {
+        let full = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        full.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+    };
+    let is_wanted = |folder: &PathBuf| arguments.only.is_empty() || arguments.only.contains(&name(folder));
+    if let Some(missing) = arguments.only.iter().find(|only| folders.iter().all(|folder| name(folder) != **only)) {
+        return Err(value(format!("--only {missing}: there is no such scenario")));
+    }
+    folders.retain(is_wanted);
+    let mut scenarios = Vec::new();
+    let mut reports = BTreeMap::new();
+    let mut places = Vec::new();
+    for (place, folder) in folders.iter().enumerate() {
+        match Scenario::read(folder, known).and_then(|scenario| scenario.with_seeds(&arguments.seeds)) {
+            Ok(scenario) => {
+                scenarios.push(scenario);
+                places.push(place);
+            }
+            Err(error) => drop(reports.insert(place, Report::unreadable(name(folder), Level::Exact, error))),
+        }
+    }
+    let mut runner = Runner {
+        closecall: sumo.closecall,
+        jobs: arguments.jobs.map_or_else(processors, usize::from),
+        out: arguments.out.as_deref().map(absolute).transpose()?,
+        interrupted: sumo.interrupted,
+    };
+    let done = regress(&scenarios, &mut runner, arguments.bless)?;
+    reports.extend(places.into_iter().zip(done));
+    let mut reports = reports.into_values().collect::<Vec<_>>();
+    for report in &mut reports {
+        report.shows_all = arguments.all;
+        print!("{report}");
+    }
+    println!("{}", summary(&reports));
+    if let Some(path) = &arguments.junit {
+        junit::write(path, &reports)?;
+    }
+    Ok(reports.iter().map(Report::exit_status).max().unwrap_or_default())
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// The runs have working directories of their own.
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).map_err(|source| Error::file(path, source))
+}

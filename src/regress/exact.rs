@@ -1,0 +1,121 @@
+//! [`super::Level::Exact`]: byte for byte; what differs is explained conflict by conflict.
+
+use super::matching::matched;
+use super::outcome::{Outcome, Row, SeedSummary};
+use crate::log::CONFLICT_COLUMNS;
+
+/// The columns that say how bad a conflict was, and where.
+const TELLING: [&str; 12] =
+    ["severity", "collision", "begin", "end", "gap", "mu", "margin", "ttc", "drac", "pet", "delta_v", "lane"];
+
+/// What differs between what is expected and what was found.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Differences {
+    /// Conflicts that were not expected.
+    pub new: Vec<String>,
+    /// Conflicts that were expected.
+    pub gone: Vec<String>,
+    /// Conflicts with other values.
+    pub changed: Vec<String>,
+    /// Differences beside the conflicts: seeds, traffic, order.
+    pub other: Vec<String>,
+}
+
+impl Differences {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        [&self.new, &self.gone, &self.changed, &self.other].iter().all(|differences| differences.is_empty())
+    }
+
+    /// The number of each sort, in words.
+    pub fn counts(&self) -> String {
+        let named = [(self.new.len(), "new"), (self.gone.len(), "gone"), (self.changed.len(), "changed")];
+        let counts = named.map(|(count, name)| format!("{count} {name}")).join(", ");
+        let only_other = self.new.is_empty() && self.gone.is_empty() && self.changed.is_empty();
+        if only_other && !self.other.is_empty() { "the same conflicts, but other traffic".to_owned() } else { counts }
+    }
+}
+
+/// Compares; empty exactly where `conflicts.csv` is the same byte for byte and so are steps and traffic.
+pub fn differences(expected: &Outcome, found: &Outcome) -> Differences {
+    let mut differences = Differences::default();
+    let (old, new) = (expected.seeds(), found.seeds());
+    if old != new {
+        differences.other.push(format!("seeds {} → {}", list(&old), list(&new)));
+    }
+    for before in &expected.summary.seeds {
+        let now = found.summary.seeds.iter().find(|now| now.seed == before.seed);
+        differences.other.extend(now.and_then(|now| traffic(before, now)));
+    }
+    if expected.csv == found.csv {
+        return differences;
+    }
+    let matching = matched(&expected.conflicts, &found.conflicts);
+    differences.new = matching.new.iter().map(|row| described(row)).collect();
+    differences.gone = matching.gone.iter().map(|row| described(row)).collect();
+    differences.changed = matching.pairs.iter().filter_map(|(before, now)| changed(before, now)).collect();
+    if differences.is_empty() {
+        differences.other.push("the same conflicts in another order".to_owned());
+    }
+    differences
+}
+
+/// A conflict in one line: who, when, where, how bad.
+pub fn described(row: &Row) -> String {
+    let measures = [("gap", "m"), ("margin", "m"), ("ttc", "s"), ("drac", "m/s²"), ("pet", "s")];
+    let told = measures.iter().filter(|(name, _)| !row.text(name).is_empty());
+    let told = told.map(|(name, unit)| format!("{name} {} {unit}", row.text(name))).collect::<Vec<_>>().join(", ");
+    let hit = if row.text("collision") == "true" { ", collision" } else { "" };
+    format!("{}: {}, {told}{hit}", place(row), row.severity.name())
+}
+
+/// Seed, kind, pair, time and place.
+fn place(row: &Row) -> String {
+    let lane = if row.text("lane").is_empty() { String::new() } else { format!("on {} ", row.text("lane")) };
+    format!(
+        "seed {} {} {} with {}, {} s to {} s, {lane}at ({}, {})",
+        row.seed,
+        row.kind.name(),
+        row.ego,
+        row.foe,
+        row.text("begin"),
+        row.text("end"),
+        row.text("x"),
+        row.text("y")
+    )
+}
+
+/// What differs, old and new: the columns that say how bad it was and where, or, if they are the same, the others.
+fn changed(before: &Row, now: &Row) -> Option<String> {
+    let value = |row: &Row, column: &str| match row.text(column) {
+        "" => "none".to_owned(),
+        text => text.to_owned(),
+    };
+    let told = |columns: &[&str]| {
+        // The number of the row says nothing.
+        let differing = columns.iter().filter(|column| **column != "id" && before.text(column) != now.text(column));
+        let told = differing.map(|column| format!("{column} {} → {}", value(before, column), value(now, column)));
+        told.collect::<Vec<_>>().join(", ")
+    };
+    let told = [told(&TELLING), told(&CONFLICT_COLUMNS)].into_iter().find(|told| !told.is_empty())?;
+    Some(format!("{}: {told}", place(now)))
+}
+
+fn traffic(before: &SeedSummary, now: &SeedSummary) -> Option<String> {
+    let (old, new) = (before.exposure, now.exposure);
+    let numbers = [
+        ("steps", before.steps as f64, now.steps as f64),
+        ("vehicles", old.vehicles as f64, new.vehicles as f64),
+        ("persons", old.persons as f64, new.persons as f64),
+        ("vehicle-km", old.vehicle_kilometres, new.vehicle_kilometres),
+        ("vehicle-h", old.vehicle_hours, new.vehicle_hours),
+    ];
+    let differing = numbers.iter().filter(|(_, old, new)| (old - new).abs() > 1e-9);
+    let told = differing.map(|(what, old, new)| format!("{what} {old} → {new}")).collect::<Vec<_>>();
+    (!told.is_empty()).then(|| format!("seed {}: {}", now.seed, told.join(", ")))
+}
+
+/// Seeds in words.
+pub fn list(seeds: &[u32]) -> String {
+    seeds.iter().map(u32::to_string).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,66 @@
+//! Which conflict of one run is which of another: the same seed, pair (in either order) and kind, and the same time.
+
+use std::collections::BTreeMap;
+
+use super::outcome::Row;
+use crate::conflict::CLOSES_AFTER;
+use crate::encounter::Kind;
+use crate::units::Second;
+
+/// The conflicts of two outcomes, side by side.
+#[derive(Debug, Default)]
+pub struct Matching<'a> {
+    /// In both: before and now, in the order of now.
+    pub pairs: Vec<(&'a Row, &'a Row)>,
+    /// Only now.
+    pub new: Vec<&'a Row>,
+    /// Only before.
+    pub gone: Vec<&'a Row>,
+}
+
+/// What two rows must have in common, but for the time.
+type Key<'a> = (u32, &'a str, &'a str, Kind);
+
+/// Matches the conflicts of `before` with those of `now`; of several that overlap, those that overlap longest.
+///
+/// Two that are less than [`CLOSES_AFTER`] apart overlap as well: within one run they would be one conflict.
+pub fn matched<'a>(before: &'a [Row], now: &'a [Row]) -> Matching<'a> {
+    let mut candidates: BTreeMap<Key, (Vec<&Row>, Vec<&Row>)> = BTreeMap::new();
+    for row in before {
+        candidates.entry(key(row)).or_default().0.push(row);
+    }
+    for row in now {
+        candidates.entry(key(row)).or_default().1.push(row);
+    }
+    let mut matching = Matching::default();
+    for (mut old, mut new) in candidates.into_values() {
+        while let Some((i, j)) = longest_overlap(&old, &new) {
+            matching.pairs.push((old.remove(i), new.remove(j)));
+        }
+        matching.gone.append(&mut old);
+        matching.new.append(&mut new);
+    }
+    let order = |a: &Row, b: &Row| (a.seed).cmp(&b.seed).then(a.begin.total_cmp(&b.begin));
+    matching.pairs.sort_by(|a, b| order(a.1, b.1));
+    matching.new.sort_by(|a, b| order(a, b));
+    matching.gone.sort_by(|a, b| order(a, b));
+    matching
+}
+
+fn key(row: &Row) -> Key<'_> {
+    let (ego, foe) = (row.ego.as_str(), row.foe.as_str());
+    (row.seed, ego.min(foe), ego.max(foe), row.kind)
+}
+
+fn longest_overlap(old: &[&Row], new: &[&Row]) -> Option<(usize, usize)> {
+    let mut longest: Option<(Second, usize, usize)> = None;
+    for (i, before) in old.iter().enumerate() {
+        for (j, now) in new.iter().enumerate() {
+            let overlap = before.end.min(now.end) - before.begin.max(now.begin);
+            if overlap > -CLOSES_AFTER && longest.is_none_or(|(length, ..)| overlap > length) {
+                longest = Some((overlap, i, j));
+            }
+        }
+    }
+    longest.map(|(_, i, j)| (i, j))
+}

@@ -1,0 +1,145 @@
+//! Regression tests on fixed nets: run each scenario, compare with what is blessed, say what has changed.
+//!
+//! [`scenario`] → [`running`] (a process per scenario and seed) → [`outcome`] → [`exact`] or [`statistics`] → [`Report`],
+//! printed by its `Display` and by [`junit`].
+
+pub mod exact;
+mod fingerprint;
+pub mod junit;
+mod matching;
+pub mod outcome;
+pub mod permutation;
+mod provenance;
+mod report;
+pub mod running;
+pub mod scenario;
+pub mod statistics;
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use exact::Differences;
+use outcome::Outcome;
+use permutation::{fewest_seeds, smallest_p};
+pub use report::{Report, Verdict, summary};
+use running::Job;
+pub use running::Runner;
+pub use scenario::{Level, Scenario};
+use statistics::{Comparison, comparisons};
+
+use crate::{Error, Result};
+
+/// How two outcomes were compared, and what differs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Compared {
+    /// Byte for byte.
+    Exactly(Differences),
+    /// By the statistical test, and why not exactly, where that was asked for.
+    Statistically(Vec<Comparison>, Option<String>),
+}
+
+impl Compared {
+    /// Whether nothing differs.
+    pub fn is_same(&self) -> bool {
+        match self {
+            Self::Exactly(differences) => differences.is_empty(),
+            Self::Statistically(comparisons, _) => comparisons.iter().all(|comparison| !comparison.differs),
+        }
+    }
+}
+
+/// Runs the scenarios and compares each with what is expected, or makes what was found the new expectation.
+///
+/// The reports come in the order of the scenarios, and say the same for any number of processes at once.
+///
+/// # Errors
+/// [`Error::Stopped`] where the user interrupted it, and [`Error::File`] where the temporary folder cannot be made; what
+/// is wrong with one scenario is in its report.
+pub fn regress(scenarios: &[Scenario], runner: &mut Runner, bless: bool) -> Result<Vec<Report>> {
+    let temporary = tempfile::Builder::new().prefix("closecall-regress-").tempdir();
+    let temporary = temporary.map_err(|source| Error::file(&std::env::temp_dir(), source))?;
+    let root = runner.out.clone().unwrap_or_else(|| temporary.path().to_owned());
+    let mut jobs = Vec::new();
+    for (number, scenario) in scenarios.iter().enumerate() {
+        // Two folders may have the same name.
+        let twin = scenarios[..number].iter().filter(|other| other.name == scenario.name).count();
+        let name = if twin == 0 { scenario.name.clone() } else { format!("{}-{}", scenario.name, twin + 1) };
+        for &seed in &scenario.settings.seeds {
+            jobs.push(Job { scenario, number, seed, log: root.join(&name).join(format!("seed-{seed}")) });
+        }
+    }
+    let mut failures = BTreeMap::new();
+    for (job, result) in jobs.iter().zip(runner.run(&jobs)?) {
+        if let Err(error) = result {
+            failures.entry(job.number).or_insert((job.seed, error));
+        }
+    }
+    let mut reports = Vec::new();
+    for (number, scenario) in scenarios.iter().enumerate() {
+        let verdict = match failures.remove(&number) {
+            Some((seed, message)) => Err(Error::Value(format!("seed {seed}: {message}"))),
+            None => {
+                let logs = jobs.iter().filter(|job| job.number == number).map(|job| (job.seed, job.log.clone()));
+                judge(scenario, &logs.collect::<Vec<_>>(), bless)
+            }
+        };
+        reports.push(Report::new(scenario, verdict));
+    }
+    Ok(reports)
+}
+
+fn judge(scenario: &Scenario, logs: &[(u32, PathBuf)], bless: bool) -> Result<Verdict> {
+    let found = Outcome::collect(&scenario.folder, logs)?;
+    let expected = match Outcome::read(&scenario.expected()) {
+        // What cannot be read is blessed anew.
+        Err(_) if bless => None,
+        read => read?,
+    };
+    let conflicts = found.conflicts.len();
+    let Some(expected) = expected else {
+        if !bless {
+            return Err(Error::content(&scenario.expected(), "nothing is blessed yet; --bless does it"));
+        }
+        found.write(&scenario.expected())?;
+        return Ok(Verdict { blessed: true, conflicts, compared: None, changes: Vec::new() });
+    };
+    let compared = if bless {
+        found.write(&scenario.expected())?;
+        Compared::Exactly(exact::differences(&expected, &found))
+    } else {
+        compare(scenario, &expected, &found)?
+    };
+    let changes = provenance::changes(&expected.summary, &found.summary);
+    Ok(Verdict { blessed: bless, conflicts, compared: Some(compared), changes })
+}
+
+/// Compares at the scenario's level, or by statistics where that level can't be.
+fn compare(scenario: &Scenario, expected: &Outcome, found: &Outcome) -> Result<Compared> {
+    let differences = exact::differences(expected, found);
+    let (old, new) = (&expected.summary, &found.summary);
+    let instead = if old.sumo != new.sumo {
+        Some(format!("{} instead of {}", new.sumo, old.sumo))
+    } else if old.platform != new.platform {
+        Some(format!("{} instead of {}", new.platform, old.platform))
+    } else if expected.seeds() != found.seeds() {
+        Some("other seeds than those blessed".to_owned())
+    } else {
+        None
+    };
+    let is_exact = scenario.settings.level == Level::Exact;
+    // The same bytes need no test.
+    if differences.is_empty() || is_exact && instead.is_none() {
+        return Ok(Compared::Exactly(differences));
+    }
+    let (before, now) = (old.seeds.len(), new.seeds.len());
+    let alpha = scenario.settings.false_alarm;
+    if smallest_p(before, now) > alpha {
+        let why = instead.map(|instead| format!("{instead}, and ")).unwrap_or_default();
+        return Err(Error::Value(format!(
+            "{why}{now} seeds against {before} blessed can never tell a difference at a false-alarm rate of {alpha}: \
+             {} on both sides can",
+            fewest_seeds(alpha)
+        )));
+    }
+    Ok(Compared::Statistically(comparisons(expected, found, &scenario.settings), instead.filter(|_| is_exact)))
+}

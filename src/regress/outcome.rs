@@ -1,0 +1,290 @@
+//! What a scenario's runs gave, one for each seed: also what is expected of it, in two files.
+//!
+//! `conflicts.csv` holds the rows of all seeds with the seed as first column; `summary.json` the versions, the options,
+//! the input files and the counts and traffic of each seed.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::fingerprint::Fingerprint;
+use crate::encounter::{Kind, Severity};
+use crate::log;
+use crate::summary::{Count, Exposure};
+use crate::units::Second;
+use crate::{Error, Result};
+
+/// The name of the file of counts.
+pub const SUMMARY: &str = "summary.json";
+
+/// What a scenario's runs gave.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// How the runs were made, and their counts.
+    pub summary: RunsSummary,
+    /// The conflicts of all seeds, in the order of seeds and rows.
+    pub conflicts: Vec<Row>,
+    /// `conflicts.csv`, byte for byte.
+    pub csv: Vec<u8>,
+}
+
+/// How the runs were made, and their counts: `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunsSummary {
+    /// closecall's version.
+    pub closecall: String,
+    /// SUMO's version.
+    pub sumo: String,
+    /// Operating system and processor: arithmetic may differ between them.
+    pub platform: String,
+    /// Options for SUMO, but the configuration and the seed.
+    pub sumo_options: Vec<String>,
+    /// Length of a step in s.
+    pub step_length: Second,
+    /// The options of the run.
+    pub options: Value,
+    /// Input files with their hashes and parts.
+    pub inputs: Vec<Fingerprint>,
+    /// What each seed gave.
+    pub seeds: Vec<SeedSummary>,
+}
+
+/// The counts and the traffic of one run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SeedSummary {
+    /// SUMO's random seed.
+    pub seed: u32,
+    /// Steps that were checked.
+    pub steps: u64,
+    /// Conflicts by kind and severity.
+    pub conflicts: Vec<Count>,
+    /// Conflicts in which the two touched.
+    pub collisions: u64,
+    /// How much traffic it was.
+    pub exposure: Exposure,
+}
+
+/// One row of `conflicts.csv`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Row {
+    /// SUMO's random seed.
+    pub seed: u32,
+    /// SUMO's id of the ego.
+    pub ego: String,
+    /// SUMO's id of the foe.
+    pub foe: String,
+    /// The kind.
+    pub kind: Kind,
+    /// The severity.
+    pub severity: Severity,
+    /// First step with margin < 0, in s.
+    pub begin: Second,
+    /// Last step with margin < 0, in s.
+    pub end: Second,
+    /// All cells, as they stand in the columns of the file.
+    cells: csv::StringRecord,
+}
+
+impl Row {
+    /// The text in a column of [`log::CONFLICT_COLUMNS`]; empty where there is none.
+    pub fn text(&self, column: &str) -> &str {
+        // The seed stands before them.
+        let place = log::CONFLICT_COLUMNS.iter().position(|name| *name == column).map(|place| place + 1);
+        place.and_then(|place| self.cells.get(place)).unwrap_or_default()
+    }
+
+    /// The number in a column, if there is one.
+    pub fn number(&self, column: &str) -> Option<f64> {
+        self.text(column).parse().ok()
+    }
+}
+
+/// `run.json` as it is read back.
+#[derive(Deserialize)]
+struct Record {
+    versions: RecordVersions,
+    step_length: Option<Second>,
+    options: Value,
+    sumo_words: Vec<String>,
+    inputs: Vec<crate::inputs::Input>,
+    summary: RecordSummary,
+}
+
+#[derive(Deserialize)]
+struct RecordVersions {
+    closecall: String,
+    sumo: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct RecordSummary {
+    steps: u64,
+    conflicts: Vec<Count>,
+    collisions: u64,
+    exposure: Exposure,
+}
+
+impl Outcome {
+    /// Collects the logs of the runs, each with its seed; `folder` is where they ran.
+    ///
+    /// # Errors
+    /// An error that names the log's file that cannot be read or does not hold what it should.
+    pub fn collect(folder: &Path, logs: &[(u32, std::path::PathBuf)]) -> Result<Self> {
+        let mut csv = csv::Writer::from_writer(Vec::new());
+        let mut summary: Option<RunsSummary> = None;
+        for (seed, log) in logs {
+            let path = log.join(log::RUN);
+            let record: Record = read_json(&path)?;
+            append(&mut csv, *seed, &log.join(log::CONFLICTS), summary.is_none())?;
+            let of_seed = SeedSummary {
+                seed: *seed,
+                steps: record.summary.steps,
+                conflicts: record.summary.conflicts,
+                collisions: record.summary.collisions,
+                exposure: rounded(record.summary.exposure),
+            };
+            match &mut summary {
+                Some(summary) => summary.seeds.push(of_seed),
+                None => {
+                    summary = Some(RunsSummary {
+                        closecall: record.versions.closecall,
+                        sumo: record.versions.sumo.unwrap_or_default(),
+                        platform: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+                        sumo_options: sumo_options(&record.sumo_words),
+                        step_length: record.step_length.unwrap_or_default(),
+                        options: record.options,
+                        inputs: record
+                            .inputs
+                            .into_iter()
+                            .map(|input| Fingerprint::of(folder, input))
+                            .collect::<Result<_>>()?,
+                        seeds: vec![of_seed],
+                    });
+                }
+            }
+        }
+        let bytes = csv.into_inner().map_err(|error| Error::Value(error.to_string()))?;
+        let summary = summary.ok_or_else(|| Error::content(folder, "no seed to run"))?;
+        Ok(Self { conflicts: rows(&bytes, &folder.join(log::CONFLICTS))?, csv: bytes, summary })
+    }
+
+    /// Reads what is expected; none where nothing is blessed.
+    ///
+    /// # Errors
+    /// An error that names the file that cannot be read or does not hold what it should.
+    pub fn read(expected: &Path) -> Result<Option<Self>> {
+        let (table, summary) = (expected.join(log::CONFLICTS), expected.join(SUMMARY));
+        if !table.exists() && !summary.exists() {
+            return Ok(None);
+        }
+        let csv = std::fs::read(&table).map_err(|source| Error::file(&table, source))?;
+        Ok(Some(Self { summary: read_json(&summary)?, conflicts: rows(&csv, &table)?, csv }))
+    }
+
+    /// Writes this as what is expected.
+    ///
+    /// # Errors
+    /// [`Error::File`] that names what cannot be written.
+    pub fn write(&self, expected: &Path) -> Result<()> {
+        std::fs::create_dir_all(expected).map_err(|source| Error::file(expected, source))?;
+        let text =
+            serde_json::to_string_pretty(&self.summary).map_err(|error| Error::content(expected, error.to_string()))?;
+        for (name, bytes) in [(log::CONFLICTS, self.csv.clone()), (SUMMARY, (text + "\n").into_bytes())] {
+            let path = expected.join(name);
+            std::fs::write(&path, bytes).map_err(|source| Error::file(&path, source))?;
+        }
+        Ok(())
+    }
+
+    /// The seeds, in the order of the runs.
+    pub fn seeds(&self) -> Vec<u32> {
+        self.summary.seeds.iter().map(|of_seed| of_seed.seed).collect()
+    }
+}
+
+/// Copies a run's rows, the seed before them.
+fn append(csv: &mut csv::Writer<Vec<u8>>, seed: u32, path: &Path, with_header: bool) -> Result<()> {
+    let fail = |error: csv::Error| Error::content(path, error.to_string());
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(path).map_err(fail)?;
+    for (row, record) in reader.records().enumerate() {
+        let record = record.map_err(fail)?;
+        let first = if row == 0 { "seed".to_owned() } else { seed.to_string() };
+        if row > 0 || with_header {
+            csv.write_record(std::iter::once(first.as_str()).chain(&record)).map_err(fail)?;
+        }
+    }
+    Ok(())
+}
+
+fn rows(csv: &[u8], path: &Path) -> Result<Vec<Row>> {
+    let fail = |error: csv::Error| Error::content(path, error.to_string());
+    let mut reader = csv::Reader::from_reader(csv);
+    let header = reader.headers().map_err(fail)?;
+    if !header.iter().eq(std::iter::once("seed").chain(log::CONFLICT_COLUMNS)) {
+        return Err(Error::line(path, 1, "these are not the columns of this version; bless again"));
+    }
+    reader
+        .records()
+        .map(|record| {
+            let record = record.map_err(fail)?;
+            let line = record.position().map_or(1, csv::Position::line);
+            row(record).ok_or_else(|| Error::line(path, line, "this is no row of a conflict"))
+        })
+        .collect()
+}
+
+fn row(cells: csv::StringRecord) -> Option<Row> {
+    Some(Row {
+        seed: cells.get(0)?.parse().ok()?,
+        ego: cells.get(2)?.to_owned(),
+        foe: cells.get(3)?.to_owned(),
+        kind: *Kind::ALL.iter().find(|kind| cells.get(4) == Some(kind.name()))?,
+        severity: *Severity::ALL.iter().find(|severity| cells.get(5) == Some(severity.name()))?,
+        begin: cells.get(6)?.parse().ok()?,
+        end: cells.get(7)?.parse().ok()?,
+        cells,
+    })
+}
+
+fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
+    serde_json::from_str(&text).map_err(|error| Error::line(path, error.line() as u64, error.to_string()))
+}
+
+/// SUMO's words without the configuration and the seed, each option with its value.
+fn sumo_options(words: &[String]) -> Vec<String> {
+    let mut options: Vec<String> = Vec::new();
+    for word in words {
+        match options.last_mut() {
+            Some(option) if !word.starts_with('-') => {
+                option.push(' ');
+                option.push_str(word);
+            }
+            _ => options.push(word.clone()),
+        }
+    }
+    options.retain(|option| !option.starts_with("-c ") && !option.starts_with("--seed "));
+    options
+}
+
+/// Six decimals, as in the CSV files: what is beyond depends on the order of sums.
+fn rounded(exposure: Exposure) -> Exposure {
+    let round = |value: f64| (value * 1e6).round() / 1e6;
+    Exposure {
+        vehicle_kilometres: round(exposure.vehicle_kilometres),
+        vehicle_hours: round(exposure.vehicle_hours),
+        ..exposure
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_configuration_and_the_seed_are_no_options() {
+        let words = ["-c", "a.sumocfg", "--end", "20", "--seed", "4", "--no-warnings"].map(str::to_owned);
+        assert_eq!(sumo_options(&words), ["--end 20", "--no-warnings"]);
+    }
+}

@@ -1,0 +1,292 @@
+"""`closecall regress`: what is as blessed passes, what was changed is found and named."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Callable
+
+import pytest
+from conftest import NETS, closecall
+
+Copy = Callable[[str], Path]
+
+EIGHT = "[1, 2, 3, 4, 5, 6, 7, 8]"
+
+
+@pytest.fixture
+def blessed(tmp_path: Path) -> Copy:
+    """A copy of a scenario with what is expected of it, to be changed at will: its folder."""
+
+    def copy(name: str) -> Path:
+        return Path(shutil.copytree(NETS / name, tmp_path / name, ignore=shutil.ignore_patterns("closecall-out")))
+
+    return copy
+
+
+def edit(path: Path, pattern: str, replacement: str) -> None:
+    """Change the first match of a pattern in a file."""
+    text, count = re.subn(pattern, replacement, path.read_text(), count=1)
+    assert count == 1, pattern
+    path.write_text(text)
+
+
+def settings(folder: Path, text: str) -> None:
+    """Replace a scenario's settings."""
+    (folder / "closecall.toml").write_text(text)
+
+
+def differs(folder: Path, *words: str) -> str:
+    """What is said of a scenario that must differ."""
+    done = closecall("regress", folder, *words)
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert done.stdout.startswith("FAIL "), done.stdout
+    return done.stdout
+
+
+def test_what_is_as_blessed_passes_with_the_same_words_for_any_number_of_jobs(blessed: Copy, tmp_path: Path) -> None:
+    folders = [blessed(name) for name in ("frontal", "priority", "side")]
+    said = set()
+    for jobs in ("1", "2", "4", "2"):
+        junit = tmp_path / "junit.xml"
+        done = closecall("regress", *folders, "--jobs", jobs, "--junit", junit)
+        assert done.returncode == 0, done.stdout + done.stderr
+        said.add((done.stdout, junit.read_bytes()))
+    ((text, _),) = said
+    assert text.splitlines()[-1] == "3 scenarios: 3 pass"
+
+
+def test_a_folder_of_scenarios_is_all_of_them_and_only_picks_some(blessed: Copy, tmp_path: Path) -> None:
+    blessed("frontal"), blessed("side")
+    done = closecall("regress", tmp_path)
+    assert (done.returncode, done.stdout.count("pass ")) == (0, 2), done.stdout
+    done = closecall("regress", tmp_path, "--only", "side")
+    assert "side" in done.stdout and "frontal" not in done.stdout
+    done = closecall("regress", tmp_path, "--only", "nothing")
+    assert done.returncode == 2 and "nothing" in done.stderr
+
+
+def test_a_driver_type_with_half_the_headway_is_named(blessed: Copy) -> None:
+    folder = blessed("motorway")
+    edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
+    said = differs(folder)
+    assert "changed since blessed: motorway.rou.xml: vType car: tau 1.5 → 0.75" in said
+    assert re.search(r"new: seed \d+ rear_end \S+ with \S+, .* s to .* s, on \S+ at \(.*\): \w+, gap .* m", said)
+
+
+def test_a_signal_phase_of_three_seconds_more_is_named(blessed: Copy) -> None:
+    folder = blessed("signals")
+    edit(folder / "signals.net.xml", '<phase duration="26"', '<phase duration="29"')
+    assert "changed since blessed: signals.net.xml: tlLogic a 0: phase 00 26 s" in differs(folder)
+
+
+def test_a_stop_sign_that_is_gone_is_named(blessed: Copy) -> None:
+    folder = blessed("priority")
+    edit(folder / "priority.nod.xml", "priority_stop", "priority")
+    netconvert = Path(sys.executable).with_name("netconvert")
+    command = [str(netconvert), "-c", "priority.netccfg", "-o", "priority.net.xml"]
+    subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=60)
+    said = differs(folder)
+    assert "changed since blessed: priority.net.xml: junction stop: type priority_stop → priority" in said
+
+
+def test_an_epsilon_up_by_half_a_metre_is_named(blessed: Copy) -> None:
+    folder = blessed("left_turn")
+    text = (folder / "closecall.toml").read_text()
+    settings(folder, f"epsilon = 1.0\n{text}")
+    assert "changed since blessed: option epsilon 0.5 → 1.0" in differs(folder)
+
+
+def test_another_length_of_a_vehicle_is_named(blessed: Copy) -> None:
+    folder = blessed("roundabout")
+    edit(folder / "roundabout.rou.xml", '(<vType id="car"[^>]*) length="4.6"', r'\1 length="4.7"')
+    said = differs(folder)
+    assert "changed since blessed: roundabout.rou.xml: vType car: length 4.6 → 4.7" in said
+
+
+def test_a_difference_that_nobody_made_is_said_to_be_none_of_the_inputs(blessed: Copy) -> None:
+    folder = blessed("rear_end")
+    edit(folder / "expected" / "conflicts.csv", "rear_end,serious", "rear_end,critical")
+    said = differs(folder)
+    assert "severity critical → serious" in said
+    assert "versions, options and input files are those blessed" in said
+
+
+def test_a_comment_changes_nothing_and_is_told(blessed: Copy) -> None:
+    folder = blessed("rear_end")
+    edit(folder / "rear_end.rou.xml", "</routes>", "<!-- no news --></routes>")
+    done = closecall("regress", folder)
+    assert done.returncode == 0
+    assert "changed since blessed: rear_end.rou.xml" in done.stdout
+
+
+def test_what_was_blessed_passes(blessed: Copy) -> None:
+    folder = blessed("side")
+    shutil.rmtree(folder / "expected")
+    missing = closecall("regress", folder)
+    assert missing.returncode == 2 and "nothing is blessed yet" in missing.stdout
+    assert closecall("regress", folder, "--bless").returncode == 0
+    assert closecall("regress", folder).returncode == 0
+    assert (folder / "expected" / "conflicts.csv").read_bytes() == (
+        NETS / "side" / "expected" / "conflicts.csv"
+    ).read_bytes()
+    assert (folder / "expected" / "summary.json").read_bytes() == (
+        NETS / "side" / "expected" / "summary.json"
+    ).read_bytes()
+
+
+def test_blessing_shows_what_it_changes(blessed: Copy) -> None:
+    folder = blessed("frontal")
+    settings(folder, "epsilon = 1.0\n[regress]\nseeds = [42]\n")
+    done = closecall("regress", folder, "--bless")
+    assert done.returncode == 0 and done.stdout.startswith("blessed frontal"), done.stdout
+    assert "option epsilon 0.5 → 1.0" in done.stdout and "margin -29.2" in done.stdout
+    assert json.loads((folder / "expected" / "summary.json").read_text())["options"]["epsilon"] == 1.0
+    assert closecall("regress", folder).returncode == 0
+
+
+def test_a_folder_without_settings_is_exact_with_six_seeds(scenario: Copy) -> None:
+    folder = scenario("fast").parent
+    (folder / "closecall.toml").unlink()
+    assert closecall("regress", folder, "--bless").returncode == 0
+    done = closecall("regress", folder)
+    assert (done.returncode, "(exact): 6 seeds" in done.stdout) == (0, True), done.stdout
+
+
+def test_another_sumo_is_compared_by_statistics_and_that_is_said(blessed: Copy) -> None:
+    folder = blessed("motorway")
+    summary = folder / "expected" / "summary.json"
+    edit(summary, '"sumo": "SUMO [^"]*"', '"sumo": "SUMO 1.20.0"')
+    same = closecall("regress", folder)
+    assert (same.returncode, "byte for byte the same" in same.stdout) == (0, True), same.stdout
+    # Another seed stands for the other version's driver: nothing was changed that a test should find.
+    other = closecall("regress", folder, "--seeds", "1,2,3,4,5,6")
+    assert other.returncode == 0, other.stdout
+    assert "compared by statistics, not exactly (SUMO 1." in other.stdout
+    edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
+    said = differs(folder)
+    assert re.search(r"rear_end conflicts per run: [\d.]+ → [\d.]+ \(p = 0\.00\d+\)", said), said
+
+
+def test_statistics_tolerate_other_seeds_and_find_half_the_headway(blessed: Copy) -> None:
+    folder = blessed("motorway")
+    settings(folder, f'[regress]\nlevel = "statistics"\nseeds = {EIGHT}\n')
+    assert closecall("regress", folder, "--bless").returncode == 0
+    other = closecall("regress", folder, "--seeds", "11,12,13,14,15,16,17,18")
+    assert (other.returncode, "0 of " in other.stdout) == (0, True), other.stdout
+    edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
+    said = differs(folder)
+    assert "all conflicts per vehicle-km" in said and "rear_end conflicts per run" in said
+
+
+def test_too_few_seeds_for_a_test_are_refused(blessed: Copy) -> None:
+    folder = blessed("motorway")
+    done = closecall("regress", folder, "--seeds", "1,2")
+    assert done.returncode == 2
+    assert "2 seeds against 6 blessed can never tell a difference" in done.stdout
+    assert "6 on both sides can" in done.stdout
+
+
+def test_junit_says_what_failed_and_what_could_not_run(blessed: Copy, tmp_path: Path) -> None:
+    good, changed, broken = blessed("frontal"), blessed("side"), blessed("rear_end")
+    settings(changed, (changed / "closecall.toml").read_text() + "\n[type.car]\nresponse_time = 2.0\n")
+    edit(changed / "side.rou.xml", 'jmIgnoreFoeProb="1"', 'jmIgnoreFoeProb="0"')
+    (broken / "rear_end.rou.xml").write_text("<routes><vehicle></routes>")
+    junit = tmp_path / "out" / "junit.xml"
+    done = closecall("regress", good, changed, broken, "--junit", junit)
+    assert done.returncode == 2
+    assert "3 scenarios: 1 pass, 1 FAIL, 1 ERROR" in done.stdout
+    suite = ET.parse(junit).getroot()[0]
+    assert (suite.get("tests"), suite.get("failures"), suite.get("errors")) == ("3", "1", "1")
+    cases = {case.get("name"): case for case in suite.iter("testcase")}
+    assert cases["frontal"].find("failure") is None and cases["frontal"].find("error") is None
+    failure, error = cases["side"].find("failure"), cases["rear_end"].find("error")
+    assert failure is not None and "gone" in (failure.get("message") or "")
+    assert error is not None and "rear_end.rou.xml, line 1" in (error.get("message") or "")
+
+
+@pytest.mark.parametrize("folder", sorted(path.parent for path in NETS.glob("*/closecall.toml")), ids=lambda f: f.name)
+def test_each_readme_states_the_counts_that_are_blessed(folder: Path) -> None:
+    line = re.search(
+        r"\*\*Blessed\*\* .*: (\d+) rear-end, (\d+) frontal, (\d+) side conflicts; (\d+) with a collision",
+        (folder / "README.md").read_text(),
+    )
+    assert line
+    summary = json.loads((folder / "expected" / "summary.json").read_text())
+    (run,) = (run for run in summary["seeds"] if run["seed"] == 42)
+    counts = [
+        sum(count["count"] for count in run["conflicts"] if count["kind"] == kind)
+        for kind in ("rear_end", "frontal", "side")
+    ]
+    assert [int(number) for number in line.groups()] == [*counts, run["collisions"]]
+
+
+@pytest.mark.parametrize(
+    ("text", "named"),
+    [
+        ("epsilom = 1.0\n", "epsilom"),
+        ("[regress]\nseed = [1]\n", "seed"),
+        ("[regress]\nlevel = 'strict'\n", "strict"),
+        ("[regress]\nsumocfg = 'other.sumocfg'\n", "other.sumocfg"),
+        ("[regress\n", "closecall.toml, line 1"),
+        ("epsilon = -1\n", "epsilon"),
+    ],
+)
+def test_a_setting_that_cannot_be_used_is_named(text: str, named: str, blessed: Copy) -> None:
+    folder = blessed("frontal")
+    settings(folder, text)
+    done = closecall("regress", folder)
+    assert done.returncode == 2
+    assert done.stdout.startswith("ERROR") and named in done.stdout.splitlines()[0], done.stdout
+
+
+def test_what_is_expected_and_cannot_be_read_is_named(blessed: Copy) -> None:
+    folder = blessed("frontal")
+    (folder / "expected" / "summary.json").write_text('{"closecall": 1')
+    done = closecall("regress", folder)
+    assert done.returncode == 2 and "summary.json, line 1" in done.stdout
+    shutil.rmtree(folder / "expected")
+    (folder / "expected").mkdir()
+    (folder / "expected" / "conflicts.csv").write_text("a,b\n")
+    done = closecall("regress", folder)
+    assert done.returncode == 2 and "expected" in done.stdout
+
+
+def test_a_folder_that_is_no_scenario_is_refused_in_one_line(tmp_path: Path) -> None:
+    for folder in (tmp_path, tmp_path / "missing"):
+        done = closecall("regress", folder)
+        assert (done.returncode, done.stderr.count("\n"), done.stdout) == (2, 1, "")
+        assert str(folder) in done.stderr
+
+
+def test_kept_logs_are_those_of_the_runs(blessed: Copy, tmp_path: Path) -> None:
+    folder = blessed("side")
+    assert closecall("regress", folder, "--out", "kept", cwd=tmp_path).returncode == 0
+    assert (tmp_path / "kept" / "side" / "seed-42" / "run.json").is_file()
+    assert not (folder / "closecall-out").exists()
+
+
+def test_ctrl_c_ends_the_runs_too(blessed: Copy, tmp_path: Path) -> None:
+    folder = blessed("town")
+    settings(folder, "[regress]\nseeds = [42, 43]\n")
+    command = [sys.executable, "-m", "closecall", "regress", str(folder), "--out", str(tmp_path / "kept")]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    log = tmp_path / "kept" / "town" / "seed-42" / "conflicts.csv"
+    deadline = time.monotonic() + 60
+    while not log.exists() or not log.read_bytes().count(b"\n") > 10:
+        assert process.poll() is None and time.monotonic() < deadline
+        time.sleep(0.02)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=30)
+    assert (process.returncode, said.count("\n")) == (130, 1), said
+    assert "interrupted" in said
+    size = log.stat().st_size
+    time.sleep(0.5)
+    assert log.stat().st_size == size
