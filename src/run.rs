@@ -182,7 +182,7 @@ impl Run {
         let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict);
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
-                log.conflicts(closed, self.net.as_deref())?;
+                log.conflicts(closed, self.net.as_deref(), &self.roster)?;
             }
             log.encounters(self.frame.time, &self.in_conflict, &self.roster)?;
         }
@@ -231,7 +231,7 @@ impl Run {
     pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
         let closed = self.tracker.finish();
         if let Some(log) = &mut self.log {
-            log.conflicts(closed, self.net.as_deref())?;
+            log.conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         self.summary.left_out = scene::left_out(&self.detector.work(), self.net.as_deref());

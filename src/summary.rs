@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::conflict::Conflict;
 use crate::encounter::{Kind, Severity};
@@ -43,7 +43,7 @@ pub struct Count {
 }
 
 /// How much traffic a run had.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exposure {
     /// Vehicles that were in the scene.
     pub vehicles: u64,

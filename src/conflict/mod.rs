@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::encounter::{Encounter, Kind, Severity};
-use crate::frame::{Frame, Roster, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::measures;
@@ -34,6 +34,12 @@ pub struct Conflict {
     pub ego: Arc<str>,
     /// SUMO's id of the foe.
     pub foe: Arc<str>,
+    /// The ego's type.
+    #[serde(skip)]
+    pub ego_profile: ProfileIndex,
+    /// The foe's type.
+    #[serde(skip)]
+    pub foe_profile: ProfileIndex,
     /// The kind at the smallest margin.
     pub kind: Kind,
     /// The worst over the event.
@@ -237,6 +243,8 @@ fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
     Conflict {
         ego: roster.user(found.ego).id.clone(),
         foe: roster.user(found.foe).id.clone(),
+        ego_profile: roster.user(found.ego).profile,
+        foe_profile: roster.user(found.foe).profile,
         kind: found.kind,
         severity: near.map_or(Severity::Caution, |near| near.severity),
         begin: frame.time,
