@@ -18,6 +18,7 @@ pub mod frame;
 pub mod geometry;
 pub mod inputs;
 pub mod log;
+pub mod logged;
 pub mod measures;
 pub mod net;
 pub mod options;
