@@ -30,6 +30,7 @@ pub mod record;
 pub mod replay;
 pub mod run;
 pub mod scene;
+pub mod statistics;
 pub mod summary;
 pub mod units;
 

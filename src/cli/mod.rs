@@ -7,6 +7,7 @@ mod mu;
 mod replay;
 mod run;
 mod settings;
+mod stats;
 
 use std::ffi::OsString;
 
@@ -34,6 +35,8 @@ enum Command {
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
+    /// Statistics of logs: rates, quantiles, the worst conflicts, before and after
+    Stats(stats::StatsArgs),
 }
 
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
@@ -57,6 +60,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Command::Run(arguments) => run::run(*arguments, simulate),
         Command::Replay(arguments) => replay::run(*arguments),
         Command::Mu(arguments) => mu::run(&arguments),
+        Command::Stats(arguments) => stats::run(arguments),
     };
     match done {
         Ok(()) => 0,
@@ -110,7 +114,7 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     match &mut cli.command {
         Command::Run(arguments) => arguments.options.types = file.types,
         Command::Replay(arguments) => arguments.options.types = file.types,
-        Command::Mu(_) => {}
+        Command::Mu(_) | Command::Stats(_) => {}
     }
     Ok(cli)
 }

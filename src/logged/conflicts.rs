@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use crate::encounter::{Kind, Severity};
 use crate::log::CONFLICTS;
@@ -12,7 +12,7 @@ use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second}
 use crate::{Error, Result};
 
 /// A row of `conflicts.csv`; docs/log.md says what each column is.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LoggedConflict {
     /// 1, 2, 3, … in the order of the file.
     pub id: u64,

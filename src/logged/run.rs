@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::inputs::Input;
 use crate::log::RUN;
 use crate::summary::Exposure;
 use crate::units::Second;
@@ -22,6 +23,8 @@ pub struct LoggedRun {
     pub step_length: Option<Second>,
     /// Words for SUMO, after the program's name.
     pub sumo_words: Vec<String>,
+    /// Input files with their hashes.
+    pub inputs: Vec<Input>,
     /// The detector's options.
     pub options: serde_json::Value,
     /// Whether the run came to its end.
