@@ -23,6 +23,8 @@ const MOST_BELOW: usize = 1000;
 const SHARES: [f64; 6] = [0.5, 0.3, 0.2, 0.15, 0.1, 0.05];
 /// A threshold's distribution fits where its p-value is at least this (Bader, Yan and Zhang 2018).
 const FITS: f64 = 0.1;
+/// At or below this shape maximum likelihood is not regular (Smith 1985): many equal values at the end of the range.
+const LEAST_SHAPE: f64 = -0.5;
 /// Samples drawn for a p-value.
 const FIT_DRAWS: usize = 199;
 /// Samples drawn for an interval.
@@ -145,7 +147,7 @@ pub fn crashes(smallest: &[f64], count: usize, hours: f64) -> std::result::Resul
         before = below;
         // Ascending excesses: the value just below the threshold first.
         let excesses = smallest[..below].iter().rev().map(|value| threshold - value).collect::<Vec<_>>();
-        let Some(gpd) = Gpd::fit(&excesses) else { continue };
+        let Some(gpd) = Gpd::fit(&excesses).filter(|gpd| gpd.shape > LEAST_SHAPE) else { continue };
         let p_value = gpd.fits(&excesses, FIT_DRAWS, &mut random);
         best = f64::max(best, p_value);
         if p_value < FITS {
@@ -165,7 +167,9 @@ pub fn crashes(smallest: &[f64], count: usize, hours: f64) -> std::result::Resul
             p_value,
         });
     }
-    Err(format!("the generalised Pareto distribution fits at no threshold (p at most {best:.3}, {FITS} is needed)"))
+    Err(format!(
+        "no generalised Pareto distribution with a shape above {LEAST_SHAPE} fits, at no threshold (best p {best:.3}; {FITS} is needed)"
+    ))
 }
 
 /// The 95 % interval of the frequency: excesses drawn with replacement, their number from Poisson's distribution.
@@ -217,6 +221,6 @@ mod tests {
     #[test]
     fn what_no_distribution_fits_is_refused() {
         let lumps = (0..600).map(|i| if i < 300 { 0.1 } else { 0.9 + f64::from(i) * 1e-4 }).collect::<Vec<_>>();
-        assert!(crashes(&lumps, 600, 1.0).unwrap_err().contains("fits at no threshold"));
+        assert!(crashes(&lumps, 600, 1.0).unwrap_err().contains("fits, at no threshold"));
     }
 }

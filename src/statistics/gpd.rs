@@ -159,14 +159,28 @@ mod tests {
     #[test]
     fn a_sample_of_another_distribution_does_not_fit() {
         let mut random = fastrand::Rng::with_seed(3);
-        let own = sample(Gpd { shape: -0.2, scale: 1.0 }, 300, &mut random);
-        assert!(Gpd::fit(&own).unwrap().fits(&own, 99, &mut random) > 0.05);
         // Two lumps.
         let mut other = (0..300)
             .map(|i| if i % 2 == 0 { 1.0 + random.f64() * 0.1 } else { random.f64() * 0.1 })
             .collect::<Vec<_>>();
         other.sort_unstable_by(f64::total_cmp);
         assert!(Gpd::fit(&other).unwrap().fits(&other, 99, &mut random) < 0.02);
+    }
+
+    #[test]
+    fn the_p_value_of_an_own_sample_is_uniform() {
+        let mut random = fastrand::Rng::with_seed(3);
+        let mut p_values = (0..60)
+            .map(|_| {
+                let own = sample(Gpd { shape: -0.2, scale: 1.0 }, 100, &mut random);
+                Gpd::fit(&own).unwrap().fits(&own, 99, &mut random)
+            })
+            .collect::<Vec<_>>();
+        p_values.sort_unstable_by(f64::total_cmp);
+        let furthest =
+            p_values.iter().enumerate().map(|(i, p)| (p - (i as f64 + 0.5) / 60.0).abs()).fold(0.0, f64::max);
+        // Kolmogorov's bound for 60 at 1 %.
+        assert!(furthest < 0.21, "{furthest}: {p_values:?}");
     }
 
     #[test]

@@ -114,10 +114,10 @@ impl WorstOf {
     /// The worst first.
     pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<Worst> {
         let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
-        for found in &mut worst {
+        for (rank, found) in (1..).zip(&mut worst) {
             let Some(run) = runs.get(found.run) else { continue };
             found.seed.clone_from(&run.seed);
-            found.command = show(run, &found.conflict);
+            found.command = show(run, &found.conflict, rank);
         }
         worst
     }
@@ -127,7 +127,7 @@ impl WorstOf {
 ///
 /// The run begins where it began: who departed before a later `--begin` would not be there. sumo-gui runs without
 /// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place.
-fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
+fn show(run: &LoggedRun, conflict: &LoggedConflict, rank: usize) -> Option<String> {
     run.versions.sumo.as_ref()?;
     let view = format!(
         "<viewsettings><delay value=\"0\"/><viewport x=\"{:.1}\" y=\"{:.1}\" zoom=\"{:.0}\"/></viewsettings>",
@@ -135,7 +135,7 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
         conflict.y,
         zoom(run).unwrap_or(ZOOM)
     );
-    let file = format!("/tmp/closecall-{}.xml", conflict.id);
+    let file = format!("/tmp/closecall-worst-{rank}.xml");
     let mut words = vec!["sumo-gui".to_owned()];
     let mut skip = false;
     for word in &run.sumo_words {
