@@ -22,6 +22,7 @@ pub mod logged;
 pub mod measures;
 pub mod net;
 pub mod options;
+pub mod outputs;
 pub mod path;
 pub mod precollision;
 pub mod profile;

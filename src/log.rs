@@ -256,7 +256,7 @@ impl Table {
 }
 
 /// A number with six decimals at most: micrometres and microseconds.
-fn number(value: f64, text: &mut String) -> &str {
+pub(crate) fn number(value: f64, text: &mut String) -> &str {
     use std::fmt::Write;
     // Writing to a String does not fail.
     let _ = write!(text, "{value:.6}");

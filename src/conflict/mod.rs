@@ -81,6 +81,22 @@ pub struct Conflict {
     pub lane: Option<LaneIndex>,
     /// Whether the rectangles overlapped in any step.
     pub collision: bool,
+    /// When and where `ttc`, `drac` and `pet` were found.
+    #[serde(skip)]
+    pub found: [Option<Moment>; 3],
+}
+
+/// When and where an extreme was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moment {
+    /// The time, in s; for the PET, when the second enters the conflict area.
+    pub time: Second,
+    /// The ego's front-bumper centre at the meeting place of that step, x in m.
+    pub x: Metre,
+    /// The same, y in m.
+    pub y: Metre,
+    /// Speed of the ego in that step, in m/s; for the PET, in the step with the smallest margin.
+    pub speed: MetrePerSecond,
 }
 
 /// Both road users of an event that goes on, and how bad it is now: what is painted.
@@ -218,7 +234,8 @@ impl Tracker {
                     || courses.iter().any(pet::Course::has_ended);
                 let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    event.conflict.pet = pet::post_encroachment_time(&courses[0], &courses[1]);
+                    let found = pet::post_encroachment_time(&courses[0], &courses[1]);
+                    event.conflict.set_pet(found);
                 }
                 if event.conflict.pet.is_none() && !last_call {
                     return true;
@@ -265,6 +282,8 @@ fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
         y: found.y,
         lane: found.lane,
         collision: found.collision,
+        found: [near.and_then(|near| near.ttc), near.and_then(|near| near.drac), None]
+            .map(|value| value.map(|_| Moment { time: frame.time, x: found.x, y: found.y, speed: ego.0 })),
     }
 }
 
@@ -279,9 +298,45 @@ impl Conflict {
             ttc: least(self.ttc, now.ttc),
             drac: least(self.drac.map(|drac| -drac), now.drac.map(|drac| -drac)).map(|drac| -drac),
             collision: self.collision || now.collision,
+            found: [
+                earlier(self.ttc, now.ttc, self.found[0], now.found[0], f64::lt),
+                earlier(self.drac, now.drac, self.found[1], now.found[1], f64::gt),
+                None,
+            ],
             ..if now.margin < self.margin { now } else { self.clone() }
         };
         *self = extremes;
+    }
+
+    fn set_pet(&mut self, found: Option<(Second, Second)>) {
+        self.pet = found.map(|(pet, _)| pet);
+        self.found[2] = found.map(|(_, time)| Moment { time, x: self.x, y: self.y, speed: self.ego_speed });
+    }
+}
+
+/// The moment of what was known, or of what is now where that is beyond it.
+fn earlier(
+    known: Option<f64>,
+    now: Option<f64>,
+    then: Option<Moment>,
+    here: Option<Moment>,
+    beyond: fn(&f64, &f64) -> bool,
+) -> Option<Moment> {
+    match (known, now) {
+        (Some(known), Some(now)) => {
+            if beyond(&now, &known) {
+                here
+            } else {
+                then
+            }
+        }
+        (known, _) => {
+            if known.is_some() {
+                then
+            } else {
+                here
+            }
+        }
     }
 }
 
