@@ -6,7 +6,7 @@ import math
 import struct
 import xml.etree.ElementTree as ET
 from pathlib import Path
-from typing import Callable, NamedTuple
+from typing import Any, Callable, NamedTuple
 
 import pytest
 from conftest import NETS, closecall, parked, rows
@@ -26,7 +26,10 @@ def test_the_ssm_file_has_every_conflict_once_with_the_values_of_the_log(tmp_pat
     for conflict, row in zip(root, logged):
         assert conflict.tag == "conflict"
         assert (conflict.get("ego"), conflict.get("foe")) == (row["ego"], row["foe"])
-        assert [float(conflict.get(name, "nan")) for name in ("begin", "end")] == [float(row["begin"]), float(row["end"])]
+        assert [float(conflict.get(name, "nan")) for name in ("begin", "end")] == [
+            float(row["begin"]),
+            float(row["end"]),
+        ]
         assert [child.tag for child in conflict] == ["minTTC", "maxDRAC", "PET"]
         own = [
             step
@@ -72,7 +75,7 @@ def trajectories(path: Path) -> tuple[tuple[int, ...], list[tuple[float, list[Ve
     """The bounds and the steps of a .trj file of version 3, as its specification has them."""
     data, at = path.read_bytes(), 0
 
-    def take(layout: str) -> tuple[float, ...]:
+    def take(layout: str) -> tuple[Any, ...]:
         nonlocal at
         values = struct.unpack_from("<" + layout, data, at)
         at += struct.calcsize("<" + layout)
@@ -88,7 +91,7 @@ def trajectories(path: Path) -> tuple[tuple[int, ...], list[tuple[float, list[Ve
             steps.append((take("f")[0], []))
         else:
             assert record == 3
-            steps[-1][1].append(Vehicle(*take("iiB10f")))  # type: ignore[arg-type]
+            steps[-1][1].append(Vehicle(*take("iiB10f")))
     return tuple(int(bound) for bound in bounds), steps
 
 

@@ -204,10 +204,8 @@ def test_permutation_and_cliffs_delta_are_scipys(plans: Path) -> None:
     assert margin["cliffs_delta"] == pytest.approx(2 * u / len(pooled[0]) / len(pooled[1]) - 1, abs=1e-9)
 
 
-HEADER = (
-    "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
-    "ego_speed,foe_speed,angle,x,y,lane,collision,ego_type,foe_type"
-).split(",")
+COLUMNS = """id ego foe kind severity begin end time gap mu margin clearance ttc drac pet delta_v
+ego_speed foe_speed angle x y lane collision ego_type foe_type"""
 
 
 def made(folder: Path, ttcs: list[float], hours: float = 1.0) -> Path:
@@ -215,11 +213,11 @@ def made(folder: Path, ttcs: list[float], hours: float = 1.0) -> Path:
     folder.mkdir(parents=True)
     with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(HEADER)
+        writer.writerow(COLUMNS.split())
         for number, ttc in enumerate(ttcs, 1):
             seen = [number, "<b>", "b", "side", "caution", 0, 1, 1, 1, 2, -1, 1, ttc, 1, "", 1, 1, 1, 1, 0, 0]
             writer.writerow([*seen, "e_0", "false", "car", "car"])
-    record = {
+    record: dict[str, Any] = {
         "versions": {"closecall": "0.1.0", "sumo": None},
         "scenario": "made",
         "seed": None,
