@@ -126,6 +126,11 @@ impl Roster {
         &self.profiles[self.users[user.0 as usize].profile.0 as usize]
     }
 
+    /// The type of this index.
+    pub fn profile_at(&self, profile: ProfileIndex) -> &Profile {
+        &self.profiles[profile.0 as usize]
+    }
+
     /// The number of indices in use or free: one more than the largest [`UserIndex`].
     pub fn len(&self) -> usize {
         self.users.len()

@@ -18,9 +18,11 @@ pub mod frame;
 pub mod geometry;
 pub mod inputs;
 pub mod log;
+pub mod logged;
 pub mod measures;
 pub mod net;
 pub mod options;
+pub mod outputs;
 pub mod path;
 pub mod precollision;
 pub mod profile;
@@ -32,6 +34,7 @@ pub mod regress;
 pub mod replay;
 pub mod run;
 pub mod scene;
+pub mod statistics;
 #[cfg(feature = "study")]
 pub mod stress;
 #[cfg(feature = "study")]

@@ -23,7 +23,7 @@ pub const ENCOUNTERS: &str = "encounters.csv";
 pub const RUN: &str = "run.json";
 
 /// The columns of [`CONFLICTS`].
-pub const CONFLICT_COLUMNS: [&str; 23] = [
+pub const CONFLICT_COLUMNS: [&str; 25] = [
     "id",
     "ego",
     "foe",
@@ -47,6 +47,8 @@ pub const CONFLICT_COLUMNS: [&str; 23] = [
     "y",
     "lane",
     "collision",
+    "ego_type",
+    "foe_type",
 ];
 /// The columns of [`ENCOUNTERS`].
 pub const ENCOUNTER_COLUMNS: [&str; 10] =
@@ -92,7 +94,7 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where the disk takes no more.
-    pub fn conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>) -> Result<()> {
+    pub fn conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for conflict in conflicts {
             self.written += 1;
             self.conflicts.row(&[
@@ -122,6 +124,8 @@ impl Log {
                     _ => Cell::Empty,
                 },
                 Cell::Text(if conflict.collision { "true" } else { "false" }),
+                Cell::Text(&roster.profile_at(conflict.ego_profile).name),
+                Cell::Text(&roster.profile_at(conflict.foe_profile).name),
             ])?;
         }
         self.conflicts.flush()
@@ -252,7 +256,7 @@ impl Table {
 }
 
 /// A number with six decimals at most: micrometres and microseconds.
-fn number(value: f64, text: &mut String) -> &str {
+pub(crate) fn number(value: f64, text: &mut String) -> &str {
     use std::fmt::Write;
     // Writing to a String does not fail.
     let _ = write!(text, "{value:.6}");

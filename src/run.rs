@@ -17,6 +17,7 @@ use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
 use crate::net::Net;
 use crate::options::Options;
+use crate::outputs::Outputs;
 use crate::profile::{Category, Profile};
 use crate::scene::{self, LeftOut};
 use crate::summary::Summary;
@@ -33,6 +34,7 @@ pub struct Run {
     filter: Option<Filter>,
     tracker: Tracker,
     log: Option<Log>,
+    outputs: Outputs,
     keeps: bool,
     conflicts: Vec<Conflict>,
     in_conflict: Vec<Encounter>,
@@ -60,6 +62,7 @@ impl Run {
             filter,
             tracker: Tracker::default(),
             log: None,
+            outputs: Outputs::default(),
             keeps: true,
             conflicts: Vec::new(),
             in_conflict: Vec::new(),
@@ -73,6 +76,11 @@ impl Run {
     pub fn log_to(&mut self, log: Log, keeps: bool) {
         self.log = Some(log);
         self.keeps = keeps;
+    }
+
+    /// Writes other files too, besides the log.
+    pub fn write_to(&mut self, outputs: Outputs) {
+        self.outputs = outputs;
     }
 
     /// Says that no road user's route changes while it is in the scene.
@@ -159,6 +167,7 @@ impl Run {
     /// Says where the road user of a row is on the net.
     pub fn place(&mut self, row: u32, placement: &Placement) {
         self.detector.place(&self.frame, &self.roster, row, placement);
+        self.outputs.place(row, placement);
     }
 
     /// Phase 2, the events and the log; returns the pairs that are in conflict in this step.
@@ -182,10 +191,12 @@ impl Run {
         let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict);
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
-                log.conflicts(closed, self.net.as_deref())?;
+                log.conflicts(closed, self.net.as_deref(), &self.roster)?;
             }
             log.encounters(self.frame.time, &self.in_conflict, &self.roster)?;
         }
+        self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
+        self.outputs.conflicts(closed)?;
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         // Only now may their indices be given to others: the events of this step have seen that they are gone.
         for user in self.leaving.drain(..) {
@@ -236,12 +247,19 @@ impl Run {
     pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
         let closed = self.tracker.finish();
         if let Some(log) = &mut self.log {
-            log.conflicts(closed, self.net.as_deref())?;
+            log.conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
+        self.outputs.conflicts(closed)?;
+        self.outputs.finish()?;
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         self.summary.left_out = scene::left_out(&self.detector.work(), self.net.as_deref());
         self.summary.left_out.extend(left_out);
         Ok(self.summary.clone())
+    }
+
+    /// Takes back the files besides the log: the input could not be used after all.
+    pub fn discard_outputs(&mut self) {
+        std::mem::take(&mut self.outputs).discard();
     }
 
     /// The log, taken away from the run.

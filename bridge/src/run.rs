@@ -10,6 +10,7 @@ use closecall::cli::{self, RunRequest, Sumo};
 use closecall::inputs::{self, Input};
 use closecall::log::Log;
 use closecall::net::Net;
+use closecall::outputs::Outputs;
 use closecall::progress::Progress;
 use closecall::record::{RunRecord, Versions};
 use closecall::run::Run;
@@ -166,9 +167,11 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         error: None,
         summary: Summary::default(),
     };
+    let outputs = Outputs::create(&request.outputs, run.net())?;
     let log = Log::create(&request.out, request.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
+    run.write_to(outputs);
     let mut session =
         Session { sumo, request, run, source, painter, step_length, spent: Spent::default(), is_unfinished: false };
     let ended = session.steps();
@@ -183,6 +186,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         _ => None,
     };
     if let Some(error) = unusable {
+        session.run.discard_outputs();
         if let Some(log) = session.run.take_log() {
             log.discard();
         }

@@ -8,6 +8,7 @@ mod regress;
 mod replay;
 mod run;
 mod settings;
+mod stats;
 #[cfg(feature = "study")]
 mod stress;
 #[cfg(feature = "study")]
@@ -49,6 +50,8 @@ enum Command {
     /// Measure error against run time, for every choice that closecall makes
     #[cfg(feature = "study")]
     Study(study::StudyArgs),
+    /// Statistics of logs: rates, quantiles, the worst conflicts, before and after
+    Stats(stats::StatsArgs),
 }
 
 /// What the commands that run SUMO need of whoever knows it.
@@ -87,6 +90,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Command::Stress(arguments) => stress::run(&arguments).map(|()| 0),
         #[cfg(feature = "study")]
         Command::Study(arguments) => study::run(&arguments, sumo).map(|()| 0),
+        Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
     };
     match done {
         Ok(status) => status,

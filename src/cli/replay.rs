@@ -9,6 +9,7 @@ use crate::inputs::Input;
 use crate::log::Log;
 use crate::net::Net;
 use crate::options::Options;
+use crate::outputs::{OutputFiles, Outputs};
 use crate::progress::Progress;
 use crate::record::{RunRecord, Versions};
 use crate::replay::Replay;
@@ -38,6 +39,8 @@ pub struct ReplayArgs {
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
+    outputs: OutputFiles,
+    #[command(flatten)]
     pub(super) options: Options,
 }
 
@@ -47,7 +50,7 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
     let recording = &arguments.recording;
     let net = Arc::new(Net::read(&arguments.net)?);
     let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
-    let mut run = Run::new(&options, Some(net))?;
+    let mut run = Run::new(&options, Some(net.clone()))?;
     run.routes_are_fixed();
     let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
     let mut record = RunRecord {
@@ -67,6 +70,7 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
     let log = Log::create(&out, arguments.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
+    run.write_to(Outputs::create(&arguments.outputs, Some(&net))?);
     let ended = steps(&mut replay, &mut run, arguments.quiet);
     record.summary = run.finish(Vec::new())?;
     record.complete = ended.is_ok();

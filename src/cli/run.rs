@@ -6,6 +6,7 @@ use clap::Args;
 
 use super::{Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
+use crate::outputs::OutputFiles;
 use crate::summary::Summary;
 use crate::units::Second;
 use crate::{Error, Result};
@@ -44,6 +45,8 @@ pub struct RunArgs {
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
+    outputs: OutputFiles,
+    #[command(flatten)]
     pub(super) options: Options,
     /// Options for SUMO itself.
     #[arg(last = true, value_name = "SUMO OPTIONS")]
@@ -63,6 +66,8 @@ pub struct RunRequest {
     pub end: Option<Second>,
     /// Whether to print nothing but errors.
     pub quiet: bool,
+    /// Files to write besides the log.
+    pub outputs: OutputFiles,
     /// The detector's options.
     pub options: Options,
     /// Words for SUMO, after the program's name.
@@ -109,6 +114,7 @@ fn request(arguments: RunArgs) -> Result<RunRequest> {
         out: arguments.out.unwrap_or(beside),
         end: arguments.end,
         quiet: arguments.quiet,
+        outputs: arguments.outputs,
         options: arguments.options.checked()?,
         sumo_words,
     })

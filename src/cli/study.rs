@@ -8,6 +8,7 @@ use super::Sumo;
 use super::run::RunRequest;
 use crate::Result;
 use crate::options::Options;
+use crate::outputs::OutputFiles;
 use crate::study::{self, Axis, Plan};
 use crate::units::Second;
 
@@ -81,6 +82,7 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         out: recording.with_extension("log"),
         end: Some(end),
         quiet: true,
+        outputs: OutputFiles::default(),
         options: Options::default(),
         sumo_words: words.map(str::to_owned).to_vec(),
     }

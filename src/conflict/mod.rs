@@ -3,79 +3,26 @@
 //! An event opens at the first step with margin < 0 and closes when the margin has been ≥ 0 for [`CLOSES_AFTER`] or
 //! one of the two is no road user any more. A side or frontal event then waits for its PET, at most [`pet::WAIT`].
 
+mod event;
 pub mod pet;
 
-use std::sync::Arc;
-
 use rustc_hash::FxHashMap;
-use serde::Serialize;
+
+pub use event::{Conflict, Moment};
+
+use event::moment;
 
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, Roster, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::measures;
-use crate::net::LaneIndex;
 use crate::profile::Category;
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::units::Second;
 
 /// How long the margin must be ≥ 0 before an event closes, in s (DESIGN.md, Events).
 pub const CLOSES_AFTER: Second = 1.0;
 /// Simulated times are sums of steps: what differs by less is the same moment, in s.
 const SAME_MOMENT: Second = 1e-6;
-
-/// One conflict: a pair and a run of steps with margin < 0.
-///
-/// Everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and `pet`,
-/// which are the event's extremes, and `severity`, its worst.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Conflict {
-    /// SUMO's id of the ego.
-    pub ego: Arc<str>,
-    /// SUMO's id of the foe.
-    pub foe: Arc<str>,
-    /// The kind at the smallest margin.
-    pub kind: Kind,
-    /// The worst over the event.
-    pub severity: Severity,
-    /// First step with margin < 0, in s.
-    pub begin: Second,
-    /// Last step with margin < 0, in s.
-    pub end: Second,
-    /// The step with the smallest margin, in s.
-    pub time: Second,
-    /// The room that was left, in m.
-    pub gap: Metre,
-    /// The minimal collision distance, in m.
-    pub mu: Metre,
-    /// gap − μ, in m.
-    pub margin: Metre,
-    /// Smallest distance between the two rectangles, in m.
-    pub clearance: Metre,
-    /// Smallest time to collision, in s.
-    pub ttc: Option<Second>,
-    /// Largest deceleration rate to avoid the collision, in m/s².
-    pub drac: Option<MetrePerSecondSquared>,
-    /// Post-encroachment time, in s; side and frontal only.
-    pub pet: Option<Second>,
-    /// Speed change of the ego in a fully inelastic collision, in m/s.
-    pub delta_v: MetrePerSecond,
-    /// Speed of the ego, in m/s.
-    pub ego_speed: MetrePerSecond,
-    /// Speed of the foe, in m/s.
-    pub foe_speed: MetrePerSecond,
-    /// Angle α at the meeting place, in rad.
-    pub angle: Radian,
-    /// The ego's front-bumper centre at the meeting place, x in m.
-    pub x: Metre,
-    /// The same, y in m.
-    pub y: Metre,
-    /// The lane of the meeting place.
-    #[serde(skip)]
-    pub lane: Option<LaneIndex>,
-    /// Whether the rectangles overlapped in any step.
-    pub collision: bool,
-}
 
 /// Both road users of an event that goes on, and how bad it is now: what is painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,7 +159,8 @@ impl Tracker {
                     || courses.iter().any(pet::Course::has_ended);
                 let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    event.conflict.pet = pet::post_encroachment_time(&courses[0], &courses[1]);
+                    let found = pet::post_encroachment_time(&courses[0], &courses[1]);
+                    event.conflict.set_pet(found);
                 }
                 if event.conflict.pet.is_none() && !last_call {
                     return true;
@@ -227,61 +175,6 @@ impl Tracker {
 
 fn sort(conflicts: &mut [Conflict]) {
     conflicts.sort_by(|a, b| a.begin.total_cmp(&b.begin).then_with(|| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe))));
-}
-
-/// One step of a pair as a conflict of its own.
-fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
-    let part = |user: UserIndex, row: u32| (frame.states()[row as usize].speed, roster.profile_of(user).mass);
-    let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
-    let near = found.nearness.as_ref();
-    Conflict {
-        ego: roster.user(found.ego).id.clone(),
-        foe: roster.user(found.foe).id.clone(),
-        kind: found.kind,
-        severity: near.map_or(Severity::Caution, |near| near.severity),
-        begin: frame.time,
-        end: frame.time,
-        time: frame.time,
-        gap: found.gap,
-        mu: found.mu,
-        margin: found.margin,
-        clearance: near.map_or(f64::INFINITY, |near| near.clearance),
-        ttc: near.and_then(|near| near.ttc),
-        drac: near.and_then(|near| near.drac),
-        pet: None,
-        delta_v: measures::delta_v(ego, foe, found.angle),
-        ego_speed: ego.0,
-        foe_speed: foe.0,
-        angle: found.angle,
-        x: found.x,
-        y: found.y,
-        lane: found.lane,
-        collision: found.collision,
-    }
-}
-
-impl Conflict {
-    /// Adds a later step of the same event.
-    fn take(&mut self, now: Self) {
-        let extremes = Self {
-            severity: self.severity.max(now.severity),
-            begin: self.begin,
-            end: now.end,
-            clearance: self.clearance.min(now.clearance),
-            ttc: least(self.ttc, now.ttc),
-            drac: least(self.drac.map(|drac| -drac), now.drac.map(|drac| -drac)).map(|drac| -drac),
-            collision: self.collision || now.collision,
-            ..if now.margin < self.margin { now } else { self.clone() }
-        };
-        *self = extremes;
-    }
-}
-
-fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (a, b) => a.or(b),
-    }
 }
 
 #[cfg(test)]

@@ -87,16 +87,16 @@ impl Course {
     }
 }
 
-/// The PET of two courses in s; none where the corridors do not overlap, or both are in the conflict area at once, as
+/// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or both are in the conflict area at once, as
 /// where one merges behind the other.
-pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<Second> {
+pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<(Second, Second)> {
     let (a_enters, a_leaves) = a.contact(&b.corridor())?;
     let (b_enters, b_leaves) = b.contact(&a.corridor())?;
     if a_enters == b_enters {
         return None;
     }
     let (leaves, enters) = if a_enters < b_enters { (a_leaves?, b_enters) } else { (b_leaves?, a_enters) };
-    (enters >= leaves).then_some(enters - leaves)
+    (enters >= leaves).then_some((enters - leaves, enters))
 }
 
 #[cfg(test)]
@@ -120,8 +120,9 @@ mod tests {
     fn one_that_crosses_behind_another_leaves_the_time_between() {
         // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
         // enters the first's (1 m before the origin) at 5 − 0.1 s.
-        let found = post_encroachment_time(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
-        assert!((found - 2.4).abs() < 1e-9, "{found}");
+        let (pet, enters) =
+            post_encroachment_time(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
+        assert!((pet - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9, "{pet} at {enters}");
     }
 
     #[test]

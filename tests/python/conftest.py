@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any, Callable
 
@@ -44,6 +45,17 @@ def rows(path: Path) -> list[Row]:
     """The rows of a CSV file."""
     with path.open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def parked(stops: Path) -> Callable[[str, float], bool]:
+    """Whether a vehicle is parked off the road at a time, from SUMO's stop-output."""
+    spans: dict[str, list[tuple[float, float]]] = {}
+    for stop in ET.parse(stops).getroot().findall("stopinfo"):
+        if stop.get("parking") == "1":
+            ended = float(stop.get("ended", "-1"))
+            span = float(stop.get("started", "nan")), ended if ended >= 0 else float("inf")
+            spans.setdefault(stop.get("id", ""), []).append(span)
+    return lambda name, time: any(begin - 1e-6 <= time < end - 1e-6 for begin, end in spans.get(name, []))
 
 
 @pytest.fixture

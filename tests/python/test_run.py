@@ -16,7 +16,7 @@ from conftest import closecall, rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
-    "ego_speed,foe_speed,angle,x,y,lane,collision"
+    "ego_speed,foe_speed,angle,x,y,lane,collision,ego_type,foe_type"
 )
 ENCOUNTER_COLUMNS = "time,ego,foe,kind,gap,mu,margin,ttc,drac,severity"
 

@@ -1,0 +1,63 @@
+//! `closecall stats`: near-miss statistics of one or many runs.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use super::value;
+use crate::Result;
+use crate::statistics::{By, Request, Statistics, table};
+
+/// Log folders and what is wanted of them.
+#[derive(Args)]
+pub struct StatsArgs {
+    /// Log folders, or folders that hold some at any depth, as a sweep writes them.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// By what conflicts are grouped.
+    #[arg(long, value_enum, default_value = "kind")]
+    by: By,
+    /// Format of what is printed.
+    #[arg(long, value_enum, default_value = "text")]
+    format: Format,
+    /// The runs to compare with: log folders, or folders that hold some.
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    against: Vec<PathBuf>,
+    /// How many of the worst conflicts, and of the hot spots, are listed.
+    #[arg(long, value_name = "N", default_value_t = 10)]
+    worst: usize,
+}
+
+/// How statistics are printed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// Tables for a terminal.
+    Text,
+    /// A line per value.
+    Csv,
+    /// One object, every digit.
+    Json,
+    /// A page for a browser.
+    Html,
+}
+
+/// Prints the statistics.
+pub fn run(arguments: StatsArgs) -> Result<()> {
+    let StatsArgs { folders, by, format, against, worst } = arguments;
+    let statistics = Statistics::of(&Request { folders, by, against, worst })?;
+    for log in &statistics.left_out {
+        eprintln!("closecall: {}: {}", log.folder.display(), log.why);
+    }
+    let printed = match format {
+        Format::Json => serde_json::to_string_pretty(&statistics).map_err(|error| value(error.to_string()))? + "\n",
+        Format::Text => table::text(&table::tables(&statistics)),
+        Format::Csv => table::csv(&table::tables(&statistics))?,
+        Format::Html => table::html(&table::tables(&statistics)),
+    };
+    match std::io::stdout().write_all(printed.as_bytes()) {
+        // A reader that has seen enough is no error.
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(value(error.to_string())),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,73 @@
+//! `run.json`, read back.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use crate::inputs::Input;
+use crate::log::RUN;
+use crate::summary::Exposure;
+use crate::units::Second;
+use crate::{Error, Result};
+
+/// How a run was made: what statistics need of `run.json`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct LoggedRun {
+    /// Versions of what took part.
+    pub versions: LoggedVersions,
+    /// The SUMO configuration, or the recording that was replayed.
+    pub scenario: PathBuf,
+    /// SUMO's random seed; none where nothing was simulated.
+    pub seed: Option<String>,
+    /// Length of a step in s.
+    pub step_length: Option<Second>,
+    /// Words for SUMO, after the program's name.
+    pub sumo_words: Vec<String>,
+    /// Input files with their hashes.
+    pub inputs: Vec<Input>,
+    /// The detector's options.
+    pub options: serde_json::Value,
+    /// Whether the run came to its end.
+    pub complete: bool,
+    /// What it found.
+    pub summary: LoggedSummary,
+}
+
+/// Versions of what took part in a run.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+pub struct LoggedVersions {
+    /// closecall's.
+    pub closecall: String,
+    /// SUMO's; none where nothing was simulated.
+    pub sumo: Option<String>,
+}
+
+/// How long a run was and how much traffic it had.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct LoggedSummary {
+    /// First step, in s.
+    pub begin: Second,
+    /// Last step, in s.
+    pub end: Second,
+    /// Steps that were checked; 0 where the run was killed or goes on.
+    pub steps: u64,
+    /// How much traffic it was.
+    pub exposure: Exposure,
+}
+
+impl LoggedRun {
+    /// Reads the `run.json` of a log folder.
+    ///
+    /// # Errors
+    /// [`Error::File`] or [`Error::Line`] where it is missing or is not what closecall writes.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let path = folder.join(RUN);
+        let text = std::fs::read_to_string(&path).map_err(|source| Error::file(&path, source))?;
+        serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))
+    }
+
+    /// Simulated hours from the first to the last step.
+    pub fn hours(&self) -> f64 {
+        (self.summary.end - self.summary.begin) / 3600.0
+    }
+}

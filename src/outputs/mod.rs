@@ -1,0 +1,108 @@
+//! Files in the formats of other tools, written beside the log: SUMO's SSM device, FHWA's SSAM.
+
+mod ssm;
+mod trajectories;
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use self::ssm::Ssm;
+use self::trajectories::Trajectories;
+use crate::conflict::Conflict;
+use crate::encounter::Placement;
+use crate::frame::{Frame, Roster};
+use crate::net::Net;
+use crate::{Error, Result};
+
+/// Files to write besides the log.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Args)]
+pub struct OutputFiles {
+    /// Write the conflicts in the format of SUMO's SSM device, each once.
+    #[arg(long, value_name = "FILE")]
+    pub ssm_output: Option<PathBuf>,
+    /// Write all vehicles' trajectories in SSAM's format (.trj, version 3).
+    #[arg(long, value_name = "FILE")]
+    pub trj_output: Option<PathBuf>,
+}
+
+/// The files of a run besides its log; the default has none.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    ssm: Option<Ssm>,
+    trajectories: Option<Trajectories>,
+}
+
+impl Outputs {
+    /// Makes the files.
+    ///
+    /// # Errors
+    /// [`Error::File`] that names what cannot be written; [`Error::Value`] where trajectories have no net.
+    pub fn create(files: &OutputFiles, net: Option<&Net>) -> Result<Self> {
+        let trajectories = match (&files.trj_output, net) {
+            (Some(path), Some(net)) => Some(Trajectories::create(path, net)?),
+            (Some(_), None) => return Err(Error::Value("--trj-output needs a net".to_owned())),
+            (None, _) => None,
+        };
+        Ok(Self { ssm: files.ssm_output.as_deref().map(Ssm::create).transpose()?, trajectories })
+    }
+
+    /// Says where on the net the road user of a row is.
+    pub(crate) fn place(&mut self, row: u32, placement: &Placement) {
+        if let Some(trajectories) = &mut self.trajectories {
+            trajectories.place(row, placement.lane);
+        }
+    }
+
+    /// Takes the road users of a step.
+    pub(crate) fn step(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
+        match (&mut self.trajectories, net) {
+            (Some(trajectories), Some(net)) => trajectories.step(frame, roster, net),
+            _ => Ok(()),
+        }
+    }
+
+    /// Takes conflicts that have closed.
+    pub(crate) fn conflicts(&mut self, closed: &[Conflict]) -> Result<()> {
+        self.ssm.as_mut().map_or(Ok(()), |ssm| closed.iter().try_for_each(|conflict| ssm.conflict(conflict)))
+    }
+
+    /// Ends the files.
+    pub(crate) fn finish(&mut self) -> Result<()> {
+        self.ssm.as_mut().map_or(Ok(()), Ssm::finish)?;
+        self.trajectories.as_mut().map_or(Ok(()), Trajectories::finish)
+    }
+
+    /// Takes back what was written.
+    pub(crate) fn discard(self) {
+        let files = [self.ssm.map(|ssm| ssm.file), self.trajectories.map(|trajectories| trajectories.file)];
+        for file in files.into_iter().flatten() {
+            // What cannot be removed stays: the error that led here is the one to be told.
+            let _ = std::fs::remove_file(file.path);
+        }
+    }
+}
+
+/// A file under way.
+#[derive(Debug)]
+struct OutputFile {
+    path: PathBuf,
+    writer: BufWriter<File>,
+}
+
+impl OutputFile {
+    fn create(path: &Path) -> Result<Self> {
+        let file = File::create(path).map_err(|source| Error::file(path, source))?;
+        Ok(Self { path: path.to_owned(), writer: BufWriter::new(file) })
+    }
+
+    fn write(&mut self, bytes: &[u8]) -> Result<()> {
+        self.writer.write_all(bytes).map_err(|source| Error::file(&self.path, source))
+    }
+
+    fn flush(&mut self) -> Result<()> {
+        self.writer.flush().map_err(|source| Error::file(&self.path, source))
+    }
+}

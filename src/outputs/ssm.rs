@@ -1,0 +1,107 @@
+//! Conflicts as SUMO's SSM device writes them, so that scripts for its files go on working.
+//!
+//! Each conflict is there once, with closecall's ego and foe, where the device writes it for both. `type` is the
+//! device's code of the encounter (SUMO's `MSDevice_SSM.h`).
+
+use std::fmt::Write;
+use std::path::Path;
+
+use quick_xml::escape::escape;
+
+use super::OutputFile;
+use crate::Result;
+use crate::conflict::{Conflict, Moment};
+use crate::encounter::Kind;
+use crate::log::number;
+
+/// The device's code for an ego that follows its foe.
+const FOLLOWING_FOLLOWER: u32 = 2;
+/// For an ego that crosses its foe's way and is the later of the two.
+const CROSSING_FOLLOWER: u32 = 11;
+/// For two that have both left the conflict area: what a PET is of.
+const BOTH_LEFT: u32 = 17;
+/// For two that drive towards each other.
+const ONCOMING: u32 = 20;
+/// For a collision.
+const COLLISION: u32 = 111;
+
+/// The file.
+#[derive(Debug)]
+pub struct Ssm {
+    pub(super) file: OutputFile,
+}
+
+impl Ssm {
+    /// Makes the file and its first lines.
+    pub fn create(path: &Path) -> Result<Self> {
+        let mut file = OutputFile::create(path)?;
+        let made_by = concat!("<!-- closecall ", env!("CARGO_PKG_VERSION"), " -->\n");
+        file.write(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\n{made_by}\n<SSMLog>\n").as_bytes())?;
+        Ok(Self { file })
+    }
+
+    /// Appends a conflict.
+    pub fn conflict(&mut self, conflict: &Conflict) -> Result<()> {
+        self.file.write(element(conflict).as_bytes())
+    }
+
+    /// Ends the file.
+    pub fn finish(&mut self) -> Result<()> {
+        self.file.write(b"</SSMLog>\n")?;
+        self.file.flush()
+    }
+}
+
+fn element(conflict: &Conflict) -> String {
+    let code = match conflict.kind {
+        _ if conflict.collision => COLLISION,
+        Kind::RearEnd => FOLLOWING_FOLLOWER,
+        Kind::Side => CROSSING_FOLLOWER,
+        Kind::Frontal => ONCOMING,
+    };
+    let (ego, foe) = (escape(&*conflict.ego), escape(&*conflict.foe));
+    let mut text = format!(
+        "    <conflict begin=\"{}\" end=\"{}\" ego=\"{ego}\" foe=\"{foe}\">\n",
+        decimal(conflict.begin),
+        decimal(conflict.end)
+    );
+    let [ttc, drac, pet] = conflict.found;
+    for (name, value, moment, code) in [
+        ("minTTC", conflict.ttc, ttc, code),
+        ("maxDRAC", conflict.drac, drac, code),
+        ("PET", conflict.pet, pet, BOTH_LEFT),
+    ] {
+        // Writing to a String does not fail.
+        let _ = match (value, moment) {
+            (Some(value), Some(Moment { time, x, y, speed })) => writeln!(
+                text,
+                "        <{name} time=\"{}\" position=\"{},{}\" type=\"{code}\" value=\"{}\" speed=\"{}\"/>",
+                decimal(time),
+                decimal(x),
+                decimal(y),
+                decimal(value),
+                decimal(speed)
+            ),
+            _ => writeln!(text, "        <{name} time=\"NA\" position=\"NA\" type=\"NA\" value=\"NA\" speed=\"NA\"/>"),
+        };
+    }
+    text + "    </conflict>\n"
+}
+
+/// A number with two decimals at least, as SUMO's, and six at most.
+fn decimal(value: f64) -> String {
+    let mut digits = String::new();
+    number(value, &mut digits);
+    let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    if decimals < 2 { format!("{value:.2}") } else { digits }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_two_decimals_at_least() {
+        assert_eq!([1.0, 1.5, 1.25, 0.1234567].map(decimal), ["1.00", "1.50", "1.25", "0.123457"]);
+    }
+}

@@ -1,0 +1,119 @@
+//! Trajectories in the format of FHWA's Surrogate Safety Assessment Model (Open Source SSAM File Format 3.0).
+//!
+//! FORMAT, DIMENSIONS, then for each step TIMESTEP and a VEHICLE record per vehicle, little-endian, in metres. Each
+//! vehicle has its own length and width, and the acceleration between its last two steps; its rear lies behind its
+//! front along its heading. Persons are no vehicles to SSAM and are left out.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use rustc_hash::FxHashMap;
+
+use super::OutputFile;
+use crate::Result;
+use crate::frame::{Frame, Roster};
+use crate::geometry::Point;
+use crate::geometry::rectangle::direction;
+use crate::net::{LaneIndex, Net};
+use crate::profile::Category;
+use crate::units::{MetrePerSecond, Second};
+
+/// The first byte of each record.
+const FORMAT: u8 = 0;
+const DIMENSIONS: u8 = 1;
+const TIMESTEP: u8 = 2;
+const VEHICLE: u8 = 3;
+/// The version of the format.
+const VERSION: f32 = 3.0;
+/// `DIMENSIONS` in metres, one to a unit.
+const METRIC: u8 = 1;
+const SCALE: f32 = 1.0;
+/// The link of what is on no lane.
+const NO_LINK: i32 = -1;
+
+/// The file, and what of the step before the next one needs.
+#[derive(Debug)]
+pub struct Trajectories {
+    pub(super) file: OutputFile,
+    known: Vec<Option<Known>>,
+    numbers: i32,
+    placed: FxHashMap<u32, LaneIndex>,
+    record: Vec<u8>,
+}
+
+/// A vehicle that was seen before.
+#[derive(Debug)]
+struct Known {
+    id: Arc<str>,
+    number: i32,
+    time: Second,
+    speed: MetrePerSecond,
+}
+
+impl Trajectories {
+    /// Makes the file and its first two records.
+    pub fn create(path: &Path, net: &Net) -> Result<Self> {
+        let mut file = OutputFile::create(path)?;
+        file.write(&[FORMAT, b'L'])?;
+        file.write(&VERSION.to_le_bytes())?;
+        // Heights are given.
+        file.write(&[1])?;
+        let points = || net.lanes.iter().flat_map(|lane| &lane.shape);
+        let (left, low) = points().fold((0.0, 0.0), |(x, y), point| (point.x.min(x), point.y.min(y)));
+        let (right, high) = points().fold((0.0, 0.0), |(x, y), point| (point.x.max(x), point.y.max(y)));
+        file.write(&[DIMENSIONS, METRIC])?;
+        file.write(&SCALE.to_le_bytes())?;
+        for bound in [f64::floor(left), f64::floor(low), f64::ceil(right), f64::ceil(high)] {
+            file.write(&(bound as i32).to_le_bytes())?;
+        }
+        Ok(Self { file, known: Vec::new(), numbers: 0, placed: FxHashMap::default(), record: Vec::new() })
+    }
+
+    /// Says on which lane the vehicle of a row is; of the others it is the lane that is nearest.
+    pub fn place(&mut self, row: u32, lane: LaneIndex) {
+        self.placed.insert(row, lane);
+    }
+
+    /// Appends a step.
+    pub fn step(&mut self, frame: &Frame, roster: &Roster, net: &Net) -> Result<()> {
+        self.record.clear();
+        self.record.push(TIMESTEP);
+        self.record.extend((frame.time as f32).to_le_bytes());
+        self.known.resize_with(roster.len(), || None);
+        for ((row, user), state) in (0..).zip(frame.users()).zip(frame.states()) {
+            let profile = roster.profile_of(*user);
+            if profile.category != Category::Vehicle {
+                continue;
+            }
+            let id = &roster.user(*user).id;
+            let slot = &mut self.known[user.0 as usize];
+            // An index may have been given to another vehicle meanwhile.
+            let before = slot.take().filter(|known| Arc::ptr_eq(&known.id, id));
+            let acceleration =
+                before.as_ref().map_or(0.0, |before| (state.speed - before.speed) / (frame.time - before.time));
+            let number = before.map_or(self.numbers, |before| before.number);
+            self.numbers = self.numbers.max(number + 1);
+            *slot = Some(Known { id: id.clone(), number, time: frame.time, speed: state.speed });
+            let front = Point::new(state.x, state.y);
+            let rear = front - direction(state.heading) * profile.length;
+            let lane =
+                self.placed.get(&row).copied().or_else(|| net.lane_at(front)).map(|lane| &net.lanes[lane.0 as usize]);
+            let link = lane.map_or(NO_LINK, |lane| lane.edge.0 as i32);
+            self.record.push(VEHICLE);
+            self.record.extend(number.to_le_bytes());
+            self.record.extend(link.to_le_bytes());
+            self.record.push(lane.map_or(0, |lane| lane.index.min(u8::MAX.into()) as u8));
+            let numbers = [front.x, front.y, rear.x, rear.y, profile.length, profile.width, state.speed, acceleration];
+            for number in numbers.into_iter().chain([state.z, state.z]) {
+                self.record.extend((number as f32).to_le_bytes());
+            }
+        }
+        self.placed.clear();
+        self.file.write(&self.record)
+    }
+
+    /// Ends the file.
+    pub fn finish(&mut self) -> Result<()> {
+        self.file.flush()
+    }
+}

@@ -1,0 +1,326 @@
+"""`closecall stats`, held against a script of its own: plain Python, the CSV log and SUMO's own fcd-output."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import shutil
+import statistics
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any, Callable
+
+import numpy as np
+import pytest
+from conftest import NETS, closecall, parked, rows
+from scipy import stats as scipy_stats
+
+Copy = Callable[[str], Path]
+
+
+def simulate(config: Path, out: Path, *words: str | Path, sumo: tuple[str | Path, ...] = ()) -> Path:
+    """A run's log folder."""
+    done = closecall("run", config, "--quiet", "--out", out, *words, "--", "--no-warnings", *sumo)
+    assert done.returncode == 0, done.stderr
+    return out
+
+
+def stats(*words: str | Path) -> Any:
+    """What `closecall stats` says, as JSON."""
+    done = closecall("stats", *words, "--format", "json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="module")
+def plans(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Runs of both signal programs of left_turn: eight seeds of one, sixteen of the other."""
+    folder = tmp_path_factory.mktemp("plans")
+    for plan, seeds in (("left_turn", range(1, 17)), ("protected", range(1, 9))):
+        for seed in seeds:
+            half = "first" if seed <= 8 else "second"
+            out = folder / plan / half / f"seed={seed}"
+            simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
+    return folder
+
+
+def test_the_statistics_are_those_of_an_independent_script(tmp_path: Path) -> None:
+    fcd = tmp_path / "fcd.xml"
+    words = ("--end", "120", "--log-encounters")
+    stops = tmp_path / "stops.xml"
+    unfinished = ("--stop-output", stops, "--stop-output.write-unfinished")
+    record = ("--fcd-output", fcd, "--precision", "6", *unfinished)
+    log = simulate(NETS / "town" / "town.sumocfg", tmp_path / "log", *words, sumo=record)
+    found = stats(log, "--by", "severity")
+
+    # Traffic, from what SUMO itself recorded; a vehicle that is parked off the road is no road user.
+    is_parked = parked(stops)
+    times: list[float] = []
+    vehicles: set[str] = set()
+    persons: set[str | None] = set()
+    driven = before = 0.0
+    for step in ET.parse(fcd).getroot():
+        time = float(step.get("time", "nan"))
+        driven += before * (time - times[-1] if times else 0.0)
+        times.append(time)
+        speeds = {vehicle.get("id", ""): float(vehicle.get("speed", "nan")) for vehicle in step.findall("vehicle")}
+        before = sum(speed for name, speed in speeds.items() if not is_parked(name, time))
+        vehicles |= speeds.keys()
+        persons |= {person.get("id") for person in step.findall("person")}
+    traffic = found["traffic"]
+    assert traffic["hours"] == pytest.approx((times[-1] - times[0]) / 3600)
+    assert traffic["vehicle_kilometres"] == pytest.approx(driven / 1000, rel=1e-6)
+    assert (traffic["vehicles"], traffic["persons"]) == (len(vehicles), len(persons))
+
+    # Counts, from the rows; and each conflict's smallest margin and TTC, from the steps in encounters.csv.
+    logged = rows(log / "conflicts.csv")
+    assert len(logged) > 500
+    groups = {group["group"]: group for group in found["groups"]}
+    for name in ("all", "caution", "serious", "critical"):
+        wanted = [row for row in logged if name in ("all", row["severity"])]
+        group = groups[name]
+        assert group["count"] == len(wanted)
+        assert group["per_hour"]["value"] == pytest.approx(len(wanted) / traffic["hours"])
+        assert group["per_vehicle_kilometre"]["value"] == pytest.approx(len(wanted) / (driven / 1000), rel=1e-6)
+        assert group["per_1000_vehicles"]["value"] == pytest.approx(1000 * len(wanted) / len(vehicles))
+        for measure in ("ttc", "pet", "margin", "delta_v"):
+            values = [float(row[measure]) for row in wanted if row[measure]]
+            assert group[measure]["count"] == len(values)
+            for key, share in (("q05", 5), ("q25", 25), ("q50", 50), ("q75", 75), ("q95", 95)):
+                quantile = np.percentile(values, share) if values else None
+                assert group[measure][key] == (pytest.approx(quantile, abs=1e-9) if values else None)
+        low, high = (scipy_stats.chi2.ppf(p, 2 * n) / 2 for p, n in ((0.025, len(wanted)), (0.975, len(wanted) + 1)))
+        assert group["per_hour"]["method"] == "poisson_exact"
+        assert group["per_hour"]["low"] == pytest.approx(low / traffic["hours"], rel=1e-6)
+        assert group["per_hour"]["high"] == pytest.approx(high / traffic["hours"], rel=1e-6)
+    steps: dict[frozenset[str], list[dict[str, str]]] = {}
+    for row in rows(log / "encounters.csv"):
+        steps.setdefault(frozenset((row["ego"], row["foe"])), []).append(row)
+    margins, nearest = [], []
+    for row in logged:
+        pair = steps[frozenset((row["ego"], row["foe"]))]
+        own = [step for step in pair if float(row["begin"]) <= float(step["time"]) <= float(row["end"])]
+        margins.append(min(float(step["margin"]) for step in own))
+        nearest += [min(times) for times in [[float(step["ttc"]) for step in own if step["ttc"]]] if times]
+    assert groups["all"]["margin"]["q50"] == pytest.approx(statistics.median(margins), abs=1e-9)
+    assert groups["all"]["ttc"]["q50"] == pytest.approx(statistics.median(nearest), abs=1e-9)
+
+
+def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
+    log = simulate(NETS / "town" / "town.sumocfg", tmp_path / "log", "--end", "60")
+    logged = rows(log / "conflicts.csv")
+    of: dict[str, Callable[[dict[str, str]], str]] = {
+        "kind": lambda row: row["kind"],
+        "edge": lambda row: row["lane"].rpartition("_")[0] or "(none)",
+        "type": lambda row: f"{row['ego_type']}/{row['foe_type']}",
+        "hour": lambda row: str(math.floor(float(row["time"]) / 3600)),
+        "junction": lambda row: row["lane"][1:].rsplit("_", 2)[0] if row["lane"].startswith(":") else "(none)",
+    }
+    for by, group_of in of.items():
+        counts: dict[str, int] = {}
+        for row in logged:
+            counts[group_of(row)] = counts.get(group_of(row), 0) + 1
+        found = stats(log, "--by", by, "--worst", "1000")
+        assert {group["group"]: group["count"] for group in found["groups"][1:]} == counts
+        if by in ("edge", "junction"):
+            counts.pop("(none)", None)
+            assert {spot["id"]: spot["count"] for spot in found[f"{by}s"]} == counts
+    assert {"car", "walker"} <= {name for row in logged for name in (row["ego_type"], row["foe_type"])}
+
+
+def test_the_worst_are_those_that_a_sort_of_all_rows_puts_first(plans: Path) -> None:
+    found = stats(plans / "left_turn", "--worst", "25")["worst"]
+    every = [row for log in sorted(plans.glob("left_turn/*/*/conflicts.csv")) for row in rows(log)]
+    order = ["caution", "serious", "critical"]
+
+    def badness(row: dict[str, str]) -> tuple[bool, int, float, float]:
+        ttc = float(row["ttc"]) if row["ttc"] else math.inf
+        return row["collision"] != "true", -order.index(row["severity"]), ttc, float(row["margin"])
+
+    wanted = sorted(every, key=badness)[:25]
+    assert [(one["ego"], one["foe"], one["time"]) for one in found] == [
+        (row["ego"], row["foe"], float(row["time"])) for row in wanted
+    ]
+    first = found[0]
+    assert f"--seed {first['seed']} " in first["command"] and "sumo-gui -c " in first["command"]
+    assert "--breakpoints" in first["command"] and f'x="{first["x"]:.1f}"' in first["command"]
+
+
+def test_intervals_over_seeds_are_those_of_students_t(plans: Path) -> None:
+    found = stats(plans / "protected")
+    runs = sorted(plans.glob("protected/*/*"))
+    counts = [len(rows(run / "conflicts.csv")) for run in runs]
+    records = [json.loads((run / "run.json").read_text())["summary"] for run in runs]
+    hours = {record["end"] - record["begin"] for record in records}
+    assert len(hours) == 1 and found["runs"] == 8
+    per_hour = [count / hours.copy().pop() * 3600 for count in counts]
+    error = statistics.stdev(per_hour) / math.sqrt(8)
+    low, high = scipy_stats.t.interval(0.95, 7, statistics.mean(per_hour), error)
+    rate = found["groups"][0]["per_hour"]
+    assert (rate["value"], rate["low"], rate["high"]) == pytest.approx((statistics.mean(per_hour), low, high), rel=1e-6)
+
+
+def test_a_protected_left_turn_has_fewer_side_conflicts(plans: Path) -> None:
+    found = stats(plans / "protected", "--against", plans / "left_turn" / "first")["comparison"]
+    rates = {row["group"]: row for row in found["rates"]}
+    for group in ("all", "side", "serious"):
+        row = rates[group]
+        assert row["difference"] < 0 and row["ratio"]["high"] < 1
+        assert row["significance"]["p_holm"] < 0.05, row
+    # What the signal program does not change.
+    assert rates["rear_end"]["significance"]["p_holm"] > 0.05
+    margin = next(row for row in found["measures"] if row["measure"] == "margin")
+    assert margin["cliffs_delta"] > 0 and margin["significance"]["p_holm"] < 0.05
+    # All splits of 8 and 8 runs; two of them as extreme.
+    assert rates["side"]["significance"]["p"] == pytest.approx(2 / math.comb(16, 8))
+    assert rates["side"]["significance"]["test"] == "exact_permutation"
+
+
+def test_two_sets_of_seeds_of_one_plan_do_not_differ(plans: Path) -> None:
+    found = stats(plans / "left_turn" / "first", "--against", plans / "left_turn" / "second")["comparison"]
+    significances = [row["significance"] for row in found["rates"] + found["measures"]]
+    assert [one for one in significances if one and one["p_holm"] < 0.05] == []
+    assert len([one for one in significances if one]) >= 6
+
+
+def test_permutation_and_cliffs_delta_are_scipys(plans: Path) -> None:
+    first, second = plans / "left_turn" / "first", plans / "left_turn" / "second"
+    found = stats(first, "--against", second)["comparison"]
+    values = {
+        half: [[float(row["margin"]) for row in rows(log)] for log in sorted(half.glob("*/conflicts.csv"))]
+        for half in (first, second)
+    }
+    medians = [[statistics.median(run) for run in values[half]] for half in (first, second)]
+
+    def difference(one: Any, other: Any, axis: int = -1) -> Any:
+        return np.mean(one, axis=axis) - np.mean(other, axis=axis)
+
+    wanted = scipy_stats.permutation_test(medians, difference, vectorized=True, n_resamples=20_000)
+    margin = next(row for row in found["measures"] if row["measure"] == "margin")
+    assert margin["significance"]["p"] == pytest.approx(wanted.pvalue, abs=1e-9)
+    pooled = [[value for run in values[half] for value in run] for half in (first, second)]
+    u = scipy_stats.mannwhitneyu(*pooled).statistic
+    assert margin["cliffs_delta"] == pytest.approx(2 * u / len(pooled[0]) / len(pooled[1]) - 1, abs=1e-9)
+
+
+COLUMNS = """id ego foe kind severity begin end time gap mu margin clearance ttc drac pet delta_v
+ego_speed foe_speed angle x y lane collision ego_type foe_type"""
+
+
+def made(folder: Path, ttcs: list[float], hours: float = 1.0) -> Path:
+    """A log folder with one conflict for each TTC."""
+    folder.mkdir(parents=True)
+    with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(COLUMNS.split())
+        for number, ttc in enumerate(ttcs, 1):
+            seen = [number, "<b>", "b", "side", "caution", 0, 1, 1, 1, 2, -1, 1, ttc, 1, "", 1, 1, 1, 1, 0, 0]
+            writer.writerow([*seen, "e_0", "false", "car", "car"])
+    record: dict[str, Any] = {
+        "versions": {"closecall": "0.1.0", "sumo": None},
+        "scenario": "made",
+        "seed": None,
+        "step_length": 0.1,
+        "sumo_words": [],
+        "inputs": [],
+        "options": {},
+        "complete": True,
+        "summary": {
+            "begin": 0.0,
+            "end": 3600 * hours,
+            "steps": 10,
+            "exposure": {"vehicles": 100, "persons": 0, "vehicle_kilometres": 50.0, "vehicle_hours": 2.0},
+        },
+    }
+    (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+    return folder
+
+
+@pytest.mark.parametrize("shape", [-0.3, -0.1, 0.15])
+def test_the_crash_frequency_is_that_of_scipys_fit(shape: float, tmp_path: Path) -> None:
+    excesses = scipy_stats.genpareto.rvs(shape, scale=0.6, size=400, random_state=7)
+    ttcs = [round(2 - float(excess), 6) for excess in excesses]
+    found = stats(made(tmp_path / "log", ttcs, hours=10.0))["extremes"]
+    ttc = next(one for one in found if one["quantity"] == "ttc")["crashes"]
+    below = sorted(ttcs)[: ttc["below"]]
+    assert ttc["threshold"] == sorted(ttcs)[ttc["below"]]
+    sample = [ttc["threshold"] - value for value in below]
+    c, _, scale = scipy_stats.genpareto.fit(sample, floc=0)
+    # scipy's search stops at a looser tolerance: ours must be as likely, and near.
+    ours = scipy_stats.genpareto.logpdf(sample, ttc["shape"], scale=ttc["scale"]).sum()
+    assert ours >= scipy_stats.genpareto.logpdf(sample, c, scale=scale).sum() - 1e-6
+    assert (ttc["shape"], ttc["scale"]) == pytest.approx((c, scale), abs=5e-3)
+    wanted = len(below) / 10 * scipy_stats.genpareto.sf(ttc["threshold"], ttc["shape"], scale=ttc["scale"])
+    assert ttc["per_hour"] == pytest.approx(wanted, rel=1e-6)
+    truth = 400 / 10 * scipy_stats.genpareto.sf(2, shape, scale=0.6)
+    assert ttc["low"] <= truth <= ttc["high"]
+    known = scipy_stats.genpareto(ttc["shape"], scale=ttc["scale"])
+    a, n = sorted(sample), len(sample)
+    terms = [(2 * i + 1) * (known.logcdf(a[i]) + known.logsf(a[n - 1 - i])) for i in range(n)]
+    assert ttc["anderson_darling"] == pytest.approx(-n - sum(terms) / n, rel=1e-6)
+
+
+def test_too_few_conflicts_for_extremes_are_refused_with_the_bound(tmp_path: Path) -> None:
+    found = stats(made(tmp_path / "log", [1.0] * 59))["extremes"]
+    assert found[0]["crashes"] is None
+    assert found[0]["refused"] == "59 conflicts have this measure; at least 60 are needed"
+
+
+def test_no_conflicts_are_a_result(tmp_path: Path) -> None:
+    found = stats(made(tmp_path / "log", []))
+    rate = found["groups"][0]["per_hour"]
+    assert (rate["value"], rate["low"], rate["high"]) == (0, 0, pytest.approx(3.688879, rel=1e-6))
+    for form in ("text", "csv", "html"):
+        assert closecall("stats", tmp_path / "log", "--format", form).returncode == 0
+
+
+def test_every_format_says_the_same_number(tmp_path: Path) -> None:
+    log = made(tmp_path / "log", [1.25, 1.5, 1.75])
+    text, html = (closecall("stats", log, "--format", form).stdout for form in ("text", "html"))
+    values = list(csv.DictReader(closecall("stats", log, "--format", "csv").stdout.splitlines()))
+    median = next(v for v in values if (v["table"], v["name"], v["column"]) == ("quantiles", "all", "50 %"))
+    assert float(median["value"]) == 1.5 and "1.500" in text and "1.500" in html
+    assert "<b>" not in html and "&lt;b&gt;" in html
+
+
+def test_a_log_that_cannot_be_used_is_one_line_and_exit_2(tmp_path: Path) -> None:
+    good = made(tmp_path / "good", [1.0, 2.0])
+    text = (good / "conflicts.csv").read_text()
+
+    def broken(name: str, content: str) -> Path:
+        folder = tmp_path / name
+        shutil.copytree(good, folder)
+        (folder / "conflicts.csv").write_text(content)
+        return folder
+
+    cases = [
+        ((tmp_path / "gone",), "gone: No such file"),
+        ((broken("empty", ""),), "it is empty"),
+        ((broken("cut", text[:-9]),), "its last row is cut short"),
+        ((broken("short", text + "3,a,b\n"),), "line 4: the row has 3 cells, not 25"),
+        ((good, broken("old", text.replace(",ego_type", ",an_ego_type"))), "line 1: its columns are not those of"),
+        ((broken("schema", text.replace("margin", "slack")),), 'line 1: the column "margin" is missing'),
+        ((broken("word", text.replace(",1.0,", ",soon,")),), "line 2: ttc:"),
+        ((good, "--against", tmp_path / "gone"), "gone: No such file"),
+        ((good, "--by", "colour"), "--by"),
+    ]
+    unrun = tmp_path / "unrun"
+    shutil.copytree(good, unrun)
+    (unrun / "run.json").unlink()
+    for words, said in [*cases, ((unrun,), "run.json: No such file")]:
+        done = closecall("stats", *words)
+        assert done.returncode == 2 and said in done.stderr, (words, done)
+        assert done.stderr.count("\n") == 1 and not done.stdout, done
+
+
+def test_a_run_that_was_killed_is_left_out_and_said(tmp_path: Path) -> None:
+    good, killed = made(tmp_path / "all" / "good", [1.0]), made(tmp_path / "all" / "killed", [2.0])
+    record = json.loads((killed / "run.json").read_text())
+    record["complete"], record["summary"]["steps"] = False, 0
+    (killed / "run.json").write_text(json.dumps(record))
+    done = closecall("stats", tmp_path / "all", "--format", "json")
+    assert done.returncode == 0 and "killed" in done.stderr
+    assert json.loads(done.stdout)["runs"] == 1
+    assert closecall("stats", killed).returncode == 2
+    assert stats(good)["groups"][0]["count"] == 1
