@@ -27,6 +27,7 @@ pub mod profile;
 pub mod progress;
 pub mod record;
 pub mod replay;
+pub mod report;
 pub mod run;
 pub mod scene;
 pub mod summary;

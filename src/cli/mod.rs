@@ -5,6 +5,7 @@
 
 mod mu;
 mod replay;
+mod report;
 mod run;
 mod settings;
 
@@ -34,6 +35,9 @@ enum Command {
     /// Print the minimal collision distance μ of two road users, by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
+    /// Make one HTML page of logs: map, time line, distributions, hot spots, the worst conflicts
+    #[command(args_override_self = true)]
+    Report(report::ReportArgs),
 }
 
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
@@ -57,6 +61,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Command::Run(arguments) => run::run(*arguments, simulate),
         Command::Replay(arguments) => replay::run(*arguments),
         Command::Mu(arguments) => mu::run(&arguments),
+        Command::Report(arguments) => report::run(&arguments),
     };
     match done {
         Ok(()) => 0,
@@ -110,7 +115,7 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     match &mut cli.command {
         Command::Run(arguments) => arguments.options.types = file.types,
         Command::Replay(arguments) => arguments.options.types = file.types,
-        Command::Mu(_) => {}
+        Command::Mu(_) | Command::Report(_) => {}
     }
     Ok(cli)
 }
