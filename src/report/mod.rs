@@ -22,9 +22,10 @@ const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
 /// The page's own scripts, in the order in which they need each other.
-const OWN_SCRIPTS: [&str; 7] = [
+const OWN_SCRIPTS: [&str; 8] = [
     include_str!("script/data.js"),
     include_str!("script/colours.js"),
+    include_str!("script/roads.js"),
     include_str!("script/map.js"),
     include_str!("script/charts.js"),
     include_str!("script/words.js"),

@@ -2,8 +2,8 @@
 
 /** Widths of a bar of the time line in s; the first with which a run has not too many. */
 const BINS = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 86400];
-const MOST_BINS = 150;
-/** A run of an hour or more is counted by the minute at least. */
+const MOST_BINS = 80;
+/** A run of so many seconds and more is counted by the minute at least. */
 const LONG = 1200;
 
 /** First and last second of all runs. */
@@ -78,7 +78,7 @@ const times = {
       grid: { left: 8, right: 16, top: 14, bottom: 48, containLabel: true },
       xAxis: axis({ type: "value", min: this.first, max: this.end, splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, formatter: label } }),
-      yAxis: axis({ type: "value", minInterval: 1, axisLine: { show: false } }),
+      yAxis: axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false } }),
       dataZoom: [{ id: "period", type: "slider", xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: 40, right: 40,
         showDetail: false, brushSelect: false, borderColor: colours.rule, fillerColor: `${colours.accent}33`,
         handleStyle: { color: colours.card, borderColor: colours.accent }, moveHandleStyle: { color: colours.accent },
@@ -127,7 +127,7 @@ function roundUp(value) {
 
 /** From and to of a measure's axis: the same under every filter. */
 function range(measure) {
-  const sizes = column[measure.name].filter((value) => value !== null).map(Math.abs).sort((a, b) => a - b);
+  const sizes = Float64Array.from(column[measure.name].filter((value) => value !== null), Math.abs).sort();
   const reach = sizes.length ? quantile(sizes, COVERED) : 1;
   const furthest = roundUp(Math.max(reach, measure.threshold ? measure.threshold.at * 1.3 : 0));
   return measure.high === 0 ? [-furthest, 0] : [0, furthest];
@@ -157,7 +157,7 @@ const distributions = {
   showMeasure({ note, chart, measure, range: [low, high] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
-    const sorted = known.map((row) => values[row]).sort((a, b) => a - b);
+    const sorted = Float64Array.from(known, (row) => values[row]).sort();
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "none of these has one";
@@ -182,7 +182,7 @@ const distributions = {
       grid: { left: 4, right: 14, top: 24, bottom: 4, containLabel: true },
       xAxis: axis({ type: "value", min: low, max: high, splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, formatter: (value) => number(value, value % 1 ? 1 : 0) } }),
-      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false } }),
+      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false } }),
       series: bars(counts, centres, line),
     });
   },

@@ -12,9 +12,7 @@ readColours();
 
 const severityColour = (severity) => colours[SEVERITIES[severity]];
 
-/** ECharts' symbol of each kind. */
-const SIGNS = ["circle", "diamond", "triangle"];
-/** The same as SVG paths in a box of 10 by 10. */
+/** The sign of each kind, as an SVG path in a box of 10 by 10. */
 const SIGN_PATHS = ["M5,0A5,5,0,1,1,5,10A5,5,0,1,1,5,0Z", "M5,0L10,5L5,10L0,5Z", "M5,0.5L10,9.5L0,9.5Z"];
 
 /** A small picture of a kind, in a colour. */

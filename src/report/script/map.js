@@ -1,137 +1,61 @@
-// The net as it lies on the ground, and what happened on it.
+// What happened where: signs on the net, by kind and severity.
 
-/** Lanes narrower than this on the screen are drawn this wide, in pixels. */
-const THINNEST = 0.8;
-/** From this many pixels per metre on, the lanes within junctions are drawn too. */
-const CLOSE = 2;
+/** The size of a sign on the screen, in pixels, by kind. */
+const SIGN_SIZES = [7, 9, 9];
+/** How near the pointer must be to a sign, in pixels. */
+const NEAR = 12;
 
-/** Lines from whole numbers (a count, then differences in cm): points in m, where each line starts, its box. */
-function readLines(numbers) {
-  const points = [];
-  const starts = [];
-  const boxes = [];
-  let x = 0;
-  let y = 0;
-  for (let at = 0; at < numbers.length;) {
-    const points_of_line = numbers[at++];
-    const box = [Infinity, Infinity, -Infinity, -Infinity];
-    starts.push(points.length);
-    for (let point = 0; point < points_of_line; point++) {
-      x += numbers[at++];
-      y += numbers[at++];
-      points.push(x / 100, y / 100);
-      box[0] = Math.min(box[0], x / 100);
-      box[1] = Math.min(box[1], y / 100);
-      box[2] = Math.max(box[2], x / 100);
-      box[3] = Math.max(box[3], y / 100);
-    }
-    boxes.push(box);
-  }
-  starts.push(points.length);
-  return { points: Float64Array.from(points), starts, boxes };
+/** One picture of each sign: drawing it a hundred thousand times is quick, filling as many paths is not. */
+function stamps() {
+  const sharp = window.devicePixelRatio || 1;
+  return SEVERITIES.map((_, severity) => KINDS.map((_, kind) => {
+    const size = SIGN_SIZES[kind] + severity;
+    const canvas = make("canvas", { width: Math.ceil(size * sharp), height: Math.ceil(size * sharp) });
+    const context = canvas.getContext("2d");
+    context.scale(canvas.width / 10, canvas.height / 10);
+    context.fillStyle = severityColour(severity);
+    context.globalAlpha = 0.85;
+    context.fill(new Path2D(SIGN_PATHS[kind]));
+    return { canvas, size };
+  }));
 }
 
-const net = data.net && {
-  lanes: data.net.lanes.map((group) => ({ look: group.look, width: group.width, lines: readLines(group.lines) })),
-  junctions: readLines(data.net.junctions),
-};
-
-/** All lines of a group as one shape: a net of many thousand lanes is a few strokes. */
-const Roads = echarts.graphic.extendShape({
-  shape: { lines: null, view: null, closed: false },
-  buildPath(context, { lines, view, closed }) {
-    if (!lines) return;
-    const { points, starts, boxes } = lines;
+/** All signs as one shape, drawn as stamps. */
+const Signs = echarts.graphic.extendShape({
+  shape: { rows: null, stamps: null, view: null },
+  buildPath(path) {
+    this.context = path.getContext ? path.getContext() : null;
+  },
+  afterBrush() {
+    const { rows, stamps: of_look, view } = this.shape;
+    if (!this.context || !rows) return;
     const { x, y, width, height, scale, left, bottom } = view;
-    const right = left + width / scale;
-    const top = bottom + height / scale;
-    for (let line = 0; line < boxes.length; line++) {
-      const box = boxes[line];
-      if (box[0] > right || box[2] < left || box[1] > top || box[3] < bottom) continue;
-      for (let at = starts[line]; at < starts[line + 1]; at += 2) {
-        const to_x = x + (points[at] - left) * scale;
-        const to_y = y + height - (points[at + 1] - bottom) * scale;
-        if (at === starts[line]) context.moveTo(to_x, to_y);
-        else context.lineTo(to_x, to_y);
-      }
-      if (closed) context.closePath();
+    for (const row of rows) {
+      const at_x = (column.x[row] - left) * scale;
+      const at_y = height - (column.y[row] - bottom) * scale;
+      if (at_x < -NEAR || at_y < -NEAR || at_x > width + NEAR || at_y > height + NEAR) continue;
+      const { canvas, size } = of_look[column.severity[row]][column.kind[row]];
+      this.context.drawImage(canvas, x + at_x - size / 2, y + at_y - size / 2, size, size);
     }
   },
 });
-echarts.graphic.registerShape("roads", Roads);
-
-/** A series that draws the net behind all else. */
-function roadsSeries() {
-  return {
-    id: "roads", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 0, clip: true,
-    tooltip: { show: false },
-    renderItem(params, api) {
-      const { x, y, width, height } = params.coordSys;
-      const origin = api.coord([0, 0]);
-      const scale = api.coord([1, 0])[0] - origin[0];
-      const view = { x, y, width, height, scale, left: (x - origin[0]) / scale, bottom: (origin[1] - y - height) / scale };
-      const children = [{ type: "roads", shape: { lines: net.junctions, view, closed: true },
-        style: { fill: colours.junction, stroke: null } }];
-      for (const { look, width: lane, lines } of net.lanes) {
-        if (look === "within" && scale < CLOSE) continue;
-        // A little narrower than they are, so that lanes side by side are told apart.
-        const wide = look === "within" ? 1 : Math.max((lane - 0.25) * scale, THINNEST);
-        children.push({ type: "roads", shape: { lines, view, closed: false },
-          style: { fill: null, stroke: colours[look], lineWidth: wide, lineCap: "butt", lineJoin: "round" } });
-      }
-      return { type: "group", children };
-    },
-  };
-}
-
-/** The box around the net and all conflicts, in m. */
-const extent = (() => {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  const hold = (left, bottom, right, top) => {
-    box[0] = Math.min(box[0], left);
-    box[1] = Math.min(box[1], bottom);
-    box[2] = Math.max(box[2], right);
-    box[3] = Math.max(box[3], top);
-  };
-  if (net) for (const { lines } of net.lanes) lines.boxes.forEach((of_line) => hold(...of_line));
-  for (let row = 0; row < count; row++) hold(column.x[row], column.y[row], column.x[row], column.y[row]);
-  return box[0] <= box[2] ? box : [0, 0, 100, 100];
-})();
-
-/** Two axes that show a box as large as it fits, metres being equally long on both. */
-function equalAxes(box, width, height, margin) {
-  const metres = Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height, 0.02) * margin;
-  const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
-  const one = (centre, pixels) => ({ type: "value", show: false, min: centre - (metres * pixels) / 2, max: centre + (metres * pixels) / 2 });
-  return { xAxis: one(x, width), yAxis: one(y, height), metresPerPixel: metres };
-}
-
-/** A bar of a round length, with its length beside it. */
-function scaleBar(metresPerPixel, height) {
-  const wanted = metresPerPixel * 110;
-  const power = 10 ** Math.floor(Math.log10(wanted));
-  const length = [5, 2, 1].find((digit) => digit * power <= wanted) * power;
-  const text = length >= 1000 ? `${number(length / 1000)} km` : `${number(length, length < 1 ? 1 : 0)} m`;
-  const pixels = length / metresPerPixel;
-  const line = { points: [[10, height - 18], [10, height - 12], [10 + pixels, height - 12], [10 + pixels, height - 18]] };
-  return [
-    { id: "bar", type: "polyline", silent: true, z: 50, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
-    { id: "length", type: "text", silent: true, z: 50, x: 16 + pixels, y: height - 22,
-      style: { text, fill: colours.ink, font: `12px ${FONT}` } },
-  ];
-}
+echarts.graphic.registerShape("signs", Signs);
 
 /** The map of all conflicts that are shown. */
 const map = {
   element: byId("map"),
   chart: null,
   rows: [],
-  /** The rows of each series, in their order there. */
-  of_series: new Map(),
-
   start() {
     this.chart = chartIn(this.element, () => this.show(this.rows));
-    this.chart.on("datazoom", () => this.rule());
+    this.chart.on("datazoom", () => {
+      this.point(null);
+      this.rule();
+    });
+    const surface = this.chart.getZr();
+    surface.on("mousemove", (event) => this.point(event));
+    surface.on("click", (event) => this.point(event));
+    surface.on("globalout", () => this.point(null));
     byId("closer").onclick = () => this.zoom(0.5);
     byId("further").onclick = () => this.zoom(2);
     byId("whole").onclick = () => this.window(0, 100, 0, 100);
@@ -144,49 +68,58 @@ const map = {
     const zoom = { type: "inside", filterMode: "none", minSpan: 0.01, zoomOnMouseWheel: true, moveOnMouseMove: true };
     this.chart.setOption({
       ...basics(),
-      tooltip: { ...basics().tooltip, trigger: "item", formatter: (item) => this.tip(item) },
+      tooltip: { show: false },
       grid: { left: 0, right: 0, top: 0, bottom: 0 },
       xAxis: this.axes.xAxis,
       yAxis: this.axes.yAxis,
       dataZoom: [{ id: "x", xAxisIndex: 0, ...zoom }, { id: "y", yAxisIndex: 0, ...zoom }],
-      series: [...(net ? [roadsSeries()] : []), ...this.series(rows)],
+      series: [...(net ? [roadsSeries()] : []), this.series(rows)],
     });
+    this.point(null);
     this.rule();
   },
 
-  /** One series per severity and kind, the worst on top. */
+  /** All signs, the worst on top. */
   series(rows) {
-    const of_look = new Map();
-    for (const row of rows) {
-      const look = column.severity[row] * KINDS.length + column.kind[row];
-      if (!of_look.has(look)) of_look.set(look, []);
-      of_look.get(look).push(row);
-    }
-    this.of_series.clear();
-    const all = [];
-    for (let look = 0; look < SEVERITIES.length * KINDS.length; look++) {
-      const [severity, kind] = [Math.floor(look / KINDS.length), look % KINDS.length];
-      const id = `conflicts ${SEVERITIES[severity]} ${KINDS[kind]}`;
-      const members = of_look.get(look) || [];
-      this.of_series.set(id, members);
-      const places = new Float64Array(members.length * 2);
-      members.forEach((row, at) => {
-        places[2 * at] = column.x[row];
-        places[2 * at + 1] = column.y[row];
-      });
-      all.push({
-        id, name: id, type: "scatter", dimensions: ["x", "y"], data: places, symbol: SIGNS[kind],
-        symbolSize: (kind === 0 ? 6 : 8) + severity, z: 3 + severity, large: true, largeThreshold: 3000, progressive: 0,
-        itemStyle: { color: severityColour(severity), opacity: 0.85, borderWidth: 0 }, clip: true,
-        emphasis: { itemStyle: { borderColor: colours.ink, borderWidth: 2 } },
-      });
-    }
-    return all;
+    const ordered = SEVERITIES.flatMap((_, severity) => rows.filter((row) => column.severity[row] === severity));
+    const of_look = stamps();
+    return {
+      id: "signs", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 3, clip: true,
+      renderItem: (params, api) => {
+        this.view = viewOf(params, api);
+        return { type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } };
+      },
+    };
   },
 
-  tip(item) {
-    const rows = this.of_series.get(item.seriesName);
-    return rows && rows[item.dataIndex] !== undefined ? tipOf(rows[item.dataIndex]) : "";
+  /** The conflict whose sign is nearest to a place on the screen, the worst of equally near ones; null for none. */
+  at(pixel_x, pixel_y) {
+    const { x, y, height, scale, left, bottom } = this.view;
+    let nearest = null;
+    let least = NEAR * NEAR;
+    for (const row of this.rows) {
+      const aside = x + (column.x[row] - left) * scale - pixel_x;
+      const above = y + height - (column.y[row] - bottom) * scale - pixel_y;
+      const distance = aside * aside + above * above;
+      if (distance < least || (distance === least && nearest !== null && byBadness(row, nearest) < 0)) {
+        least = distance;
+        nearest = row;
+      }
+    }
+    return nearest;
+  },
+
+  /** Says what is under the pointer. */
+  point(event) {
+    const row = event && this.view ? this.at(event.offsetX, event.offsetY) : null;
+    const tip = byId("tip");
+    tip.hidden = row === null;
+    if (row === null) return;
+    tip.replaceChildren(tipOf(row));
+    const [width, height] = [this.element.clientWidth, this.element.clientHeight];
+    const side = event.offsetX + 16 + tip.offsetWidth < width ? event.offsetX + 16 : event.offsetX - 16 - tip.offsetWidth;
+    tip.style.left = `${Math.max(side, 4)}px`;
+    tip.style.top = `${Math.min(event.offsetY + 12, height - tip.offsetHeight - 4)}px`;
   },
 
   /** What of each axis is shown, in percent. */

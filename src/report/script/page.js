@@ -15,7 +15,7 @@ function showHeader() {
   figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
-    if (kilometres > 0) figures.push(["per vehicle-km", number(data.seen / kilometres, 2)]);
+    if (kilometres > 0) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
   }
   byId("figures").append(...figures.map(([name, value]) =>
     make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));

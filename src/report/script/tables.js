@@ -37,6 +37,7 @@ function showSpots(rows) {
     return make("tr", {}, make("td", {}, go), make("td", { className: "number", textContent: number(spot.all) }),
       ...spot.counts.map((many) => make("td", { className: "number", textContent: number(many) })), share);
   });
+  if (!lines.length) lines.push(make("tr", {}, make("td", { textContent: "none", colSpan: 6 })));
   byId("spots").replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
 }
 
@@ -95,16 +96,35 @@ function figure([x, y, heading, length, width, ...path]) {
   return { corners, line, width: width || 1, nose: length ? [corner(0, 0), corner(-Math.min(1.2, length / 3), half * 0.7), corner(-Math.min(1.2, length / 3), -half * 0.7)] : [] };
 }
 
+/** Longer ids are cut in a drawing; the text below has them whole. */
+const LONGEST_LABEL = 24;
+
+/** The ids beside the rectangles: the upper one's above it, the lower one's below. */
+function labels(figures, width) {
+  const ends = figures.map(({ corners }) => [Math.min(...corners.map((at) => at[1])), Math.max(...corners.map((at) => at[1]))]);
+  const upper = ends[0][0] + ends[0][1] <= ends[1][0] + ends[1][1] ? 0 : 1;
+  return figures.map(({ corners, id, colour }, place) => {
+    const text = id.length > LONGEST_LABEL ? `${id.slice(0, LONGEST_LABEL - 1)}…` : id;
+    const centre = corners.reduce((sum, at) => sum + at[0] / corners.length, 0);
+    const above = place === upper;
+    return { type: "text", x: Math.min(Math.max(centre, 40), width - 40), y: above ? ends[place][0] - 4 : ends[place][1] + 4,
+      style: { text, fill: colour, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center",
+        verticalAlign: above ? "bottom" : "top" } };
+  });
+}
+
 /** Draws both road users at the worst step. */
 function drawScene(element, row) {
   const [, ego, foe] = drawn.get(row);
-  const figures = [{ ...figure(foe), colour: colours.foe }, { ...figure(ego), colour: colours.ego }];
+  const figures = [{ ...figure(foe), colour: colours.foe, id: foeId(row) }, { ...figure(ego), colour: colours.ego, id: egoId(row) }];
+  // A pedestrian lies on top of a lorry.
+  if (foe[3] * foe[4] < ego[3] * ego[4]) figures.reverse();
   const meeting = [column.x[row], column.y[row]];
   const points = [...figures.flatMap(({ corners }) => corners), meeting];
   const box = [0, 1].map((axis) => Math.min(...points.map((point) => point[axis])))
     .concat([0, 1].map((axis) => Math.max(...points.map((point) => point[axis]))));
   const chart = echarts.init(element, null, { renderer: "canvas" });
-  const axes = equalAxes([box[0] - 3, box[1] - 3, box[2] + 3, box[3] + 3], chart.getWidth(), chart.getHeight(), 1.1);
+  const axes = equalAxes([box[0] - 4, box[1] - 4, box[2] + 4, box[3] + 4], chart.getWidth(), chart.getHeight(), 1.1);
   const render = (params, api) => {
     const pixels = 1 / axes.metresPerPixel;
     const on = (list) => list.map((point) => api.coord(point));
@@ -117,9 +137,10 @@ function drawScene(element, row) {
         style: { fill: null, stroke: colour, lineWidth: 1.5, lineDash: [5, 4] } });
     }
     for (const { corners, nose, colour } of figures) {
-      children.push({ type: "polygon", shape: { points: on(corners) }, style: { fill: colour, opacity: 0.9, stroke: colours.ink, lineWidth: 1 } });
+      children.push({ type: "polygon", shape: { points: on(corners) }, style: { fill: colour, opacity: 0.8, stroke: colours.ink, lineWidth: 1 } });
       if (nose.length) children.push({ type: "polygon", shape: { points: on(nose) }, style: { fill: colours.card, opacity: 0.85 } });
     }
+    children.push(...labels(figures.map(({ corners, id, colour }) => ({ corners: on(corners), id, colour })), chart.getWidth()));
     const [x, y] = api.coord(meeting);
     children.push({ type: "circle", shape: { cx: x, cy: y, r: 6 }, style: { fill: null, stroke: colours.meeting, lineWidth: 2.5 } });
     return { type: "group", children };

@@ -23,26 +23,20 @@ function describe(row) {
   const foe_speed = value("foe_speed") > 0.05 ? `driving ${kmh(value("foe_speed"))}` : "standing";
   const angle = Math.round((value("angle") * 180) / Math.PI);
   const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
-  const said = [];
-  if (value("collision")) {
-    said.push(`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} and ${foe}, ${foe_speed}, `
-      + `overlapped${across}: a collision.`);
-  } else {
-    said.push(`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} was about to `
-      + `${DEED[value("kind")]} ${foe}, ${foe_speed}${across}.`);
-  }
-  said.push(`${number(value("gap"), 2)} m of room were left where both needed μ = ${number(value("mu"), 2)} m to stop: a margin of `
+  const said = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} was about to `
+    + `${DEED[value("kind")]} ${foe}, ${foe_speed}${across}.`];
+  said.push(`${number(value("gap"), 2)} m of room were left where μ = ${number(value("mu"), 2)} m were needed: a margin of `
     + `${number(value("margin"), 2)} m.`);
-  if (!value("collision")) {
-    if (value("ttc") !== null) {
-      const hard = value("drac") !== null ? `, and the ego had to brake with ${number(value("drac"), 1)} m/s² to avoid it` : "";
-      said.push(`At its closest they would have touched after ${number(value("ttc"), 2)} s (TTC)${hard}.`);
-    } else {
-      said.push("At constant speeds they would not have touched.");
-    }
+  if (value("collision")) {
+    said.push("Their rectangles overlapped: a collision.");
+  } else if (value("ttc") !== null) {
+    const hard = value("drac") !== null ? `, and the ego had to brake with ${number(value("drac"), 1)} m/s² to avoid it` : "";
+    said.push(`At its closest they would have touched after ${number(value("ttc"), 2)} s (TTC)${hard}.`);
+  } else {
+    said.push("At constant speeds they would not have touched.");
   }
   if (value("pet") !== null) said.push(`One entered the place ${number(value("pet"), 2)} s after the other had left it (PET).`);
-  said.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego's speed by ${number(value("delta_v"), 1)} m/s.`);
+  said.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("delta_v"), 1)} m/s.`);
   const lasted = value("end") - value("begin");
   if (lasted > 0) said.push(`The conflict lasted ${number(lasted, 1)} s.`);
   return said.join(" ");
