@@ -65,7 +65,7 @@ impl<'a> Words<'a> {
 
 fn conflicts(rows: &[Row], net: Option<&Net>) -> Value {
     let mut columns = Map::new();
-    let mut add = |name: &str, column: Value| drop(columns.insert(name.to_owned(), column));
+    let mut add = |name: &str, column: Value| drop(columns.insert(name.to_owned(), once(column)));
     let (mut ids, mut types, mut lanes) = (Words::default(), Words::default(), Words::default());
     for (who, name) in ["ego", "foe"].into_iter().enumerate() {
         add(name, rows.iter().map(|row| ids.place(&row.ids[who])).collect());
@@ -86,6 +86,7 @@ fn conflicts(rows: &[Row], net: Option<&Net>) -> Value {
     let drawn = (0..).zip(rows).filter_map(|(row, kept)| Some((row, kept.stances.as_deref()?)));
     let drawn = drawn.map(|(row, [ego, foe]): (usize, _)| json!([row, stance(ego), stance(foe)])).collect::<Vec<_>>();
     json!({
+        "count": rows.len(),
         "columns": columns,
         "ids": ids.list,
         "types": types.list,
@@ -94,6 +95,16 @@ fn conflicts(rows: &[Row], net: Option<&Net>) -> Value {
         "spot_of_lane": spot_of_lane,
         "drawn": drawn,
     })
+}
+
+/// A column that is the same in every row as that one value.
+fn once(column: Value) -> Value {
+    match column {
+        Value::Array(mut values) if values.windows(2).all(|pair| pair[0] == pair[1]) => {
+            values.pop().unwrap_or_else(|| Value::Array(Vec::new()))
+        }
+        other => other,
+    }
 }
 
 /// The edge or junction that a lane belongs to, in words; as its id says where there is no net.

@@ -6,14 +6,13 @@ use std::cmp::Ordering;
 pub const MOST: usize = 300_000;
 
 /// The number columns that go into the page, each with its decimals there.
-pub const NUMBERS: [(&str, i32); 16] = [
+pub const NUMBERS: [(&str, i32); 15] = [
     ("begin", 2),
     ("end", 2),
     ("time", 2),
     ("gap", 2),
     ("mu", 2),
     ("margin", 2),
-    ("clearance", 2),
     ("ttc", 2),
     ("drac", 2),
     ("pet", 2),
@@ -27,7 +26,7 @@ pub const NUMBERS: [(&str, i32); 16] = [
 /// The place of `margin` among them.
 const MARGIN: usize = 5;
 /// The place of `ttc` among them.
-const TTC: usize = 7;
+const TTC: usize = 6;
 
 /// What a drawing of the worst step needs of one of the two.
 #[derive(Clone, Debug, Default)]

@@ -6,6 +6,10 @@ const MOST_BINS = 80;
 /** A run of so many seconds and more is counted by the minute at least. */
 const LONG = 1200;
 
+/** Steps between the times on the axis of a long run, in s; and how many of them there are at most. */
+const TICKS = [60, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400];
+const MOST_TICKS = 8;
+
 /** First and last second of all runs. */
 const period = (() => {
   const times = [];
@@ -70,13 +74,16 @@ const times = {
   show(rows) {
     const counts = histogram(rows, (row) => Math.floor((column.time[row] - this.first) / this.bin), this.bins);
     const centres = Array.from({ length: this.bins }, (_, bin) => this.first + (bin + 0.5) * this.bin);
-    const label = (seconds) => (this.end - this.first >= 2 * LONG ? clock(seconds) : `${number(seconds)} s`);
+    const length = this.end - this.first;
+    const is_long = length >= 2 * LONG;
+    const label = (seconds) => (is_long ? clock(seconds) : `${number(seconds)} s`);
+    const interval = is_long ? { interval: TICKS.find((tick) => length / tick <= MOST_TICKS) || 86400 } : {};
     this.chart.setOption({
       ...basics(),
       tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
         formatter: ([item]) => (item ? this.tip(item, counts, label) : "") },
       grid: { left: 8, right: 16, top: 14, bottom: 48, containLabel: true },
-      xAxis: axis({ type: "value", min: this.first, max: this.end, splitLine: { show: false },
+      xAxis: axis({ type: "value", min: this.first, max: this.end, ...interval, splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, formatter: label } }),
       yAxis: axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false } }),
       dataZoom: [{ id: "period", type: "slider", xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: 40, right: 40,

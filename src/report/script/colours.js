@@ -56,7 +56,8 @@ function axis(more) {
 function chartIn(element, resized) {
   const chart = echarts.init(element, null, { renderer: "canvas" });
   new ResizeObserver(() => {
-    if (element.clientWidth === 0) return;
+    const same = element.clientWidth === chart.getWidth() && element.clientHeight === chart.getHeight();
+    if (element.clientWidth === 0 || same) return;
     chart.resize();
     if (resized) resized();
   }).observe(element);

@@ -3,8 +3,10 @@
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const conflicts = data.conflicts;
-const column = conflicts.columns;
-const count = column.id.length;
+const count = conflicts.count;
+/** A column that has one value in every row stands in the page as that value. */
+const column = Object.fromEntries(Object.entries(conflicts.columns).map(([name, values]) =>
+  [name, Array.isArray(values) ? values : new Array(count).fill(values)]));
 const KINDS = ["rear-end", "frontal", "side"];
 const SEVERITIES = ["caution", "serious", "critical"];
 const options = (data.runs.find((run) => run.options) || {}).options || data.defaults;

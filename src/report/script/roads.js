@@ -112,7 +112,7 @@ function equalAxes(box, width, height, margin) {
   return { xAxis: one(x, width), yAxis: one(y, height), metresPerPixel: metres };
 }
 
-/** A bar of a round length, with its length beside it. */
+/** A bar of a round length, with its length beside it; on a layer of its own, so that nothing else is drawn anew. */
 function scaleBar(metresPerPixel, height) {
   const wanted = metresPerPixel * 110;
   const power = 10 ** Math.floor(Math.log10(wanted));
@@ -121,8 +121,8 @@ function scaleBar(metresPerPixel, height) {
   const pixels = length / metresPerPixel;
   const line = { points: [[10, height - 18], [10, height - 12], [10 + pixels, height - 12], [10 + pixels, height - 18]] };
   return [
-    { id: "bar", type: "polyline", silent: true, z: 50, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
-    { id: "length", type: "text", silent: true, z: 50, x: 16 + pixels, y: height - 22,
+    { id: "bar", type: "polyline", silent: true, zlevel: 1, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
+    { id: "length", type: "text", silent: true, zlevel: 1, x: 16 + pixels, y: height - 22,
       style: { text, fill: colours.ink, font: `12px ${FONT}` } },
   ];
 }
