@@ -22,6 +22,7 @@ pub mod measures;
 pub mod net;
 pub mod options;
 pub mod path;
+pub mod plot;
 pub mod precollision;
 pub mod profile;
 pub mod progress;

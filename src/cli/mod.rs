@@ -4,6 +4,7 @@
 //! simulation, or nothing.
 
 mod mu;
+mod plot;
 mod replay;
 mod report;
 mod run;
@@ -38,6 +39,9 @@ enum Command {
     /// Make one HTML page of logs: map, time line, distributions, hot spots, the worst conflicts
     #[command(args_override_self = true)]
     Report(report::ReportArgs),
+    /// Draw the same charts as PNG or SVG, for papers
+    #[command(args_override_self = true)]
+    Plot(plot::PlotArgs),
 }
 
 /// Runs the command that `words` (the program's name first) say; returns the exit status.
@@ -62,6 +66,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, simulate: Option<&mut Sim
         Command::Replay(arguments) => replay::run(*arguments),
         Command::Mu(arguments) => mu::run(&arguments),
         Command::Report(arguments) => report::run(&arguments),
+        Command::Plot(arguments) => plot::run(&arguments),
     };
     match done {
         Ok(()) => 0,
@@ -115,7 +120,7 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     match &mut cli.command {
         Command::Run(arguments) => arguments.options.types = file.types,
         Command::Replay(arguments) => arguments.options.types = file.types,
-        Command::Mu(_) | Command::Report(_) => {}
+        Command::Mu(_) | Command::Report(_) | Command::Plot(_) => {}
     }
     Ok(cli)
 }

@@ -5,9 +5,9 @@ use std::path::PathBuf;
 use rustc_hash::FxHashMap;
 use serde_json::{Map, Value, json};
 
-use super::nets::Ground;
+use super::conflicts::Conflicts;
 use super::roads;
-use super::rows::{NUMBERS, Row, Stance, Worst};
+use super::rows::{NUMBERS, Row, Stance};
 use crate::encounter::{Kind, Severity};
 use crate::net::{EdgeFunction, Net};
 use crate::options::Options;
@@ -16,9 +16,8 @@ use crate::options::Options;
 const DRAWN: usize = 2_000;
 
 /// All of the page's data. No `<` is in it: what stands in a page's script must not end it.
-pub fn json(logs: &[PathBuf], records: Vec<Value>, ground: &Ground, rows: Worst) -> String {
-    let seen = rows.seen();
-    let mut rows = rows.into_rows();
+pub fn json(found: Conflicts) -> String {
+    let Conflicts { logs, records, ground, mut rows, seen } = found;
     for row in rows.iter_mut().skip(DRAWN) {
         row.stances = None;
     }
@@ -28,8 +27,8 @@ pub fn json(logs: &[PathBuf], records: Vec<Value>, ground: &Ground, rows: Worst)
         "seen": seen,
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
-        "conflicts": conflicts(&rows, ground.net.as_ref()),
-        "runs": runs(logs, records),
+        "conflicts": columns(&rows, ground.net.as_ref()),
+        "runs": runs(&logs, records),
         "defaults": Options::default(),
         "net": ground.net.as_ref().map(roads::json),
         "notes": ground.notes,
@@ -63,7 +62,7 @@ impl<'a> Words<'a> {
     }
 }
 
-fn conflicts(rows: &[Row], net: Option<&Net>) -> Value {
+fn columns(rows: &[Row], net: Option<&Net>) -> Value {
     let mut columns = Map::new();
     let mut add = |name: &str, column: Value| drop(columns.insert(name.to_owned(), once(column)));
     let (mut ids, mut types, mut lanes) = (Words::default(), Words::default(), Words::default());
@@ -148,8 +147,7 @@ mod tests {
 
     #[test]
     fn a_script_in_an_id_cannot_end_the_data() {
-        let mut rows = Worst::default();
-        rows.push(Row {
+        let row = Row {
             run: 0,
             id: 1,
             kind: 0,
@@ -160,8 +158,9 @@ mod tests {
             types: Default::default(),
             lane: "".into(),
             stances: None,
-        });
-        let text = json(&[], Vec::new(), &Ground::default(), rows);
+        };
+        let ground = Default::default();
+        let text = json(Conflicts { logs: Vec::new(), records: Vec::new(), ground, rows: vec![row], seen: 1 });
         assert!(!text.contains('<'));
         let read: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(read["conflicts"]["ids"][0], "</script><script>");

@@ -3,14 +3,17 @@
 //! The page is a template (`page.html`) with its style, the chart library, the data as JSON columns, and the scripts
 //! that draw them, all within the file: it works offline and sends nothing anywhere.
 
+mod conflicts;
 mod data;
+mod logs;
 mod nets;
-mod read;
 mod roads;
 mod rows;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+
+pub use conflicts::{Conflicts, read};
 
 use crate::{Error, Result};
 
@@ -49,23 +52,13 @@ pub struct Made {
 /// The net is read from `net`, or from where the first log says it was.
 ///
 /// # Errors
-/// [`Error::File`] where a folder cannot be read or `out` not written, [`Error::Content`] where a folder holds no log,
-/// [`Error::Line`] where a row of `conflicts.csv` is not as `docs/log.md` has it.
+/// As [`fn@read`] has them, and [`Error::File`] where `out` cannot be written.
 pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path) -> Result<Made> {
-    let logs = read::find(folders)?;
-    let mut rows = rows::Worst::default();
-    for (run, log) in (0..).zip(&logs) {
-        read::rows(log, |mut row| {
-            row.run = run;
-            rows.push(row);
-        })?;
-    }
-    let records = logs.iter().map(|log| read::record(log)).collect::<Result<Vec<_>>>()?;
-    let net = nets::find(net, &logs, &records)?;
-    let conflicts = rows.seen();
-    let page = page(&data::json(&logs, records, &net, rows));
+    let conflicts = read(folders, net)?;
+    let (runs, seen) = (conflicts.logs.len(), conflicts.seen);
+    let page = page(&data::json(conflicts));
     fs::write(out, &page).map_err(|source| Error::file(out, source))?;
-    Ok(Made { runs: logs.len(), conflicts, bytes: page.len() })
+    Ok(Made { runs, conflicts: seen, bytes: page.len() })
 }
 
 /// Puts the parts where their marks are. What a part holds is not looked at again: ids may look like a mark.

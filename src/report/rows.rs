@@ -62,6 +62,13 @@ pub struct Row {
     pub stances: Option<Box<[Stance; 2]>>,
 }
 
+impl Row {
+    /// The number in a column of [`NUMBERS`].
+    pub fn number(&self, column: usize) -> Option<f64> {
+        self.numbers.get(column).copied().flatten()
+    }
+}
+
 /// Worst first: by severity, collision, TTC, margin; equal ones in the order of the logs.
 pub fn by_badness(a: &Row, b: &Row) -> Ordering {
     let number = |row: &Row, which: usize| row.numbers[which].unwrap_or(f64::INFINITY);

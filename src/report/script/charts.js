@@ -132,12 +132,15 @@ function roundUp(value) {
   return [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((digit) => digit * power >= value * 0.999) * power;
 }
 
-/** From and to of a measure's axis: the same under every filter. */
+/** From and to of a measure's axis and the width of a bar, the same under every filter; a threshold lies between two bars. */
 function range(measure) {
   const sizes = Float64Array.from(column[measure.name].filter((value) => value !== null), Math.abs).sort();
   const reach = sizes.length ? quantile(sizes, COVERED) : 1;
   const furthest = roundUp(Math.max(reach, measure.threshold ? measure.threshold.at * 1.3 : 0));
-  return measure.high === 0 ? [-furthest, 0] : [0, furthest];
+  const wanted = furthest / DISTRIBUTION_BINS;
+  const width = measure.threshold ? measure.threshold.at / Math.max(1, Math.round(measure.threshold.at / wanted)) : wanted;
+  const length = Math.ceil(furthest / width - 1e-9) * width;
+  return measure.high === 0 ? [-length, 0, width] : [0, length, width];
 }
 
 const distributions = {
@@ -161,18 +164,18 @@ const distributions = {
     this.showKinds(rows);
   },
 
-  showMeasure({ note, chart, measure, range: [low, high] }, rows) {
+  showMeasure({ note, chart, measure, range: [low, high, width] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
     const sorted = Float64Array.from(known, (row) => values[row]).sort();
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "none of these has one";
-    const width = (high - low) / DISTRIBUTION_BINS;
+    const bins = Math.round((high - low) / width);
     const place = (row) => Math.max(0, Math.floor((values[row] - low) / width));
-    const counts = histogram(known, place, DISTRIBUTION_BINS);
-    const centres = Array.from({ length: DISTRIBUTION_BINS }, (_, bin) => low + (bin + 0.5) * width);
-    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === DISTRIBUTION_BINS - 1 && measure.low === 0 ? "or more" : "");
+    const counts = histogram(known, place, bins);
+    const centres = Array.from({ length: bins }, (_, bin) => low + (bin + 0.5) * width);
+    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === bins - 1 && measure.low === 0 ? "or more" : "");
     const says = (bin) => {
       const [from, to] = [low + bin * width, low + (bin + 1) * width].map((value) => number(value, 2));
       return beyond(bin) ? `${beyond(bin) === "or less" ? to : from} ${measure.unit} ${beyond(bin)}` : `${from} to ${to} ${measure.unit}`;
@@ -188,7 +191,8 @@ const distributions = {
         formatter: ([item]) => (item ? barTip(says(item.dataIndex), counts, item.dataIndex) : "") },
       grid: { left: 4, right: 14, top: 24, bottom: 4, containLabel: true },
       xAxis: axis({ type: "value", min: low, max: high, splitLine: { show: false },
-        axisLabel: { color: colours.faint, hideOverlap: true, formatter: (value) => number(value, value % 1 ? 1 : 0) } }),
+        axisLabel: { color: colours.faint, hideOverlap: true, showMaxLabel: high === roundUp(high),
+          formatter: (value) => number(value, value % 1 ? 1 : 0) } }),
       yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false } }),
       series: bars(counts, centres, line),
     });

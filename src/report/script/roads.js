@@ -123,7 +123,7 @@ function scaleBar(metresPerPixel, height) {
   return [
     { id: "bar", type: "polyline", silent: true, zlevel: 1, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
     { id: "length", type: "text", silent: true, zlevel: 1, x: 16 + pixels, y: height - 22,
-      style: { text, fill: colours.ink, font: `12px ${FONT}` } },
+      style: { text, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `12px ${FONT}` } },
   ];
 }
 
