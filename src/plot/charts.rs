@@ -1,6 +1,6 @@
 //! Conflicts over time and the distributions of their measures, as bars stacked by severity.
 
-use plotters::chart::{ChartBuilder, SeriesLabelPosition};
+use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
 use plotters::prelude::{Color, DashedLineSeries, DrawingArea, DrawingBackend, Rectangle, Text, WHITE};
 use plotters::style::{IntoFont, TextStyle};
@@ -15,12 +15,16 @@ const BARS: f64 = 30.0;
 /// The share of the values that the axis covers; what is beyond counts in the last bar.
 const COVERED: f64 = 0.99;
 /// Widths of a bar of the time line, in s, and how many bars there are at most.
-const WIDTHS: [Second; 16] = [
-    1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 14400.0, 86400.0,
-];
+const WIDTHS: [Second; 16] =
+    [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 14400.0, 86400.0];
 const MOST_BARS: f64 = 80.0;
 /// A run of so many seconds and more is counted by the minute at least.
 const LONG: Second = 1200.0;
+
+/// Room above a chart for its legend and the words at a threshold, in pixels.
+const TOP: i32 = 76;
+/// Where the legend begins, and how far its entries are apart, in pixels.
+const LEGEND: (i32, i32) = (122, 140);
 
 /// What is distributed.
 pub struct Measure {
@@ -108,6 +112,8 @@ fn draw<B: DrawingBackend>(
     let font = |size: i32| TextStyle::from((FONT_NAME, size).into_font()).color(&INK);
     let mut chart = ChartBuilder::on(area)
         .margin(24)
+        .margin_right(48)
+        .margin_top(TOP)
         .x_label_area_size(72)
         .y_label_area_size(96)
         .build_cartesian_2d(bars.low..end, 0.0..top)
@@ -122,6 +128,7 @@ fn draw<B: DrawingBackend>(
         .axis_desc_style(font(26))
         .x_desc(x_title)
         .y_desc(y_title)
+        .x_label_formatter(&|value| ((value * 100.0).round() / 100.0 + 0.0).to_string().replace('-', "−"))
         .y_label_formatter(&|value| format!("{value:.0}"))
         .draw()
         .map_err(said)?;
@@ -134,26 +141,18 @@ fn draw<B: DrawingBackend>(
             let other = (left + 0.96 * bars.width, f64::from(below + counts[severity as usize]));
             Rectangle::new([corner, other], colour(severity).filled())
         });
-        chart
-            .draw_series(blocks)
-            .map_err(said)?
-            .label(severity.name())
-            .legend(move |(x, y)| Rectangle::new([(x, y - 8), (x + 16, y + 8)], colour(severity).filled()));
+        chart.draw_series(blocks).map_err(said)?;
+        let x = LEGEND.0 + LEGEND.1 * severity as i32;
+        area.draw(&Rectangle::new([(x, 16), (x + 16, 32)], colour(severity).filled())).map_err(said)?;
+        area.draw(&Text::new(severity.name(), (x + 26, 14), font(24))).map_err(said)?;
     }
     if let Some(at) = threshold {
         let line = [(at, 0.0), (at, top)];
         chart.draw_series(DashedLineSeries::new(line, 8, 6, INK.stroke_width(2))).map_err(said)?;
-        let words = Text::new(format!(" serious: {at}"), (at, top), font(22));
-        chart.draw_series([words]).map_err(said)?;
+        let (x, y) = chart.backend_coord(&(at, top));
+        area.draw(&Text::new(format!("serious from {at}"), (x + 4, y - 26), font(22))).map_err(said)?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
-        .background_style(WHITE.mix(0.8))
-        .label_font(font(24))
-        .margin(12)
-        .draw()
-        .map_err(said)
+    Ok(())
 }
 
 /// A round number that is not below this.

@@ -108,7 +108,7 @@ fn sign<B: DrawingBackend>(
 fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, view: &View) -> Result<(), String> {
     let y = area.dim_in_pixel().1 as i32 - 35;
     let style = TextStyle::from((FONT_NAME, 24).into_font()).color(&INK);
-    let text = |words: &str, x: i32| area.draw(&Text::new(words.to_owned(), (x, y - 12), style.clone())).map_err(said);
+    let text = |words: &str, x: i32| area.draw(&Text::new(words.to_owned(), (x, y - 10), style.clone())).map_err(said);
     let mut x = ROOM as i32 + 10;
     for kind in Kind::ALL {
         sign(area, kind, Severity::Caution, (x, y))?;

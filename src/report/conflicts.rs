@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::nets::{self, Ground};
 use super::logs as log_files;
+use super::nets::{self, Ground};
 use super::rows::{NUMBERS, Row, Worst};
 use crate::Result;
 use crate::encounter::{Kind, Severity};

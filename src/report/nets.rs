@@ -69,7 +69,10 @@ pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result
 fn note_change(path: &Path, hashes: &[&String], notes: &mut Vec<String>) {
     let known = Input::of(path).is_ok_and(|input| hashes.is_empty() || hashes.contains(&&input.sha256));
     if !known {
-        notes.push(format!("The net {} is not the file that the run was made on (its SHA-256 differs).", path.display()));
+        notes.push(format!(
+            "The net {} is not the file that the run was made on (its SHA-256 differs).",
+            path.display()
+        ));
     }
 }
 

@@ -27,9 +27,9 @@ pub fn json(net: &Net) -> Value {
             groups.entry((look, decimetres)).or_default().push(&lane.shape);
         }
     }
-    let lanes = groups.into_iter().map(|((look, width), shapes)| {
-        json!({ "look": look, "width": f64::from(width) / 10.0, "lines": lines(&shapes) })
-    });
+    let lanes = groups.into_iter().map(
+        |((look, width), shapes)| json!({ "look": look, "width": f64::from(width) / 10.0, "lines": lines(&shapes) }),
+    );
     let junctions = net.junctions.iter().map(|junction| &junction.shape[..]).filter(|shape| shape.len() > 2);
     json!({ "lanes": lanes.collect::<Vec<_>>(), "junctions": lines(&junctions.collect::<Vec<_>>()) })
 }

@@ -283,3 +283,23 @@ def test_an_old_log_without_places_has_no_drawings(browser: Any, tmp_path: Path)
     assert opened.page.query_selector_all("#worst .chart") == []
     assert len(opened.page.query_selector_all("#worst li")) == 3
     assert opened.complaints == []
+
+
+@pytest.mark.parametrize("form", ["png", "svg"])
+def test_plot_draws_every_chart_the_same_each_time(town: Path, tmp_path: Path, form: str) -> None:
+    for out in ("first", "second"):
+        done = closecall("plot", town / "log", "-o", tmp_path / out, "--format", form)
+        assert done.returncode == 0, done.stderr
+    names = ["delta_v", "drac", "map", "margin", "pet", "time", "ttc"]
+    assert sorted(path.name for path in (tmp_path / "first").iterdir()) == [f"{name}.{form}" for name in names]
+    for name in names:
+        first, second = ((tmp_path / out / f"{name}.{form}").read_bytes() for out in ("first", "second"))
+        assert first == second
+        assert first.startswith(b"\x89PNG" if form == "png" else b"<svg")
+        assert len(first) > 5_000
+
+
+def test_plot_names_what_it_cannot_write(tmp_path: Path) -> None:
+    done = closecall("plot", made_up(tmp_path / "log", 2), "-o", "/proc/plots")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert "/proc/plots: " in done.stderr
