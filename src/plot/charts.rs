@@ -95,7 +95,8 @@ impl Chart for Distribution {
         let (low, high) = if self.0.name == "margin" { (-reach, 0.0) } else { (0.0, reach) };
         let mut bars = Bars::new(low, high, width);
         found.numbers(self.0.name).for_each(|(severity, value)| bars.add(value, severity));
-        draw(area, &bars, self.0.title, "Conflicts", threshold)
+        let words = if self.0.name == "ttc" { "serious below" } else { "serious above" };
+        draw(area, &bars, self.0.title, "Conflicts", threshold.map(|at| (at, words)))
     }
 }
 
@@ -104,7 +105,7 @@ fn draw<B: DrawingBackend>(
     bars: &Bars,
     x_title: &str,
     y_title: &str,
-    threshold: Option<f64>,
+    threshold: Option<(f64, &str)>,
 ) -> Result<(), String> {
     let highest = bars.counts.iter().map(|counts| counts.iter().sum::<u32>()).max().unwrap_or(0);
     let top = f64::from(highest.max(1)) * 1.08;
@@ -146,11 +147,11 @@ fn draw<B: DrawingBackend>(
         area.draw(&Rectangle::new([(x, 16), (x + 16, 32)], colour(severity).filled())).map_err(said)?;
         area.draw(&Text::new(severity.name(), (x + 26, 14), font(24))).map_err(said)?;
     }
-    if let Some(at) = threshold {
+    if let Some((at, words)) = threshold {
         let line = [(at, 0.0), (at, top)];
         chart.draw_series(DashedLineSeries::new(line, 8, 6, INK.stroke_width(2))).map_err(said)?;
         let (x, y) = chart.backend_coord(&(at, top));
-        area.draw(&Text::new(format!("serious from {at}"), (x + 4, y - 26), font(22))).map_err(said)?;
+        area.draw(&Text::new(format!("{words} {at}"), (x + 4, y - 26), font(22))).map_err(said)?;
     }
     Ok(())
 }

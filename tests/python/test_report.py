@@ -95,8 +95,19 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
             row |= {"kind": chance.choice(["rear_end", "rear_end", "frontal", "side"]), "collision": "false"}
             row |= {"severity": chance.choices(["caution", "serious", "critical"], [80, 18, 2])[0]}
             row |= {"begin": f"{time:.2f}", "time": f"{time + 1:.2f}", "end": f"{time + 2:.2f}"}
-            row |= {"gap": f"{gap:.6f}", "mu": f"{mu:.6f}", "margin": f"{gap - mu:.6f}", "x": f"{x:.6f}", "y": f"{y:.6f}"}
-            row |= {"lane": f"edge{number % 500}_0", "ego_x": f"{x - 9:.6f}", "ego_y": f"{y:.6f}", "ego_path": f"{x + 9:.2f},{y:.2f}"}
+            row |= {
+                "gap": f"{gap:.6f}",
+                "mu": f"{mu:.6f}",
+                "margin": f"{gap - mu:.6f}",
+                "x": f"{x:.6f}",
+                "y": f"{y:.6f}",
+            }
+            row |= {
+                "lane": f"edge{number % 500}_0",
+                "ego_x": f"{x - 9:.6f}",
+                "ego_y": f"{y:.6f}",
+                "ego_path": f"{x + 9:.2f},{y:.2f}",
+            }
             row |= {"foe_x": f"{x + 9:.6f}", "foe_y": f"{y:.6f}", "foe_path": ""}
             table.writerow(row | changes)
     return folder
@@ -158,7 +169,8 @@ def test_zooming_keeps_metres_equally_long_on_both_axes(browser: Any, town: Path
     opened.page.mouse.wheel(0, -300)
     length = "map.chart.convertToPixel({gridIndex: 0}, [X, Y])"
     origin, along, up = (
-        opened.page.evaluate(length.replace("X", x).replace("Y", y)) for x, y in (("0", "0"), ("100", "0"), ("0", "100"))
+        opened.page.evaluate(length.replace("X", x).replace("Y", y))
+        for x, y in (("0", "0"), ("100", "0"), ("0", "100"))
     )
     assert along[0] - origin[0] == pytest.approx(origin[1] - up[1], rel=1e-3)
     assert opened.page.evaluate("map.spans()[1] - map.spans()[0]") < 50
