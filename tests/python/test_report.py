@@ -78,10 +78,27 @@ def town(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def made_up(folder: Path, count: int, **changes: str) -> Path:
     """A log of conflicts that nobody ran."""
     chance = random.Random(1)
-    names = "id ego foe kind severity begin end time gap mu margin clearance ttc drac pet delta_v".split()
-    names += "ego_speed foe_speed angle x y lane collision".split()
+    names = [
+        "id",
+        "ego",
+        "foe",
+        "kind",
+        "severity",
+        "begin",
+        "end",
+        "time",
+        "gap",
+        "mu",
+        "margin",
+        "clearance",
+        "ttc",
+        "drac",
+        "pet",
+        "delta_v",
+    ]
+    names += ["ego_speed", "foe_speed", "angle", "x", "y", "lane", "collision"]
     for who in ("ego", "foe"):
-        names += [f"{who}_{what}" for what in "x y heading length width path".split()]
+        names += [f"{who}_{what}" for what in ["x", "y", "heading", "length", "width", "path"]]
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, names, lineterminator="\n")
