@@ -277,9 +277,9 @@ impl Table {
     }
 }
 
-/// A path as SUMO writes shapes, to the centimetre.
+/// A path as x y x y …, to the centimetre; without commas, so that no cell needs quotes.
 fn path(points: &[Point]) -> String {
-    points.iter().map(|point| format!("{:.2},{:.2}", point.x, point.y)).collect::<Vec<_>>().join(" ")
+    points.iter().map(|point| format!("{:.2} {:.2}", point.x, point.y)).collect::<Vec<_>>().join(" ")
 }
 
 /// A number with six decimals at most: micrometres and microseconds.

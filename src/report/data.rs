@@ -124,7 +124,7 @@ fn spot(lane: &str, net: Option<&Net>) -> String {
 
 /// A stance as x, y, heading, length, width and the numbers of its path.
 fn stance(stance: &Stance) -> Vec<f64> {
-    let path = stance.path.split([' ', ',']).filter_map(|number| number.parse::<f64>().ok());
+    let path = stance.path.split(' ').filter_map(|number| number.parse::<f64>().ok());
     stance.numbers.into_iter().map(|number| rounded(number, 3)).chain(path).collect()
 }
 
