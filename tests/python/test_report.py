@@ -123,7 +123,7 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
                 "lane": f"edge{number % 500}_0",
                 "ego_x": f"{x - 9:.6f}",
                 "ego_y": f"{y:.6f}",
-                "ego_path": f"{x + 9:.2f},{y:.2f}",
+                "ego_path": f"{x + 9:.2f} {y:.2f}",
             }
             row |= {"foe_x": f"{x + 9:.6f}", "foe_y": f"{y:.6f}", "foe_path": ""}
             table.writerow(row | changes)
