@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use crate::conflict::Conflict;
 use crate::encounter::Encounter;
 use crate::frame::Roster;
+use crate::geometry::Point;
 use crate::net::Net;
 use crate::record::RunRecord;
 use crate::units::Second;
@@ -23,7 +24,7 @@ pub const ENCOUNTERS: &str = "encounters.csv";
 pub const RUN: &str = "run.json";
 
 /// The columns of [`CONFLICTS`].
-pub const CONFLICT_COLUMNS: [&str; 25] = [
+pub const CONFLICT_COLUMNS: [&str; 37] = [
     "id",
     "ego",
     "foe",
@@ -49,6 +50,18 @@ pub const CONFLICT_COLUMNS: [&str; 25] = [
     "collision",
     "ego_type",
     "foe_type",
+    "ego_x",
+    "ego_y",
+    "ego_heading",
+    "ego_length",
+    "ego_width",
+    "ego_path",
+    "foe_x",
+    "foe_y",
+    "foe_heading",
+    "foe_length",
+    "foe_width",
+    "foe_path",
 ];
 /// The columns of [`ENCOUNTERS`].
 pub const ENCOUNTER_COLUMNS: [&str; 10] =
@@ -97,6 +110,7 @@ impl Log {
     pub fn conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for conflict in conflicts {
             self.written += 1;
+            let (ego, foe) = (&conflict.ego_stance, &conflict.foe_stance);
             self.conflicts.row(&[
                 Cell::Count(self.written),
                 Cell::Text(&conflict.ego),
@@ -126,6 +140,18 @@ impl Log {
                 Cell::Text(if conflict.collision { "true" } else { "false" }),
                 Cell::Text(&roster.profile_at(conflict.ego_profile).name),
                 Cell::Text(&roster.profile_at(conflict.foe_profile).name),
+                Cell::Number(ego.front.x),
+                Cell::Number(ego.front.y),
+                Cell::Number(ego.heading),
+                Cell::Number(ego.length),
+                Cell::Number(ego.width),
+                Cell::Text(&path(&ego.path)),
+                Cell::Number(foe.front.x),
+                Cell::Number(foe.front.y),
+                Cell::Number(foe.heading),
+                Cell::Number(foe.length),
+                Cell::Number(foe.width),
+                Cell::Text(&path(&foe.path)),
             ])?;
         }
         self.conflicts.flush()
@@ -253,6 +279,11 @@ impl Table {
     fn unwritable(&self, source: std::io::Error) -> Error {
         Error::file(&self.path, source)
     }
+}
+
+/// A path as x y x y …, to the centimetre; without commas, so that no cell needs quotes.
+fn path(points: &[Point]) -> String {
+    points.iter().map(|point| format!("{:.2} {:.2}", point.x, point.y)).collect::<Vec<_>>().join(" ")
 }
 
 /// A number with six decimals at most: micrometres and microseconds.

@@ -188,7 +188,8 @@ impl Run {
                 self.in_conflict.push(found);
             }
         }
-        let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict);
+        let detector = &self.detector;
+        let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict, |row| detector.path(row));
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
                 log.conflicts(closed, self.net.as_deref(), &self.roster)?;

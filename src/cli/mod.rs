@@ -4,8 +4,10 @@
 //! simulation ([`Sumo`]), or nothing.
 
 mod mu;
+mod plot;
 mod regress;
 mod replay;
+mod report;
 mod run;
 mod settings;
 mod stats;
@@ -52,6 +54,12 @@ enum Command {
     Study(study::StudyArgs),
     /// Statistics of logs: rates, quantiles, the worst conflicts, before and after
     Stats(stats::StatsArgs),
+    /// Make one HTML page of logs: map, time line, distributions, hot spots, the worst conflicts
+    #[command(args_override_self = true)]
+    Report(report::ReportArgs),
+    /// Draw the same charts as PNG or SVG, for papers
+    #[command(args_override_self = true)]
+    Plot(plot::PlotArgs),
 }
 
 /// What the commands that run SUMO need of whoever knows it.
@@ -91,6 +99,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         #[cfg(feature = "study")]
         Command::Study(arguments) => study::run(&arguments, sumo).map(|()| 0),
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
+        Command::Report(arguments) => report::run(&arguments).map(|()| 0),
+        Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),
     };
     match done {
         Ok(status) => status,

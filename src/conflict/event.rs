@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::Stance;
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
 use crate::measures;
@@ -67,6 +68,12 @@ pub struct Conflict {
     pub lane: Option<LaneIndex>,
     /// Whether the rectangles overlapped in any step.
     pub collision: bool,
+    /// Where the ego stood and was about to go.
+    #[serde(skip)]
+    pub ego_stance: Stance,
+    /// The same of the foe.
+    #[serde(skip)]
+    pub foe_stance: Stance,
     /// When and where `ttc`, `drac` and `pet` were found.
     #[serde(skip)]
     pub found: [Option<Moment>; 3],
@@ -115,6 +122,8 @@ pub(super) fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Confl
         y: found.y,
         lane: found.lane,
         collision: found.collision,
+        ego_stance: Stance::of(frame, roster, found.ego_row),
+        foe_stance: Stance::of(frame, roster, found.foe_row),
         found: [near.and_then(|near| near.ttc), near.and_then(|near| near.drac), None]
             .map(|value| value.map(|_| Moment { time: frame.time, x: found.x, y: found.y, speed: ego.0 })),
     }

@@ -5,6 +5,7 @@
 
 mod event;
 pub mod pet;
+mod stance;
 
 use rustc_hash::FxHashMap;
 
@@ -18,6 +19,8 @@ use crate::geometry::Point;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::profile::Category;
 use crate::units::Second;
+
+pub use stance::Stance;
 
 /// How long the margin must be ≥ 0 before an event closes, in s (DESIGN.md, Events).
 pub const CLOSES_AFTER: Second = 1.0;
@@ -61,8 +64,14 @@ struct Event {
 
 impl Tracker {
     /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
-    /// and ids.
-    pub fn step(&mut self, frame: &Frame, roster: &Roster, encounters: &[Encounter]) -> &[Conflict] {
+    /// and ids. `path` has the path of a row's front bumper, from where it is.
+    pub fn step(
+        &mut self,
+        frame: &Frame,
+        roster: &Roster,
+        encounters: &[Encounter],
+        path: impl Fn(u32) -> Vec<Point>,
+    ) -> &[Conflict] {
         self.closed.clear();
         if self.events.is_empty() && self.waiting.is_empty() && encounters.iter().all(|found| !found.in_conflict()) {
             return &self.closed;
@@ -73,7 +82,7 @@ impl Tracker {
             self.rows[user.0 as usize] = row;
         }
         for found in encounters.iter().filter(|found| found.in_conflict()) {
-            self.take(frame, roster, found);
+            self.take(frame, roster, found, &path);
         }
         self.follow(frame, roster);
         self.close(frame.time);
@@ -104,9 +113,13 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter) {
+    fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter, path: &impl Fn(u32) -> Vec<Point>) {
         let pair = (found.ego.min(found.foe), found.ego.max(found.foe));
-        let now = moment(frame, roster, found);
+        let mut now = moment(frame, roster, found);
+        if self.events.get(&pair).is_none_or(|event| now.margin < event.conflict.margin) {
+            now.ego_stance.lay(&path(found.ego_row));
+            now.foe_stance.lay(&path(found.foe_row));
+        }
         let alarm = Alarm { ego: found.ego, foe: found.foe, severity: now.severity, kind: found.kind };
         let event =
             self.events.entry(pair).or_insert_with(|| Event { pair, conflict: now.clone(), alarm, courses: None });
@@ -238,7 +251,7 @@ mod tests {
                 nearness: None,
             };
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker.step(&frame, &self.roster, &found).to_vec()
+            self.tracker.step(&frame, &self.roster, &found, |_| Vec::new()).to_vec()
         }
     }
 

@@ -266,6 +266,13 @@ impl Detector {
         &self.encounters
     }
 
+    /// The path of a row's front bumper from where it is until it stands and ε further, as the last phase 2 laid it;
+    /// empty for an obstacle and for who was in no pair.
+    pub fn path(&self, row: u32) -> Vec<Point> {
+        let (start, end) = self.rows[row as usize].poses;
+        self.poses[start as usize..end as usize].iter().map(|pose| pose.front).collect()
+    }
+
     /// A row's poses until it stands and ε further.
     fn lay_poses(&mut self, frame: &Frame, roster: &Roster, row: usize) {
         let user = frame.users()[row];

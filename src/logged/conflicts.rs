@@ -155,7 +155,7 @@ impl Iterator for ConflictReader {
 
 /// The columns without which a row is no [`LoggedConflict`].
 const REQUIRED: [&str; 23] = {
-    let [required @ .., _, _] = crate::log::CONFLICT_COLUMNS;
+    let [required @ .., _, _, _, _, _, _, _, _, _, _, _, _, _, _] = crate::log::CONFLICT_COLUMNS;
     required
 };
 

@@ -1,0 +1,39 @@
+//! `closecall plot`: the report's charts as pictures.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::Result;
+use crate::plot::{self, Format};
+
+/// Which logs, and where the pictures go.
+#[derive(Args)]
+pub struct PlotArgs {
+    /// Folders of logs: each a log itself, or a folder with logs in it.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// Folder of the pictures.
+    #[arg(short, long, value_name = "FOLDER", default_value = "plots")]
+    out: PathBuf,
+    /// Pixels or lines.
+    #[arg(long, value_enum, default_value = "svg")]
+    format: Format,
+    /// The net for the map [default: where the first log says that it was].
+    #[arg(short, long, value_name = "NET")]
+    net: Option<PathBuf>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Draws the pictures and names them.
+pub fn run(arguments: &PlotArgs) -> Result<()> {
+    let files = plot::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, arguments.format)?;
+    if !arguments.quiet {
+        for file in files {
+            println!("{}", file.display());
+        }
+    }
+    Ok(())
+}

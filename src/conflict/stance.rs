@@ -1,0 +1,99 @@
+//! Where one of a pair stood at the worst step, how large it is and where it was about to go: what a drawing needs.
+
+use std::sync::Arc;
+
+use crate::frame::{Frame, Roster};
+use crate::geometry::Point;
+use crate::units::{Metre, Radian};
+
+/// A point of a path that lies nearer than this to the line between its neighbours is left out, in m: less than a
+/// drawing shows.
+const DRAWN: Metre = 0.05;
+
+/// One road user of a conflict at the step with the smallest margin.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stance {
+    /// Front-bumper centre; a corner of an obstacle.
+    pub front: Point,
+    /// Direction from the rear to the front bumper, in rad counter-clockwise from +x.
+    pub heading: Radian,
+    /// Length in m; 0 for an obstacle.
+    pub length: Metre,
+    /// Width in m; 0 for an obstacle.
+    pub width: Metre,
+    /// Where its front bumper would go from here until it has braked to a stand; empty for who stands.
+    pub path: Arc<[Point]>,
+}
+
+impl Stance {
+    /// A row of the frame, without its path.
+    pub(super) fn of(frame: &Frame, roster: &Roster, row: u32) -> Self {
+        let state = &frame.states()[row as usize];
+        let profile = roster.profile_of(frame.users()[row as usize]);
+        Self {
+            front: Point::new(state.x, state.y),
+            heading: state.heading,
+            length: profile.length,
+            width: profile.width,
+            path: Arc::default(),
+        }
+    }
+
+    /// Lays the path: what comes after the first of these points, as many of them as a drawing needs.
+    pub(super) fn lay(&mut self, points: &[Point]) {
+        let mut kept = Vec::new();
+        if points.iter().any(|point| (point - self.front).norm() > DRAWN) {
+            simplify(points, &mut kept);
+        }
+        self.path = kept.into();
+    }
+}
+
+/// Ramer, Douglas and Peucker: the points that keep a line within [`DRAWN`] of what it was, without the first.
+fn simplify(points: &[Point], kept: &mut Vec<Point>) {
+    let [first, between @ .., last] = points else { return };
+    let furthest = (1..).zip(between).map(|(index, point)| (index, distance(point, first, last)));
+    match furthest.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((index, distance)) if distance > DRAWN => {
+            simplify(&points[..=index], kept);
+            simplify(&points[index..], kept);
+        }
+        _ => kept.push(*last),
+    }
+}
+
+/// The distance of a point from the line between two others.
+fn distance(point: &Point, from: &Point, to: &Point) -> Metre {
+    let (line, aside) = (to - from, point - from);
+    let length = line.norm_squared();
+    let part = if length > 0.0 { (aside.dot(&line) / length).clamp(0.0, 1.0) } else { 0.0 };
+    (aside - line * part).norm()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn path(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+        let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
+        let mut stance = Stance { front: points[0], heading: 0.0, length: 5.0, width: 2.0, path: Arc::default() };
+        stance.lay(&points);
+        stance.path.iter().map(|point| (point.x, point.y)).collect()
+    }
+
+    #[test]
+    fn a_straight_path_is_its_end() {
+        assert_eq!(path(&[(0.0, 0.0), (10.0, 0.01), (20.0, 0.0)]), [(20.0, 0.0)]);
+    }
+
+    #[test]
+    fn a_corner_stays() {
+        assert_eq!(path(&[(0.0, 0.0), (5.0, 0.0), (10.0, 0.0), (10.0, 9.0)]), [(10.0, 0.0), (10.0, 9.0)]);
+    }
+
+    #[test]
+    fn who_stands_has_no_path() {
+        assert_eq!(path(&[(0.0, 0.0), (0.0, 0.0)]), []);
+        assert_eq!(path(&[(0.0, 0.0)]), []);
+    }
+}

@@ -1,0 +1,112 @@
+//! `closecall plot`: the report's charts as PNG or SVG, for papers.
+//!
+//! Map, time line and distributions, each a file, with the colours of the report's light page. The font is within the
+//! crate: the same pictures on every machine.
+
+mod charts;
+mod map;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use plotters::coord::Shift;
+use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend, WHITE};
+use plotters::style::{FontStyle, register_font};
+
+use crate::encounter::Severity;
+use crate::report::{self, Conflicts};
+use crate::{Error, Result};
+
+/// DejaVu Sans, cut down to Latin, Greek and what formulas need.
+const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
+/// Its name in the pictures; an SVG viewer takes its own font of that name, or its own sans-serif.
+const FONT_NAME: &str = "DejaVu Sans, sans-serif";
+/// Width and height of a map.
+const MAP_SIZE: (u32, u32) = (1600, 1200);
+/// Width and height of any other chart.
+const CHART_SIZE: (u32, u32) = (1200, 700);
+/// What stands around a chart.
+const INK: RGBColor = RGBColor(28, 33, 40);
+
+/// What sort of picture to write.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Format {
+    /// Pixels.
+    Png,
+    /// Lines and text.
+    Svg,
+}
+
+/// The colour of a severity, as on the report's light page.
+fn colour(severity: Severity) -> RGBColor {
+    match severity {
+        Severity::Caution => RGBColor(0xc4, 0x8a, 0x00),
+        Severity::Serious => RGBColor(0xd1, 0x43, 0x1f),
+        Severity::Critical => RGBColor(0x6a, 0x1b, 0x9a),
+    }
+}
+
+/// Draws the charts of the logs in `folders` into `out`, which is made where it is not there; returns the files.
+///
+/// # Errors
+/// As [`report::read`] has them, and [`Error::File`] where a picture cannot be written.
+pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: Format) -> Result<Vec<PathBuf>> {
+    let conflicts = report::read(folders, net)?;
+    fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
+    register_font(FONT_NAME, FontStyle::Normal, FONT)
+        .map_err(|_| Error::Value("the font of the pictures cannot be used".to_owned()))?;
+    let mut files = vec![picture(out, "map", format, MAP_SIZE, &conflicts, map::Map)?];
+    files.push(picture(out, "time", format, CHART_SIZE, &conflicts, charts::TimeLine)?);
+    for measure in &charts::MEASURES {
+        files.push(picture(out, measure.name, format, CHART_SIZE, &conflicts, charts::Distribution(measure))?);
+    }
+    Ok(files)
+}
+
+/// What can be drawn on any backend.
+trait Chart {
+    /// Draws it.
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        conflicts: &Conflicts,
+    ) -> std::result::Result<(), String>;
+}
+
+/// Draws one chart into a file of its name.
+fn picture(
+    out: &Path,
+    name: &str,
+    format: Format,
+    size: (u32, u32),
+    conflicts: &Conflicts,
+    chart: impl Chart,
+) -> Result<PathBuf> {
+    let path = out.join(match format {
+        Format::Png => format!("{name}.png"),
+        Format::Svg => format!("{name}.svg"),
+    });
+    // Drawn in memory or opened first, so that what is wrong with the file is told in the system's own words.
+    fs::File::create(&path).map_err(|source| Error::file(&path, source))?;
+    let drawn = match format {
+        Format::Png => on(BitMapBackend::new(&path, size).into_drawing_area(), conflicts, &chart),
+        Format::Svg => on(SVGBackend::new(&path, size).into_drawing_area(), conflicts, &chart),
+    };
+    drawn.map_err(|said| Error::content(&path, format!("it cannot be drawn: {said}")))?;
+    Ok(path)
+}
+
+fn on<B: DrawingBackend>(
+    area: DrawingArea<B, Shift>,
+    conflicts: &Conflicts,
+    chart: &impl Chart,
+) -> std::result::Result<(), String> {
+    area.fill(&WHITE).map_err(said)?;
+    chart.draw(&area, conflicts)?;
+    area.present().map_err(said)
+}
+
+/// A backend's error in words.
+fn said(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

@@ -1,0 +1,217 @@
+// Conflicts over time, and how close they were.
+
+/** Widths of a bar of the time line in s; the first with which a run has not too many. */
+const BINS = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 86400];
+const MOST_BINS = 80;
+/** A run of so many seconds and more is counted by the minute at least. */
+const LONG = 1200;
+
+/** Steps between the times on the axis of a long run, in s; and how many of them there are at most. */
+const TICKS = [60, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400];
+const MOST_TICKS = 8;
+
+/** First and last second of all runs. */
+const period = (() => {
+  const times = [];
+  for (const run of data.runs) if (run.summary) times.push(run.summary.begin, run.summary.end);
+  for (const time of column.time) times.push(time);
+  return [times.reduce((a, b) => Math.min(a, b), Infinity), times.reduce((a, b) => Math.max(a, b), -Infinity)];
+})();
+
+/** How often each severity in each of `bins` bars. */
+function histogram(rows, place, bins) {
+  const counts = SEVERITIES.map(() => new Array(bins).fill(0));
+  for (const row of rows) {
+    const at = place(row);
+    if (at >= 0) counts[column.severity[row]][Math.min(at, bins - 1)]++;
+  }
+  return counts;
+}
+
+/** A clock time, as a run of an hour and more has it. */
+function clock(seconds) {
+  const [hours, minutes, rest] = [Math.floor(seconds / 3600), Math.floor(seconds / 60) % 60, Math.round(seconds % 60)];
+  return [hours, minutes, ...(rest ? [rest] : [])].map((part) => String(part).padStart(2, "0")).join(":");
+}
+
+/** Stacked bars of a value, one series per severity. */
+function bars(counts, centres, more) {
+  return counts.map((of_bin, severity) => ({
+    id: SEVERITIES[severity], name: SEVERITIES[severity], type: "bar", stack: "all", barCategoryGap: "8%", silent: false,
+    itemStyle: { color: severityColour(severity) }, data: of_bin.map((many, bin) => [centres[bin], many]), clip: true,
+    ...(more && severity === 0 ? more : {}),
+  }));
+}
+
+/** The tooltip of a bar: a line of words, then a count per severity. */
+function barTip(heading, counts, bin) {
+  const tip = make("div", { className: "tip" }, make("b", { textContent: heading }));
+  SEVERITIES.forEach((name, severity) => tip.append(make("div", { textContent: `${name} ${number(counts[severity][bin])}` })));
+  return tip;
+}
+
+const times = {
+  element: byId("times"),
+  chart: null,
+
+  start(changed) {
+    const length = Math.max(period[1] - period[0], 1);
+    const most = BINS.find((bin) => length / bin <= MOST_BINS) || BINS[BINS.length - 1];
+    this.bin = length >= LONG ? Math.max(60, most) : most;
+    this.first = Math.floor(period[0] / this.bin) * this.bin;
+    this.bins = Math.max(1, Math.floor((period[1] - this.first) / this.bin) + 1);
+    this.end = this.first + this.bins * this.bin;
+    const width = this.bin % 60 ? `${this.bin} s` : this.bin === 60 ? "minute" : `${this.bin / 60} minutes`;
+    const runs = data.runs.length > 1 ? `, all ${data.runs.length} runs together` : "";
+    byId("bins").textContent = `Conflicts per ${width} by severity${runs}. The slider chooses a period for the whole page.`;
+    this.chart = chartIn(this.element);
+    this.chart.on("datazoom", () => {
+      const { startValue, endValue } = this.chart.getOption().dataZoom[0];
+      changed(startValue <= this.first ? -Infinity : startValue, endValue >= this.end ? Infinity : endValue);
+    });
+  },
+
+  show(rows) {
+    const counts = histogram(rows, (row) => Math.floor((column.time[row] - this.first) / this.bin), this.bins);
+    const centres = Array.from({ length: this.bins }, (_, bin) => this.first + (bin + 0.5) * this.bin);
+    const length = this.end - this.first;
+    const is_long = length >= 2 * LONG;
+    const label = (seconds) => (is_long ? clock(seconds) : `${number(seconds)} s`);
+    const interval = is_long ? { interval: TICKS.find((tick) => length / tick <= MOST_TICKS) || 86400 } : {};
+    this.chart.setOption({
+      ...basics(),
+      tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
+        formatter: ([item]) => (item ? this.tip(item, counts, label) : "") },
+      grid: { left: 8, right: 16, top: 14, bottom: 48, containLabel: true },
+      xAxis: axis({ type: "value", min: this.first, max: this.end, ...interval, splitLine: { show: false },
+        axisLabel: { color: colours.faint, hideOverlap: true, formatter: label } }),
+      yAxis: axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false } }),
+      dataZoom: [{ id: "period", type: "slider", xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: 40, right: 40,
+        showDetail: false, brushSelect: false, borderColor: colours.rule, fillerColor: `${colours.accent}33`,
+        handleStyle: { color: colours.card, borderColor: colours.accent }, moveHandleStyle: { color: colours.accent },
+        dataBackground: { lineStyle: { color: colours.faint }, areaStyle: { color: colours.rule } },
+        selectedDataBackground: { lineStyle: { color: colours.accent }, areaStyle: { color: colours.accent } } }],
+      series: bars(counts, centres),
+    });
+  },
+
+  tip(item, counts, label) {
+    const bin = item.dataIndex;
+    return barTip(`${label(this.first + bin * this.bin)} to ${label(this.first + (bin + 1) * this.bin)}`, counts, bin);
+  },
+
+  /** Puts the slider where the filter is. */
+  follow() {
+    const { from, to } = filter;
+    this.chart.dispatchAction({ type: "dataZoom", dataZoomId: "period",
+      startValue: Math.max(from, this.first), endValue: Math.min(to, this.end) });
+  },
+};
+
+/** What is distributed: column, heading, unit, whether smaller is worse, and a threshold with its words. */
+const MEASURES = [
+  { name: "ttc", title: "Time to collision (TTC)", unit: "s", low: 0,
+    threshold: { at: options.serious_ttc, text: `serious below ${options.serious_ttc} s` } },
+  { name: "drac", title: "Deceleration to avoid it (DRAC)", unit: "m/s²", low: 0,
+    threshold: { at: options.serious_drac, text: `serious above ${options.serious_drac} m/s²` } },
+  { name: "pet", title: "Post-encroachment time (PET)", unit: "s", low: 0 },
+  { name: "margin", title: "Margin: gap − μ", unit: "m", high: 0 },
+  { name: "delta_v", title: "Speed change in a collision (ΔV)", unit: "m/s", low: 0 },
+];
+const DISTRIBUTION_BINS = 30;
+/** The share of the values that the axis covers; what is beyond counts in the last bar. */
+const COVERED = 0.99;
+
+function quantile(sorted, share) {
+  return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+}
+
+/** A round number not below this. */
+function roundUp(value) {
+  const power = 10 ** Math.floor(Math.log10(Math.max(value, 1e-3)));
+  return [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((digit) => digit * power >= value * 0.999) * power;
+}
+
+/** From and to of a measure's axis and the width of a bar, the same under every filter; a threshold lies between two bars. */
+function range(measure) {
+  const sizes = Float64Array.from(column[measure.name].filter((value) => value !== null), Math.abs).sort();
+  const reach = sizes.length ? quantile(sizes, COVERED) : 1;
+  const furthest = roundUp(Math.max(reach, measure.threshold ? measure.threshold.at * 1.3 : 0));
+  const wanted = furthest / DISTRIBUTION_BINS;
+  const width = measure.threshold ? measure.threshold.at / Math.max(1, Math.round(measure.threshold.at / wanted)) : wanted;
+  const length = Math.ceil(furthest / width - 1e-9) * width;
+  return measure.high === 0 ? [-length, 0, width] : [0, length, width];
+}
+
+const distributions = {
+  panels: [],
+
+  start() {
+    const panel = (title) => {
+      const note = make("p", { className: "note" });
+      const element = make("div", { className: "chart" });
+      element.setAttribute("role", "img");
+      element.setAttribute("aria-label", title);
+      byId("distributions").append(make("div", {}, make("h3", { textContent: title }), note, element));
+      return { note, element, chart: chartIn(element) };
+    };
+    for (const measure of MEASURES) this.panels.push({ ...panel(`${measure.title}, ${measure.unit}`), measure, range: range(measure) });
+    this.kinds = panel("Kinds");
+  },
+
+  show(rows) {
+    for (const each of this.panels) this.showMeasure(each, rows);
+    this.showKinds(rows);
+  },
+
+  showMeasure({ note, chart, measure, range: [low, high, width] }, rows) {
+    const values = column[measure.name];
+    const known = rows.filter((row) => values[row] !== null);
+    const sorted = Float64Array.from(known, (row) => values[row]).sort();
+    note.textContent = sorted.length
+      ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
+      : "none of these has one";
+    const bins = Math.round((high - low) / width);
+    const place = (row) => Math.max(0, Math.floor((values[row] - low) / width));
+    const counts = histogram(known, place, bins);
+    const centres = Array.from({ length: bins }, (_, bin) => low + (bin + 0.5) * width);
+    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === bins - 1 && measure.low === 0 ? "or more" : "");
+    const says = (bin) => {
+      const [from, to] = [low + bin * width, low + (bin + 1) * width].map((value) => number(value, 2));
+      return beyond(bin) ? `${beyond(bin) === "or less" ? to : from} ${measure.unit} ${beyond(bin)}` : `${from} to ${to} ${measure.unit}`;
+    };
+    const line = measure.threshold && { markLine: {
+      silent: true, symbol: "none", data: [{ xAxis: measure.threshold.at }],
+      lineStyle: { color: colours.ink, type: "dashed", width: 1.5 },
+      label: { formatter: measure.threshold.text, color: colours.ink, position: "end", fontSize: 11,
+        align: measure.threshold.at < (low + high) / 2 ? "left" : "right" } } };
+    chart.setOption({
+      ...basics(),
+      tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
+        formatter: ([item]) => (item ? barTip(says(item.dataIndex), counts, item.dataIndex) : "") },
+      grid: { left: 4, right: 14, top: 24, bottom: 4, containLabel: true },
+      xAxis: axis({ type: "value", min: low, max: high, splitLine: { show: false },
+        axisLabel: { color: colours.faint, hideOverlap: true, showMaxLabel: high === roundUp(high),
+          formatter: (value) => number(value, value % 1 ? 1 : 0) } }),
+      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false } }),
+      series: bars(counts, centres, line),
+    });
+  },
+
+  showKinds(rows) {
+    const counts = SEVERITIES.map(() => KINDS.map(() => 0));
+    for (const row of rows) counts[column.severity[row]][column.kind[row]]++;
+    this.kinds.note.textContent = "by severity";
+    this.kinds.chart.setOption({
+      ...basics(),
+      tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
+        formatter: ([item]) => (item ? barTip(KINDS[item.dataIndex], counts, item.dataIndex) : "") },
+      grid: { left: 4, right: 20, top: 8, bottom: 4, containLabel: true },
+      xAxis: axis({ type: "value", minInterval: 1, splitNumber: 3 }),
+      yAxis: axis({ type: "category", inverse: true, data: KINDS, axisTick: { show: false },
+        axisLabel: { color: colours.ink } }),
+      series: SEVERITIES.map((name, severity) => ({ id: name, name, type: "bar", stack: "all", barMaxWidth: 26,
+        itemStyle: { color: severityColour(severity) }, data: counts[severity] })),
+    });
+  },
+};

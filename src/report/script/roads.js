@@ -1,0 +1,129 @@
+// The net as it lies on the ground, and a view of it in which metres are equally long both ways.
+
+/** Lanes narrower than this on the screen are drawn this wide, in pixels. */
+const THINNEST = 0.8;
+/** From this many pixels per metre on, the lanes within junctions are drawn too. */
+const CLOSE = 2;
+
+/** Lines from whole numbers (a count, then differences in cm): points in m, where each line starts, its box. */
+function readLines(numbers) {
+  const points = [];
+  const starts = [];
+  const boxes = [];
+  let x = 0;
+  let y = 0;
+  for (let at = 0; at < numbers.length;) {
+    const points_of_line = numbers[at++];
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    starts.push(points.length);
+    for (let point = 0; point < points_of_line; point++) {
+      x += numbers[at++];
+      y += numbers[at++];
+      points.push(x / 100, y / 100);
+      box[0] = Math.min(box[0], x / 100);
+      box[1] = Math.min(box[1], y / 100);
+      box[2] = Math.max(box[2], x / 100);
+      box[3] = Math.max(box[3], y / 100);
+    }
+    boxes.push(box);
+  }
+  starts.push(points.length);
+  return { points: Float64Array.from(points), starts, boxes };
+}
+
+const net = data.net && {
+  lanes: data.net.lanes.map((group) => ({ look: group.look, width: group.width, lines: readLines(group.lines) })),
+  junctions: readLines(data.net.junctions),
+};
+
+/** All lines of a group as one shape: a net of many thousand lanes is a few strokes. */
+const Roads = echarts.graphic.extendShape({
+  shape: { lines: null, view: null, closed: false },
+  buildPath(context, { lines, view, closed }) {
+    if (!lines) return;
+    const { points, starts, boxes } = lines;
+    const { x, y, width, height, scale, left, bottom } = view;
+    const right = left + width / scale;
+    const top = bottom + height / scale;
+    for (let line = 0; line < boxes.length; line++) {
+      const box = boxes[line];
+      if (box[0] > right || box[2] < left || box[1] > top || box[3] < bottom) continue;
+      for (let at = starts[line]; at < starts[line + 1]; at += 2) {
+        const to_x = x + (points[at] - left) * scale;
+        const to_y = y + height - (points[at + 1] - bottom) * scale;
+        if (at === starts[line]) context.moveTo(to_x, to_y);
+        else context.lineTo(to_x, to_y);
+      }
+      if (closed) context.closePath();
+    }
+  },
+});
+echarts.graphic.registerShape("roads", Roads);
+
+/** Where on the screen the chart is, its pixels per metre, and which place is at its lower left. */
+function viewOf(params, api) {
+  const { x, y, width, height } = params.coordSys;
+  const origin = api.coord([0, 0]);
+  const scale = api.coord([1, 0])[0] - origin[0];
+  return { x, y, width, height, scale, left: (x - origin[0]) / scale, bottom: (origin[1] - y - height) / scale };
+}
+
+/** A series that draws the net behind all else. */
+function roadsSeries() {
+  return {
+    id: "roads", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 0, clip: true,
+    tooltip: { show: false },
+    renderItem(params, api) {
+      const view = viewOf(params, api);
+      const { scale } = view;
+      const children = [{ type: "roads", shape: { lines: net.junctions, view, closed: true },
+        style: { fill: colours.junction, stroke: null } }];
+      for (const { look, width: lane, lines } of net.lanes) {
+        if (look === "within" && scale < CLOSE) continue;
+        // A little narrower than they are, so that lanes side by side are told apart.
+        const wide = look === "within" ? 1 : Math.max((lane - 0.25) * scale, THINNEST);
+        children.push({ type: "roads", shape: { lines, view, closed: false },
+          style: { fill: null, stroke: colours[look], lineWidth: wide, lineCap: "butt", lineJoin: "round" } });
+      }
+      return { type: "group", children };
+    },
+  };
+}
+
+/** The box around the net and all conflicts, in m. */
+const extent = (() => {
+  const box = [Infinity, Infinity, -Infinity, -Infinity];
+  const hold = (left, bottom, right, top) => {
+    box[0] = Math.min(box[0], left);
+    box[1] = Math.min(box[1], bottom);
+    box[2] = Math.max(box[2], right);
+    box[3] = Math.max(box[3], top);
+  };
+  if (net) for (const { lines } of net.lanes) lines.boxes.forEach((of_line) => hold(...of_line));
+  for (let row = 0; row < count; row++) hold(column.x[row], column.y[row], column.x[row], column.y[row]);
+  return box[0] <= box[2] ? box : [0, 0, 100, 100];
+})();
+
+/** Two axes that show a box as large as it fits, metres being equally long on both. */
+function equalAxes(box, width, height, margin) {
+  const metres = Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height, 0.02) * margin;
+  const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
+  const one = (centre, pixels) => ({ type: "value", show: false, min: centre - (metres * pixels) / 2, max: centre + (metres * pixels) / 2 });
+  return { xAxis: one(x, width), yAxis: one(y, height), metresPerPixel: metres };
+}
+
+/** A bar of a round length, with its length beside it; on a layer of its own, so that nothing else is drawn anew. */
+function scaleBar(metresPerPixel, height) {
+  const wanted = metresPerPixel * 110;
+  const power = 10 ** Math.floor(Math.log10(wanted));
+  const length = [5, 2, 1].find((digit) => digit * power <= wanted) * power;
+  const text = length >= 1000 ? `${number(length / 1000)} km` : `${number(length, length < 1 ? 1 : 0)} m`;
+  const pixels = length / metresPerPixel;
+  const line = { points: [[10, height - 18], [10, height - 12], [10 + pixels, height - 12], [10 + pixels, height - 18]] };
+  return [
+    { id: "bar", type: "polyline", silent: true, zlevel: 1, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
+    { id: "length", type: "text", silent: true, zlevel: 1, x: 16 + pixels, y: height - 22,
+      style: { text, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `12px ${FONT}` } },
+  ];
+}
+

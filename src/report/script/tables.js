@@ -1,0 +1,196 @@
+// The places with most conflicts, the worst conflicts drawn, and how the runs were made.
+
+const MOST_SPOTS = 15;
+const FIRST_WORST = 6;
+const MOST_WORST = 60;
+
+/** Counts by edge or junction. */
+function showSpots(rows) {
+  const spots = new Map();
+  for (const row of rows) {
+    const place = spotOf(row);
+    if (!spots.has(place)) spots.set(place, { place, all: 0, counts: SEVERITIES.map(() => 0), box: [Infinity, Infinity, -Infinity, -Infinity] });
+    const spot = spots.get(place);
+    const [x, y] = [column.x[row], column.y[row]];
+    spot.all++;
+    spot.counts[column.severity[row]]++;
+    spot.box = [Math.min(spot.box[0], x), Math.min(spot.box[1], y), Math.max(spot.box[2], x), Math.max(spot.box[3], y)];
+  }
+  const most = [...spots.values()].sort((a, b) => b.all - a.all || a.place - b.place).slice(0, MOST_SPOTS);
+  const head = make("tr");
+  for (const [text, is_number] of [["Place", false], ["All", true], ...SEVERITIES.map((name) => [name, true]), ["", false]]) {
+    head.append(make("th", { textContent: text, className: is_number ? "number" : "", scope: "col" }));
+  }
+  const lines = most.map((spot) => {
+    const go = make("button", { type: "button", textContent: conflicts.spots[spot.place] || "no lane" });
+    const [left, bottom, right, top] = spot.box;
+    go.onclick = () => map.go((left + right) / 2, (bottom + top) / 2, Math.max(right - left, top - bottom, 60) * 1.3);
+    const share = make("td", { className: "share" });
+    share.setAttribute("aria-hidden", "true");
+    [...spot.counts.entries()].reverse().forEach(([severity, many]) => {
+      if (!many) return;
+      const bar = make("span");
+      bar.style.width = `${(100 * many) / most[0].all}%`;
+      bar.style.background = severityColour(severity);
+      share.append(bar);
+    });
+    return make("tr", {}, make("td", {}, go), make("td", { className: "number", textContent: number(spot.all) }),
+      ...spot.counts.map((many) => make("td", { className: "number", textContent: number(many) })), share);
+  });
+  if (!lines.length) lines.push(make("tr", {}, make("td", { textContent: "none", colSpan: 6 })));
+  byId("spots").replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
+}
+
+const worst = {
+  rows: [],
+  many: FIRST_WORST,
+  charts: [],
+
+  show(rows) {
+    this.rows = worstRows(rows, MOST_WORST);
+    this.draw();
+  },
+
+  more() {
+    this.many += FIRST_WORST;
+    this.draw();
+  },
+
+  draw() {
+    for (const chart of this.charts) chart.dispose();
+    this.charts = [];
+    const shown = this.rows.slice(0, this.many);
+    byId("worst").replaceChildren(...shown.map((row) => this.card(row)));
+    byId("more").hidden = this.many >= this.rows.length;
+    for (const row of shown) {
+      if (drawn.has(row)) this.charts.push(drawScene(byId(`scene-${row}`), row));
+    }
+  },
+
+  card(row) {
+    const severity = column.severity[row];
+    const run = data.runs.length > 1 ? `, run ${column.run[row] + 1}` : "";
+    const heading = make("h3", {}, sign(column.kind[row], severityColour(severity)),
+      `${SEVERITIES[severity]}, ${KINDS[column.kind[row]]}, no. ${column.id[row]}${run}`);
+    const picture = drawn.has(row) ? [make("div", { className: "chart", id: `scene-${row}` })] : [];
+    picture.forEach((element) => {
+      element.setAttribute("role", "img");
+      element.setAttribute("aria-label", "Both road users at the worst step");
+    });
+    const go = make("button", { type: "button", textContent: "Show on the map" });
+    go.onclick = () => map.go(column.x[row], column.y[row], 80);
+    return make("li", {}, ...picture, make("div", { className: "text" }, heading, make("p", { textContent: describe(row) })));
+  },
+};
+
+/** One of the two as it is drawn: rectangle, path. */
+function figure([x, y, heading, length, width, ...path]) {
+  const [along_x, along_y] = [Math.cos(heading), Math.sin(heading)];
+  const corner = (along, across) => [x + along * along_x - across * along_y, y + along * along_y + across * along_x];
+  const [half, size] = [width / 2, length || 1];
+  // An obstacle has no size in the log: a small square marks its corner.
+  const corners = length ? [corner(0, half), corner(-size, half), corner(-size, -half), corner(0, -half)]
+    : [corner(0.5, 0.5), corner(-0.5, 0.5), corner(-0.5, -0.5), corner(0.5, -0.5)];
+  const line = [[x, y]];
+  for (let at = 0; at + 1 < path.length; at += 2) line.push([path[at], path[at + 1]]);
+  return { corners, line, width: width || 1, nose: length ? [corner(0, 0), corner(-Math.min(1.2, length / 3), half * 0.7), corner(-Math.min(1.2, length / 3), -half * 0.7)] : [] };
+}
+
+/** Longer ids are cut in a drawing; the text below has them whole. */
+const LONGEST_LABEL = 24;
+
+/** The ids beside the rectangles: the upper one's above it, the lower one's below. */
+function labels(figures, width) {
+  const ends = figures.map(({ corners }) => [Math.min(...corners.map((at) => at[1])), Math.max(...corners.map((at) => at[1]))]);
+  const upper = ends[0][0] + ends[0][1] <= ends[1][0] + ends[1][1] ? 0 : 1;
+  return figures.map(({ corners, id, colour }, place) => {
+    const text = id.length > LONGEST_LABEL ? `${id.slice(0, LONGEST_LABEL - 1)}…` : id;
+    const centre = corners.reduce((sum, at) => sum + at[0] / corners.length, 0);
+    const above = place === upper;
+    return { type: "text", x: Math.min(Math.max(centre, 40), width - 40), y: above ? ends[place][0] - 4 : ends[place][1] + 4,
+      style: { text, fill: colour, stroke: colours.ground, lineWidth: 3, font: `600 12px ${FONT}`, align: "center",
+        verticalAlign: above ? "bottom" : "top" } };
+  });
+}
+
+/** Draws both road users at the worst step. */
+function drawScene(element, row) {
+  const [, ego, foe] = drawn.get(row);
+  const figures = [{ ...figure(foe), colour: colours.foe, id: foeId(row) }, { ...figure(ego), colour: colours.ego, id: egoId(row) }];
+  // A pedestrian lies on top of a lorry.
+  if (foe[3] * foe[4] < ego[3] * ego[4]) figures.reverse();
+  const meeting = [column.x[row], column.y[row]];
+  const points = [...figures.flatMap(({ corners }) => corners), meeting];
+  const box = [0, 1].map((axis) => Math.min(...points.map((point) => point[axis])))
+    .concat([0, 1].map((axis) => Math.max(...points.map((point) => point[axis]))));
+  const chart = echarts.init(element, null, { renderer: "canvas" });
+  const axes = equalAxes([box[0] - 4, box[1] - 4, box[2] + 4, box[3] + 4], chart.getWidth(), chart.getHeight(), 1.1);
+  const render = (params, api) => {
+    const pixels = 1 / axes.metresPerPixel;
+    const on = (list) => list.map((point) => api.coord(point));
+    const children = [];
+    for (const { line, width, colour } of figures) {
+      if (line.length < 2) continue;
+      children.push({ type: "polyline", shape: { points: on(line) },
+        style: { fill: null, stroke: colour, opacity: 0.2, lineWidth: width * pixels, lineJoin: "round" } });
+      children.push({ type: "polyline", shape: { points: on(line) },
+        style: { fill: null, stroke: colour, lineWidth: 1.5, lineDash: [5, 4] } });
+    }
+    for (const { corners, nose, colour } of figures) {
+      children.push({ type: "polygon", shape: { points: on(corners) }, style: { fill: colour, opacity: 0.8, stroke: colours.ink, lineWidth: 1 } });
+      if (nose.length) children.push({ type: "polygon", shape: { points: on(nose) }, style: { fill: colours.card, opacity: 0.85 } });
+    }
+    children.push(...labels(figures.map(({ corners, id, colour }) => ({ corners: on(corners), id, colour })), chart.getWidth()));
+    const [x, y] = api.coord(meeting);
+    children.push({ type: "circle", shape: { cx: x, cy: y, r: 6 }, style: { fill: null, stroke: colours.meeting, lineWidth: 2.5 } });
+    return { type: "group", children };
+  };
+  chart.setOption({
+    ...basics(), tooltip: { show: false },
+    grid: { left: 0, right: 0, top: 0, bottom: 0 }, xAxis: axes.xAxis, yAxis: axes.yAxis,
+    series: [...(net ? [roadsSeries()] : []),
+      { id: "scene", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], z: 5, silent: true, clip: true, renderItem: render }],
+    graphic: { elements: scaleBar(axes.metresPerPixel, chart.getHeight()) },
+  });
+  return chart;
+}
+
+/** A word of a command line as a shell needs it. */
+const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replace(/'/g, "'\\''")}'`);
+
+const MOST_RUNS = 50;
+
+function showRuns() {
+  const facts = (entries) => make("dl", { className: "facts" }, ...entries.filter(([, value]) => value !== undefined && value !== null)
+    .flatMap(([name, value]) => [make("dt", { textContent: name }), make("dd", {}, value)]));
+  const code = (text) => make("code", { textContent: text });
+  const closed = (title, ...children) => make("details", {}, make("summary", { textContent: title }), ...children);
+  const setting = (value) => (typeof value === "object" ? JSON.stringify(value) : String(value));
+  data.runs.slice(0, MOST_RUNS).forEach((run, place) => {
+    const title = data.runs.length > 1 ? `Run ${place + 1}: ${run.folder}` : run.folder;
+    if (!run.versions) {
+      byId("runs").append(closed(title, make("p", { textContent: "There is no run.json in this log." })));
+      return;
+    }
+    const { begin, end, steps, exposure, left_out } = run.summary;
+    const changed = Object.entries(run.options).filter(([name, value]) => setting(value) !== setting(data.defaults[name]));
+    const details = closed(title,
+      facts([
+        ["scenario", run.scenario],
+        ["versions", `closecall ${run.versions.closecall}${run.versions.sumo ? `, ${run.versions.sumo}` : ", a recording"}`],
+        ["command", run.sumo_words.length ? code(["sumo", ...run.sumo_words].map(quoted).join(" ")) : null],
+        ["seed", run.seed],
+        ["time", `${number(begin, 1)} to ${number(end, 1)} s, ${number(steps)} steps${run.step_length ? ` of ${run.step_length} s` : ""}`],
+        ["traffic", `${number(exposure.vehicles)} vehicles, ${number(exposure.persons)} persons, ${number(exposure.vehicle_kilometres, 1)} vehicle-km`],
+        ["end", run.complete ? "complete" : `incomplete${run.error ? `: ${run.error}` : ""}`],
+        ["options", changed.length ? changed.map(([name, value]) => `${name} ${setting(value)}`).join(", ") : "all as by default"],
+      ]),
+      closed("All options", facts(Object.entries(run.options).map(([name, value]) => [name, setting(value)]))),
+      closed(`Input files (${run.inputs.length})`, facts(run.inputs.map(({ path, sha256 }) => [path, code(`SHA-256 ${sha256}`)]))),
+      closed("What the scene did not need", facts(left_out.map(({ what, why, times }) =>
+        [what, times === null ? why : `${why} (${number(times)} times)`]))));
+    details.open = data.runs.length === 1;
+    byId("runs").append(details);
+  });
+  if (data.runs.length > MOST_RUNS) byId("runs").append(make("p", { textContent: `and ${data.runs.length - MOST_RUNS} more runs` }));
+}
