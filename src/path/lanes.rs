@@ -320,12 +320,20 @@ fn offset(net: &Net, start: &Start, placement: &Placement, foot: &Foot, against:
     let inside = (width - start.width).max(0.0) / 2.0;
     let target = if now * speed < 0.0 {
         0.0
-    } else if start.sublane && now.abs() < inside {
-        inside.copysign(speed)
+    } else if start.sublane && (now.abs() < inside || !leads_to_a_lane(net, placement.lane, placement.lateral_speed)) {
+        // At the border already, beyond which there is no lane to change to, it is not going any further.
+        inside.max(now.abs()).copysign(speed)
     } else {
         width.copysign(speed)
     };
     Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed }
+}
+
+/// Whether the edge has another lane to that side.
+fn leads_to_a_lane(net: &Net, lane: LaneIndex, to_the_left: MetrePerSecond) -> bool {
+    let lane = &net.lanes[lane.0 as usize];
+    let last = net.edges[lane.edge.0 as usize].lanes.len() as u32;
+    if to_the_left > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
 /// The centre line behind the front bumper, from there backwards, as far as the rear bumper and a little more.
