@@ -73,14 +73,18 @@ fn main() {
             let mut roster = Roster::default();
             let profile = roster.profile(Profile::vehicle(&sumo, &options)).unwrap();
             let mut frame = Frame::default();
-            for (number, state) in draw(&mut Chance::new(1), count).into_iter().enumerate() {
-                let user = roster.enter(&number.to_string(), profile);
-                frame.push(user, state);
-            }
+            let mut cars = draw(&mut Chance::new(1), count);
+            let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
             let mut detector = Detector::new(&options, None);
             let (mut first, mut second, mut found) = (Vec::new(), Vec::new(), 0);
-            let rounds = (3_000_000 / count).clamp(3, 100);
+            let rounds = (3_000_000 / count).clamp(5, 100);
             for _ in 0..rounds {
+                frame.begin(frame.time + 0.1);
+                for (car, user) in cars.iter_mut().zip(&users) {
+                    car.x += car.speed * 0.1 * car.heading.cos();
+                    car.y += car.speed * 0.1 * car.heading.sin();
+                    frame.push(*user, *car);
+                }
                 let started = Instant::now();
                 black_box(detector.approach(&frame, &roster));
                 let between = Instant::now();
