@@ -1,11 +1,10 @@
 //! fcd-output in CSV: one row per road user and step, the time in each; vehicles and persons have columns of their own.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::names::Users;
 use super::number::number;
-use super::recording::{Attribute, Fields, Step, cut_short, in_order};
+use super::recording::{Attribute, Extent, Fields, Step, cut_short, in_order};
 use super::source::{Source, find};
 use crate::units::Second;
 use crate::{Error, Result};
@@ -14,6 +13,7 @@ use crate::{Error, Result};
 pub(super) struct CsvRecording {
     path: PathBuf,
     source: Source,
+    extent: Extent,
     separator: u8,
     time: usize,
     /// What each column says, up to the last that says something.
@@ -30,7 +30,7 @@ struct Column {
 }
 
 impl CsvRecording {
-    pub fn new(path: &Path, mut source: Source) -> Result<Self> {
+    pub fn new(path: &Path, mut source: Source, extent: Extent) -> Result<Self> {
         source.look_out_for(b'"');
         let unusable = |error| Error::file(path, error);
         let header = loop {
@@ -54,10 +54,10 @@ impl CsvRecording {
                 return Err(Error::content(path, format!("there is no column vehicle_{needed}")));
             }
         }
-        let mut columns = names.iter().map(|name| column(name)).collect::<Vec<_>>();
+        let mut columns = names.iter().map(|name| column(name, extent)).collect::<Vec<_>>();
         columns.truncate(columns.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
         source.consume(header);
-        Ok(Self { path: path.to_owned(), source, separator, time, columns, time_text: Vec::new(), last: None })
+        Ok(Self { path: path.to_owned(), source, extent, separator, time, columns, time_text: Vec::new(), last: None })
     }
 
     pub fn next_step(&mut self, step: &mut Step, users: &mut Users) -> Result<bool> {
@@ -100,12 +100,12 @@ impl CsvRecording {
                 self.time_text.extend_from_slice(time_text);
             }
             let fields = match &quoted {
-                Some(values) => fields(values.iter(), &self.columns),
-                None => fields(Values { rest: Some(line), separator: self.separator }, &self.columns),
+                Some(values) => fields(values.iter(), &self.columns, self.extent),
+                None => fields(Values { rest: Some(line), separator: self.separator }, &self.columns, self.extent),
             };
             let fields = fields.map_err(wrong)?;
             // A step without anybody in it has a row of nobody.
-            if !fields.id.is_empty() {
+            if !fields.is_of_nobody() {
                 step.add(&fields, users, "value in column").map_err(wrong)?;
             }
             self.source.consume(length);
@@ -118,13 +118,13 @@ impl CsvRecording {
     }
 }
 
-fn column(name: &str) -> Option<Column> {
+fn column(name: &str, extent: Extent) -> Option<Column> {
     let (person, attribute) = match name.split_once('_') {
         Some(("vehicle", attribute)) => (false, attribute),
         Some(("person", attribute)) => (true, attribute),
         _ => return None,
     };
-    let attribute = Attribute::named(attribute.as_bytes());
+    let attribute = extent.attribute(attribute.as_bytes());
     // A person's column says that it is a person, if nothing else.
     (person || attribute.is_some()).then_some(Column { attribute, person })
 }
@@ -134,14 +134,15 @@ fn column(name: &str) -> Option<Column> {
 fn fields<'a>(
     values: impl Iterator<Item = &'a [u8]>,
     columns: &[Option<Column>],
+    extent: Extent,
 ) -> std::result::Result<Fields<'a>, String> {
-    let mut fields = Fields::EMPTY;
+    let mut fields = extent.fields();
     for (column, value) in columns.iter().zip(values) {
         let Some(column) = column else { continue };
         if !value.is_empty() {
             fields.person |= column.person;
             if let Some(attribute) = column.attribute {
-                fields.set(attribute, Cow::Borrowed(value))?;
+                fields.set(attribute, value)?;
             }
         }
     }

@@ -1,6 +1,5 @@
 //! SUMO's fcd-output, step by step: XML or CSV, plain or gzipped, in memory that does not grow with the file.
 
-use std::borrow::Cow;
 use std::io::BufRead;
 use std::path::Path;
 
@@ -73,126 +72,106 @@ impl Step {
     /// Adds a row; `place` is what its format calls a place for a value.
     #[inline]
     pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, place: &str) -> std::result::Result<(), String> {
-        if let Some(missing) = fields.missing() {
-            return Err(format!("\"{}\" has no {place} {missing}", String::from_utf8_lossy(&fields.id)));
+        let [id, type_name, lane] = fields.texts;
+        let [x, y, angle, speed, z, position, lateral_speed] = fields.numbers;
+        if id.is_empty() || (x + y + angle + speed).is_nan() {
+            fields.check(place)?;
         }
-        let known = users.know(&fields.id, fields.person, &fields.type_name, &fields.lane)?;
-        let Fields { person, x, y, z, angle, speed, position, lateral_speed, .. } = *fields;
+        let known = users.know(id, fields.person, type_name, lane)?;
         let (user, type_name, lane) = (known.user, known.type_name, known.lane);
+        let person = fields.person;
         self.rows.push(Row { user, person, type_name, lane, x, y, z, angle, speed, position, lateral_speed });
         Ok(())
     }
 }
 
-/// The attributes or columns that matter.
+/// An attribute or column that matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Attribute {
-    Id,
-    Type,
-    Lane,
-    X,
-    Y,
-    Z,
-    Angle,
-    Speed,
-    Position,
-    LateralSpeed,
+    /// Of [`TEXTS`].
+    Text(u8),
+    /// Of [`NUMBERS`].
+    Number(u8),
+}
+
+const TEXTS: [&str; 3] = ["id", "type", "lane"];
+/// The first four have to be given.
+const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
+
+/// What is read of every row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Extent {
+    All,
+    /// Who is where on the net, without numbers: these are 0.
+    Lanes,
+}
+
+impl Extent {
+    pub fn attribute(self, name: &[u8]) -> Option<Attribute> {
+        let place = |names: &[&str]| names.iter().position(|known| known.as_bytes() == name).map(|place| place as u8);
+        let number = || place(&NUMBERS).filter(|_| self == Self::All).map(Attribute::Number);
+        place(&TEXTS).map(Attribute::Text).or_else(number)
+    }
+
+    #[inline]
+    pub fn fields<'a>(self) -> Fields<'a> {
+        let given = if self == Self::All { f64::NAN } else { 0.0 };
+        Fields { person: false, texts: [b""; 3], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
+    }
 }
 
 impl Attribute {
-    pub const ALL: [(Self, &str); 10] = [
-        (Self::Id, "id"),
-        (Self::X, "x"),
-        (Self::Y, "y"),
-        (Self::Z, "z"),
-        (Self::Angle, "angle"),
-        (Self::Type, "type"),
-        (Self::Speed, "speed"),
-        (Self::Position, "pos"),
-        (Self::Lane, "lane"),
-        (Self::LateralSpeed, "speedLat"),
-    ];
-
-    pub fn named(name: &[u8]) -> Option<Self> {
-        Self::ALL.iter().find(|(_, known)| known.as_bytes() == name).map(|(attribute, _)| *attribute)
+    /// Another bit for each.
+    #[inline]
+    pub fn bit(self) -> u32 {
+        match self {
+            Self::Text(text) => 1 << text,
+            Self::Number(number) => 1 << 8 << number,
+        }
     }
 }
 
 /// A row as its text is read.
 #[derive(Debug)]
 pub(super) struct Fields<'a> {
-    pub id: Cow<'a, [u8]>,
     pub person: bool,
-    type_name: Cow<'a, [u8]>,
-    lane: Cow<'a, [u8]>,
-    x: Metre,
-    y: Metre,
-    z: Metre,
-    angle: f64,
-    speed: MetrePerSecond,
-    position: Metre,
-    lateral_speed: MetrePerSecond,
+    texts: [&'a [u8]; 3],
+    numbers: [f64; 7],
 }
 
 impl<'a> Fields<'a> {
-    pub const EMPTY: Self = Self {
-        id: Cow::Borrowed(b""),
-        person: false,
-        type_name: Cow::Borrowed(b""),
-        lane: Cow::Borrowed(b""),
-        x: f64::NAN,
-        y: f64::NAN,
-        z: 0.0,
-        angle: f64::NAN,
-        speed: f64::NAN,
-        position: 0.0,
-        lateral_speed: 0.0,
-    };
-
     #[inline]
-    pub fn set(&mut self, attribute: Attribute, value: Cow<'a, [u8]>) -> std::result::Result<(), String> {
-        let place = match attribute {
-            Attribute::Id => return set(&mut self.id, value),
-            Attribute::Type => return set(&mut self.type_name, value),
-            Attribute::Lane => return set(&mut self.lane, value),
-            Attribute::X => &mut self.x,
-            Attribute::Y => &mut self.y,
-            Attribute::Z => &mut self.z,
-            Attribute::Angle => &mut self.angle,
-            Attribute::Speed => &mut self.speed,
-            Attribute::Position => &mut self.position,
-            Attribute::LateralSpeed => &mut self.lateral_speed,
-        };
-        match number(&value) {
-            Some(number) => *place = number,
-            None => return Err(no_number(attribute, &value)),
+    pub fn set(&mut self, attribute: Attribute, value: &'a [u8]) -> std::result::Result<(), String> {
+        match attribute {
+            Attribute::Text(text) => self.texts[usize::from(text)] = value,
+            Attribute::Number(place) => match number(value) {
+                Some(number) => self.numbers[usize::from(place)] = number,
+                None => return Err(no_number(NUMBERS[usize::from(place)], value)),
+            },
         }
         Ok(())
     }
 
-    /// What is missing in it, if anything is.
-    #[inline]
-    fn missing(&self) -> Option<&'static str> {
-        let given = [
-            ("id", !self.id.is_empty()),
-            ("x", !self.x.is_nan()),
-            ("y", !self.y.is_nan()),
-            ("angle", !self.angle.is_nan()),
-            ("speed", !self.speed.is_nan()),
-        ];
-        given.into_iter().find(|(_, given)| !given).map(|(name, _)| name)
+    pub fn is_of_nobody(&self) -> bool {
+        self.texts[0].is_empty()
+    }
+
+    /// Whether all is given that has to be.
+    #[cold]
+    fn check(&self, place: &str) -> std::result::Result<(), String> {
+        let missing = NUMBERS.iter().zip(&self.numbers).take(4).find(|(_, number)| number.is_nan());
+        match missing.map(|(name, _)| *name).filter(|_| !self.is_of_nobody()) {
+            None if !self.is_of_nobody() => Ok(()),
+            missing => {
+                let id = String::from_utf8_lossy(self.texts[0]);
+                Err(format!("\"{id}\" has no {place} {}", missing.unwrap_or(TEXTS[0])))
+            }
+        }
     }
 }
 
-#[inline]
-fn set<'a>(place: &mut Cow<'a, [u8]>, value: Cow<'a, [u8]>) -> std::result::Result<(), String> {
-    *place = value;
-    Ok(())
-}
-
 #[cold]
-fn no_number(attribute: Attribute, value: &[u8]) -> String {
-    let name = Attribute::ALL.iter().find(|(known, _)| *known == attribute).map_or("", |(_, name)| name);
+fn no_number(name: &str, value: &[u8]) -> String {
     format!("{name} is \"{}\", not a number", String::from_utf8_lossy(value))
 }
 
@@ -213,7 +192,12 @@ impl Recording {
     /// # Errors
     /// An error that names the file: unreadable, empty, no fcd-output, a column that is missing.
     pub fn open(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::net::open(path)?)
+        Self::from_source(path, crate::net::open(path)?, Extent::All)
+    }
+
+    /// Opens a recording for its lanes only: all numbers in its rows are 0, and not looked at.
+    pub(super) fn open_for_lanes(path: &Path) -> Result<Self> {
+        Self::from_source(path, crate::net::open(path)?, Extent::Lanes)
     }
 
     /// The recording in a text; `path` is what errors call it.
@@ -221,10 +205,10 @@ impl Recording {
     /// # Errors
     /// As [`Recording::open`] has them.
     pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
-        Self::from_source(path, Box::new(std::io::Cursor::new(text.into())))
+        Self::from_source(path, Box::new(std::io::Cursor::new(text.into())), Extent::All)
     }
 
-    fn from_source(path: &Path, reader: Box<dyn BufRead>) -> Result<Self> {
+    fn from_source(path: &Path, reader: Box<dyn BufRead>, extent: Extent) -> Result<Self> {
         const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
         let mut source = Source::new(reader);
         let first = loop {
@@ -243,8 +227,8 @@ impl Recording {
         }
         let format = match first {
             None => return Err(Error::content(path, "the file is empty")),
-            Some(b'<') => Format::Xml(Box::new(XmlRecording::new(path, source)?)),
-            Some(_) => Format::Csv(Box::new(CsvRecording::new(path, source)?)),
+            Some(b'<') => Format::Xml(Box::new(XmlRecording::new(path, source, extent)?)),
+            Some(_) => Format::Csv(Box::new(CsvRecording::new(path, source, extent)?)),
         };
         Ok(Self { format, users: Users::default() })
     }

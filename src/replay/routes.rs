@@ -39,7 +39,7 @@ impl Routes {
     /// # Errors
     /// As [`Recording`] has them; [`Error::File`] where the temporary file cannot be written.
     pub fn read(path: &Path, net: &Net) -> Result<Self> {
-        let mut recording = Recording::open(path)?;
+        let mut recording = Recording::open_for_lanes(path)?;
         let mut step = Step::default();
         let (mut lanes, mut vehicles) = (Lanes::default(), Vehicles::default());
         let mut writer = Writer::default();

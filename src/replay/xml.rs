@@ -3,12 +3,11 @@
 //! SUMO writes the same attributes in the same order in almost every row, so each is first compared with the one that
 //! stood at its place in the row before. What does not fit is read as XML may be written.
 
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::names::Users;
 use super::number::number;
-use super::recording::{Attribute, Fields, Step, cut_short, in_order};
+use super::recording::{Attribute, Extent, Step, cut_short, in_order};
 use super::source::{Source, find};
 use crate::units::Second;
 use crate::{Error, Result};
@@ -18,8 +17,16 @@ pub(super) struct XmlRecording {
     path: PathBuf,
     source: Source,
     /// The attributes of the last vehicle, and of the last person.
-    expected: [Vec<Expected>; 2],
+    shapes: [Shape; 2],
     last: Option<Second>,
+}
+
+/// The attributes of a row, as they stood one after the other.
+#[derive(Debug)]
+struct Shape {
+    person: bool,
+    extent: Extent,
+    expected: Vec<Expected>,
 }
 
 /// An attribute as it stood at its place in the row before.
@@ -27,6 +34,9 @@ pub(super) struct XmlRecording {
 struct Expected {
     /// From the blank before its name to its quotation mark: ` id="`.
     start: Box<[u8]>,
+    /// Its first eight bytes, as far as it has so many, and which these are.
+    first: u64,
+    mask: u64,
     attribute: Option<Attribute>,
 }
 
@@ -39,7 +49,7 @@ enum Found<'a> {
 }
 
 impl XmlRecording {
-    pub fn new(path: &Path, mut source: Source) -> Result<Self> {
+    pub fn new(path: &Path, mut source: Source, extent: Extent) -> Result<Self> {
         source.look_out_for(b'&');
         loop {
             let next = next(&mut source).map_err(|error| Error::content(path, error))?;
@@ -49,7 +59,8 @@ impl XmlRecording {
             match found(&source.rest()[1..end]) {
                 Found::Start(b"fcd-export", _) => {
                     source.consume(end + 1);
-                    return Ok(Self { path: path.to_owned(), source, expected: [Vec::new(), Vec::new()], last: None });
+                    let shapes = [false, true].map(|person| Shape { person, extent, expected: Vec::new() });
+                    return Ok(Self { path: path.to_owned(), source, shapes, last: None });
                 }
                 Found::Start(..) | Found::End(_) => {
                     return Err(Error::content(path, "it is no fcd-output: its root element is not <fcd-export>"));
@@ -68,13 +79,13 @@ impl XmlRecording {
             let wrong = |message| Error::line(&self.path, self.source.line(), message);
             let mut ended = false;
             match found(&self.source.rest()[1..end]) {
-                Found::Start(b"vehicle", attributes) if inside => {
-                    add(attributes, false, &mut self.expected[0], step, users, self.source.is_marked())
-                        .map_err(wrong)?;
-                }
-                Found::Start(b"person", attributes) if inside => {
-                    add(attributes, true, &mut self.expected[1], step, users, self.source.is_marked())
-                        .map_err(wrong)?;
+                Found::Start(kind @ (b"vehicle" | b"person"), attributes) if inside => {
+                    let shape = &mut self.shapes[usize::from(kind == b"person")];
+                    if self.source.is_marked() && attributes.contains(&b'&') {
+                        shape.add_unescaped(attributes, step, users).map_err(wrong)?;
+                    } else {
+                        shape.add(attributes, step, users).map_err(wrong)?;
+                    }
                 }
                 Found::Start(b"timestep", attributes) => {
                     let time = time(attributes).map_err(wrong)?;
@@ -182,64 +193,91 @@ fn time(attributes: &[u8]) -> std::result::Result<Second, String> {
     Err("a timestep without time".to_owned())
 }
 
-fn add(
-    attributes: &[u8],
-    person: bool,
-    expected: &mut Vec<Expected>,
-    step: &mut Step,
-    users: &mut Users,
-    has_escapes: bool,
-) -> std::result::Result<(), String> {
-    let mut fields = Fields::EMPTY;
-    fields.person = person;
-    let (mut rest, mut given) = (attributes, 0_u32);
-    for place in 0.. {
-        let known = expected.get(place).and_then(|known| {
-            let after = rest.strip_prefix(&*known.start)?;
-            let end = find(after, b'"')?;
-            Some((known.attribute, &after[..end], &after[end + 1..]))
-        });
-        let (attribute, value) = match known {
-            Some((attribute, value, further)) => {
-                rest = further;
-                (attribute, value)
-            }
-            None => {
-                let Some((start, name, value, further)) = attribute(rest)? else { break };
-                let attribute = Attribute::named(name);
-                expect(expected, place, start, attribute);
-                rest = further;
-                (attribute, value)
-            }
-        };
-        let Some(attribute) = attribute else { continue };
-        let bit = 1 << attribute as u32;
-        if given & bit != 0 {
-            return Err("an attribute is given twice".to_owned());
+impl Shape {
+    fn add(&mut self, attributes: &[u8], step: &mut Step, users: &mut Users) -> std::result::Result<(), String> {
+        let mut fields = self.extent.fields();
+        fields.person = self.person;
+        let (mut rest, mut given) = (attributes, 0);
+        for place in 0.. {
+            let known = self.expected.get(place).and_then(|known| known.split(rest));
+            let (attribute, value) = match known {
+                Some((attribute, value, further)) => {
+                    rest = further;
+                    (attribute, value)
+                }
+                None => {
+                    let Some((start, name, value, further)) = attribute(rest)? else { break };
+                    let attribute = self.extent.attribute(name);
+                    self.expect(place, start, attribute);
+                    rest = further;
+                    (attribute, value)
+                }
+            };
+            let Some(attribute) = attribute else { continue };
+            once(attribute, &mut given)?;
+            fields.set(attribute, value)?;
         }
-        given |= bit;
-        if has_escapes && value.contains(&b'&') {
-            fields.set(attribute, unescaped(value)?)?;
-        } else {
-            fields.set(attribute, Cow::Borrowed(value))?;
+        step.add(&fields, users, "attribute")
+    }
+
+    #[cold]
+    fn expect(&mut self, place: usize, start: &[u8], attribute: Option<Attribute>) {
+        // What ends with another mark is not sought by ".
+        if start.ends_with(b"\"") && place <= self.expected.len() {
+            self.expected.truncate(place);
+            let mut bytes = [[0; 8]; 2];
+            for (place, byte) in start.iter().take(8).enumerate() {
+                (bytes[0][place], bytes[1][place]) = (*byte, 0xff);
+            }
+            let [first, mask] = bytes.map(u64::from_le_bytes);
+            self.expected.push(Expected { start: start.into(), first, mask, attribute });
         }
     }
-    step.add(&fields, users, "attribute")
-}
 
-#[cold]
-fn expect(expected: &mut Vec<Expected>, place: usize, start: &[u8], attribute: Option<Attribute>) {
-    // What ends with another mark is not sought by ".
-    if start.ends_with(b"\"") && place <= expected.len() {
-        expected.truncate(place);
-        expected.push(Expected { start: start.into(), attribute });
+    /// A row in which something is escaped.
+    #[cold]
+    fn add_unescaped(&self, attributes: &[u8], step: &mut Step, users: &mut Users) -> std::result::Result<(), String> {
+        let (mut values, mut rest, mut given) = (Vec::new(), attributes, 0);
+        while let Some((_, name, value, further)) = attribute(rest)? {
+            rest = further;
+            let Some(attribute) = self.extent.attribute(name) else { continue };
+            once(attribute, &mut given)?;
+            let text = std::str::from_utf8(value).map_err(|error| error.to_string())?;
+            values.push((attribute, quick_xml::escape::unescape(text).map_err(|error| error.to_string())?));
+        }
+        let mut fields = self.extent.fields();
+        fields.person = self.person;
+        values.iter().try_for_each(|(attribute, value)| fields.set(*attribute, value.as_bytes()))?;
+        step.add(&fields, users, "attribute")
     }
 }
 
-fn unescaped(value: &[u8]) -> std::result::Result<Cow<'static, [u8]>, String> {
-    let text = std::str::from_utf8(value).map_err(|error| error.to_string())?;
-    let text = quick_xml::escape::unescape(text).map_err(|error| error.to_string())?;
-    Ok(Cow::Owned(text.into_owned().into_bytes()))
+/// What an attribute says, its value, and what follows.
+type Known<'a> = (Option<Attribute>, &'a [u8], &'a [u8]);
+
+impl Expected {
+    /// Splits off this attribute, if it is here.
+    #[inline]
+    fn split<'a>(&self, rest: &'a [u8]) -> Option<Known<'a>> {
+        if u64::from_le_bytes(*rest.first_chunk::<8>()?) & self.mask != self.first {
+            return None;
+        }
+        if self.start.len() > 8 && rest.get(8..self.start.len())? != &self.start[8..] {
+            return None;
+        }
+        let after = &rest[self.start.len()..];
+        let end = find(after, b'"')?;
+        Some((self.attribute, &after[..end], &after[end + 1..]))
+    }
+}
+
+fn once(attribute: Attribute, given: &mut u32) -> std::result::Result<(), String> {
+    let bit = attribute.bit();
+    if *given & bit != 0 {
+        return Err("an attribute is given twice".to_owned());
+    }
+    *given |= bit;
+    Ok(())
 }
 
 /// An attribute: all up to its value, its name, its value, and what follows.
