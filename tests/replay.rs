@@ -6,7 +6,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
+use closecall::net::{EdgeIndex, Net};
 use closecall::replay::recording::{Recording, Step};
+use closecall::replay::routes::Routes;
 use proptest::prelude::*;
 
 /// One row, in full.
@@ -341,4 +343,47 @@ fn a_vehicle_and_a_person_of_the_same_id_are_two() {
     let (mut recording, mut step) = (Recording::parse(Path::new("fcd"), text).unwrap(), Step::default());
     assert!(recording.next_step(&mut step).unwrap());
     assert_ne!(step.rows()[0].user, step.rows()[1].user);
+}
+
+/// A net of roads e0, e1, … and a recording; the routes of its vehicles, in the order of their coming.
+fn routes(vehicles: usize, rows: impl Iterator<Item = (f64, String, usize)>) -> Vec<Vec<u32>> {
+    let edge = |n| format!(r#"<edge id="e{n}"><lane id="e{n}_0" length="9" shape="0,{n} 9,{n}"/></edge>"#);
+    let net = format!("<net>{}</net>", (0..200).map(edge).collect::<String>());
+    let net = Net::parse(Path::new("net"), net).unwrap();
+    let mut text = "timestep_time;vehicle_id;vehicle_x;vehicle_y;vehicle_angle;vehicle_speed;vehicle_lane\n".to_owned();
+    rows.for_each(|(time, id, edge)| writeln!(text, "{time};{id};0;0;0;1;e{edge}_0").unwrap());
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    let mut routes = Routes::read(file.path(), &net).unwrap();
+    let route = |number| routes.of(number).unwrap().iter().map(|EdgeIndex(edge)| *edge).collect();
+    (0..vehicles as u64).map(route).collect()
+}
+
+#[test]
+fn a_vehicle_that_comes_back_drives_on_and_after_long_it_is_another() {
+    // Somebody stays, b is away for 300 s (SUMO put it further on), c for 700 s.
+    let steps = (0..1000).flat_map(|time| {
+        let there = |id: &str| match id {
+            "b" => !(100..400).contains(&time),
+            "c" => !(100..800).contains(&time),
+            _ => true,
+        };
+        let row = move |id: &str| (f64::from(time), id.to_owned(), if time < 500 { 1 } else { 2 });
+        ["a", "b", "c"].into_iter().filter(|id| there(id)).map(row).collect::<Vec<_>>()
+    });
+    assert_eq!(routes(4, steps), [vec![1, 2], vec![1, 2], vec![1], vec![2]]);
+}
+
+#[test]
+fn routes_that_do_not_fit_into_memory_come_back_from_the_file() {
+    const VEHICLES: usize = 2000;
+    // They leave in another order than they come: the route of vehicle n has 150 − n % 50 edges, from edge n % 40 on.
+    let steps = (0..150).flat_map(|step| {
+        let row = move |n: usize| (step as f64, format!("v{n}"), n % 40 + step);
+        (0..VEHICLES).filter(move |n| step < 150 - n % 50).map(row)
+    });
+    for (n, route) in routes(VEHICLES, steps).into_iter().enumerate() {
+        let first = n as u32 % 40;
+        assert_eq!(route, (first..first + 150 - n as u32 % 50).collect::<Vec<_>>(), "v{n}");
+    }
 }

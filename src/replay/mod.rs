@@ -5,7 +5,7 @@
 mod csv;
 mod lanes;
 mod names;
-pub mod number;
+mod number;
 pub mod recording;
 pub mod routes;
 mod source;

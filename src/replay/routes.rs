@@ -201,7 +201,8 @@ impl<T> Vehicles<T> {
         time: Second,
         mut forgotten: impl FnMut(u64, T) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
-        while let Some((since, id)) = self.by_time.pop_front_if(|(since, _)| *since < time - ABSENCE) {
+        while self.by_time.front().is_some_and(|(since, _)| *since < time - ABSENCE) {
+            let Some((since, id)) = self.by_time.pop_front() else { break };
             // Who came back and left again waits from then on.
             if self.absent.get(&id).is_some_and(|absent| absent.since == since)
                 && let Some(absent) = self.absent.remove(&id)
