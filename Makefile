@@ -49,6 +49,7 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 
 bench: $(VENV)/wheel $(VENV)/tests ## what the checker costs, beside plain SUMO and device.ssm
 	$(BIN)/python benches/attached.py
+	cargo bench --bench replay
 
 docs: ## the documentation of the crate, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge

@@ -12,6 +12,6 @@ fuzz_target!(|bytes: &[u8]| {
     let mut step = Step::default();
     while let Ok(true) = recording.next_step(&mut step) {
         assert!(step.time.is_finite());
-        assert!(step.rows().iter().all(|row| !row.id.is_empty()));
+        assert!(step.rows().iter().all(|row| !recording.id(row.user).is_empty()));
     }
 });

@@ -1,151 +1,229 @@
 //! fcd-output in CSV: one row per road user and step, the time in each; vehicles and persons have columns of their own.
 
-use std::io::BufRead;
 use std::path::{Path, PathBuf};
 
-use super::recording::{Row, Step, in_order};
+use super::names::Users;
+use super::number::number;
+use super::recording::{Attribute, Extent, Fields, Step, cut_short, in_order};
+use super::source::{Source, find};
 use crate::units::Second;
 use crate::{Error, Result};
 
 /// A CSV recording that is being read.
-pub struct CsvRecording {
+pub(super) struct CsvRecording {
     path: PathBuf,
-    reader: csv::Reader<Whole>,
-    record: csv::StringRecord,
-    /// The row after `record`, if there is one: only then `record` is known to be whole.
-    next: Option<csv::StringRecord>,
-    /// Whether `record` holds a row that belongs to the next step.
-    ahead: bool,
+    source: Source,
+    extent: Extent,
+    separator: u8,
     time: usize,
-    /// Per column the attribute that it stands for, and whether it is a person's.
-    columns: Vec<Option<(String, bool)>>,
+    /// What each column says, up to the last that says something.
+    columns: Vec<Option<Column>>,
+    /// The time of the step under way, as it is written: most rows have the same.
+    time_text: Vec<u8>,
     last: Option<Second>,
 }
 
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    attribute: Option<Attribute>,
+    person: bool,
+}
+
 impl CsvRecording {
-    pub(super) fn new(path: &Path, mut source: Box<dyn BufRead>) -> Result<Self> {
-        let start = source.fill_buf().map_err(|error| Error::file(path, error))?;
-        let header = start.split(|byte| *byte == b'\n').next().unwrap_or_default();
-        let separator = if header.contains(&b';') { b';' } else { b',' };
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(separator)
-            .flexible(true)
-            .from_reader(Whole { source, ends_in_row: false });
-        let header = reader.headers().map_err(|error| Error::content(path, error.to_string()))?.clone();
-        let time = header.iter().position(|name| name == "timestep_time");
+    pub fn new(path: &Path, mut source: Source, extent: Extent) -> Result<Self> {
+        source.look_out_for(b'"');
+        let unusable = |error| Error::file(path, error);
+        let header = loop {
+            match record(&mut source).map_err(unusable)? {
+                Record::Whole(length) if is_empty(&source.rest()[..length]) => source.consume(length),
+                Record::Whole(length) => break length,
+                Record::Incomplete => break source.rest().len(),
+                Record::None => return Err(Error::content(path, "the file is empty")),
+            }
+        };
+        let line = trimmed(&source.rest()[..header]);
+        let separator = if line.contains(&b';') { b';' } else { b',' };
+        let names = quoted(line, separator).map_err(|error| Error::content(path, error))?;
+        let names = names.iter().map(|name| String::from_utf8_lossy(name)).collect::<Vec<_>>();
+        let time = names.iter().position(|name| name == "timestep_time");
         let Some(time) = time else {
             return Err(Error::content(path, "it is no fcd-output: there is no column timestep_time"));
         };
-        let column = |name: &str| match name.split_once('_') {
-            Some(("vehicle", attribute)) => Some((attribute.to_owned(), false)),
-            Some(("person", attribute)) => Some((attribute.to_owned(), true)),
-            _ => None,
-        };
         for needed in ["id", "x", "y", "angle", "speed"] {
-            if !header.iter().any(|name| name == format!("vehicle_{needed}") || name == format!("person_{needed}")) {
+            if !names.iter().any(|name| *name == format!("vehicle_{needed}") || *name == format!("person_{needed}")) {
                 return Err(Error::content(path, format!("there is no column vehicle_{needed}")));
             }
         }
-        let columns = header.iter().map(column).collect();
-        let (path, record, next) = (path.to_owned(), csv::StringRecord::new(), Some(csv::StringRecord::new()));
-        let mut recording = Self { path, reader, record, next, ahead: false, time, columns, last: None };
-        recording.look_ahead()?;
-        Ok(recording)
+        let mut columns = names.iter().map(|name| column(name, extent)).collect::<Vec<_>>();
+        columns.truncate(columns.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
+        source.consume(header);
+        Ok(Self { path: path.to_owned(), source, extent, separator, time, columns, time_text: Vec::new(), last: None })
     }
 
-    pub(super) fn next_step(&mut self, step: &mut Step) -> Result<bool> {
+    pub fn next_step(&mut self, step: &mut Step, users: &mut Users) -> Result<bool> {
         let mut begun = false;
         loop {
-            if !self.ahead && !self.read()? {
-                break;
+            let cut = |message: &str| cut_short(&self.path, self.last, message);
+            let length = match record(&mut self.source).map_err(|error| cut(&error.to_string()))? {
+                Record::Whole(length) => length,
+                Record::Incomplete => return Err(cut("the last row is incomplete")),
+                Record::None => break,
+            };
+            let line = trimmed(&self.source.rest()[..length]);
+            if line.is_empty() {
+                self.source.consume(length);
+                continue;
             }
-            self.ahead = false;
-            let line = self.record.position().map_or(0, csv::Position::line);
-            let wrong = |message: String| Error::line(&self.path, line, message);
-            let text = self.record.get(self.time).unwrap_or_default();
-            let time = text.parse::<f64>().map_err(|_| wrong(format!("timestep_time is \"{text}\"")))?;
-            if begun && time != step.time {
-                self.ahead = true;
-                break;
+            let wrong = |message| Error::line(&self.path, self.source.line(), message);
+            let quoted = match self.source.is_marked() && line.contains(&b'"') {
+                true => Some(quoted(line, self.separator).map_err(wrong)?),
+                false => None,
+            };
+            let time_text = match &quoted {
+                Some(values) => values.get(self.time),
+                None => Values { rest: Some(line), separator: self.separator }.nth(self.time),
+            };
+            let time_text = time_text.unwrap_or_default();
+            if !begun || time_text != self.time_text {
+                let time = number(time_text);
+                let said = || format!("timestep_time is \"{}\"", String::from_utf8_lossy(time_text));
+                let time = time.ok_or_else(|| wrong(said()))?;
+                if begun && time != step.time {
+                    break;
+                }
+                if !begun {
+                    in_order(self.last, time).map_err(wrong)?;
+                    step.begin(time, users);
+                    begun = true;
+                }
+                self.time_text.clear();
+                self.time_text.extend_from_slice(time_text);
             }
-            if !begun {
-                in_order(self.last, time).map_err(wrong)?;
-                step.begin(time);
-                begun = true;
+            let fields = match &quoted {
+                Some(values) => fields(values.iter(), &self.columns, self.extent),
+                None => fields(Values { rest: Some(line), separator: self.separator }, &self.columns, self.extent),
+            };
+            let fields = fields.map_err(wrong)?;
+            // A step without anybody in it has a row of nobody.
+            if !fields.is_of_nobody() {
+                step.add(&fields, users, "value in column").map_err(wrong)?;
             }
-            let row = step.add();
-            let filled = fill(row, &self.record, &self.columns);
-            match filled {
-                Ok(true) => {}
-                Ok(false) => step.take_back(),
-                Err(message) => return Err(wrong(message)),
-            }
+            self.source.consume(length);
         }
         if begun {
+            step.end(users);
             self.last = Some(step.time);
         }
         Ok(begun)
     }
-
-    /// Goes on to the next row; `false` at the end of the file.
-    fn read(&mut self) -> Result<bool> {
-        let Some(next) = &mut self.next else { return Ok(false) };
-        std::mem::swap(&mut self.record, next);
-        self.look_ahead()?;
-        if self.next.is_none() && self.reader.get_ref().ends_in_row {
-            return Err(self.cut_short("the last row is incomplete"));
-        }
-        Ok(true)
-    }
-
-    fn look_ahead(&mut self) -> Result<()> {
-        let Some(next) = &mut self.next else { return Ok(()) };
-        match self.reader.read_record(next) {
-            Ok(true) => {}
-            Ok(false) => self.next = None,
-            Err(error) if error.is_io_error() => return Err(self.cut_short(&error.to_string())),
-            Err(error) => return Err(Error::content(&self.path, error.to_string())),
-        }
-        Ok(())
-    }
-
-    fn cut_short(&self, message: &str) -> Error {
-        Error::CutShort { path: self.path.clone(), time: self.last.unwrap_or(f64::NAN), message: message.to_owned() }
-    }
 }
 
-/// Fills a row; `false` where the record is of nobody (an empty step).
-fn fill(
-    row: &mut Row,
-    record: &csv::StringRecord,
-    columns: &[Option<(String, bool)>],
-) -> std::result::Result<bool, String> {
-    for (value, column) in record.iter().zip(columns) {
-        let Some((name, person)) = column else { continue };
+fn column(name: &str, extent: Extent) -> Option<Column> {
+    let (person, attribute) = match name.split_once('_') {
+        Some(("vehicle", attribute)) => (false, attribute),
+        Some(("person", attribute)) => (true, attribute),
+        _ => return None,
+    };
+    let attribute = extent.attribute(attribute.as_bytes());
+    // A person's column says that it is a person, if nothing else.
+    (person || attribute.is_some()).then_some(Column { attribute, person })
+}
+
+/// What a row says.
+#[inline]
+fn fields<'a>(
+    values: impl Iterator<Item = &'a [u8]>,
+    columns: &[Option<Column>],
+    extent: Extent,
+) -> std::result::Result<Fields<'a>, String> {
+    let mut fields = extent.fields();
+    for (column, value) in columns.iter().zip(values) {
+        let Some(column) = column else { continue };
         if !value.is_empty() {
-            row.person |= *person;
-            row.set(name, value)?;
+            fields.person |= column.person;
+            if let Some(attribute) = column.attribute {
+                fields.set(attribute, value)?;
+            }
         }
     }
-    match row.missing() {
-        Some("id") => Ok(false),
-        Some(missing) => Err(format!("\"{}\" has no value in column {missing}", row.id)),
-        None => Ok(true),
+    Ok(fields)
+}
+
+/// The values of a row without quotation marks.
+struct Values<'a> {
+    rest: Option<&'a [u8]>,
+    separator: u8,
+}
+
+impl<'a> Iterator for Values<'a> {
+    type Item = &'a [u8];
+
+    #[inline]
+    fn next(&mut self) -> Option<&'a [u8]> {
+        let rest = self.rest?;
+        match find(rest, self.separator) {
+            Some(end) => {
+                self.rest = Some(&rest[end + 1..]);
+                Some(&rest[..end])
+            }
+            None => self.rest.take(),
+        }
     }
 }
 
-/// A source that knows whether its last byte ends a line.
-struct Whole {
-    source: Box<dyn BufRead>,
-    ends_in_row: bool,
+/// The values of a row with quotation marks.
+struct Quoted(csv::ByteRecord);
+
+impl Quoted {
+    fn get(&self, index: usize) -> Option<&[u8]> {
+        self.0.get(index)
+    }
+
+    fn iter(&self) -> impl Iterator<Item = &[u8]> {
+        self.0.iter()
+    }
 }
 
-impl std::io::Read for Whole {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let length = self.source.read(buffer)?;
-        if length > 0 {
-            self.ends_in_row = buffer[length - 1] != b'\n';
+fn quoted(line: &[u8], separator: u8) -> std::result::Result<Quoted, String> {
+    let mut reader = csv::ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(line);
+    let mut record = csv::ByteRecord::new();
+    reader.read_byte_record(&mut record).map_err(|error| error.to_string())?;
+    Ok(Quoted(record))
+}
+
+/// How much of the rest is the next row, its line end included.
+enum Record {
+    Whole(usize),
+    /// The file ends within it.
+    Incomplete,
+    None,
+}
+
+#[inline]
+fn record(source: &mut Source) -> std::io::Result<Record> {
+    let mut from = 0;
+    loop {
+        let rest = source.rest();
+        let end = memchr::memchr(b'\n', &rest[from..]).map(|place| from + place + 1);
+        match end {
+            // A line end between quotation marks belongs to a value.
+            Some(end) if source.is_marked() && memchr::memchr_iter(b'"', &rest[..end]).count() % 2 == 1 => from = end,
+            Some(end) => return Ok(Record::Whole(end)),
+            None => {
+                from = if source.is_marked() { from } else { rest.len() };
+                if !source.more()? {
+                    return Ok(if is_empty(source.rest()) { Record::None } else { Record::Incomplete });
+                }
+            }
         }
-        Ok(length)
     }
+}
+
+fn trimmed(line: &[u8]) -> &[u8] {
+    let line = line.strip_suffix(b"\n").unwrap_or(line);
+    line.strip_suffix(b"\r").unwrap_or(line)
+}
+
+fn is_empty(line: &[u8]) -> bool {
+    trimmed(line).is_empty()
 }

@@ -3,26 +3,29 @@
 //! The recording is read twice: once for the routes that everybody drove, then step by step.
 
 mod csv;
+mod lanes;
+mod names;
+mod number;
 pub mod recording;
 pub mod routes;
+mod source;
 pub mod types;
 mod xml;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use rustc_hash::FxHashMap;
-
 use crate::encounter::Placement;
 use crate::frame::{State, UserIndex};
-use crate::net::{EdgeFunction, EdgeIndex, Net};
+use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::options::{Options, PathModel};
 use crate::profile::Profile;
 use crate::run::Run;
 use crate::units::Second;
 use crate::{Error, Result};
+use lanes::Lanes;
 use recording::{Recording, Row, Step};
-use routes::Routes;
+use routes::{Routes, Vehicles};
 use types::Types;
 
 /// A recording that is being replayed into a run.
@@ -32,20 +35,26 @@ pub struct Replay {
     following: Step,
     has_following: bool,
     types: Types,
-    routes: Routes,
+    lanes: Lanes,
+    /// None where paths are not laid along lanes.
+    routes: Option<Routes>,
+    vehicles: Vehicles<()>,
     options: Options,
     step_length: Second,
     steps: u64,
-    live: FxHashMap<String, Live>,
+    /// By the recording's number of the user.
+    live: Vec<Option<Live>>,
     /// Which of the step's rows stands in each row of the frame.
     rows: Vec<u32>,
+    approaching: Vec<u32>,
+    gone: Vec<UserIndex>,
 }
 
 /// Somebody in the scene.
 struct Live {
     user: UserIndex,
-    seen: u64,
-    route: Arc<[EdgeIndex]>,
+    /// Read when it is first needed.
+    route: Option<Arc<[EdgeIndex]>>,
     route_position: usize,
 }
 
@@ -77,12 +86,16 @@ impl Replay {
             following,
             has_following,
             types,
-            routes: if by_lanes { Routes::read(path, net)? } else { Routes::default() },
+            lanes: Lanes::default(),
+            routes: if by_lanes { Some(Routes::read(path, net)?) } else { None },
+            vehicles: Vehicles::default(),
             options: options.clone(),
             step_length,
             steps: 0,
-            live: FxHashMap::default(),
+            live: Vec::new(),
             rows: Vec::new(),
+            approaching: Vec::new(),
+            gone: Vec::new(),
         })
     }
 
@@ -102,8 +115,10 @@ impl Replay {
         }
         run.begin(self.step.time);
         self.fill(run)?;
-        for row in run.approach().to_vec() {
-            self.place(run, row);
+        self.approaching.clear();
+        self.approaching.extend_from_slice(run.approach());
+        for index in 0..self.approaching.len() {
+            self.place(run, self.approaching[index])?;
         }
         run.finish_step()?;
         Ok(Some(self.step.time))
@@ -117,61 +132,75 @@ impl Replay {
     fn fill(&mut self, run: &mut Run) -> Result<()> {
         self.rows.clear();
         self.rows.resize(run.frame.len(), u32::MAX);
-        for (place, row) in (0..).zip(self.step.rows()) {
-            let user = match self.live.get_mut(&row.id) {
-                Some(live) => {
-                    live.seen = self.steps;
-                    live.user
-                }
-                None => {
-                    let name = if row.person { format!("person:{}", row.type_name) } else { row.type_name.clone() };
-                    let profile = match run.roster.profile_named(&name) {
-                        Some(known) => known,
-                        None => {
-                            let sumo = self.types.named(&row.type_name, row.person);
-                            let profile = if row.person {
-                                Profile::person(&sumo, &self.options, self.step_length)
-                            } else {
-                                Profile::vehicle(&sumo, &self.options)
-                            };
-                            run.roster.profile(Profile { name, ..profile })?
-                        }
-                    };
-                    let user = run.enter(&row.id, profile);
-                    let route = self.routes.of(&row.id);
-                    self.live.insert(row.id.clone(), Live { user, seen: self.steps, route, route_position: 0 });
-                    user
-                }
+        for place in 0..self.step.rows().len() {
+            let row = self.step.rows()[place];
+            let user = match self.live.get(row.user as usize) {
+                Some(Some(live)) => live.user,
+                _ => self.enter(&row, run)?,
             };
             let heading = (90.0 - row.angle).to_radians();
             if run.frame.push(user, State { x: row.x, y: row.y, z: row.z, heading, speed: row.speed }) {
-                self.rows.push(place);
+                self.rows.push(place as u32);
             }
         }
-        let steps = self.steps;
-        let gone = self.live.extract_if(|_, live| live.seen != steps).map(|(_, live)| live.user);
-        let mut gone = gone.collect::<Vec<_>>();
-        gone.sort_unstable();
-        gone.into_iter().for_each(|user| run.leave(user));
+        for user in self.step.gone() {
+            self.vehicles.leave(*user, self.recording.id(*user), self.step.time, ());
+            self.gone.extend(self.live.get_mut(*user as usize).and_then(Option::take).map(|live| live.user));
+        }
+        self.vehicles.forget(self.step.time, |_, ()| Ok::<_, Error>(()))?;
+        self.gone.sort_unstable();
+        self.gone.drain(..).for_each(|user| run.leave(user));
         Ok(())
     }
 
-    fn place(&mut self, run: &mut Run, row: u32) {
-        let Some(recorded) = self.rows.get(row as usize).and_then(|place| self.step.rows().get(*place as usize)) else {
-            return;
+    fn enter(&mut self, row: &Row, run: &mut Run) -> Result<UserIndex> {
+        let type_name = self.recording.type_name(row);
+        let name = if row.person { format!("person:{type_name}") } else { type_name.to_owned() };
+        let profile = match run.roster.profile_named(&name) {
+            Some(known) => known,
+            None => {
+                let sumo = self.types.named(type_name, row.person);
+                let profile = if row.person {
+                    Profile::person(&sumo, &self.options, self.step_length)
+                } else {
+                    Profile::vehicle(&sumo, &self.options)
+                };
+                run.roster.profile(Profile { name, ..profile })?
+            }
         };
-        let placement = run.net().and_then(|net| self.live.get_mut(&recorded.id)?.placement(net, recorded));
-        if let Some(placement) = placement {
-            run.place(row, &placement);
+        let user = run.enter(self.recording.id(row.user), profile);
+        if !row.person {
+            self.vehicles.enter(row, &self.recording);
         }
+        let index = row.user as usize;
+        if self.live.len() <= index {
+            self.live.resize_with(index + 1, || None);
+        }
+        self.live[index] = Some(Live { user, route: None, route_position: 0 });
+        Ok(user)
+    }
+
+    fn place(&mut self, run: &mut Run, row: u32) -> Result<()> {
+        let Some(&place) = self.rows.get(row as usize) else { return Ok(()) };
+        let (Some(recorded), Some(net)) = (self.step.rows().get(place as usize), run.net()) else { return Ok(()) };
+        let Some(Some(live)) = self.live.get_mut(recorded.user as usize) else { return Ok(()) };
+        let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
+        let route = match (&live.route, &mut self.routes, self.vehicles.of(recorded.user)) {
+            (Some(route), ..) => route.clone(),
+            (None, Some(routes), Some(number)) => routes.of(number)?,
+            _ => Arc::new([]),
+        };
+        live.route = Some(route.clone());
+        let placement = live.placement(net, lane, route, recorded);
+        run.place(row, &placement);
+        Ok(())
     }
 }
 
 impl Live {
-    fn placement(&mut self, net: &Net, row: &Row) -> Option<Placement> {
-        let lane = net.lane(&row.lane)?;
+    fn placement(&mut self, net: &Net, lane: LaneIndex, route: Arc<[EdgeIndex]>, row: &Row) -> Placement {
         let edge = net.lanes[lane.0 as usize].edge;
-        let find = |edge: EdgeIndex| self.route[self.route_position..].iter().position(|known| *known == edge);
+        let find = |edge: EdgeIndex| route[self.route_position..].iter().position(|known| *known == edge);
         if net.edges[edge.0 as usize].function == EdgeFunction::Normal {
             self.route_position += find(edge).unwrap_or(0);
         } else if let Some(link) = net.lanes[lane.0 as usize].links.first() {
@@ -179,12 +208,12 @@ impl Live {
             let to = net.lanes[link.to.0 as usize].edge;
             self.route_position += find(to).map_or(0, |further| further.saturating_sub(1));
         }
-        Some(Placement {
+        Placement {
             lane,
             position: row.position,
-            route: self.route.clone(),
+            route,
             route_position: self.route_position,
             lateral_speed: row.lateral_speed,
-        })
+        }
     }
 }

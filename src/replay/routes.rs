@@ -1,29 +1,50 @@
 //! Routes for a replay: an fcd-output does not have them, but where everybody drove.
+//!
+//! They are read before the replay begins, and wait in a temporary file until their vehicles enter the scene: in memory
+//! are only those of the vehicles that are there.
 
+use std::collections::VecDeque;
+use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
+use tempfile::{SpooledTempFile, spooled_tempfile};
 
-use super::recording::{Recording, Step};
-use crate::net::{EdgeFunction, EdgeIndex, Net};
+use super::lanes::Lanes;
+use super::recording::{Recording, Row, Step};
+use crate::net::{EdgeIndex, Net};
+use crate::units::Second;
 use crate::{Error, Result};
 
-/// The edges that each vehicle drove, in order; equal ones are held once.
-#[derive(Clone, Debug, Default)]
+/// Who comes back within this time drives on, in s: SUMO takes a vehicle that is stuck off the net, and puts it back
+/// further on.
+const ABSENCE: Second = 600.0;
+/// Routes up to this size are not written to the disk, in bytes.
+const IN_MEMORY: usize = 1 << 20;
+/// An entry in the list of places, in bytes: where the route is and how many edges it has.
+const ENTRY: u64 = 16;
+
+/// The edges that each vehicle drove, in order.
 pub struct Routes {
-    by_vehicle: FxHashMap<String, Arc<[EdgeIndex]>>,
+    /// The edges of all routes, one after the other.
+    edges: SpooledTempFile,
+    /// For every vehicle, in the order of their coming, where its route begins there, and its number of edges.
+    places: SpooledTempFile,
 }
 
 impl Routes {
     /// Reads a recording for its routes. What is cut short ends where it is cut.
     ///
     /// # Errors
-    /// As [`Recording`] has them.
+    /// As [`Recording`] has them; [`Error::File`] where the temporary file cannot be written.
     pub fn read(path: &Path, net: &Net) -> Result<Self> {
-        let mut recording = Recording::open(path)?;
+        let mut recording = Recording::open_for_lanes(path)?;
         let mut step = Step::default();
-        let mut driven: FxHashMap<String, Vec<EdgeIndex>> = FxHashMap::default();
+        let (mut lanes, mut vehicles) = (Lanes::default(), Vehicles::default());
+        let mut writer = Writer::default();
+        // By the recording's number of the user.
+        let mut driven: Vec<Vec<EdgeIndex>> = Vec::new();
         loop {
             match recording.next_step(&mut step) {
                 Ok(true) => {}
@@ -31,35 +52,169 @@ impl Routes {
                 Err(error) => return Err(error),
             }
             for row in step.rows().iter().filter(|row| !row.person) {
-                let Some(lane) = net.lane(&row.lane) else { continue };
-                let edge = net.lanes[lane.0 as usize].edge;
-                if net.edges[edge.0 as usize].function != EdgeFunction::Normal {
-                    continue;
-                }
-                match driven.get_mut(&row.id) {
-                    Some(route) if route.last() == Some(&edge) => {}
-                    Some(route) => route.push(edge),
-                    None => {
-                        driven.insert(row.id.clone(), vec![edge]);
+                let user = row.user as usize;
+                if vehicles.of(row.user).is_none() {
+                    let route = vehicles.enter(row, &recording);
+                    if driven.len() <= user {
+                        driven.resize_with(user + 1, Vec::new);
                     }
+                    driven[user] = route.unwrap_or_default();
+                }
+                let Some(edge) = lanes.edge(row.lane, &recording, net) else { continue };
+                if driven[user].last() != Some(&edge) {
+                    driven[user].push(edge);
                 }
             }
+            for user in step.gone() {
+                let route = driven.get_mut(*user as usize).map(std::mem::take).unwrap_or_default();
+                vehicles.leave(*user, recording.id(*user), step.time, route);
+            }
+            vehicles.forget(step.time, |number, route| writer.write(number, &route)).map_err(unwritable)?;
         }
-        let mut shared: FxHashSet<Arc<[EdgeIndex]>> = FxHashSet::default();
-        let by_vehicle = driven.into_iter().map(|(id, route)| {
-            let route: Arc<[EdgeIndex]> = route.into();
-            let known = shared.get(&route).cloned();
-            let route = known.unwrap_or_else(|| {
-                shared.insert(route.clone());
-                route
-            });
-            (id, route)
-        });
-        Ok(Self { by_vehicle: by_vehicle.collect() })
+        for (number, user) in vehicles.present() {
+            writer.write(number, &driven[user]).map_err(unwritable)?;
+        }
+        vehicles.forget(Second::INFINITY, |number, route| writer.write(number, &route)).map_err(unwritable)?;
+        writer.finish().map_err(unwritable)
     }
 
-    /// The route of a vehicle; empty where it was never on a normal edge.
-    pub fn of(&self, id: &str) -> Arc<[EdgeIndex]> {
-        self.by_vehicle.get(id).cloned().unwrap_or_else(|| Arc::new([]))
+    /// The route of a vehicle by its number; empty where it was never on a normal edge.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the temporary file cannot be read.
+    pub fn of(&mut self, number: u64) -> Result<Arc<[EdgeIndex]>> {
+        self.read_back(number).map_err(unwritable)
+    }
+
+    fn read_back(&mut self, number: u64) -> std::io::Result<Arc<[EdgeIndex]>> {
+        let mut entry = [0; ENTRY as usize];
+        self.places.seek(SeekFrom::Start(number * ENTRY))?;
+        self.places.read_exact(&mut entry)?;
+        let [start, count] = halves(entry);
+        let mut bytes = vec![0; 4 * count as usize];
+        self.edges.seek(SeekFrom::Start(start))?;
+        self.edges.read_exact(&mut bytes)?;
+        Ok(bytes
+            .chunks_exact(4)
+            .map(|edge| EdgeIndex(u32::from_le_bytes([edge[0], edge[1], edge[2], edge[3]])))
+            .collect())
+    }
+}
+
+fn halves(entry: [u8; ENTRY as usize]) -> [u64; 2] {
+    let both = u128::from_le_bytes(entry);
+    [both as u64, (both >> 64) as u64]
+}
+
+fn unwritable(error: std::io::Error) -> Error {
+    Error::file(&std::env::temp_dir(), error)
+}
+
+struct Writer {
+    edges: BufWriter<SpooledTempFile>,
+    places: SpooledTempFile,
+    length: u64,
+}
+
+impl Default for Writer {
+    fn default() -> Self {
+        let edges = BufWriter::new(spooled_tempfile(IN_MEMORY));
+        Self { edges, places: spooled_tempfile(IN_MEMORY), length: 0 }
+    }
+}
+
+impl Writer {
+    fn write(&mut self, number: u64, route: &[EdgeIndex]) -> std::io::Result<()> {
+        let entry = u128::from(self.length) | (route.len() as u128) << 64;
+        self.places.seek(SeekFrom::Start(number * ENTRY))?;
+        self.places.write_all(&entry.to_le_bytes())?;
+        for edge in route {
+            self.edges.write_all(&edge.0.to_le_bytes())?;
+        }
+        self.length += 4 * route.len() as u64;
+        Ok(())
+    }
+
+    fn finish(self) -> std::io::Result<Routes> {
+        let edges = self.edges.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        Ok(Routes { edges, places: self.places })
+    }
+}
+
+/// The vehicles of a recording, numbered in the order of their coming; the same on every reading. With each that was
+/// in the scene lately waits what is known of it.
+#[derive(Debug)]
+pub(super) struct Vehicles<T> {
+    count: u64,
+    /// The vehicle's number by the recording's number of the user.
+    present: Vec<Option<u64>>,
+    absent: FxHashMap<Box<str>, Absent<T>>,
+    by_time: VecDeque<(Second, Box<str>)>,
+}
+
+#[derive(Debug)]
+struct Absent<T> {
+    number: u64,
+    since: Second,
+    known: T,
+}
+
+impl<T> Default for Vehicles<T> {
+    fn default() -> Self {
+        Self { count: 0, present: Vec::new(), absent: FxHashMap::default(), by_time: VecDeque::new() }
+    }
+}
+
+impl<T> Vehicles<T> {
+    /// The number of a vehicle that is in the scene.
+    #[inline]
+    pub fn of(&self, user: u32) -> Option<u64> {
+        self.present.get(user as usize).copied().flatten()
+    }
+
+    /// Numbers a vehicle that has come; returns what was known of it if it comes back.
+    pub fn enter(&mut self, row: &Row, recording: &Recording) -> Option<T> {
+        let before = self.absent.remove(recording.id(row.user));
+        let (number, known) = match before {
+            Some(before) => (before.number, Some(before.known)),
+            None => (self.count, None),
+        };
+        self.count += u64::from(known.is_none());
+        let user = row.user as usize;
+        if self.present.len() <= user {
+            self.present.resize(user + 1, None);
+        }
+        self.present[user] = Some(number);
+        known
+    }
+
+    /// Lets a vehicle leave; what is known of it waits for its return.
+    pub fn leave(&mut self, user: u32, id: &str, time: Second, known: T) {
+        let Some(number) = self.present.get_mut(user as usize).and_then(Option::take) else { return };
+        self.absent.insert(id.into(), Absent { number, since: time, known });
+        self.by_time.push_back((time, id.into()));
+    }
+
+    /// Forgets those who have been away for too long.
+    pub fn forget<E>(
+        &mut self,
+        time: Second,
+        mut forgotten: impl FnMut(u64, T) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
+        while self.by_time.front().is_some_and(|(since, _)| *since < time - ABSENCE) {
+            let Some((since, id)) = self.by_time.pop_front() else { break };
+            // Who came back and left again waits from then on.
+            if self.absent.get(&id).is_some_and(|absent| absent.since == since)
+                && let Some(absent) = self.absent.remove(&id)
+            {
+                forgotten(absent.number, absent.known)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Those in the scene: the vehicle's number and the recording's.
+    fn present(&self) -> impl Iterator<Item = (u64, usize)> {
+        self.present.iter().zip(0..).filter_map(|(number, user)| number.map(|number| (number, user)))
     }
 }

@@ -62,9 +62,10 @@ impl Driven {
             for row in step.rows() {
                 let axis = direction((90.0 - row.angle).to_radians());
                 let place = (step.time, Point::new(row.x, row.y), axis);
-                match traces.get_mut(&row.id) {
+                let id = recording.id(row.user);
+                match traces.get_mut(id) {
                     Some(trace) => trace.push(place),
-                    None => _ = traces.insert(row.id.clone(), vec![place]),
+                    None => _ = traces.insert(id.to_owned(), vec![place]),
                 }
             }
         }

@@ -1,0 +1,182 @@
+//! Vehicle-steps per second of a replay, from CSV and from XML: reading alone, and the whole of it, in sparse traffic
+//! (nobody near anybody) and in traffic where everybody has somebody ahead. `cargo bench --bench replay`.
+//!
+//! Given recordings are read instead: `cargo bench --bench replay -- RECORDING…`; with `--net NET` they are replayed too.
+//! `--write FOLDER MEGABYTES` writes recordings of about that size, with their net, to see that memory stays the same.
+
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "a benchmark may")]
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use closecall::net::Net;
+use closecall::options::Options;
+use closecall::replay::Replay;
+use closecall::replay::recording::{Recording, Step};
+use closecall::run::Run;
+
+/// Parallel roads, so far apart that their traffic never meets.
+const ROADS: usize = 20;
+const LENGTH: f64 = 10_000.0;
+const SPEED: f64 = 13.89;
+const STEPS: usize = 200;
+
+fn main() {
+    let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
+    match &words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        [] => synthetic(),
+        ["--write", folder, megabytes] => write_of_size(Path::new(folder), megabytes.parse().unwrap()),
+        ["--net", net, recordings @ ..] => {
+            recordings.iter().for_each(|path| measure(path, Path::new(path), Some(Path::new(net))));
+        }
+        recordings => recordings.iter().for_each(|path| measure(path, Path::new(path), None)),
+    }
+}
+
+fn synthetic() {
+    let folder = tempfile::tempdir().unwrap();
+    let net = write_net(folder.path());
+    for (traffic, headway) in [("sparse", 100.0), ("in platoons", 25.0)] {
+        for ending in ["csv", "xml"] {
+            for columns in ["default", "all"] {
+                let path = folder.path().join(format!("fcd.{ending}"));
+                write_recording(&path, headway, STEPS, columns == "all");
+                measure(&format!("{traffic}, {ending}, {columns} attributes"), &path, Some(&net));
+            }
+        }
+    }
+}
+
+fn write_of_size(folder: &Path, megabytes: f64) {
+    write_net(folder);
+    for ending in ["csv", "xml"] {
+        let path = folder.join(format!("{megabytes}.{ending}"));
+        write_recording(&path, 100.0, 10, false);
+        let steps = megabytes * 1e6 / std::fs::metadata(&path).unwrap().len() as f64 * 10.0;
+        write_recording(&path, 100.0, steps as usize, false);
+    }
+}
+
+fn measure(name: &str, path: &Path, net: Option<&Path>) {
+    let mut rows = 0;
+    let reading = median(|| {
+        let (mut recording, mut step) = (Recording::open(path).unwrap(), Step::default());
+        rows = 0;
+        // What is cut short is read as far as it goes.
+        while let Ok(true) = recording.next_step(&mut step) {
+            rows += step.rows().len();
+        }
+    });
+    let replaying = net.map(|net| {
+        let net = Arc::new(Net::read(net).unwrap());
+        let options = Options::default();
+        let types: &[PathBuf] = &[];
+        median(|| {
+            let mut replay = Replay::open(path, types, &net, &options).unwrap();
+            let mut run = Run::new(&options, Some(net.clone())).unwrap();
+            run.routes_are_fixed();
+            while let Ok(Some(_)) = replay.next(&mut run) {}
+        })
+    });
+    let bytes = std::fs::metadata(path).unwrap().len() as f64 / rows as f64;
+    let per_second = |seconds: f64| format!("{:.2}", rows as f64 / seconds / 1e6);
+    let replaying = replaying.map_or(String::new(), |seconds| format!(", replayed {}", per_second(seconds)));
+    println!("{name} ({rows} of {bytes:.0} bytes): 10⁶/s read {}{replaying}", per_second(reading));
+}
+
+/// The median of five, in s: of the processor's time where the system tells it, so that other programs do not count.
+fn median(mut action: impl FnMut()) -> f64 {
+    let started = Instant::now();
+    let now = || {
+        let system = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+        let nanoseconds = system.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+        nanoseconds.map_or_else(|| started.elapsed().as_secs_f64(), |nanoseconds| nanoseconds / 1e9)
+    };
+    let mut times = [0.0; 5].map(|_: f64| {
+        let before = now();
+        action();
+        now() - before
+    });
+    times.sort_by(f64::total_cmp);
+    times[2]
+}
+
+fn write_net(folder: &Path) -> PathBuf {
+    let path = folder.join("roads.net.xml");
+    let mut net = BufWriter::new(File::create(&path).unwrap());
+    writeln!(net, "<net>").unwrap();
+    for road in 0..ROADS {
+        let y = road as f64 * 200.0;
+        writeln!(net, r#"<edge id="road{road}" from="a" to="b"><lane id="road{road}_0" length="{LENGTH}" shape="0,{y} {LENGTH},{y}"/></edge>"#).unwrap();
+    }
+    writeln!(net, "</net>").unwrap();
+    path
+}
+
+/// Vehicles drive along every road, one enters as another leaves; ids never come again.
+fn write_recording(path: &Path, headway: f64, steps: usize, all: bool) {
+    let xml = path.extension().is_some_and(|ending| ending == "xml");
+    let mut file = BufWriter::new(File::create(path).unwrap());
+    let names = ["x", "y", "angle", "type", "speed", "pos", "lane", "slope"];
+    let more = if all { 14 } else { 0 };
+    let between = if all { 6 } else { 0 };
+    if xml {
+        writeln!(file, "<fcd-export>").unwrap();
+    } else {
+        let names = names.map(|name| format!("vehicle_{name}")).join(";");
+        let names = if all {
+            let fill = |from, to| (from..to).map(|n| format!(";vehicle_more{n}")).collect::<String>();
+            format!("{names}{};vehicle_speedLat{}", fill(0, between), fill(between, more))
+        } else {
+            names
+        };
+        writeln!(file, "timestep_time;vehicle_id;{names}").unwrap();
+    }
+    let on_road = (LENGTH / headway) as usize;
+    for step in 0..steps {
+        let time = step as f64 * 0.1;
+        if xml {
+            writeln!(file, "    <timestep time=\"{time:.2}\">").unwrap();
+        }
+        let gone = (SPEED * time / headway) as usize;
+        for road in 0..ROADS {
+            for vehicle in gone..gone + on_road {
+                let x = SPEED * time + (on_road as f64 - 1.0 - vehicle as f64) * headway + (vehicle % 7) as f64 * 0.11;
+                let x = x.rem_euclid(LENGTH);
+                let y = road as f64 * 200.0;
+                if xml {
+                    write!(file, "        <vehicle id=\"v{road}.{vehicle}\" x=\"{x:.2}\" y=\"{y:.2}\" angle=\"90.00\" type=\"car\" speed=\"{SPEED:.2}\" pos=\"{x:.2}\" lane=\"road{road}_0\" slope=\"0.00\"").unwrap();
+                    for n in 0..more {
+                        write!(file, " more{n}=\"{:.2}\"", x / 3.0 + n as f64).unwrap();
+                        if n + 1 == between {
+                            write!(file, " speedLat=\"0.00\"").unwrap();
+                        }
+                    }
+                    writeln!(file, "/>").unwrap();
+                } else {
+                    write!(
+                        file,
+                        "{time:.2};v{road}.{vehicle};{x:.2};{y:.2};90.00;car;{SPEED:.2};{x:.2};road{road}_0;0.00"
+                    )
+                    .unwrap();
+                    for n in 0..more {
+                        write!(file, ";{:.2}", x / 3.0 + n as f64).unwrap();
+                        if n + 1 == between {
+                            write!(file, ";0.00").unwrap();
+                        }
+                    }
+                    writeln!(file).unwrap();
+                }
+            }
+        }
+        if xml {
+            writeln!(file, "    </timestep>").unwrap();
+        }
+    }
+    if xml {
+        writeln!(file, "</fcd-export>").unwrap();
+    }
+}

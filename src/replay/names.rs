@@ -1,0 +1,149 @@
+//! Ids, types and lanes as small numbers: who drives on is recognised by comparing, not by looking up.
+
+use rustc_hash::FxHashMap;
+
+/// Texts, each once, numbered in the order in which they came up.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    texts: Vec<String>,
+    known: FxHashMap<Box<[u8]>, u32>,
+}
+
+impl Names {
+    pub fn text(&self, name: u32) -> &str {
+        self.texts.get(name as usize).map_or("", String::as_str)
+    }
+
+    /// The number of a text, which most probably is `guess`.
+    #[inline]
+    fn number(&mut self, text: &[u8], guess: u32) -> Result<u32, String> {
+        if self.texts.get(guess as usize).is_some_and(|known| known.as_bytes() == text) {
+            return Ok(guess);
+        }
+        self.look_up(text)
+    }
+
+    fn look_up(&mut self, text: &[u8]) -> Result<u32, String> {
+        if let Some(known) = self.known.get(text) {
+            return Ok(*known);
+        }
+        let number = self.texts.len() as u32;
+        self.texts.push(utf8(text)?.to_owned());
+        self.known.insert(text.into(), number);
+        Ok(number)
+    }
+}
+
+/// Those in the scene, each with a number that it keeps while it is there, and their types and lanes.
+#[derive(Debug, Default)]
+pub(super) struct Users {
+    users: Vec<User>,
+    /// Vehicles by their ids, and persons by theirs: both may have the same.
+    known: [FxHashMap<Box<[u8]>, u32>; 2],
+    free: Vec<u32>,
+    gone: Vec<u32>,
+    step: u64,
+    /// Those of the step before and of this one, in the recording's order.
+    before: Vec<u32>,
+    now: Vec<u32>,
+    /// Who stood here in the step before is expected next.
+    expected: usize,
+    pub types: Names,
+    pub lanes: Names,
+}
+
+#[derive(Debug)]
+struct User {
+    id: String,
+    person: bool,
+    step: u64,
+    /// Its place in the order of that step.
+    place: u32,
+    type_name: u32,
+    lane: u32,
+}
+
+/// A user, its type and its lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Known {
+    pub user: u32,
+    pub type_name: u32,
+    pub lane: u32,
+}
+
+impl Users {
+    pub fn id(&self, user: u32) -> &str {
+        self.users.get(user as usize).map_or("", |user| &user.id)
+    }
+
+    /// Begins a step. Only now the numbers of those who were not in the last one are given to others.
+    pub fn begin(&mut self) {
+        for user in self.gone.drain(..) {
+            let left = &self.users[user as usize];
+            self.known[usize::from(left.person)].remove(left.id.as_bytes());
+            self.free.push(user);
+        }
+        std::mem::swap(&mut self.before, &mut self.now);
+        self.now.clear();
+        self.expected = 0;
+        self.step += 1;
+    }
+
+    /// Ends a step; returns those of the step before who are not in it.
+    pub fn end(&mut self) -> &[u32] {
+        let (users, step) = (&self.users, self.step);
+        self.gone.extend(self.before.iter().filter(|user| users[**user as usize].step != step));
+        self.gone.sort_unstable();
+        self.gone.dedup();
+        &self.gone
+    }
+
+    /// Who this is.
+    #[inline]
+    pub fn know(&mut self, id: &[u8], person: bool, type_name: &[u8], lane: &[u8]) -> Result<Known, String> {
+        let index = self.find(id, person)?;
+        let user = &mut self.users[index as usize];
+        user.type_name = self.types.number(type_name, user.type_name)?;
+        user.lane = self.lanes.number(lane, user.lane)?;
+        user.step = self.step;
+        user.place = self.now.len() as u32;
+        self.now.push(index);
+        Ok(Known { user: index, type_name: user.type_name, lane: user.lane })
+    }
+
+    #[inline]
+    fn find(&mut self, id: &[u8], person: bool) -> Result<u32, String> {
+        // Whoever is not the expected one: that one has left, and it is the one behind.
+        for place in self.expected..self.expected + 2 {
+            let Some(&index) = self.before.get(place) else { break };
+            let user = &self.users[index as usize];
+            if user.id.as_bytes() == id && user.person == person {
+                self.expected = place + 1;
+                return Ok(index);
+            }
+        }
+        self.look_up(id, person)
+    }
+
+    fn look_up(&mut self, id: &[u8], person: bool) -> Result<u32, String> {
+        if let Some(&index) = self.known[usize::from(person)].get(id) {
+            let user = &self.users[index as usize];
+            if user.step + 1 == self.step {
+                self.expected = user.place as usize + 1;
+            }
+            return Ok(index);
+        }
+        let user = User { id: utf8(id)?.to_owned(), person, step: 0, place: 0, type_name: u32::MAX, lane: u32::MAX };
+        let index = self.free.pop().unwrap_or(self.users.len() as u32);
+        match self.users.get_mut(index as usize) {
+            Some(free) => *free = user,
+            None => self.users.push(user),
+        }
+        self.known[usize::from(person)].insert(id.into(), index);
+        Ok(index)
+    }
+}
+
+fn utf8(text: &[u8]) -> Result<&str, String> {
+    std::str::from_utf8(text).map_err(|_| format!("\"{}\" is not UTF-8", String::from_utf8_lossy(text)))
+}
