@@ -26,7 +26,10 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         let before = found.len();
         search(folder, DEEPEST, &mut found)?;
         if found.len() == before {
-            return Err(Error::content(folder, format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at no depth")));
+            return Err(Error::content(
+                folder,
+                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at no depth"),
+            ));
         }
     }
     let mut known = Vec::with_capacity(found.len());
