@@ -100,7 +100,7 @@ def is_alive(pid: int) -> bool:
 def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of a sweep: two seeds, two values of an option of closecall's and two of SUMO's."""
     out = tmp_path_factory.mktemp("sweep")
-    varied = ("--vary", "mu=minimal,at_rest", "--vary", "sumo:scale=1,1.5")
+    varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
     said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
     assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
     return out
@@ -109,7 +109,7 @@ def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_every_seed_meets_every_value(done: Path) -> None:
     wanted = {
         f"mu-{mu}_sumo.scale-{scale}_seed-{seed}"
-        for mu in ("minimal", "at_rest".replace("_", "."))
+        for mu in ("minimal", "at-rest")
         for scale in ("1", "1.5")
         for seed in (1, 2)
     }
@@ -118,10 +118,10 @@ def test_every_seed_meets_every_value(done: Path) -> None:
 
 
 def test_a_run_of_a_sweep_is_what_closecall_run_finds(done: Path, tmp_path: Path) -> None:
-    words = ("--mu", "at_rest", "--seed", "2", "--end", "60", "--", "--no-warnings", "--scale=1.5")
+    words = ("--mu", "at-rest", "--seed", "2", "--end", "60", "--", "--no-warnings", "--scale=1.5")
     alone = closecall("run", LEFT_TURN, "--quiet", "--out", tmp_path / "log", *words)
     assert alone.returncode == 0, alone.stderr
-    path = done / "conflicts" / "run=mu-at.rest_sumo.scale-1.5_seed-2"
+    path = done / "conflicts" / "run=mu-at-rest_sumo.scale-1.5_seed-2"
     script = """if True:
         import json, sys
         import pyarrow.parquet as parquet
@@ -135,7 +135,7 @@ def test_a_run_of_a_sweep_is_what_closecall_run_finds(done: Path, tmp_path: Path
     logged = rows(tmp_path / "log" / "conflicts.csv")
     assert len(logged) > 5 and len(found["rows"]) == len(logged)
     for row, line in zip(found["rows"], logged):
-        assert (row.pop("seed"), row.pop("option_mu"), row.pop("sumo_scale")) == (2, "at_rest", 1.5)
+        assert (row.pop("seed"), row.pop("option_mu"), row.pop("sumo_scale")) == (2, "at-rest", 1.5)
         assert list(row) == list(line)
         for name, cell in line.items():
             value = row[name]
@@ -171,7 +171,7 @@ READERS = {
         import duckdb
         of = f"from read_parquet('{sys.argv[1]}/**/*.parquet', hive_partitioning = true)"
         counts = dict(duckdb.sql(f"select run, count(*) {of} group by run").fetchall())
-        sums = duckdb.sql(f"select sum(margin), sum(collision::int)::int {of}").fetchone()
+        sums = duckdb.sql(f"select sum(margin), sum(collision::int)::int {of}").fetchall()[0]
         scale = [row[0] for row in duckdb.sql(f"select distinct sumo_scale {of} order by 1").fetchall()]
         print(json.dumps([counts, *sums, scale]))
     """,

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -52,9 +53,10 @@ def results(
                 memory_limit=0,
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
+                preload=__name__,
             )
             stack.enter_context(cluster)
-        client = stack.enter_context(Client(scheduler or cluster, set_as_default=False))
+        client = stack.enter_context(Client(scheduler or cluster))
         # A scheduler that is there already may know the same run from before.
         sweep = uuid.uuid4().hex
         here = str(Path.cwd())
@@ -70,6 +72,11 @@ def results(
                 future.release()
         finally:
             client.cancel(list(names), force=True)
+
+
+def dask_setup(worker: object) -> None:
+    """What Dask calls in each local worker: Ctrl-C, which a terminal sends to all, is for the sweep alone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def said(error: BaseException) -> str:
