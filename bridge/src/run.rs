@@ -37,10 +37,9 @@ const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let mut simulate = |request: &RunRequest| simulate(py, request);
     let mut interrupted = || py.check_signals().is_err();
-    let mut distribute = sweep::distribute(py);
     let sumo = Sumo {
         simulate: &mut simulate,
-        distribute: &mut distribute,
+        distribute: &mut |workers, folder, tasks, ended| sweep::distribute(py, workers, folder, tasks, ended),
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
     };

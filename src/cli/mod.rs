@@ -23,7 +23,7 @@ use std::path::Path;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use run::{RunRequest, Simulate};
-pub use sweep::{Distribute, Workers};
+pub use sweep::{Distribute, Ended, Workers};
 
 use crate::regress::Scenario;
 use crate::{Error, Result};

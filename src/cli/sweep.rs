@@ -50,8 +50,11 @@ pub enum Workers {
     Scheduler(String),
 }
 
-/// Does the tasks, in a working folder; passes on each one's name when it has ended, with why it failed if it did.
-pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut dyn FnMut(&str, Option<&str>)) -> Result<()> + 'a;
+/// Takes the name of a task that has ended, and why it failed if it did.
+pub type Ended<'a> = dyn FnMut(&str, Option<&str>) + 'a;
+
+/// Does the tasks, in a working folder, and tells of each one's end.
+pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut Ended) -> Result<()> + 'a;
 
 /// The arguments of `closecall run` that are the same in all runs, as they were typed.
 #[derive(Debug, Default)]

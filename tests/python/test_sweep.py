@@ -156,7 +156,8 @@ READERS = {
         import pandas
         found = pandas.read_parquet(sys.argv[1])
         counts = found.groupby("run", observed=True).size().to_dict()
-        print(json.dumps([counts, float(found.margin.sum()), int(found.collision.sum()), sorted(set(found.sumo_scale))]))
+        scale = sorted(set(found.sumo_scale))
+        print(json.dumps([counts, float(found.margin.sum()), int(found.collision.sum()), scale]))
     """,
     "polars": """if True:
         import json, sys

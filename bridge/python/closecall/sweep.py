@@ -94,15 +94,18 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
     with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=folder) as unfinished:
         log, told = Path(unfinished, "log"), Path(unfinished, "stderr.txt")
         command = [sys.executable, "-c", START, "run", "--quiet", "--out", str(log), *words]
-        with told.open("wb") as stderr, subprocess.Popen(
-            command,
-            cwd=here,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=stderr,
-            # Ctrl-C is for the sweep, which then ends its runs.
-            start_new_session=True,
-        ) as process:
+        with (
+            told.open("wb") as stderr,
+            subprocess.Popen(
+                command,
+                cwd=here,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=stderr,
+                # Ctrl-C is for the sweep, which then ends its runs.
+                start_new_session=True,
+            ) as process,
+        ):
             wait(process, wanted())
         if process.returncode != 0:
             raise RuntimeError(failure(told.read_text(errors="replace"), process.returncode))
@@ -120,7 +123,7 @@ def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> Non
 
 
 def wanted() -> Callable[[], bool]:
-    """Whether the task of this thread is still wanted: Dask forgets it, but does not stop it, where its sweep is gone."""
+    """Whether this thread's task is still wanted: Dask forgets it, but does not stop it, where its sweep is gone."""
     from distributed import get_worker
 
     worker = get_worker()
