@@ -36,6 +36,12 @@ const FAR: Metre = 1e9;
 /// No strip is lower than this, in m.
 const LOWEST_STRIP: Metre = 1.0;
 
+/// Strips stay as they are as long as they are at most this many times as high as they have to be.
+const SPARE_HEIGHT: f64 = 2.0;
+/// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
+/// many moves per road user.
+const MOVES: usize = 8;
+
 /// A circle in its strip.
 #[derive(Clone, Copy)]
 struct Entry {
@@ -44,10 +50,18 @@ struct Entry {
     circle: Circle,
 }
 
-/// Finds the pairs of circles that meet; keeps its memory from step to step.
+impl Entry {
+    fn is_before(&self, other: &Self) -> bool {
+        (self.strip, self.circle.x) < (other.strip, other.circle.x)
+    }
+}
+
+/// Finds the pairs of circles that meet; keeps its memory, and the order that it found, from step to step.
 #[derive(Default)]
 pub struct Search {
     entries: Vec<Entry>,
+    strip_height: Metre,
+    is_known: Vec<bool>,
     large: Vec<u32>,
     found: Vec<(u32, u32)>,
     starts: Vec<u32>,
@@ -61,33 +75,73 @@ impl Search {
         if circles.len() < 2 {
             return;
         }
-        let widest = self.fill(circles);
+        let (widest, newcomers) = self.fill(circles);
+        self.sort(widest, newcomers);
         self.sweep(widest);
         self.compare_large(circles);
         self.in_order(circles.len(), pairs);
     }
 
-    /// Sorts the circles into strips along x, and within each by x; returns the largest radius in them.
-    fn fill(&mut self, circles: &[Circle]) -> Metre {
-        self.entries.clear();
-        self.large.clear();
+    /// Takes the circles of now in the order of the last step, those that it did not know at the end; returns the
+    /// largest radius and how many were not known.
+    fn fill(&mut self, circles: &[Circle]) -> (Metre, usize) {
         let mean = circles.iter().map(|circle| circle.radius.min(1e3)).sum::<f64>() / circles.len() as f64;
+        let is_large = |circle: &Circle| circle.radius > LARGE * mean || circle.x.abs() >= FAR || circle.y.abs() >= FAR;
+        let Self { entries, is_known, large, .. } = self;
+        is_known.clear();
+        is_known.resize(circles.len(), false);
         let mut widest = 0.0;
-        for (item, circle) in (0..).zip(circles) {
-            if circle.radius <= LARGE * mean && circle.x.abs() < FAR && circle.y.abs() < FAR {
+        entries.retain_mut(|entry| match circles.get(entry.item as usize) {
+            Some(circle) if !is_large(circle) => {
+                is_known[entry.item as usize] = true;
+                entry.circle = *circle;
                 widest = f64::max(widest, circle.radius);
-                self.entries.push(Entry { strip: 0, item, circle: *circle });
+                true
+            }
+            _ => false,
+        });
+        let known = entries.len();
+        large.clear();
+        for (item, circle) in (0..).zip(circles).filter(|(item, _)| !is_known[*item as usize]) {
+            if is_large(circle) {
+                large.push(item);
             } else {
-                self.large.push(item);
+                widest = f64::max(widest, circle.radius);
+                entries.push(Entry { strip: 0, item, circle: *circle });
             }
         }
-        // Two that meet are in the same strip or in neighbouring ones.
-        let per_metre = 1.0 / (2.0 * widest).max(LOWEST_STRIP);
-        for entry in &mut self.entries {
+        (widest, entries.len() - known)
+    }
+
+    /// Sorts the circles into strips along x, and within each by x. Two that meet are then in the same strip or in
+    /// neighbouring ones.
+    fn sort(&mut self, widest: Metre, newcomers: usize) {
+        let least = (2.0 * widest).max(LOWEST_STRIP);
+        let same_strips = (least..=SPARE_HEIGHT * least).contains(&self.strip_height);
+        if !same_strips {
+            self.strip_height = SPARE_HEIGHT.sqrt() * least;
+        }
+        let per_metre = 1.0 / self.strip_height;
+        let entries = &mut self.entries[..];
+        for entry in entries.iter_mut() {
             entry.strip = (entry.circle.y * per_metre).floor() as i32;
         }
-        self.entries.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.circle.x.total_cmp(&b.circle.x)));
-        widest
+        let mut moves = if same_strips && newcomers < entries.len() / 8 { MOVES * entries.len() } else { 0 };
+        for place in 1..entries.len() {
+            let entry = entries[place];
+            let mut to = place;
+            while to > 0 && entry.is_before(&entries[to - 1]) {
+                if moves == 0 {
+                    entries[to] = entry;
+                    entries.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.circle.x.total_cmp(&b.circle.x)));
+                    return;
+                }
+                moves -= 1;
+                entries[to] = entries[to - 1];
+                to -= 1;
+            }
+            entries[to] = entry;
+        }
     }
 
     /// From each circle ahead in its own strip, and to both sides in the next.
@@ -172,6 +226,25 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn none_is_lost_from_step_to_step_either(
+            starts in prop::collection::vec((-300.0..300.0, -300.0..300.0, -9.0..9.0, -9.0..9.0, 0.5..20.0), 0..60),
+            leave in prop::collection::vec(0_usize..8, 8),
+        ) {
+            let mut search = Search::default();
+            let mut pairs = Vec::new();
+            let mut cars = starts;
+            for leaving in leave {
+                for (x, y, along, up, _) in &mut cars {
+                    (*x, *y) = (*x + *along, *y + *up);
+                }
+                cars.truncate(cars.len() - leaving.min(cars.len()));
+                let circles: Vec<_> = cars.iter().map(|&(x, y, _, _, radius)| Circle { x, y, radius }).collect();
+                search.pairs(&circles, &mut pairs);
+                prop_assert_eq!(&pairs, &all_pairs(&circles));
+            }
+        }
+
         #[test]
         fn no_pair_is_lost_or_found_twice(
             places in prop::collection::vec((-300.0..300.0, -300.0..300.0, prop_oneof![0.5..5.0, 5.0..80.0, Just(5e3)]), 0..60),

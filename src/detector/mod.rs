@@ -18,7 +18,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::path::{Pose, arc, straight, turn};
 use crate::precollision::{Circle, Search};
 use crate::profile::{Category, Profile};
-use crate::units::Metre;
+use crate::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
 pub const LEVEL: Metre = 2.5;
@@ -58,6 +58,7 @@ pub struct Detector {
     search: Search,
     memory: Vec<Memory>,
     circles: Vec<Circle>,
+    briefs: Vec<Brief>,
     rows: Vec<Row>,
     pairs: Vec<(u32, u32)>,
     unplaced: Vec<u32>,
@@ -74,9 +75,18 @@ struct Memory {
     curvature: f64,
 }
 
+/// What decides, before anything else, whether a pair is one.
+#[derive(Clone, Copy, Debug)]
+struct Brief {
+    z: Metre,
+    moves: bool,
+    category: Category,
+}
+
 /// What is known of a frame's row in the step under way.
 #[derive(Clone, Copy, Debug)]
 struct Row {
+    heading: Radian,
     axis: Vector,
     stop: Metre,
     in_pair: bool,
@@ -98,6 +108,7 @@ impl Detector {
             search: Search::default(),
             memory: Vec::new(),
             circles: Vec::new(),
+            briefs: Vec::new(),
             rows: Vec::new(),
             pairs: Vec::new(),
             unplaced: Vec::new(),
@@ -147,17 +158,15 @@ impl Detector {
         self.search.pairs(&self.circles, &mut self.pairs);
         self.work.rows += frame.len() as u64;
         self.work.pairs += self.pairs.len() as u64;
-        let (states, work) = (frame.states(), &mut self.work);
+        let (briefs, work) = (&self.briefs, &mut self.work);
         self.pairs.retain(|&(a, b)| {
-            let (a, b) = (a as usize, b as usize);
-            let left_out = if states[a].speed <= STANDS && states[b].speed <= STANDS {
+            let (a, b) = (&briefs[a as usize], &briefs[b as usize]);
+            let is_obstacle = |brief: &Brief| brief.category == Category::Obstacle;
+            let left_out = if !a.moves && !b.moves {
                 &mut work.both_stand
-            } else if (states[a].z - states[b].z).abs() > LEVEL
-                && category(roster, frame, a) != Category::Obstacle
-                && category(roster, frame, b) != Category::Obstacle
-            {
+            } else if (a.z - b.z).abs() > LEVEL && !is_obstacle(a) && !is_obstacle(b) {
                 &mut work.other_level
-            } else if category(roster, frame, a) == Category::Person && category(roster, frame, b) == Category::Person {
+            } else if a.category == Category::Person && b.category == Category::Person {
                 &mut work.both_persons
             } else {
                 return true;
@@ -169,7 +178,7 @@ impl Detector {
         for index in 0..self.pairs.len() {
             for row in [self.pairs[index].0, self.pairs[index].1] {
                 if !std::mem::replace(&mut self.rows[row as usize].in_pair, true) {
-                    self.follow(frame, roster, row);
+                    self.follow(frame, row);
                 }
             }
         }
@@ -179,15 +188,23 @@ impl Detector {
     /// Every row's circle and what else follows from its state alone.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
         self.circles.clear();
-        self.rows.clear();
+        self.briefs.clear();
+        self.rows.truncate(frame.len());
         let arcs = self.options.path == PathModel::Arc;
-        for (&user, state) in frame.users().iter().zip(frame.states()) {
+        for (place, (&user, state)) in frame.users().iter().zip(frame.states()).enumerate() {
             let profile = roster.profile_of(user);
-            let axis = direction(state.heading);
+            // Most drive straight on, and most rows are the same road user's as in the last step.
+            let axis = match self.rows.get(place) {
+                Some(last) if last.heading == state.heading => last.axis,
+                _ => direction(state.heading),
+            };
             let front = Point::new(state.x, state.y);
-            let stop = if state.speed > STANDS { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
+            let moves = state.speed > STANDS;
+            let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
             self.circles.push(circle(roster, user, profile, front, axis, stop + self.options.epsilon));
-            self.rows.push(Row {
+            self.briefs.push(Brief { z: state.z, moves, category: profile.category });
+            let row = Row {
+                heading: state.heading,
                 axis,
                 stop,
                 in_pair: false,
@@ -195,7 +212,11 @@ impl Detector {
                 poses: (0, 0),
                 straight: false,
                 bounds: Bounds::EMPTY,
-            });
+            };
+            match self.rows.get_mut(place) {
+                Some(last) => *last = row,
+                None => self.rows.push(row),
+            }
             if arcs {
                 let memory = &mut self.memory[user.0 as usize];
                 if let Some((last, last_axis)) = memory.last {
@@ -207,11 +228,11 @@ impl Detector {
     }
 
     /// Follows a row's path along the lanes, or asks for its lane.
-    fn follow(&mut self, frame: &Frame, roster: &Roster, row: u32) {
+    fn follow(&mut self, frame: &Frame, row: u32) {
         let state = &frame.states()[row as usize];
         let by_lanes = self.options.path == PathModel::Lanes && self.options.mode == Mode::Closecall;
         let moving_vehicle =
-            state.speed > STANDS && category(roster, frame, row as usize) == Category::Vehicle && by_lanes;
+            self.briefs[row as usize].moves && self.briefs[row as usize].category == Category::Vehicle && by_lanes;
         if !moving_vehicle || self.net.is_none() {
             return;
         }
@@ -327,11 +348,11 @@ impl Detector {
             return;
         }
         poses.push(Pose { way: 0.0, front, axis });
-        let ways = ways.iter().copied().skip_while(|way| *way <= 0.0).collect::<Vec<_>>();
+        let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, memory.curvature, profile.chord, &ways, poses);
+            arc::poses(front, axis, memory.curvature, profile.chord, ways, poses);
         } else {
-            straight::poses(front, axis, &ways, poses);
+            straight::poses(front, axis, ways, poses);
         }
     }
 
@@ -401,10 +422,6 @@ impl Detector {
     }
 }
 
-fn category(roster: &Roster, frame: &Frame, row: usize) -> Category {
-    roster.profile_of(frame.users()[row]).category
-}
-
 /// The circle that holds all that a road user may cover within `reach` m of way.
 fn circle(roster: &Roster, user: UserIndex, profile: &Profile, front: Point, axis: Vector, reach: Metre) -> Circle {
     if profile.category == Category::Obstacle {
@@ -416,5 +433,6 @@ fn circle(roster: &Roster, user: UserIndex, profile: &Profile, front: Point, axi
         return Circle { x: centre.x, y: centre.y, radius: (bounds.high - bounds.low).norm() / 2.0 };
     }
     let centre = front - axis * (profile.length / 2.0);
-    Circle { x: centre.x, y: centre.y, radius: reach + profile.length.hypot(profile.width) / 2.0 }
+    let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
+    Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }
 }

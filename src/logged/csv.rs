@@ -145,7 +145,10 @@ mod tests {
     use crate::encounter::Kind;
     use crate::log::CONFLICTS;
 
-    const ROW: &str = "1,a,b,side,serious,0,1,0.5,1,3,-2,0.4,1.2,3.5,,2,10,5,1.57,7,8,:J_12_0_1,false,car,truck\n";
+    const ROW: &str = concat!(
+        "1,a,b,side,serious,0,1,0.5,1,3,-2,0.4,1.2,3.5,,2,10,5,1.57,7,8,:J_12_0_1,false,car,truck,",
+        "3,8,0,4.6,1.8,5 8 7 8,9,5,1.57,12,2.5,\n",
+    );
 
     fn read(name: &str, text: &str) -> Result<Vec<LoggedConflict>> {
         let folder = std::env::temp_dir().join(format!("closecall-logged-{name}-{}", std::process::id()));
@@ -157,7 +160,7 @@ mod tests {
     }
 
     fn header() -> String {
-        crate::log::CONFLICT_COLUMNS[..25].join(",") + "\n"
+        crate::log::CONFLICT_COLUMNS.join(",") + "\n"
     }
 
     #[test]
@@ -178,8 +181,8 @@ mod tests {
         for (name, text, said) in [
             ("empty", String::new(), "it is empty"),
             ("schema", "time,ego\n".to_owned(), "line 1: the column \"id\" is missing"),
-            ("cells", header() + ROW + "2,a,b,side\n", "line 3: the row has 4 cells, not 25"),
-            ("cut", header() + &ROW[..ROW.len() - 2], "its last row is cut short"),
+            ("cells", header() + ROW + "2,a,b,side\n", "line 3: the row has 4 cells, not 37"),
+            ("cut", header() + &ROW[..ROW.len() - 1], "its last row is cut short"),
             ("kind", header() + &ROW.replace("side", "odd"), "line 2: unknown variant"),
             ("number", header() + &ROW.replace("-2", "NaN"), "line 2: NaN is no number of a log"),
         ] {

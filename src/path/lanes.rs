@@ -23,6 +23,8 @@ const NEAR_HINT: Metre = 5.0;
 const EDGES_AHEAD: usize = 8;
 /// A lateral speed below this is a vehicle that keeps its offset, in m/s.
 const KEEPS_OFFSET: MetrePerSecond = 0.01;
+/// Who drifts within its lane stays this far off the border, in m: more than sweeping may err.
+const OFF_THE_BORDER: Metre = 0.05;
 
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
@@ -316,16 +318,24 @@ fn offset(net: &Net, start: &Start, placement: &Placement, foot: &Foot, against:
         return Offset { now, target: now, over: 0.0 };
     }
     let width = net.lanes[placement.lane.0 as usize].width;
-    // As far aside as it can be within its lane.
-    let inside = (width - start.width).max(0.0) / 2.0;
+    // As far aside as it can be within its lane: two that drift towards each other, each in its own, do not touch.
+    let inside = ((width - start.width) / 2.0 - OFF_THE_BORDER).max(0.0);
     let target = if now * speed < 0.0 {
         0.0
-    } else if start.sublane && now.abs() < inside {
-        inside.copysign(speed)
+    } else if start.sublane && (now.abs() < inside || !leads_to_a_lane(net, placement.lane, placement.lateral_speed)) {
+        // At the border already, beyond which there is no lane to change to, it is not going any further.
+        inside.max(now.abs()).copysign(speed)
     } else {
         width.copysign(speed)
     };
     Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed }
+}
+
+/// Whether the edge has another lane to that side.
+fn leads_to_a_lane(net: &Net, lane: LaneIndex, to_the_left: MetrePerSecond) -> bool {
+    let lane = &net.lanes[lane.0 as usize];
+    let last = net.edges[lane.edge.0 as usize].lanes.len() as u32;
+    if to_the_left > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
 /// The centre line behind the front bumper, from there backwards, as far as the rear bumper and a little more.

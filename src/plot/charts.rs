@@ -5,7 +5,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{Color, DashedLineSeries, DrawingArea, DrawingBackend, Rectangle, Text, WHITE};
 use plotters::style::{IntoFont, TextStyle};
 
-use super::{Chart, FONT_NAME, INK, colour, said};
+use super::{Chart, INK, colour, font, said};
 use crate::encounter::Severity;
 use crate::report::Conflicts;
 use crate::units::Second;
@@ -110,7 +110,7 @@ fn draw<B: DrawingBackend>(
     let highest = bars.counts.iter().map(|counts| counts.iter().sum::<u32>()).max().unwrap_or(0);
     let top = f64::from(highest.max(1)) * 1.08;
     let end = bars.low + bars.width * bars.counts.len() as f64;
-    let font = |size: i32| TextStyle::from((FONT_NAME, size).into_font()).color(&INK);
+    let font = |size: i32| TextStyle::from((font::NAME, size).into_font()).color(&INK);
     let mut chart = ChartBuilder::on(area)
         .margin(24)
         .margin_right(48)

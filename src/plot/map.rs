@@ -6,7 +6,7 @@ use plotters::prelude::{
 };
 use plotters::style::{IntoFont, TextStyle};
 
-use super::{Chart, FONT_NAME, INK, colour, said};
+use super::{Chart, INK, colour, font, said};
 use crate::encounter::{Kind, Severity};
 use crate::geometry::{Bounds, Point, Vector};
 use crate::net::{EdgeFunction, Net};
@@ -107,7 +107,7 @@ fn sign<B: DrawingBackend>(
 
 fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, view: &View) -> Result<(), String> {
     let y = area.dim_in_pixel().1 as i32 - 35;
-    let style = TextStyle::from((FONT_NAME, 24).into_font()).color(&INK);
+    let style = TextStyle::from((font::NAME, 24).into_font()).color(&INK);
     let text = |words: &str, x: i32| area.draw(&Text::new(words.to_owned(), (x, y - 10), style.clone())).map_err(said);
     let mut x = ROOM as i32 + 10;
     for kind in Kind::ALL {

@@ -4,6 +4,7 @@
 //! crate: the same pictures on every machine.
 
 mod charts;
+pub(crate) mod font;
 mod map;
 
 use std::fs;
@@ -11,16 +12,11 @@ use std::path::{Path, PathBuf};
 
 use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend, WHITE};
-use plotters::style::{FontStyle, register_font};
 
 use crate::encounter::Severity;
 use crate::report::{self, Conflicts};
 use crate::{Error, Result};
 
-/// DejaVu Sans, cut down to Latin, Greek and what formulas need.
-const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
-/// Its name in the pictures; an SVG viewer takes its own font of that name, or its own sans-serif.
-const FONT_NAME: &str = "DejaVu Sans, sans-serif";
 /// Width and height of a map.
 const MAP_SIZE: (u32, u32) = (1600, 1200);
 /// Width and height of any other chart.
@@ -53,8 +49,7 @@ fn colour(severity: Severity) -> RGBColor {
 pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: Format) -> Result<Vec<PathBuf>> {
     let conflicts = report::read(folders, net)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
-    register_font(FONT_NAME, FontStyle::Normal, FONT)
-        .map_err(|_| Error::Value("the font of the pictures cannot be used".to_owned()))?;
+    font::register()?;
     let mut files = vec![picture(out, "map", format, MAP_SIZE, &conflicts, map::Map)?];
     files.push(picture(out, "time", format, CHART_SIZE, &conflicts, charts::TimeLine)?);
     for measure in &charts::MEASURES {

@@ -1,20 +1,17 @@
 //! Random numbers that are the same on every machine.
 
-use rand::rngs::ChaCha8Rng;
-use rand::{RngExt, SeedableRng};
-
 /// A stream of random numbers.
-pub struct Chance(ChaCha8Rng);
+pub struct Chance(fastrand::Rng);
 
 impl Chance {
     /// The stream of a seed.
     pub fn new(seed: u64) -> Self {
-        Self(ChaCha8Rng::seed_from_u64(seed))
+        Self(fastrand::Rng::with_seed(seed))
     }
 
     /// A number from `low` to `high`.
     pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        if low < high { self.0.random_range(low..high) } else { low }
+        low + (high - low) * self.0.f64()
     }
 
     /// A number from `low` to `high`, both above 0, every order of magnitude alike.
@@ -24,12 +21,12 @@ impl Chance {
 
     /// A whole number below `count`.
     pub fn below(&mut self, count: usize) -> usize {
-        self.0.random_range(0..count.max(1))
+        self.0.usize(..count.max(1))
     }
 
     /// A whole number from −`most` to `most`.
     pub fn around(&mut self, most: i32) -> i32 {
-        self.0.random_range(-most..=most)
+        self.0.i32(-most..=most)
     }
 
     /// One of these; `T::default()` of none.

@@ -34,12 +34,12 @@ pub fn adjusted_p(expected: &[Vec<f64>], found: &[Vec<f64>]) -> Vec<f64> {
         enumerate(&runs, found.len(), &mut vec![0.0; measures], &mut count);
     } else {
         count(&real);
-        let mut generator = Generator(0);
+        let mut random = fastrand::Rng::with_seed(0);
         let mut order = (0..runs.len()).collect::<Vec<_>>();
         for _ in 0..DRAWN {
             let mut split = vec![0.0; measures];
             for place in 0..found.len() {
-                order.swap(place, place + generator.below(runs.len() - place));
+                order.swap(place, random.usize(place..runs.len()));
                 add(&mut split, &runs[order[place]]);
             }
             count(&split);
@@ -110,26 +110,6 @@ fn possible_splits(expected: usize, found: usize) -> u64 {
     (1..=found as u64).fold(1, |splits: u64, k| splits.saturating_mul(expected as u64 + k) / k)
 }
 
-/// SplitMix64 (Steele, Lea and Flood 2014): the same numbers on every machine.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Generator(pub(super) u64);
-
-impl Generator {
-    /// The next number.
-    pub(super) fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ (mixed >> 31)
-    }
-
-    /// A number below `bound`; the bias is below `bound` / 2⁶⁴.
-    pub(super) fn below(&mut self, bound: usize) -> usize {
-        ((u128::from(self.next()) * bound as u128) >> 64) as usize
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -168,8 +148,8 @@ mod tests {
     /// deviations above that are 33.
     #[test]
     fn at_most_one_false_alarm_in_a_hundred() {
-        let mut generator = Generator(1);
-        let mut uniform = || (generator.next() >> 11) as f64 / (1_u64 << 53) as f64;
+        let mut random = fastrand::Rng::with_seed(1);
+        let mut uniform = || random.f64();
         let mut run = || {
             let common = -uniform().ln();
             (0..20).map(|measure| (common * uniform() * f64::from(measure)).powi(2).floor()).collect::<Vec<_>>()

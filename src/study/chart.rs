@@ -5,14 +5,12 @@ use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
-use plotters::style::{FontStyle, register_font};
 
 use super::{Axis, Measurement, scenes};
+use crate::plot::font;
 use crate::{Error, Result};
 
-const FONT: &str = "sans-serif";
-/// The few letters that charts need of DejaVu Sans: nothing has to be installed.
-const LETTERS: &[u8] = include_bytes!("fonts/DejaVuSans-subset.ttf");
+const FONT: &str = font::NAME;
 
 /// Colours that the colour-blind can tell apart (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 8] = [
@@ -33,8 +31,7 @@ type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 /// Draws one axis as `<axis>.svg` and `<axis>.png`.
 pub(super) fn draw(folder: &Path, axis: Axis, rows: &[Measurement]) -> Result<()> {
-    // A second registration changes nothing, and the font is a valid one: a test draws with it.
-    let _ = register_font(FONT, FontStyle::Normal, LETTERS);
+    font::register()?;
     let panels = panels(axis, rows);
     let columns = panels.len().clamp(1, MOST_COLUMNS);
     let lines = panels.len().div_ceil(columns) as u32;

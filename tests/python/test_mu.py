@@ -172,4 +172,15 @@ def test_published_stopping_distances_are_met() -> None:
     mile_per_hour = 0.44704
     speeds = np.arange(20, 71, 10) * mile_per_hour
     found = cc.mu(speeds, decel=6.5, response_time=0.67, **stop)
-    assert np.all(np.abs(found - [12, 23, 36, 53, 73, 96]) < 1.5), found
+    # The table rounds thinking and braking distance each: 12 and 24 of 11.98 and 24.59 m.
+    assert np.all(np.abs(found - [12, 23, 36, 53, 73, 96]) < 0.6), found
+
+
+def test_the_german_rule_of_thumb_is_reproduced() -> None:
+    """Hazard braking from 100 km/h: 80 m, of which 30 m of response (V/10 · 3) and 50 m of braking ((V/10)² / 2)."""
+    speed = 100 / 3.6
+    decel = speed**2 / (2 * 50.0)
+    stop: dict[str, Any] = {"kind": "side", "build_up": 0.0, "epsilon": 0.0, "foe_speed": 0.0}
+    assert 7.5 < decel < 8.0, "what brakes do on a dry road"
+    found = float(cc.mu(speed, decel=decel, response_time=30.0 / speed, **stop))
+    assert abs(found - 80.0) < 1e-9

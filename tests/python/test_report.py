@@ -199,7 +199,7 @@ def test_a_worst_conflict_is_told_in_words(browser: Any, scenario: Copy, tmp_pat
     assert closecall("report", tmp_path / "log", "-o", tmp_path / "r.html").returncode == 0
     [row] = rows(tmp_path / "log" / "conflicts.csv")
     text = Opened(browser, tmp_path / "r.html").text("#worst")
-    assert f"{row['ego']} at {float(row['ego_speed']):.1f} m/s" in text
+    assert f"{row['ego']} ({row['ego_type']}) at {float(row['ego_speed']):.1f} m/s" in text
     assert f"run into the rear of {row['foe']}" in text
     assert f"μ = {float(row['mu']):.2f} m" in text
 

@@ -1,6 +1,8 @@
 //! How often the statistical test finds a difference where nothing was changed, on real runs: an experiment, to be
 //! repeated as docs/compare.md says.
 
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
+
 use std::path::PathBuf;
 
 use closecall::regress::outcome::Outcome;
@@ -11,11 +13,13 @@ const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;
 
 /// Both sides of a trial are drawn from the same runs, no seed twice.
-#[test]
-#[ignore = "needs the logs of many runs; CLOSECALL_LOGS is their folder, with seed-1, seed-2, …"]
-fn at_most_one_false_alarm_in_a_hundred_between_runs_of_the_same_scenario() {
-    let folder = PathBuf::from(std::env::var("CLOSECALL_LOGS").unwrap());
-    let nets = PathBuf::from(std::env::var("CLOSECALL_SCENARIO").unwrap());
+fn main() {
+    // cargo itself adds `--bench`.
+    let mut folders = std::env::args_os().skip(1).filter(|word| word != "--bench").map(PathBuf::from);
+    let (Some(nets), Some(folder)) = (folders.next(), folders.next()) else {
+        println!("usage: cargo bench --bench false_alarms -- SCENARIO LOGS (a folder with seed-1, seed-2, …)");
+        return;
+    };
     let logs = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let mut runs = logs
         .map(|log| {
@@ -25,15 +29,11 @@ fn at_most_one_false_alarm_in_a_hundred_between_runs_of_the_same_scenario() {
         .collect::<Vec<_>>();
     runs.sort_by_key(Outcome::seeds);
     let settings = Settings::default();
-    let mut state = 1_u64;
-    let mut below = |bound: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state >> 33) as usize) % bound
-    };
+    let mut random = fastrand::Rng::with_seed(1);
     let mut alarms = 0;
     for _ in 0..TRIALS {
         for place in 0..2 * SEEDS {
-            let other = place + below(runs.len() - place);
+            let other = random.usize(place..runs.len());
             runs.swap(place, other);
         }
         let (expected, found) = (together(&runs[..SEEDS]), together(&runs[SEEDS..2 * SEEDS]));

@@ -1,0 +1,77 @@
+//! Once warm, the detector takes no memory any more: counted by the allocator itself.
+
+#![allow(unsafe_code, reason = "an allocator that counts is one")]
+#![allow(clippy::unwrap_used, reason = "a test may")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use closecall::braking::Brakes;
+use closecall::detector::Detector;
+use closecall::frame::{Frame, Roster, State, UserIndex};
+use closecall::options::Options;
+use closecall::profile::{Category, Profile};
+
+/// The system's allocator, counting.
+struct Counting;
+
+static COUNT: AtomicU64 = AtomicU64::new(0);
+
+// SAFETY: every call is handed on to the system's allocator as it came.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        COUNT.fetch_add(1, Ordering::Relaxed);
+        // SAFETY: as the caller promises.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        // SAFETY: as the caller promises.
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Four lanes of cars that close up and spread again; every tenth crosses.
+fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
+    let phase = f64::from(number % 20) / 20.0 * std::f64::consts::TAU;
+    frame.begin(f64::from(number) * 0.1);
+    for (place, &user) in users.iter().enumerate() {
+        let (row, lane) = (place / 4, place % 4);
+        let x = row as f64 * (12.0 + 2.0 * phase.sin()) + 3.0 * phase.cos();
+        let heading = if place % 10 == 0 { std::f64::consts::FRAC_PI_2 } else { 0.0 };
+        frame.push(user, State { x, y: lane as f64 * 3.2, z: 0.0, heading, speed: 8.0 + 5.0 * phase.cos() });
+    }
+}
+
+#[test]
+fn a_warm_detector_allocates_nothing() {
+    let mut roster = Roster::default();
+    let car = Profile {
+        name: "car".to_owned(),
+        category: Category::Vehicle,
+        length: 5.0,
+        width: 2.0,
+        chord: 5.0,
+        mass: 1500.0,
+        brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
+    };
+    let profile = roster.profile(car).unwrap();
+    let users = (0..1000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
+    let mut detector = Detector::new(&Options::default(), None);
+    let mut frame = Frame::default();
+    let (mut before, mut found) = (0, 0);
+    // One round to get warm, then the same one again.
+    for number in 0..40 {
+        if number == 20 {
+            before = COUNT.load(Ordering::Relaxed);
+        }
+        step(&mut frame, &users, number);
+        detector.approach(&frame, &roster);
+        found += detector.detect(&frame, &roster).len();
+    }
+    assert!(found > 1000, "{found}");
+    assert_eq!(COUNT.load(Ordering::Relaxed) - before, 0);
+}
