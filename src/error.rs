@@ -77,6 +77,14 @@ pub enum Error {
     /// The user ended a command before it had come to a result.
     #[error("interrupted; nothing was compared or written")]
     Stopped,
+    /// The user ended a sweep.
+    #[error("interrupted after {done} of {all} runs; the same command continues there")]
+    Paused {
+        /// The runs that have ended.
+        done: usize,
+        /// All runs.
+        all: usize,
+    },
 }
 
 impl Error {
@@ -102,7 +110,7 @@ impl Error {
             Self::Failed { .. } | Self::Exceeded(_) => 1,
             Self::CutShort { .. } => 3,
             // As shells say it: 128 + SIGINT.
-            Self::Interrupted { .. } | Self::Stopped => 130,
+            Self::Interrupted { .. } | Self::Stopped | Self::Paused { .. } => 130,
             _ => 2,
         }
     }

@@ -42,6 +42,7 @@ pub mod stress;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod summary;
+pub mod sweep;
 pub mod units;
 
 pub use error::{Error, Result};

@@ -10,6 +10,7 @@ mod functions;
 mod paint;
 mod pull;
 mod run;
+mod sweep;
 
 use pyo3::prelude::*;
 
@@ -22,6 +23,8 @@ mod _closecall {
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
     use super::run::{main, scenario};
+    #[pymodule_export]
+    use super::sweep::finish_run;
 
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 

@@ -23,6 +23,7 @@ use pyo3::prelude::*;
 use crate::error::{exception, message};
 use crate::paint::Painter;
 use crate::pull::{self, Source};
+use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
@@ -36,7 +37,12 @@ const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let mut simulate = |request: &RunRequest| simulate(py, request);
     let mut interrupted = || py.check_signals().is_err();
-    let sumo = Sumo { simulate: &mut simulate, closecall: closecall(py)?, interrupted: &mut interrupted };
+    let sumo = Sumo {
+        simulate: &mut simulate,
+        distribute: &mut |workers, folder, tasks, ended| sweep::distribute(py, workers, folder, tasks, ended),
+        closecall: closecall(py)?,
+        interrupted: &mut interrupted,
+    };
     Ok(cli::main(words, Some(sumo)))
 }
 

@@ -15,6 +15,7 @@ mod stats;
 mod stress;
 #[cfg(feature = "study")]
 mod study;
+mod sweep;
 
 use std::ffi::OsString;
 use std::path::Path;
@@ -22,6 +23,7 @@ use std::path::Path;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use run::{RunRequest, Simulate};
+pub use sweep::{Distribute, Ended, Workers};
 
 use crate::regress::Scenario;
 use crate::{Error, Result};
@@ -38,6 +40,8 @@ enum Command {
     /// Run a SUMO scenario with the checker attached
     #[command(args_override_self = true)]
     Run(Box<run::RunArgs>),
+    /// Run a scenario with many seeds and options, in parallel, into one data set
+    Sweep(Box<sweep::SweepArgs>),
     /// Check a recording: SUMO's fcd-output, in XML or CSV, also gzipped
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
@@ -66,6 +70,8 @@ enum Command {
 pub struct Sumo<'a> {
     /// Runs a simulation in this process.
     pub simulate: &'a mut Simulate<'a>,
+    /// Has the runs of a sweep done.
+    pub distribute: &'a mut Distribute<'a>,
     /// The command line that starts closecall in a process of its own, without arguments.
     pub closecall: Vec<OsString>,
     /// Whether the user has asked to stop.
@@ -91,6 +97,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
     };
     let done = match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
+        Command::Sweep(arguments) => sweep::run(*arguments, sumo),
         Command::Replay(arguments) => replay::run(*arguments).map(|()| 0),
         Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
         Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),

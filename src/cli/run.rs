@@ -89,7 +89,8 @@ pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     Ok(())
 }
 
-fn request(arguments: RunArgs) -> Result<RunRequest> {
+/// What is asked for, checked as far as that can be done before SUMO starts.
+pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
     let scenario = arguments.configuration_file.or(arguments.scenario).unwrap_or_default();
     // Opened here for the operating system's own words on why it cannot be.
     std::fs::File::open(&scenario).map_err(|source| Error::file(&scenario, source))?;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::parquet::PARQUET;
 use crate::log::CONFLICTS;
 use crate::{Error, Result};
 
@@ -25,7 +26,10 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         let before = found.len();
         search(folder, DEEPEST, &mut found)?;
         if found.len() == before {
-            return Err(Error::content(folder, format!("there is no log in it: no {CONFLICTS}, at no depth")));
+            return Err(Error::content(
+                folder,
+                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at no depth"),
+            ));
         }
     }
     let mut known = Vec::with_capacity(found.len());
@@ -42,9 +46,11 @@ fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
     let mut below = Vec::new();
     for entry in entries {
         let path = entry.map_err(|source| Error::file(folder, source))?.path();
-        if path.is_dir() {
+        let name = path.file_name().unwrap_or_default();
+        // Hidden is what a sweep has not finished.
+        if path.is_dir() && !name.as_encoded_bytes().starts_with(b".") {
             below.push(path);
-        } else if path.file_name().is_some_and(|name| name == CONFLICTS) {
+        } else if name == CONFLICTS || name == PARQUET {
             found.push(folder.to_owned());
         }
     }

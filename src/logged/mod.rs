@@ -1,12 +1,19 @@
 //! Logs read back: the folders, how each run was made, and its conflicts one by one.
 //!
 //! The one place that knows how a log is read; statistics, reports and comparisons take conflicts from here. A folder
-//! is a log where it holds `conflicts.csv`; several may lie below one folder, at any depth, as a sweep writes them.
+//! is a log where it holds `conflicts.csv`, or `conflicts.parquet` as a sweep writes it; several may lie below one
+//! folder, at any depth.
 
 mod conflicts;
+mod csv;
+mod fields;
 mod folders;
+mod pack;
+mod parquet;
 mod run;
 
-pub use conflicts::{ConflictReader, LoggedConflict};
+pub use conflicts::{ConflictReader, LoggedConflict, LoggedStance};
 pub use folders::log_folders;
-pub use run::{LoggedRun, LoggedSummary, LoggedVersions};
+pub use pack::{Label, LabelValue, pack};
+pub use parquet::{PARQUET, Packed};
+pub use run::{LoggedRun, LoggedSummary, LoggedVersions, record};

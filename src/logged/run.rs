@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::parquet::{PARQUET, Packed};
 use crate::inputs::Input;
 use crate::log::RUN;
 use crate::summary::Exposure;
@@ -55,14 +56,27 @@ pub struct LoggedSummary {
     pub exposure: Exposure,
 }
 
+/// The text of a log folder's `run.json`, and the file that it is in: that of its own, or `conflicts.parquet`.
+///
+/// # Errors
+/// [`Error::File`] where neither is there; [`Error::Content`] where the Parquet file has none or cannot be read.
+pub fn record(folder: &Path) -> Result<(PathBuf, String)> {
+    let (own, packed) = (folder.join(RUN), folder.join(PARQUET));
+    if own.exists() || !packed.exists() {
+        let text = std::fs::read_to_string(&own).map_err(|source| Error::file(&own, source))?;
+        return Ok((own, text));
+    }
+    let record = Packed::of(&packed)?.record;
+    Ok((packed, record))
+}
+
 impl LoggedRun {
-    /// Reads the `run.json` of a log folder.
+    /// Reads the [`fn@record`] of a log folder.
     ///
     /// # Errors
     /// [`Error::File`] or [`Error::Line`] where it is missing or is not what closecall writes.
     pub fn read(folder: &Path) -> Result<Self> {
-        let path = folder.join(RUN);
-        let text = std::fs::read_to_string(&path).map_err(|source| Error::file(&path, source))?;
+        let (path, text) = record(folder)?;
         serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))
     }
 

@@ -10,6 +10,7 @@ use super::rows::{NUMBERS, Row, Worst};
 use crate::Result;
 use crate::encounter::{Kind, Severity};
 use crate::geometry::Point;
+use crate::logged::log_folders;
 use crate::net::Net;
 use crate::options::Options;
 use crate::units::Second;
@@ -36,7 +37,7 @@ pub struct Conflicts {
 /// [`crate::Error::File`] where a folder cannot be read, [`crate::Error::Content`] where a folder holds no log,
 /// [`crate::Error::Line`] where a row of `conflicts.csv` is not as `docs/log.md` has it.
 pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
-    let logs = log_files::find(folders)?;
+    let logs = log_folders(folders)?;
     let mut worst = Worst::default();
     for (run, log) in (0..).zip(&logs) {
         log_files::rows(log, |mut row| {

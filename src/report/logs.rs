@@ -1,159 +1,67 @@
-//! Finding logs, and reading their rows one after the other.
+//! Logs as the page needs them: the record of each, and its conflicts as [`Row`]s.
 
-use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use csv::StringRecord;
-
-use super::rows::{NUMBERS, Row, Stance};
+use super::rows::{Row, Stance};
 use crate::encounter::{Kind, Severity};
-use crate::log::{CONFLICTS, RUN};
+use crate::log::RUN;
+use crate::logged::{self, ConflictReader, LoggedConflict, LoggedStance, PARQUET};
 use crate::{Error, Result};
-
-/// The columns of a [`Stance`], after `ego_` and `foe_`.
-const STANCE: [&str; 5] = ["x", "y", "heading", "length", "width"];
-
-/// The logs in these folders, each a log itself or a folder with logs somewhere in it.
-pub fn find(folders: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut logs = Vec::new();
-    for folder in folders {
-        let before = logs.len();
-        look(folder, &mut logs)?;
-        if logs.len() == before {
-            return Err(Error::content(folder, format!("there is no {CONFLICTS} in it")));
-        }
-    }
-    Ok(logs)
-}
-
-fn look(folder: &Path, logs: &mut Vec<PathBuf>) -> Result<()> {
-    if folder.join(CONFLICTS).is_file() {
-        logs.push(folder.to_owned());
-        return Ok(());
-    }
-    let entries = fs::read_dir(folder).map_err(|source| Error::file(folder, source))?;
-    let mut folders = Vec::new();
-    for entry in entries {
-        let entry = entry.map_err(|source| Error::file(folder, source))?;
-        // Links are not followed: they may lead in circles.
-        if entry.file_type().is_ok_and(|kind| kind.is_dir()) {
-            folders.push(entry.path());
-        }
-    }
-    folders.sort();
-    folders.iter().try_for_each(|folder| look(folder, logs))
-}
 
 /// A log's `run.json`; null where there is none.
 pub fn record(log: &Path) -> Result<serde_json::Value> {
-    let path = log.join(RUN);
-    if !path.is_file() {
+    if !log.join(RUN).is_file() && !log.join(PARQUET).is_file() {
         return Ok(serde_json::Value::Null);
     }
-    let text = fs::read_to_string(&path).map_err(|source| Error::file(&path, source))?;
+    let (path, text) = logged::record(log)?;
     serde_json::from_str(&text).map_err(|error| Error::content(&path, format!("it is no JSON: {error}")))
 }
 
-/// Passes on the rows of a log's conflicts, in their order.
+/// Passes on the conflicts of a log, in their order.
 pub fn rows(log: &Path, mut take: impl FnMut(Row)) -> Result<()> {
-    let path = log.join(CONFLICTS);
-    let unreadable = |error: csv::Error| {
-        let line = error.position().map_or(1, csv::Position::line);
-        match error.into_kind() {
-            csv::ErrorKind::Io(source) => Error::file(&path, source),
-            csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-                Error::line(&path, line, format!("{len} cells; the first line has {expected_len}"))
-            }
-            kind => Error::line(&path, line, format!("{kind:?}")),
-        }
-    };
-    let mut reader = csv::Reader::from_path(&path).map_err(unreadable)?;
-    let columns = Columns::of(reader.headers().map_err(unreadable)?).map_err(|said| Error::line(&path, 1, said))?;
-    let mut cells = StringRecord::new();
-    while reader.read_record(&mut cells).map_err(unreadable)? {
-        let line = cells.position().map_or(0, csv::Position::line);
-        take(columns.row(&cells).map_err(|said| Error::line(&path, line, said))?);
-    }
-    Ok(())
+    ConflictReader::open(log)?.with_stances().try_for_each(|conflict| {
+        take(row(conflict?));
+        Ok(())
+    })
 }
 
-/// Where in a row the columns are.
-struct Columns {
-    id: usize,
-    ids: [usize; 2],
-    kind: usize,
-    severity: usize,
-    lane: usize,
-    collision: usize,
-    numbers: Vec<usize>,
-    types: Option<[usize; 2]>,
-    stances: Option<[([usize; 5], usize); 2]>,
+fn row(conflict: LoggedConflict) -> Row {
+    let numbers = [
+        Some(conflict.begin),
+        Some(conflict.end),
+        Some(conflict.time),
+        Some(conflict.gap),
+        Some(conflict.mu),
+        Some(conflict.margin),
+        conflict.ttc,
+        conflict.drac,
+        conflict.pet,
+        Some(conflict.delta_v),
+        Some(conflict.ego_speed),
+        Some(conflict.foe_speed),
+        Some(conflict.angle),
+        Some(conflict.x),
+        Some(conflict.y),
+    ];
+    Row {
+        run: 0,
+        id: conflict.id,
+        kind: place(&Kind::ALL, conflict.kind),
+        severity: place(&Severity::ALL, conflict.severity),
+        collision: conflict.collision,
+        numbers,
+        ids: [conflict.ego.into(), conflict.foe.into()],
+        types: [conflict.ego_type.into(), conflict.foe_type.into()],
+        lane: conflict.lane.into(),
+        stances: conflict.stances.map(|stances| Box::new(stances.map(stance))),
+    }
 }
 
-impl Columns {
-    /// Finds them by their names.
-    fn of(names: &StringRecord) -> std::result::Result<Self, String> {
-        let maybe = |name: &str| names.iter().position(|known| known == name);
-        let place = |name: &str| maybe(name).ok_or_else(|| format!("there is no column \"{name}\""));
-        let stance = |who: &str| {
-            let mut places = [0; 5];
-            for (place, name) in places.iter_mut().zip(STANCE) {
-                *place = maybe(&format!("{who}_{name}"))?;
-            }
-            Some((places, maybe(&format!("{who}_path"))?))
-        };
-        Ok(Self {
-            id: place("id")?,
-            ids: [place("ego")?, place("foe")?],
-            kind: place("kind")?,
-            severity: place("severity")?,
-            lane: place("lane")?,
-            collision: place("collision")?,
-            numbers: NUMBERS.iter().map(|(name, _)| place(name)).collect::<std::result::Result<_, _>>()?,
-            types: maybe("ego_type").zip(maybe("foe_type")).map(<[usize; 2]>::from),
-            stances: stance("ego").zip(stance("foe")).map(|(ego, foe)| [ego, foe]),
-        })
-    }
+fn stance(stance: LoggedStance) -> Stance {
+    let LoggedStance { x, y, heading, length, width, path } = stance;
+    Stance { numbers: [x, y, heading, length, width], path: path.into() }
+}
 
-    fn row(&self, cells: &StringRecord) -> std::result::Result<Row, String> {
-        let cell = |place: usize| cells.get(place).unwrap_or_default();
-        let number = |place: usize| match cell(place) {
-            "" => Ok(None),
-            text => {
-                let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
-                value.map(Some).ok_or_else(|| format!("\"{text}\" is no number"))
-            }
-        };
-        let among = |place: usize, names: &[&str], what: &str| {
-            let found = names.iter().position(|name| *name == cell(place));
-            found.map(|place| place as u8).ok_or_else(|| format!("\"{}\" is no {what}", cell(place)))
-        };
-        let mut numbers = [None; NUMBERS.len()];
-        for (value, &place) in numbers.iter_mut().zip(&self.numbers) {
-            *value = number(place)?;
-        }
-        let stance = |(places, path): &([usize; 5], usize)| -> std::result::Result<Stance, String> {
-            let mut stance = Stance { path: cell(*path).into(), ..Stance::default() };
-            for (value, &place) in stance.numbers.iter_mut().zip(places) {
-                *value = number(place)?.unwrap_or_default();
-            }
-            Ok(stance)
-        };
-        let stances = match &self.stances {
-            Some([ego, foe]) => Some(Box::new([stance(ego)?, stance(foe)?])),
-            None => None,
-        };
-        Ok(Row {
-            run: 0,
-            id: cell(self.id).parse().map_err(|_| format!("\"{}\" is no id", cell(self.id)))?,
-            kind: among(self.kind, &Kind::ALL.map(Kind::name), "kind")?,
-            severity: among(self.severity, &Severity::ALL.map(Severity::name), "severity")?,
-            collision: cell(self.collision) == "true",
-            numbers,
-            ids: self.ids.map(|place| cell(place).into()),
-            types: self.types.map(|places| places.map(|place| cell(place).into())).unwrap_or_default(),
-            lane: cell(self.lane).into(),
-            stances,
-        })
-    }
+fn place<T: PartialEq>(all: &[T], one: T) -> u8 {
+    all.iter().position(|known| *known == one).unwrap_or_default() as u8
 }

@@ -125,7 +125,7 @@ impl Collection {
         let mut columns: Option<(PathBuf, Vec<String>)> = None;
         for folder in log_folders(named)? {
             let reader = ConflictReader::open(&folder)?;
-            let header = reader.columns().map(str::to_owned).collect::<Vec<_>>();
+            let header = reader.columns();
             if by == By::Type && !header.iter().any(|column| column == "ego_type") {
                 let message = "the column \"ego_type\" is missing: a log of an earlier version has no types";
                 return Err(Error::line(reader.path(), 1, message));

@@ -287,9 +287,9 @@ def test_what_cannot_be_used_is_one_clear_line(tmp_path: Path) -> None:
     (broken / "run.json").write_text("{")
     for words, said in (
         ((tmp_path / "gone",), "gone: No such file"),
-        ((tmp_path / "empty",), "there is no conflicts.csv"),
-        ((bad,), 'line 2: "much" is no number'),
-        ((cut,), 'line 1: there is no column "mu"'),
+        ((tmp_path / "empty",), "there is no log in it: no conflicts.csv"),
+        ((bad,), "line 2: gap: "),
+        ((cut,), 'line 1: the column "mu" is missing'),
         ((broken,), "run.json: it is no JSON"),
         ((log, "-o", "/proc/r.html"), "/proc/r.html: "),
         ((log, "--net", tmp_path / "gone.net.xml"), "gone.net.xml: "),

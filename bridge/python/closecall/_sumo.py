@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import sys
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,7 +22,9 @@ def start(words: list[str], gui: bool) -> Any:
         ImportError: libsumo is not installed.
         RuntimeError: SUMO refuses, with what it says.
     """
-    import libsumo
+    # It warns of any pyarrow that is installed; this process never imports one.
+    with redirect_stdout(io.StringIO()):
+        import libsumo
 
     command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
     with caught_stderr() as caught:

@@ -1,0 +1,49 @@
+//! `closecall sweep`: tasks go to Python's Dask, what became of them comes back.
+
+use std::path::{Path, PathBuf};
+
+use closecall::cli::{Ended, Workers};
+use closecall::sweep::Task;
+use closecall::{Error, Result};
+use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
+use pyo3::prelude::*;
+
+use crate::error::{exception, message};
+
+/// Makes the log of a task's run a part of the sweep's data set.
+#[pyfunction]
+pub fn finish_run(py: Python, task: &str, log: PathBuf) -> PyResult<()> {
+    let task: Task = serde_json::from_str(task).map_err(|error| PyValueError::new_err(error.to_string()))?;
+    py.detach(|| task.finish(&log)).map_err(exception)
+}
+
+/// Has tasks done by `closecall.sweep`.
+pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut Ended) -> Result<()> {
+    let said = |error: PyErr| {
+        if error.is_instance_of::<PyKeyboardInterrupt>(py) {
+            Error::Stopped
+        } else if error.is_instance_of::<PyImportError>(py) {
+            let why = message(py, &error);
+            Error::Value(format!("Dask is not installed ({why}): pip install 'closecall[sweep]'"))
+        } else {
+            Error::Value(message(py, &error))
+        }
+    };
+    let packed = |task: &&Task| -> Result<_> {
+        let json = serde_json::to_string(task).map_err(|error| Error::Value(error.to_string()))?;
+        Ok((task.name.clone(), task.words.clone(), json))
+    };
+    let tasks = tasks.iter().map(packed).collect::<Result<Vec<_>>>()?;
+    let (workers, scheduler) = match workers {
+        Workers::Local(workers) => (*workers, None),
+        Workers::Scheduler(address) => (0, Some(address)),
+    };
+    let results = py.import("closecall.sweep").map_err(said)?;
+    let results = results.call_method1("results", (tasks, folder, workers, scheduler)).map_err(said)?;
+    for result in results.try_iter().map_err(said)? {
+        let result = result.and_then(|result| result.extract::<(String, Option<String>)>());
+        let (name, error) = result.map_err(said)?;
+        ended(&name, error.as_deref());
+    }
+    Ok(())
+}

@@ -1,0 +1,293 @@
+//! `closecall sweep`: many runs, each a task; planned here, handed to whoever can distribute them.
+
+use std::ffi::OsString;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+
+use clap::parser::ValueSource;
+use clap::{Arg, ArgMatches, Args, FromArgMatches};
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::run::{RunArgs, request};
+use super::{Command, Stop, Sumo, no_sumo, parse, usage, value};
+use crate::sweep::{Seeds, Sweep, Task, Vary};
+use crate::{Error, Result};
+
+/// A SUMO scenario, its seeds, and what is varied.
+#[derive(Args)]
+pub struct SweepArgs {
+    /// SUMO configuration file.
+    #[arg(value_name = "CONFIG")]
+    scenario: PathBuf,
+    /// SUMO's random seeds, a run for each: 1-100, or 1,2,5-9.
+    #[arg(long, value_name = "SEEDS")]
+    seeds: Seeds,
+    /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), a run for each; several: every combination.
+    #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
+    vary: Vec<Vary>,
+    /// Folder of the results [default: closecall-sweep beside the scenario].
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Runs at once on this machine [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    workers: Option<u16>,
+    /// Address of a Dask scheduler whose workers do the runs, instead of this machine.
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
+    scheduler: Option<String>,
+    /// Print nothing but errors.
+    #[arg(short, long)]
+    quiet: bool,
+    #[command(flatten)]
+    passed: Passed,
+}
+
+/// Who does the runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Workers {
+    /// So many processes of this machine.
+    Local(usize),
+    /// Those of the Dask scheduler at this address.
+    Scheduler(String),
+}
+
+/// Takes the name of a task that has ended, and why it failed if it did.
+pub type Ended<'a> = dyn FnMut(&str, Option<&str>) + 'a;
+
+/// Does the tasks, in a working folder, and tells of each one's end.
+pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut Ended) -> Result<()> + 'a;
+
+/// The arguments of `closecall run` that are the same in all runs, as they were typed.
+#[derive(Debug, Default)]
+struct Passed {
+    words: Vec<String>,
+    for_sumo: Vec<String>,
+    /// The files among them.
+    files: Vec<PathBuf>,
+}
+
+/// What of `closecall run` a sweep sets itself.
+const OWN: [&str; 8] = ["scenario", "configuration_file", "gui", "out", "seed", "quiet", "ssm_output", "trj_output"];
+/// Options that name a file whose content matters.
+const FILES: [&str; 2] = ["config", "filter"];
+/// What follows `--`.
+const FOR_SUMO: &str = "sumo_options";
+
+/// The arguments of `closecall run` that a sweep passes on.
+fn passed() -> Vec<Arg> {
+    let all = RunArgs::augment_args(clap::Command::new("run"));
+    all.get_arguments().filter(|argument| !OWN.contains(&argument.get_id().as_str())).cloned().collect()
+}
+
+impl Args for Passed {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        // What was typed wins over what stands in a TOML file.
+        command.args(passed().into_iter().map(|argument| {
+            let name = argument.get_id().clone();
+            if argument.is_positional() { argument } else { argument.overrides_with(name) }
+        }))
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for Passed {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        let mut passed = Self::default();
+        passed.update_from_arg_matches(matches)?;
+        Ok(passed)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> std::result::Result<(), clap::Error> {
+        for argument in passed() {
+            let name = argument.get_id().as_str();
+            if matches.value_source(name) != Some(ValueSource::CommandLine) {
+                continue;
+            }
+            let values = matches.get_raw(name).into_iter().flatten();
+            let values = values.map(|value| value.to_string_lossy().into_owned()).collect::<Vec<_>>();
+            if FILES.contains(&name) {
+                self.files.extend(values.iter().map(PathBuf::from));
+            }
+            match argument.get_long() {
+                Some(long) if argument.get_action().takes_values() => {
+                    self.words.push(format!("--{long}={}", values.join(",")));
+                }
+                Some(long) => self.words.push(format!("--{long}")),
+                None if name == FOR_SUMO => self.for_sumo = values,
+                None => {}
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Does the runs that are missing; returns the exit status: 1 where some failed.
+pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
+    let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
+    let beside = arguments.scenario.parent().unwrap_or(Path::new("")).join("closecall-sweep");
+    let out = absolute(arguments.out.as_deref().unwrap_or(&beside))?;
+    // Opened here for the operating system's own words on why it cannot be.
+    std::fs::File::open(&arguments.scenario).map_err(|source| Error::file(&arguments.scenario, source))?;
+    arguments.vary.iter().try_for_each(check)?;
+    let mut words = vec![text(&absolute(&arguments.scenario)?)?];
+    words.extend(arguments.passed.words);
+    let mut files = arguments.passed.files;
+    for vary in arguments.vary.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
+        files.extend(vary.values.iter().map(PathBuf::from));
+    }
+    let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
+    check_runs(&plan, &arguments.seeds, &arguments.vary)?;
+    let missing = plan.missing()?;
+    let there = plan.tasks.len() - missing.len();
+    let workers = match arguments.scheduler {
+        Some(address) => Workers::Scheduler(address),
+        None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
+    };
+    let failed = distribute(sumo, &workers, &missing, there, arguments.quiet, &out)?;
+    if !arguments.quiet {
+        println!("{} runs in {}", plan.tasks.len() - failed, plan.data_set().display());
+        if there > 0 {
+            println!("{there} of them were there already");
+        }
+        if failed > 0 {
+            println!("{failed} failed; the same command tries them again");
+        }
+    }
+    Ok(u8::from(failed > 0))
+}
+
+/// Has the missing runs done; how many failed.
+fn distribute(
+    sumo: Sumo,
+    workers: &Workers,
+    missing: &[&Task],
+    there: usize,
+    quiet: bool,
+    out: &Path,
+) -> Result<usize> {
+    if missing.is_empty() {
+        return Ok(0);
+    }
+    let unfinished = out.join(".unfinished");
+    std::fs::create_dir_all(&unfinished).map_err(|source| Error::file(&unfinished, source))?;
+    let bar = bar(there, there + missing.len(), quiet);
+    let (mut done, mut failed) = (there, 0);
+    let ended = (sumo.distribute)(workers, &unfinished, missing, &mut |name, error| {
+        done += 1;
+        if let Some(error) = error {
+            failed += 1;
+            bar.suspend(|| eprintln!("closecall: run {name} failed twice: {error}"));
+        }
+        bar.inc(1);
+    });
+    bar.finish_and_clear();
+    // What a killed worker has left there; where it cannot be removed it is hidden at least.
+    let _ = std::fs::remove_dir_all(&unfinished);
+    match ended {
+        Ok(()) => Ok(failed),
+        Err(Error::Stopped) => Err(Error::Paused { done, all: there + missing.len() }),
+        Err(error) => Err(error),
+    }
+}
+
+/// How far the sweep is, on a terminal.
+fn bar(there: usize, all: usize, quiet: bool) -> ProgressBar {
+    if quiet || !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {elapsed}, {eta} to go");
+    let bar = ProgressBar::new(all as u64).with_style(style.unwrap_or(ProgressStyle::default_bar()));
+    bar.enable_steady_tick(std::time::Duration::from_secs(1));
+    bar.with_position(there as u64)
+}
+
+/// Whether an option can be varied.
+fn check(vary: &Vary) -> Result<()> {
+    if vary.is_sumos() {
+        return match vary.option() {
+            "seed" => Err(value("--vary sumo:seed: use --seeds")),
+            _ => Ok(()),
+        };
+    }
+    let name = vary.option();
+    let known = passed().into_iter().find(|argument| argument.get_long() == Some(name));
+    match known {
+        Some(argument) if argument.get_action().takes_values() => Ok(()),
+        Some(_) => Err(value(format!("--vary {name}: --{name} takes no value"))),
+        None if name == "seed" => Err(value("--vary seed: use --seeds")),
+        None => Err(value(format!(
+            "--vary {name}: closecall run has no such option that can be varied; for one of SUMO's write sumo:{name}"
+        ))),
+    }
+}
+
+/// Whether `closecall run` will take the words: each variant with the first seed.
+fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary]) -> Result<()> {
+    let variants = varied.iter().map(|vary| vary.values.len()).product::<usize>().min(plan.tasks.len() / seeds.0.len());
+    for task in &plan.tasks[..variants] {
+        let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
+        match parse(words.map(OsString::from).collect()) {
+            Ok(cli) => {
+                if let Command::Run(arguments) = cli.command {
+                    request(*arguments)?;
+                }
+            }
+            Err(Stop::Clap(error)) => return Err(usage(&error)),
+            Err(Stop::Error(error)) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).map_err(|source| Error::file(path, source))
+}
+
+fn text(path: &Path) -> Result<String> {
+    let text = path.to_str().map(str::to_owned);
+    text.ok_or_else(|| Error::content(path, "its name is no UTF-8: a sweep cannot pass it on"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn passed_of(words: &[&str]) -> Passed {
+        let words = ["closecall", "sweep", "a.sumocfg", "--seeds", "1"].iter().chain(words);
+        let Ok(cli) = parse(words.map(OsString::from).collect()) else { panic!() };
+        let Command::Sweep(arguments) = cli.command else { panic!() };
+        arguments.passed
+    }
+
+    #[test]
+    fn what_was_typed_for_closecall_run_is_passed_on_and_nothing_else() {
+        let passed =
+            passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--keep-all", "--", "--scale", "2"]);
+        let mut words = passed.words;
+        words.sort();
+        assert_eq!(words, ["--epsilon=1", "--keep-all", "--mu=paper", "--obstacles=a,b"]);
+        assert_eq!(passed.for_sumo, ["--scale", "2"]);
+        assert!(passed_of(&[]).words.is_empty());
+        assert_eq!(passed_of(&["--epsilon", "1", "--epsilon", "2"]).words, ["--epsilon=2"]);
+    }
+
+    #[test]
+    fn what_cannot_be_varied_is_refused() {
+        for (vary, said) in [
+            ("seed=1,2", "use --seeds"),
+            ("keep-all=1", "takes no value"),
+            ("scale=1,2", "write sumo:scale"),
+            ("out=a", "no such option"),
+        ] {
+            let message = check(&vary.parse().unwrap()).unwrap_err().to_string();
+            assert!(message.contains(said), "{message}");
+        }
+        assert!(check(&"serious_ttc=1,2".parse().unwrap()).is_ok());
+    }
+}

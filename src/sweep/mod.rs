@@ -1,0 +1,144 @@
+//! Many runs of one scenario: every seed with every combination of varied options, each run a task of its own.
+//!
+//! A sweep is planned here ([`Sweep::plan`]), run elsewhere, and finished here ([`Task::finish`]): a run's log becomes
+//! `conflicts/run=NAME/conflicts.parquet` in the sweep's folder, whole or not at all. What is there and fits is not
+//! run again ([`Sweep::missing`]), so a sweep that was stopped continues with the same words.
+
+mod seeds;
+mod standing;
+mod vary;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+pub use seeds::Seeds;
+pub use vary::Vary;
+
+use crate::log::ENCOUNTERS;
+use crate::logged::{self, Label, LabelValue, LoggedRun, PARQUET};
+use crate::{Error, Result};
+
+/// The folder of the data set in a sweep's folder.
+const CONFLICTS: &str = "conflicts";
+/// What the folder of a run in it begins with, as partitions of a data set do.
+const RUN: &str = "run=";
+/// More runs than this are a slip of the finger.
+const MOST: usize = 1_000_000;
+
+/// One run of a sweep; as JSON it travels to whoever does it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Task {
+    /// Its name: what was varied, and the seed.
+    pub name: String,
+    /// The words of `closecall run`, without those that say where the log goes.
+    pub words: Vec<String>,
+    /// The sweep's folder.
+    pub out: PathBuf,
+    /// What tells it from the other runs, as columns.
+    labels: Vec<Label>,
+    /// The hash of what was asked for.
+    fingerprint: String,
+}
+
+impl Task {
+    /// Makes the run's log a part of the data set; encounters, where there are any, come to lie beside it.
+    ///
+    /// # Errors
+    /// [`Error::Content`] where the run did not come to its end; those of [`logged::pack`].
+    pub fn finish(&self, log: &Path) -> Result<()> {
+        if !LoggedRun::read(log)?.complete {
+            return Err(Error::content(log, "the run did not come to its end"));
+        }
+        let encounters = log.join(ENCOUNTERS);
+        if encounters.is_file() {
+            let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
+            let fault = |source| Error::file(&folder, source);
+            fs::create_dir_all(&folder).map_err(fault)?;
+            fs::rename(encounters, folder.join(ENCOUNTERS)).map_err(fault)?;
+        }
+        logged::pack(log, &self.labels, &self.fingerprint, &self.file())
+    }
+
+    /// The file that it becomes.
+    fn file(&self) -> PathBuf {
+        self.out.join(CONFLICTS).join(format!("{RUN}{}", self.name)).join(PARQUET)
+    }
+}
+
+/// All runs of a sweep.
+#[derive(Clone, Debug)]
+pub struct Sweep {
+    /// The runs, in the order in which they are begun: all variants of a seed before the next seed.
+    pub tasks: Vec<Task>,
+    out: PathBuf,
+}
+
+impl Sweep {
+    /// Plans a sweep of the scenario whose `closecall run` has these `words` and these options `for SUMO`.
+    ///
+    /// `also_read` are the files that the words name and closecall reads: a run counts as done only with the same.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where the same is varied twice, two runs would have one name, or there are too many;
+    /// [`Error::File`] where a file cannot be read.
+    pub fn plan(
+        words: &[String],
+        for_sumo: &[String],
+        seeds: &Seeds,
+        varied: &[Vary],
+        out: &Path,
+        also_read: &[PathBuf],
+    ) -> Result<Self> {
+        let mut columns = BTreeSet::new();
+        if let Some(twice) = varied.iter().find(|vary| !columns.insert(vary.column())) {
+            return Err(Error::Value(format!("{} is varied twice", twice.parameter)));
+        }
+        let runs = varied.iter().map(|vary| vary.values.len()).chain([seeds.0.len()]);
+        if runs.fold(1, usize::saturating_mul) > MOST {
+            return Err(Error::Value(format!("that would be more than {MOST} runs")));
+        }
+        let read = standing::contents(also_read)?;
+        let (mut tasks, mut names) = (Vec::new(), BTreeSet::new());
+        for &seed in &seeds.0 {
+            for chosen in vary::product(varied) {
+                let mut name = String::new();
+                let (mut own, mut sumo) = (words.to_vec(), for_sumo.to_vec());
+                let mut labels = Vec::with_capacity(chosen.len() + 1);
+                for (vary, value) in chosen {
+                    name += &format!("{}-{}_", vary::plain(&vary.parameter), vary::plain(value));
+                    if vary.is_sumos() { &mut sumo } else { &mut own }.push(vary.word(value));
+                    labels.push(vary.label(value));
+                }
+                name += &format!("seed-{seed}");
+                labels.push(Label { name: "seed".to_owned(), value: LabelValue::Count(seed) });
+                own.extend(["--seed".to_owned(), seed.to_string()]);
+                if !sumo.is_empty() {
+                    own.push("--".to_owned());
+                    own.append(&mut sumo);
+                }
+                if !names.insert(name.clone()) {
+                    return Err(Error::Value(format!("two runs would both be called {name}")));
+                }
+                let fingerprint = standing::fingerprint(&own, &labels, &read);
+                tasks.push(Task { name, words: own, out: out.to_owned(), labels, fingerprint });
+            }
+        }
+        Ok(Self { tasks, out: out.to_owned() })
+    }
+
+    /// The runs that are still to be done: those not in the folder, or not as they are wanted now.
+    ///
+    /// # Errors
+    /// [`Error::Content`] where the folder holds runs of a sweep that varied something else: their columns differ.
+    pub fn missing(&self) -> Result<Vec<&Task>> {
+        standing::missing(self)
+    }
+
+    /// The folder of the data set.
+    pub fn data_set(&self) -> PathBuf {
+        self.out.join(CONFLICTS)
+    }
+}

@@ -1,0 +1,47 @@
+//! Which seeds: `1-100`, `1,2,5-9`.
+
+use std::str::FromStr;
+
+/// Seeds, each once, in the order in which they were given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Seeds(pub Vec<u32>);
+
+/// More seeds than this are a slip of the finger.
+const MOST: usize = 1_000_000;
+
+impl FromStr for Seeds {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut seeds = Vec::new();
+        for part in text.split(',') {
+            let number = |text: &str| text.trim().parse::<u32>().map_err(|_| format!("\"{part}\" is no seed"));
+            let (first, last) = part.split_once('-').unwrap_or((part, part));
+            let (first, last) = (number(first)?, number(last)?);
+            if last < first {
+                return Err(format!("\"{part}\" ends before it begins"));
+            }
+            if (last - first) as usize >= MOST || seeds.len() >= MOST {
+                return Err(format!("these are more than {MOST} seeds"));
+            }
+            seeds.extend(first..=last);
+        }
+        let mut known = std::collections::HashSet::new();
+        seeds.retain(|seed| known.insert(*seed));
+        Ok(Self(seeds))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn seeds_are_numbers_and_ranges_each_once() {
+        assert_eq!("1-3".parse(), Ok(Seeds(vec![1, 2, 3])));
+        assert_eq!("7,1-3,2".parse(), Ok(Seeds(vec![7, 1, 2, 3])));
+        for wrong in ["", "a", "3-1", "1-", "1--3", "-1", "0-4294967295"] {
+            assert!(wrong.parse::<Seeds>().is_err(), "{wrong}");
+        }
+    }
+}

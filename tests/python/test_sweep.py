@@ -1,0 +1,351 @@
+"""`closecall sweep`, with real Dask and real SUMO: nothing lost, nothing twice, and others can read it."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any, Callable
+
+import pytest
+from conftest import NETS, closecall, python, rows
+
+pytest.importorskip("distributed")
+
+Copy = Callable[[str], Path]
+
+SHORT = ("--end", "60", "--", "--no-warnings")
+LEFT_TURN = NETS / "left_turn" / "left_turn.sumocfg"
+
+
+def sweep(*words: str | Path, status: int = 0, **options: Any) -> subprocess.CompletedProcess[str]:
+    """A sweep that ends with this status."""
+    done = closecall("sweep", *words, **options)
+    assert done.returncode == status, done.stdout + done.stderr
+    return done
+
+
+def files(out: Path) -> dict[str, int]:
+    """The runs in a data set, each with when it was written."""
+    return {
+        path.parent.name.removeprefix("run="): path.stat().st_mtime_ns
+        for path in (out / "conflicts").glob("run=*/conflicts.parquet")
+    }
+
+
+def stats(*words: str | Path) -> Any:
+    """What `closecall stats` says, as JSON."""
+    done = closecall("stats", *words, "--format", "json")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def read(script: str, out: Path) -> Any:
+    """What a script that knows nothing of SUMO prints about a data set."""
+    done = python(script, out / "conflicts")
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def children(pid: int) -> dict[int, str]:
+    """The processes below one, with their command lines."""
+    found: dict[int, str] = {}
+    parents: dict[int, list[int]] = {}
+    for path in Path("/proc").glob("[0-9]*"):
+        try:
+            # The name in parentheses may hold anything.
+            parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
+        except OSError:
+            continue
+        parents.setdefault(parent, []).append(int(path.name))
+    below = [pid]
+    while below:
+        for child in parents.get(below.pop(), []):
+            below.append(child)
+            try:
+                found[child] = (Path("/proc") / str(child) / "cmdline").read_text().replace("\0", " ")
+            except OSError:
+                continue
+    return found
+
+
+def begin(*words: str | Path) -> subprocess.Popen[str]:
+    """A sweep that goes on."""
+    command = [sys.executable, "-m", "closecall", "sweep", *map(str, words)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+
+def until(is_so: Callable[[], object], seconds: float = 60) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def is_alive(pid: int) -> bool:
+    """Whether a process runs."""
+    try:
+        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+@pytest.fixture(scope="module")
+def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a sweep: two seeds, two values of an option of closecall's and two of SUMO's."""
+    out = tmp_path_factory.mktemp("sweep")
+    varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
+    said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
+    assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
+    return out
+
+
+def test_every_seed_meets_every_value(done: Path) -> None:
+    wanted = {
+        f"mu-{mu}_sumo.scale-{scale}_seed-{seed}"
+        for mu in ("minimal", "at-rest")
+        for scale in ("1", "1.5")
+        for seed in (1, 2)
+    }
+    assert set(files(done)) == wanted
+    assert sorted(path.name for path in done.iterdir()) == ["conflicts"]
+
+
+def test_a_run_of_a_sweep_is_what_closecall_run_finds(done: Path, tmp_path: Path) -> None:
+    words = ("--mu", "at-rest", "--seed", "2", "--end", "60", "--", "--no-warnings", "--scale=1.5")
+    alone = closecall("run", LEFT_TURN, "--quiet", "--out", tmp_path / "log", *words)
+    assert alone.returncode == 0, alone.stderr
+    path = done / "conflicts" / "run=mu-at-rest_sumo.scale-1.5_seed-2"
+    script = """if True:
+        import json, sys
+        import pyarrow.parquet as parquet
+        file = parquet.ParquetFile(next(__import__("pathlib").Path(sys.argv[1]).glob("*.parquet")))
+        record = json.loads(file.schema_arrow.metadata[b"closecall.run.json"])
+        print(json.dumps({"rows": file.read().to_pylist(), "record": record}))
+    """
+    said = python(script, path)
+    assert said.returncode == 0, said.stderr
+    found = json.loads(said.stdout)
+    logged = rows(tmp_path / "log" / "conflicts.csv")
+    assert len(logged) > 5 and len(found["rows"]) == len(logged)
+    for row, line in zip(found["rows"], logged):
+        assert (row.pop("seed"), row.pop("option_mu"), row.pop("sumo_scale")) == (2, "at-rest", 1.5)
+        assert list(row) == list(line)
+        for name, cell in line.items():
+            value = row[name]
+            if isinstance(value, bool):
+                assert str(value).lower() == cell
+            elif isinstance(value, (int, float)):
+                assert value == float(cell)
+            else:
+                assert (value or "") == cell
+    own = json.loads((tmp_path / "log" / "run.json").read_text())
+    assert found["record"]["complete"] and found["record"]["inputs"] == own["inputs"]
+    assert found["record"]["summary"]["conflicts"] == own["summary"]["conflicts"]
+
+
+READERS = {
+    "pandas": """if True:
+        import json, sys
+        import pandas
+        found = pandas.read_parquet(sys.argv[1])
+        counts = found.groupby("run", observed=True).size().to_dict()
+        scale = sorted(set(found.sumo_scale))
+        print(json.dumps([counts, float(found.margin.sum()), int(found.collision.sum()), scale]))
+    """,
+    "polars": """if True:
+        import json, sys
+        import polars
+        found = polars.scan_parquet(sys.argv[1], hive_partitioning=True).collect()
+        counts = dict(found.group_by("run").len().iter_rows())
+        scale = sorted(found["sumo_scale"].unique())
+        print(json.dumps([counts, found["margin"].sum(), int(found["collision"].sum()), scale]))
+    """,
+    "duckdb": """if True:
+        import json, sys
+        import duckdb
+        of = f"from read_parquet('{sys.argv[1]}/**/*.parquet', hive_partitioning = true)"
+        counts = dict(duckdb.sql(f"select run, count(*) {of} group by run").fetchall())
+        sums = duckdb.sql(f"select sum(margin), sum(collision::int)::int {of}").fetchall()[0]
+        scale = [row[0] for row in duckdb.sql(f"select distinct sumo_scale {of} order by 1").fetchall()]
+        print(json.dumps([counts, *sums, scale]))
+    """,
+}
+
+
+@pytest.mark.parametrize("reader", READERS)
+def test_others_read_the_data_set(reader: str, done: Path) -> None:
+    pytest.importorskip({"pandas": "pyarrow"}.get(reader, reader))
+    counts, margins, collisions, scale = read(READERS[reader], done)
+    overall = stats(done)["groups"][0]
+    assert sum(counts.values()) == overall["count"] > 20
+    assert set(counts) <= set(files(done))
+    assert collisions == overall["collisions"] and scale == [1.0, 1.5]
+    assert margins < 0
+
+
+def test_stats_and_report_read_a_sweep_as_they_read_logs(tmp_path: Path) -> None:
+    logs = tmp_path / "logs"
+    for seed in ("1", "2"):
+        words = ("--quiet", "--seed", seed, "--out", logs / seed, *SHORT)
+        assert closecall("run", LEFT_TURN, *words).returncode == 0
+    out = tmp_path / "sweep"
+    sweep(LEFT_TURN, "--seeds", "1,2", "--out", out, "--workers", "1", "--quiet", *SHORT)
+    of_logs, of_sweep = stats(logs, "--by", "type"), stats(out, "--by", "type")
+    for found in (of_logs, of_sweep):
+        assert found["runs"] == 2 and found["left_out"] == []
+        for worst in found["worst"]:
+            # They name the folders.
+            worst.pop("folder", None), worst.pop("run", None), worst.pop("command", None), worst.pop("log", None)
+    assert of_logs == of_sweep
+    assert stats(logs, "--against", out)["comparison"] is not None
+    made = closecall("report", out, "-o", tmp_path / "report.html")
+    assert made.returncode == 0 and "of 2 run(s)" in made.stdout, made.stderr
+    assert f"{of_sweep['groups'][0]['count']} conflicts" in made.stdout
+
+
+def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -> None:
+    config, out = scenario("side"), tmp_path / "out"
+    words = ("--out", out, "--workers", "1", *SHORT)
+    sweep(config, "--seeds", "1-2", *words)
+    first = files(out)
+    said = sweep(config, "--seeds", "1-3", *words)
+    assert "2 of them were there already" in said.stdout
+    second = files(out)
+    assert len(second) == 3 and first.items() <= second.items()
+    begun = time.monotonic()
+    assert "3 of them were there already" in sweep(config, "--seeds", "1-3", *words).stdout
+    assert files(out) == second and time.monotonic() - begun < 5
+    # What is asked for in other words, or of other files, is another run.
+    sweep(config, "--seeds", "1-3", "--epsilon", "1", *words)
+    third = files(out)
+    assert not second.items() & third.items()
+    config.with_suffix(".net.xml").open("a").write("<!-- changed -->\n")
+    sweep(config, "--seeds", "2", "--epsilon", "1", *words)
+    assert third.items() - files(out).items() == {("seed-2", third["seed-2"])}
+    # A file that is broken is no run.
+    (out / "conflicts" / "run=seed-2" / "conflicts.parquet").write_bytes(b"PAR1")
+    sweep(config, "--seeds", "2", "--epsilon", "1", *words)
+    assert stats(out)["runs"] == 3
+    # Runs with other columns do not belong to the same data set.
+    other = sweep(config, "--seeds", "1", "--vary", "epsilon=1,2", *words, status=2)
+    assert "choose another --out" in other.stderr and other.stderr.count("\n") == 1
+
+
+def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ("--seeds", "1-2", "--vary", "sumo:step-length=0.5,-1", "--out", out, "--workers", "2", *SHORT)
+    said = sweep(scenario("side"), *words, status=1)
+    assert set(files(out)) == {"sumo.step-length-0.5_seed-1", "sumo.step-length-0.5_seed-2"}
+    lines = said.stderr.splitlines()
+    assert len(lines) == 2, said.stderr
+    for line in lines:
+        assert line.startswith("closecall: run sumo.step-length--1_seed-") and "failed twice: " in line
+    assert "2 failed; the same command tries them again" in said.stdout
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+def test_a_worker_that_is_killed_loses_no_run(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ("--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
+    process = begin(LEFT_TURN, *words)
+    until(lambda: len(files(out)) >= 2)
+    workers = [pid for pid, words in children(process.pid).items() if "spawn_main" in words]
+    assert len(workers) == 2
+    simulations = [pid for pid in children(workers[0]) if is_alive(pid)]
+    os.kill(workers[0], signal.SIGKILL)
+    # Its simulation goes with it.
+    until(lambda: not any(map(is_alive, simulations)), 10)
+    stdout, stderr = process.communicate(timeout=120)
+    assert (process.returncode, stderr) == (0, ""), stdout + stderr
+    assert set(files(out)) == {f"seed-{seed}" for seed in range(1, 9)}
+    assert stats(out)["runs"] == 8
+    assert sorted(path.name for path in out.iterdir()) == ["conflicts"]
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
+@pytest.mark.parametrize("group", [False, True], ids=["sweep", "terminal"])
+def test_ctrl_c_leaves_nothing_running(group: bool, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ("--seeds", "1-30", "--out", out, "--workers", "2", "--", "--no-warnings")
+    process = begin(LEFT_TURN, *words)
+    until(lambda: len(files(out)) >= 2)
+    running = children(process.pid)
+    # A terminal sends it to all processes of the group.
+    (os.killpg if group else os.kill)(process.pid, signal.SIGINT)
+    _, stderr = process.communicate(timeout=30)
+    assert process.returncode == 130, stderr
+    assert stderr.startswith("closecall: interrupted after ") and stderr.count("\n") == 1, stderr
+    until(lambda: not any(map(is_alive, running)), 10)
+    # What was finished is whole.
+    before = files(out)
+    assert stats(out)["runs"] == len(before)
+    sweep(LEFT_TURN, *words[:1], "1-3", *words[2:])
+    assert before.items() <= files(out).items()
+
+
+def test_a_scheduler_by_its_address(tmp_path: Path) -> None:
+    script = """if True:
+        import sys
+        from distributed import LocalCluster
+        if __name__ == "__main__":
+            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+                print(cluster.scheduler_address, flush=True)
+                sys.stdin.read()
+    """
+    command = [sys.executable, "-c", script]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as cluster:
+        assert cluster.stdin and cluster.stdout
+        address = cluster.stdout.readline().strip()
+        out = tmp_path / "out"
+        sweep(LEFT_TURN, "--seeds", "1-4", "--out", out, "--scheduler", address, *SHORT)
+        assert len(files(out)) == 4
+        # A sweep that is killed lets its runs end: Dask forgets them, and they notice.
+        process = begin(LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", address)
+        until(lambda: files(tmp_path / "more"))
+        process.kill()
+        process.communicate()
+        until(lambda: not any("closecall.sweep" in words for words in children(cluster.pid).values()), 20)
+        cluster.stdin.close()
+
+
+def test_what_cannot_be_used_is_one_clear_line(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("side")
+    for words, said in (
+        (("gone.sumocfg", "--seeds", "1"), "gone.sumocfg: No such file"),
+        ((config,), "--seeds"),
+        ((config, "--seeds", "3-1"), "ends before it begins"),
+        ((config, "--seeds", "1", "--vary", "epsilon"), "it has no values"),
+        ((config, "--seeds", "1", "--vary", "epsilon=a"), "invalid value 'a' for '--epsilon"),
+        ((config, "--seeds", "1", "--vary", "epsilom=1"), "no such option"),
+        ((config, "--seeds", "1", "--vary", "seed=1"), "use --seeds"),
+        ((config, "--seeds", "1", "--vary", "mu=paper", "--vary", "mu=minimal"), "varied twice"),
+        ((config, "--seeds", "1", "--epsilon", "-1"), "--epsilon"),
+        ((config, "--seeds", "1", "--gui"), "unexpected argument '--gui'"),
+        ((config, "--seeds", "1", "--scheduler", "tcp://127.0.0.1:9"), "127.0.0.1:9"),
+        ((config, "--seeds", "1", "--scheduler", "a", "--workers", "1"), "cannot be used with"),
+    ):
+        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
+        assert said in done.stderr, (words, done.stderr)
+    assert not files(tmp_path / "out")
+
+
+def test_help_lists_it() -> None:
+    assert "  sweep " in closecall("--help").stdout
+    told = closecall("sweep", "--help").stdout
+    for word in ("--seeds", "--vary", "--workers", "--scheduler", "--epsilon", "--end", "SUMO OPTIONS"):
+        assert word in told
+
+
+def test_encounters_come_to_lie_beside(scenario: Copy, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    sweep(scenario("side"), "--seeds", "5", "--log-encounters", "--out", out, "--workers", "1", *SHORT)
+    with (out / "encounters" / "run=seed-5" / "encounters.csv").open(newline="") as file:
+        assert next(csv.reader(file))[0] == "time"
