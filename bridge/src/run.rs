@@ -251,7 +251,8 @@ impl Session<'_, '_> {
         self.source.place(py, &mut self.run, &rows)?;
         self.is_unfinished = true;
         self.spent.add(PATHS, &mut since);
-        if self.painter.is_some() || self.run.frame.len() < WORTH_A_THREAD {
+        let alone = self.request.threads < 2 || self.run.frame.len() < WORTH_A_THREAD;
+        if self.painter.is_some() || alone {
             self.finish_step()?;
             since = Instant::now();
         }

@@ -81,6 +81,7 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         gui: false,
         out: recording.with_extension("log"),
         end: Some(end),
+        threads: 2,
         quiet: true,
         outputs: OutputFiles::default(),
         options: Options::default(),

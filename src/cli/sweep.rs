@@ -131,7 +131,8 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
     // Opened here for the operating system's own words on why it cannot be.
     std::fs::File::open(&arguments.scenario).map_err(|source| Error::file(&arguments.scenario, source))?;
     arguments.vary.iter().try_for_each(check)?;
-    let mut words = vec![text(&absolute(&arguments.scenario)?)?];
+    // The workers share the processor's threads among themselves: more of them per run would only be in their way.
+    let mut words = vec![text(&absolute(&arguments.scenario)?)?, "--threads=1".to_owned()];
     words.extend(arguments.passed.words);
     let mut files = arguments.passed.files;
     for vary in arguments.vary.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
