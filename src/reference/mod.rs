@@ -20,7 +20,7 @@ pub fn exact(value: f64) -> Number {
     unlimited(value, 0)
 }
 
-/// A finite f64 as a number that computes with [`BITS`] bits. Anything else is 0.
+/// A finite f64 as a number that computes with 300 bits. Anything else is 0.
 pub fn precise(value: f64) -> Number {
     unlimited(value, BITS)
 }
