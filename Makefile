@@ -18,7 +18,7 @@ stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a mil
 	$(BIN)/closecall stress --cases 1000000
 
 study: $(VENV)/wheel ## error against run time, for every choice that closecall makes
-	$(BIN)/closecall study --out docs/study
+	$(BIN)/closecall study --quick --out docs/study
 
 FUZZ := PATH=$(CURDIR)/target/tools/bin:$$PATH cargo +nightly fuzz run
 
