@@ -18,13 +18,24 @@ NETS = Path(__file__).parents[2] / "sumo_nets"
 Row = dict[str, str]
 
 
-@pytest.hookimpl(hookwrapper=True)
-def pytest_runtest_makereport(item: Any, call: Any) -> Any:
+def forbid_skip(report: Any) -> None:
     """Where nothing may be skipped, a skip is a failure."""
-    outcome = yield
-    report = outcome.get_result()
     if report.skipped and os.environ.get("CLOSECALL_SKIP_NOTHING"):
         report.outcome = "failed"
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_runtest_makereport(item: Any, call: Any) -> Any:
+    """Of a test."""
+    outcome = yield
+    forbid_skip(outcome.get_result())
+
+
+@pytest.hookimpl(hookwrapper=True)
+def pytest_make_collect_report(collector: Any) -> Any:
+    """Of a whole file."""
+    outcome = yield
+    forbid_skip(outcome.get_result())
 
 
 def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:

@@ -21,7 +21,8 @@ Copy = Callable[[str], Path]
 RINGS = {"rear_end": (60, 120, 255), "frontal": (230, 0, 230), "side": (0, 205, 205)}
 SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (235, 0, 0)}
 
-needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed")
+# A display is the system's to install; .ci/run does.
+needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed: apt install xvfb")
 
 WATCH = """
 import json, signal, sys

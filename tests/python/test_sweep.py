@@ -12,10 +12,9 @@ import time
 from pathlib import Path
 from typing import Any, Callable
 
+import psutil
 import pytest
 from conftest import NETS, closecall, python, rows
-
-pytest.importorskip("distributed")
 
 Copy = Callable[[str], Path]
 
@@ -52,25 +51,14 @@ def read(script: str, out: Path) -> Any:
     return json.loads(done.stdout)
 
 
-def children(pid: int) -> dict[int, str]:
+def children(pid: int) -> dict[psutil.Process, str]:
     """The processes below one, with their command lines."""
-    found: dict[int, str] = {}
-    parents: dict[int, list[int]] = {}
-    for path in Path("/proc").glob("[0-9]*"):
+    found = {}
+    for process in psutil.Process(pid).children(recursive=True):
         try:
-            # The name in parentheses may hold anything.
-            parent = int((path / "stat").read_text().rpartition(")")[2].split()[1])
-        except OSError:
+            found[process] = " ".join(process.cmdline())
+        except psutil.Error:
             continue
-        parents.setdefault(parent, []).append(int(path.name))
-    below = [pid]
-    while below:
-        for child in parents.get(below.pop(), []):
-            below.append(child)
-            try:
-                found[child] = (Path("/proc") / str(child) / "cmdline").read_text().replace("\0", " ")
-            except OSError:
-                continue
     return found
 
 
@@ -88,11 +76,11 @@ def until(is_so: Callable[[], object], seconds: float = 60) -> None:
         time.sleep(0.02)
 
 
-def is_alive(pid: int) -> bool:
+def is_alive(process: psutil.Process) -> bool:
     """Whether a process runs."""
     try:
-        return (Path("/proc") / str(pid) / "stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
+        return bool(process.status() != psutil.STATUS_ZOMBIE)
+    except psutil.NoSuchProcess:
         return False
 
 
@@ -181,7 +169,6 @@ READERS = {
 
 @pytest.mark.parametrize("reader", READERS)
 def test_others_read_the_data_set(reader: str, done: Path) -> None:
-    pytest.importorskip({"pandas": "pyarrow"}.get(reader, reader))
     counts, margins, collisions, scale = read(READERS[reader], done)
     overall = stats(done)["groups"][0]
     assert sum(counts.values()) == overall["count"] > 20
@@ -250,16 +237,15 @@ def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path:
     assert "2 failed; the same command tries them again" in said.stdout
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 def test_a_worker_that_is_killed_loses_no_run(tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
     process = begin(LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
-    workers = [pid for pid, words in children(process.pid).items() if "spawn_main" in words]
+    workers = [worker for worker, words in children(process.pid).items() if "spawn_main" in words]
     assert len(workers) == 2
-    simulations = [pid for pid in children(workers[0]) if is_alive(pid)]
-    os.kill(workers[0], signal.SIGKILL)
+    simulations = list(children(workers[0].pid))
+    workers[0].kill()
     # Its simulation goes with it.
     until(lambda: not any(map(is_alive, simulations)), 10)
     stdout, stderr = process.communicate(timeout=120)
@@ -269,7 +255,6 @@ def test_a_worker_that_is_killed_loses_no_run(tmp_path: Path) -> None:
     assert sorted(path.name for path in out.iterdir()) == ["conflicts"]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="looks into /proc")
 @pytest.mark.parametrize("group", [False, True], ids=["sweep", "terminal"])
 def test_ctrl_c_leaves_nothing_running(group: bool, tmp_path: Path) -> None:
     out = tmp_path / "out"
