@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::parquet::{PARQUET, Packed};
 use crate::inputs::Input;
 use crate::log::RUN;
-use crate::summary::Exposure;
+use crate::summary::{Count, Exposure};
 use crate::units::Second;
 use crate::{Error, Result};
 
@@ -43,8 +43,8 @@ pub struct LoggedVersions {
     pub sumo: Option<String>,
 }
 
-/// How long a run was and how much traffic it had.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+/// How long a run was, what it found in counts, and how much traffic it had.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct LoggedSummary {
     /// First step, in s.
     pub begin: Second,
@@ -52,6 +52,10 @@ pub struct LoggedSummary {
     pub end: Second,
     /// Steps that were checked; 0 where the run was killed or goes on.
     pub steps: u64,
+    /// Conflicts by kind and severity.
+    pub conflicts: Vec<Count>,
+    /// Conflicts in which the two rectangles overlapped.
+    pub collisions: u64,
     /// How much traffic it was.
     pub exposure: Exposure,
 }

@@ -11,6 +11,7 @@ use serde_json::Value;
 use super::fingerprint::Fingerprint;
 use crate::encounter::{Kind, Severity};
 use crate::log;
+use crate::logged::LoggedRun;
 use crate::summary::{Count, Exposure};
 use crate::units::Second;
 use crate::{Error, Result};
@@ -100,31 +101,6 @@ impl Row {
     }
 }
 
-/// `run.json` as it is read back.
-#[derive(Deserialize)]
-struct Record {
-    versions: RecordVersions,
-    step_length: Option<Second>,
-    options: Value,
-    sumo_words: Vec<String>,
-    inputs: Vec<crate::inputs::Input>,
-    summary: RecordSummary,
-}
-
-#[derive(Deserialize)]
-struct RecordVersions {
-    closecall: String,
-    sumo: Option<String>,
-}
-
-#[derive(Deserialize)]
-struct RecordSummary {
-    steps: u64,
-    conflicts: Vec<Count>,
-    collisions: u64,
-    exposure: Exposure,
-}
-
 impl Outcome {
     /// Collects the logs of the runs, each with its seed; `folder` is where they ran.
     ///
@@ -134,8 +110,7 @@ impl Outcome {
         let mut csv = csv::Writer::from_writer(Vec::new());
         let mut summary: Option<RunsSummary> = None;
         for (seed, log) in logs {
-            let path = log.join(log::RUN);
-            let record: Record = read_json(&path)?;
+            let record = LoggedRun::read(log)?;
             append(&mut csv, *seed, &log.join(log::CONFLICTS), summary.is_none())?;
             let of_seed = SeedSummary {
                 seed: *seed,

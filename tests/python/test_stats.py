@@ -230,6 +230,8 @@ def made(folder: Path, ttcs: list[float], hours: float = 1.0) -> Path:
             "begin": 0.0,
             "end": 3600 * hours,
             "steps": 10,
+            "conflicts": [{"kind": "side", "severity": "caution", "count": len(ttcs)}],
+            "collisions": 0,
             "exposure": {"vehicles": 100, "persons": 0, "vehicle_kilometres": 50.0, "vehicle_hours": 2.0},
         },
     }
