@@ -114,10 +114,10 @@ impl WorstOf {
     /// The worst first.
     pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<Worst> {
         let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
-        for (rank, found) in (1..).zip(&mut worst) {
+        for found in &mut worst {
             let Some(run) = runs.get(found.run) else { continue };
             found.seed.clone_from(&run.seed);
-            found.command = show(run, &found.conflict, rank);
+            found.command = show(run, &found.conflict);
         }
         worst
     }
@@ -126,8 +126,9 @@ impl WorstOf {
 /// The command that shows a conflict in sumo-gui.
 ///
 /// The run begins where it began: who departed before a later `--begin` would not be there. sumo-gui runs without
-/// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place.
-fn show(run: &LoggedRun, conflict: &LoggedConflict, rank: usize) -> Option<String> {
+/// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place. It takes the place
+/// from a file only: the shell makes one.
+fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
     run.versions.sumo.as_ref()?;
     let view = format!(
         "<viewsettings><delay value=\"0\"/><viewport x=\"{:.1}\" y=\"{:.1}\" zoom=\"{:.0}\"/></viewsettings>",
@@ -135,7 +136,6 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict, rank: usize) -> Option<Strin
         conflict.y,
         zoom(run).unwrap_or(ZOOM)
     );
-    let file = format!("/tmp/closecall-worst-{rank}.xml");
     let mut words = vec!["sumo-gui".to_owned()];
     let mut skip = false;
     for word in &run.sumo_words {
@@ -149,8 +149,8 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict, rank: usize) -> Option<Strin
     let begin = (conflict.begin - AROUND).max(run.summary.begin);
     let around = [("--breakpoints", begin), ("--end", conflict.end + AROUND)];
     words.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
-    words.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), file.clone()]);
-    Some(format!("printf %s {} > {file} && {}", quoted(&view), words.join(" ")))
+    words.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
+    Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), words.join(" ")))
 }
 
 /// A word for a POSIX shell.
