@@ -7,6 +7,7 @@ mod braking;
 mod candidates;
 mod chart;
 mod clock;
+mod decisions;
 mod driven;
 mod numbers;
 mod page;

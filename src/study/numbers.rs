@@ -1,19 +1,13 @@
 //! Contact decided in f32 and f64, near and far from the origin, with and without a local one.
 
-use std::hint::black_box;
-
 use nalgebra::{RealField, Vector2, convert};
 
-use super::clock::{Timed, interleaved};
-use super::volume::rates;
+use super::decisions::{self, Method, Pair};
 use super::{Axis, Measurement, Plan};
 use crate::geometry::Vector;
 use crate::geometry::rectangle::{Rectangle, touches};
 use crate::reference::chance::Chance;
-use crate::reference::{contact, pairs};
-
-type Pair = (Rectangle, Rectangle);
-type Method = (&'static str, fn(&Pair) -> bool);
+use crate::reference::pairs;
 
 const DEFAULT: &str = "f64, exact where it is close";
 const METHODS: [Method; 5] = [
@@ -27,40 +21,10 @@ const METHODS: [Method; 5] = [
 const PLACES: [(&str, f64); 3] = [("at the origin", 0.0), ("at 1e5 m", 1e5), ("at 1e7 m", 1e7)];
 
 pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
-    let (count, rounds) = if plan.quick { (20_000, 15) } else { (200_000, 31) };
-    let mut rows = Vec::new();
-    for (scene, far) in PLACES {
-        let mut chance = Chance::new(1);
-        let pairs = (0..count).map(|_| pair(&mut chance, far)).collect::<Vec<_>>();
-        let truth = pairs.iter().map(|(a, b)| contact::touches(a, b)).collect::<Vec<_>>();
-        let mut timed = METHODS
-            .iter()
-            .map(|(_, method)| {
-                Timed::new(count, || pairs.iter().for_each(|pair| _ = black_box(method(black_box(pair)))))
-            })
-            .collect::<Vec<_>>();
-        let times = interleaved(&mut timed, rounds);
-        for ((name, method), ns_per_item) in METHODS.into_iter().zip(times) {
-            let found = pairs.iter().map(method).collect::<Vec<_>>();
-            let [missed, invented] = rates(&found, &truth);
-            let wrong = found.iter().zip(&truth).filter(|(found, truth)| found != truth).count();
-            rows.push(Measurement {
-                axis: Axis::Numbers,
-                method: name,
-                parameter: scene.to_owned(),
-                error_name: "share of wrong decisions",
-                error: wrong as f64 / count as f64,
-                false_negative_rate: missed,
-                false_positive_rate: invented,
-                ns_per_item,
-                items: count,
-                on_pareto_front: false,
-                scene: scene.to_owned(),
-                default: name == DEFAULT,
-            });
-        }
-    }
-    rows
+    let of = |(scene, far): (&str, f64)| {
+        decisions::measure(plan, Axis::Numbers, scene, |chance| pair(chance, far), &METHODS, DEFAULT)
+    };
+    PLACES.into_iter().flat_map(of).collect()
 }
 
 /// Two that are apart, or overlap, by 1e-12 to 1 m, every order of magnitude alike.

@@ -32,16 +32,12 @@ const ROUNDING: Metre = 1e-6;
 
 pub(super) fn measure(plan: &Plan, record: &mut Record) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..3], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
-    let scratch = std::env::temp_dir().join(format!("closecall-study-{}", std::process::id()));
-    std::fs::create_dir_all(&scratch).map_err(|source| Error::file(&scratch, source))?;
+    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
     let measured = nets.iter().map(|net| {
-        let scene = Scene::record(plan, net, &scratch, end, record)?;
+        let scene = Scene::record(plan, net, scratch.path(), end, record)?;
         scene.measure(rounds)
     });
-    let rows = measured.collect::<Result<Vec<_>>>();
-    // What is left of it does no harm.
-    let _ = std::fs::remove_dir_all(&scratch);
-    Ok(rows?.into_iter().flatten().collect())
+    Ok(measured.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
 /// A recorded run of a scenario.

@@ -95,7 +95,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
                 }
             }
             let is = |times: &[Option<Second>]| times.iter().map(Option::is_some).collect::<Vec<_>>();
-            let [missed, invented] = super::volume::rates(&is(&found), &is(&truth));
+            let [missed, invented] = super::decisions::rates(&is(&found), &is(&truth));
             rows.push(Measurement {
                 axis: Axis::Time,
                 method: name,

@@ -1,0 +1,61 @@
+//! Methods that say yes or no to pairs of rectangles, and how often they are wrong: two of the axes ask nothing else.
+
+use std::hint::black_box;
+
+use super::clock::{Timed, interleaved};
+use super::{Axis, Measurement, Plan};
+use crate::geometry::rectangle::Rectangle;
+use crate::reference::chance::Chance;
+use crate::reference::contact;
+
+pub(super) type Pair = (Rectangle, Rectangle);
+pub(super) type Method = (&'static str, fn(&Pair) -> bool);
+
+/// Every method on the same pairs, against exact arithmetic.
+pub(super) fn measure(
+    plan: &Plan,
+    axis: Axis,
+    scene: &str,
+    draw: impl Fn(&mut Chance) -> Pair,
+    methods: &[Method],
+    default: &str,
+) -> Vec<Measurement> {
+    let (count, rounds) = if plan.quick { (20_000, 15) } else { (200_000, 31) };
+    let mut chance = Chance::new(1);
+    let pairs = (0..count).map(|_| draw(&mut chance)).collect::<Vec<_>>();
+    let truth = pairs.iter().map(|(a, b)| contact::touches(a, b)).collect::<Vec<_>>();
+    let decide = |method: fn(&Pair) -> bool| {
+        let pairs = &pairs;
+        Timed::new(count, move || pairs.iter().for_each(|pair| _ = black_box(method(black_box(pair)))))
+    };
+    let times = interleaved(&mut methods.iter().map(|(_, method)| decide(*method)).collect::<Vec<_>>(), rounds);
+    let row = |(&(name, method), ns_per_item): (&Method, f64)| {
+        let found = pairs.iter().map(method).collect::<Vec<_>>();
+        let [missed, invented] = rates(&found, &truth);
+        let wrong = found.iter().zip(&truth).filter(|(found, truth)| found != truth).count();
+        Measurement {
+            axis,
+            method: name,
+            parameter: scene.to_owned(),
+            error_name: "share of wrong decisions",
+            error: wrong as f64 / count as f64,
+            false_negative_rate: missed,
+            false_positive_rate: invented,
+            ns_per_item,
+            items: count,
+            on_pareto_front: false,
+            scene: scene.to_owned(),
+            default: name == default,
+        }
+    };
+    methods.iter().zip(times).map(row).collect()
+}
+
+/// Share of the true that was not found, and of the false that was.
+pub(super) fn rates(found: &[bool], truth: &[bool]) -> [f64; 2] {
+    [true, false].map(|is| {
+        let of = truth.iter().filter(|truth| **truth == is).count();
+        let wrong = found.iter().zip(truth).filter(|(found, truth)| **truth == is && found != truth).count();
+        wrong as f64 / of.max(1) as f64
+    })
+}
