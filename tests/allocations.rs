@@ -3,14 +3,14 @@
 #![allow(unsafe_code, reason = "an allocator that counts is one")]
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
+mod common;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use closecall::braking::Brakes;
 use closecall::detector::Detector;
 use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::Options;
-use closecall::profile::{Category, Profile};
 
 /// The system's allocator, counting.
 struct Counting;
@@ -49,16 +49,7 @@ fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
 #[test]
 fn a_warm_detector_allocates_nothing() {
     let mut roster = Roster::default();
-    let car = Profile {
-        name: "car".to_owned(),
-        category: Category::Vehicle,
-        length: 5.0,
-        width: 2.0,
-        chord: 5.0,
-        mass: 1500.0,
-        brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
-    };
-    let profile = roster.profile(car).unwrap();
+    let profile = roster.profile(common::car()).unwrap();
     let users = (0..1000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detector = Detector::new(&Options::default(), None);
     let mut frame = Frame::default();
