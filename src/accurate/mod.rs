@@ -12,7 +12,8 @@ pub mod side;
 use crate::braking::{self, Brakes, Braking, MuModel};
 use crate::encounter::Kind;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::rectangle::Rectangle;
+use crate::geometry::rectangle::{Rectangle, touches};
+use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector, cross};
 use crate::options::Options;
 use crate::path::Pose;
@@ -20,6 +21,44 @@ use crate::units::{Metre, MetrePerSecond, Radian};
 
 /// Two straight paths are parallel where they deviate by less than this over their length, in m.
 const PARALLEL: Metre = 1e-3;
+
+/// What a road user covers between two poses, in boxes that decide quickly where nothing meets.
+#[derive(Clone, Copy, Debug)]
+pub struct Cover {
+    /// The axis-parallel box around it.
+    pub bounds: Bounds,
+    /// The box along the way: narrow, whichever way that leads.
+    pub around: Rectangle,
+}
+
+impl Cover {
+    /// The boxes around a road user of this length and width at all these poses and between; none of no pose.
+    ///
+    /// Between two poses it may leave the hull of both by less than the sweep's tolerance.
+    pub fn of(poses: &[Pose], length: Metre, width: Metre) -> Option<Self> {
+        let rectangles = || poses.iter().map(|pose| Rectangle::behind(pose.front, pose.axis, length, width));
+        let mut bounds = Bounds::EMPTY;
+        for rectangle in rectangles() {
+            bounds.join(&rectangle.bounds());
+        }
+        let (first, last) = (poses.first()?, poses.last()?);
+        let rear = first.front - first.axis * length;
+        let axis = (last.front - rear).try_normalize(0.0).unwrap_or(first.axis);
+        let around = Rectangle::around(axis, rectangles(), TOLERANCE)?;
+        Some(Self { bounds: bounds.grown(TOLERANCE), around })
+    }
+
+    /// Whether the boxes of two meet.
+    pub fn meets(&self, other: &Self) -> bool {
+        self.bounds.meet(&other.bounds) && touches(&self.around, &other.around)
+    }
+}
+
+impl From<Bounds> for Cover {
+    fn from(bounds: Bounds) -> Self {
+        Self { bounds, around: bounds.into() }
+    }
+}
 
 /// One road user of a pair: what phase 2 needs to know of it.
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +71,10 @@ pub struct Mover<'a> {
     pub poses: &'a [Pose],
     /// Whether it drives straight on all the way.
     pub straight: bool,
-    /// The box around all that it covers on the way.
-    pub bounds: Bounds,
+    /// The boxes around all that it covers on the way.
+    pub cover: Cover,
+    /// The same from each pose to the next.
+    pub covers: &'a [Cover],
     /// Speed in m/s.
     pub speed: MetrePerSecond,
     /// How it brakes.
@@ -94,40 +135,33 @@ impl Meeting {
     }
 }
 
-/// Which test settled a pair.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Test {
-    /// In one dimension.
-    InLine,
-    /// By sweeping both rectangles.
-    Swept,
-}
-
 /// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
 /// of equal ones the first if `a_is_smaller` says that its id is.
-pub fn meet(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> (Test, Option<(bool, Meeting)>) {
+pub fn meet(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> Option<(bool, Meeting)> {
     match in_one_dimension(a, b, &a_is_smaller) {
-        OneDimension::Apart => (Test::InLine, None),
-        OneDimension::Meet(ego_is_a, meeting) => (Test::InLine, Some((ego_is_a, meeting))),
-        OneDimension::Unfit => {
-            let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
-            let met = match (as_ego(a, b), as_ego(b, a)) {
-                (None, None) => None,
-                (Some(as_a), Some(as_b)) => {
-                    let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
-                    Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
-                }
-                (Some(as_a), None) => Some((true, as_a)),
-                (None, Some(as_b)) => Some((false, as_b)),
-            };
-            (Test::Swept, met)
+        OneDimension::Apart => None,
+        OneDimension::Meet(ego_is_a, meeting) => Some((ego_is_a, meeting)),
+        OneDimension::Unfit => swept(a, b, a_is_smaller),
+    }
+}
+
+/// The same by sweeping both rectangles, whichever way they drive.
+pub fn swept(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> Option<(bool, Meeting)> {
+    let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
+    match (as_ego(a, b), as_ego(b, a)) {
+        (None, None) => None,
+        (Some(as_a), Some(as_b)) => {
+            let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
+            Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
         }
+        (Some(as_a), None) => Some((true, as_a)),
+        (None, Some(as_b)) => Some((false, as_b)),
     }
 }
 
 /// What a test in one dimension says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum OneDimension {
+pub enum OneDimension {
     /// They do not drive in parallel: to be swept.
     Unfit,
     /// They do not meet.
@@ -137,7 +171,7 @@ enum OneDimension {
 }
 
 /// Tries to settle a pair in one dimension.
-fn in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
+pub fn in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return OneDimension::Unfit;
     }

@@ -1,6 +1,6 @@
 //! Side, and whatever else is not in line: swept rectangles.
 
-use super::{Meeting, Mover};
+use super::{Cover, Meeting, Mover};
 use crate::geometry::Vector;
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
@@ -11,9 +11,6 @@ use crate::units::Metre;
 /// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
 /// to stop; none if there is no such pose.
 pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
-    if !ego.bounds.meet(&foe.bounds) {
-        return None;
-    }
     let (ego_way, rectangle) = first_touch(ego, foe)?;
     if !foe.shape.is_empty() {
         return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis: None, leads: false });
@@ -24,38 +21,32 @@ pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
 
 /// The ego's way to the foe's area and its rectangle there.
 fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
-    for (index, (pose, step)) in steps(ego.poses, ego).enumerate() {
-        let bounds = step.bounds();
-        if bounds.meet(&foe.bounds) {
-            let mut enter = f64::INFINITY;
-            for part in foe.shape.iter().filter(|part| part.bounds.meet(&bounds)) {
-                if let Some(touch) = step.enter(&part.outline) {
-                    enter = enter.min(touch);
-                }
-            }
-            for part in area(foe).filter(|part| part.bounds().meet(&bounds)) {
-                if let Some(touch) = step.first_touch(&part) {
-                    enter = enter.min(touch);
-                }
-            }
-            if enter <= 1.0 {
-                let next = ego.poses[index + 1].way;
-                return Some((pose.way + (next - pose.way) * enter, step.rectangle(enter)));
-            }
+    for ((pair, step), cover) in ego.poses.windows(2).zip(steps(ego)).zip(ego.covers) {
+        if !cover.meets(&foe.cover) {
+            continue;
+        }
+        let of_shape = foe.shape.iter().filter(|part| part.bounds.meet(&cover.bounds));
+        let of_shape = of_shape.filter_map(|part| step.enter(&part.outline));
+        let enter = of_shape.chain(area(foe, cover).filter_map(|part| step.first_touch(&part))).min_by(f64::total_cmp);
+        if let Some(enter) = enter.filter(|enter| *enter <= 1.0) {
+            return Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)));
         }
     }
     None
 }
 
-/// The steps over which the foe covers the area that it is in now and still needs to stop; none of an obstacle.
-fn area(foe: &Mover) -> impl Iterator<Item = Step> {
+/// The steps near an ego's over which the foe covers the area that it is in now and still needs to stop; none of an
+/// obstacle.
+fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = Step> + 'a {
     let stands = foe.shape.is_empty() && foe.stop <= 0.0;
     let now = Pose {
         way: 0.0,
         front: foe.rectangle.centre + foe.rectangle.axis * foe.rectangle.half_length,
         axis: foe.rectangle.axis,
     };
-    let moving = steps(foe.poses, foe).take_while(|(pose, _)| pose.way < foe.stop).map(|(_, step)| step);
+    let before_it_stands = foe.poses.iter().take_while(|pose| pose.way < foe.stop);
+    let moving = before_it_stands.zip(steps(foe)).zip(foe.covers).filter(|(_, cover)| cover.meets(near));
+    let moving = moving.map(|((_, step), _)| step);
     stands.then(|| now.step_to(&now, foe.length(), foe.width())).into_iter().chain(moving)
 }
 
@@ -64,12 +55,11 @@ fn area(foe: &Mover) -> impl Iterator<Item = Step> {
 /// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
 fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
     let ego = Outline::rectangle(&grown(ego));
-    for (index, (pose, step)) in steps(foe.poses, foe).enumerate() {
+    for (pair, step) in foe.poses.windows(2).zip(steps(foe)) {
         if let Some(enter) = step.enter(&ego) {
-            let next = foe.poses[index + 1].way;
-            return (pose.way + (next - pose.way) * enter, step.rectangle(enter).axis);
+            return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
         }
-        if pose.way >= foe.stop {
+        if pair[0].way >= foe.stop {
             break;
         }
     }
@@ -109,9 +99,8 @@ fn grown(rectangle: &Rectangle) -> Rectangle {
     }
 }
 
-fn steps<'a>(poses: &'a [Pose], of: &Mover) -> impl Iterator<Item = (Pose, Step)> + 'a {
-    let (length, width) = (of.length(), of.width());
-    poses.windows(2).map(move |pair| (pair[0], pair[0].step_to(&pair[1], length, width)))
+fn steps<'a>(of: &'a Mover) -> impl Iterator<Item = Step> + 'a {
+    of.poses.windows(2).map(|pair| pair[0].step_to(&pair[1], of.length(), of.width()))
 }
 
 /// Whether two rectangles-with-shapes overlap or touch now.
@@ -121,4 +110,51 @@ pub fn touch_now(a: &Mover, b: &Mover) -> bool {
         return crate::geometry::rectangle::touches(&a.rectangle, &b.rectangle);
     }
     b.shape.iter().any(|part| translation(&outline, &Vector::zeros(), &part.outline).is_some())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::braking::Brakes;
+    use crate::geometry::{Bounds, Point};
+    use crate::path::arc;
+    use proptest::prelude::*;
+
+    const SIZE: (Metre, Metre) = (5.0, 2.0);
+    const BRAKES: Brakes = Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 };
+
+    fn mover<'a>(poses: &'a [Pose], covers: &'a [Cover], cover: Cover) -> Mover<'a> {
+        let (length, width) = SIZE;
+        let rectangle = Rectangle::behind(poses[0].front, poses[0].axis, length, width);
+        let stop = poses[poses.len() - 2].way;
+        Mover { rectangle, shape: &[], poses, straight: false, cover, covers, speed: 10.0, brakes: &BRAKES, stop }
+    }
+
+    prop_compose! {
+        fn way()(x in -40.0..40.0, y in -40.0..40.0, heading in -3.2..3.2, stop in 1.0..60.0, curvature in -0.1..0.1)
+            -> Vec<Pose> {
+            let (front, axis) = (Point::new(x, y), crate::geometry::rectangle::direction(heading));
+            let mut poses = vec![Pose { way: 0.0, front, axis }];
+            arc::poses(front, axis, curvature, SIZE.0, &[stop, stop + 0.5], &mut poses);
+            poses
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(5000))]
+
+        #[test]
+        fn covers_leave_out_nothing_that_meets(ego in way(), foe in way()) {
+            let everywhere =
+                Cover::from(Bounds { low: Point::new(-1e3, -1e3), high: Point::new(1e3, 1e3) });
+            let all = vec![everywhere; 1000];
+            let whole = |poses: &[Pose]| Cover::of(poses, SIZE.0, SIZE.1).unwrap();
+            let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
+            let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
+            let slow = meet(&mover(&ego, &all, everywhere), &mover(&foe, &all, everywhere));
+            let (ego, foe) = (mover(&ego, &ego_parts, whole(&ego)), mover(&foe, &foe_parts, whole(&foe)));
+            prop_assert!(slow.is_none() || ego.cover.meets(&foe.cover));
+            prop_assert_eq!(meet(&ego, &foe), slow);
+        }
+    }
 }

@@ -6,13 +6,14 @@ mod measure;
 
 use std::sync::Arc;
 
-use crate::accurate::{self, Meeting, Mover, Test, side};
+use crate::accurate::{self, Cover, Meeting, Mover, OneDimension, side};
 use crate::braking::{self, stopping_distance};
 use crate::encounter::{Encounter, Placement};
 use crate::frame::{Frame, Roster, State, UserIndex};
 use crate::geometry::rectangle::{self, Rectangle, direction};
+use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
-use crate::net::Net;
+use crate::net::{EdgeIndex, Net};
 use crate::options::{Mode, Options, PathModel};
 use crate::path::lanes::{LanePath, Start};
 use crate::path::{Pose, arc, straight, turn};
@@ -63,6 +64,7 @@ pub struct Detector {
     pairs: Vec<(u32, u32)>,
     unplaced: Vec<u32>,
     poses: Vec<Pose>,
+    covers: Vec<Cover>,
     scratch: [Vec<Pose>; 2],
     encounters: Vec<Encounter>,
 }
@@ -93,7 +95,9 @@ struct Row {
     on_lanes: bool,
     poses: (u32, u32),
     straight: bool,
-    bounds: Bounds,
+    cover: Cover,
+    /// Where the covers from pose to pose begin; none as long as nobody asked.
+    covers: Option<u32>,
 }
 
 impl Detector {
@@ -113,6 +117,7 @@ impl Detector {
             pairs: Vec::new(),
             unplaced: Vec::new(),
             poses: Vec::new(),
+            covers: Vec::new(),
             scratch: [Vec::new(), Vec::new()],
             encounters: Vec::new(),
         }
@@ -211,7 +216,8 @@ impl Detector {
                 on_lanes: false,
                 poses: (0, 0),
                 straight: false,
-                bounds: Bounds::EMPTY,
+                cover: Bounds::EMPTY.into(),
+                covers: None,
             };
             match self.rows.get_mut(place) {
                 Some(last) => *last = row,
@@ -245,14 +251,20 @@ impl Detector {
         }
     }
 
+    /// Whether the road user of a row is still on the path that was laid for this route.
+    pub fn keeps_path(&self, frame: &Frame, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
+        let user = frame.users()[row as usize];
+        self.rows[row as usize].on_lanes && self.memory[user.0 as usize].path.is_for(route)
+    }
+
     /// Where the road user of a row is on the net.
     pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
-        let user = frame.users()[row as usize];
-        let memory = &mut self.memory[user.0 as usize];
-        if self.rows[row as usize].on_lanes && memory.path.is_for(&placement.route) {
+        if self.keeps_path(frame, row, &placement.route) {
             return;
         }
+        let user = frame.users()[row as usize];
+        let memory = &mut self.memory[user.0 as usize];
         let state = &frame.states()[row as usize];
         let start = Start {
             front: Point::new(state.x, state.y),
@@ -270,6 +282,7 @@ impl Detector {
     pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> &[Encounter] {
         self.encounters.clear();
         self.poses.clear();
+        self.covers.clear();
         for row in 0..self.rows.len() {
             if self.rows[row].in_pair {
                 self.lay_poses(frame, roster, row);
@@ -309,16 +322,26 @@ impl Detector {
         let row = &mut self.rows[row];
         row.poses = (start as u32, self.poses.len() as u32);
         row.straight = laid.iter().all(|pose| pose.axis == axis);
-        row.bounds = Bounds::EMPTY;
-        if profile.category == Category::Obstacle {
+        row.cover = Cover::of(laid, profile.length, profile.width).unwrap_or_else(|| {
+            let mut bounds = Bounds::EMPTY;
             for part in roster.user(user).shape.iter() {
-                row.bounds.join(&part.bounds);
+                bounds.join(&part.bounds);
             }
+            bounds.grown(TOLERANCE).into()
+        });
+    }
+
+    /// Sees to it that a row's covers from pose to pose are known.
+    fn cover(&mut self, frame: &Frame, roster: &Roster, row: u32) {
+        let user = frame.users()[row as usize];
+        let row = &mut self.rows[row as usize];
+        if row.covers.is_none() {
+            let profile = roster.profile_of(user);
+            row.covers = Some(self.covers.len() as u32);
+            let poses = &self.poses[row.poses.0 as usize..row.poses.1 as usize];
+            let covers = poses.windows(2).filter_map(|pair| Cover::of(pair, profile.length, profile.width));
+            self.covers.extend(covers);
         }
-        for pose in laid {
-            row.bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
-        }
-        row.bounds = row.bounds.grown(crate::geometry::sweep::TOLERANCE);
     }
 
     /// Poses of a row at the given ways, and between.
@@ -356,6 +379,11 @@ impl Detector {
         }
     }
 
+    fn covers_of(&self, row: &Row) -> &[Cover] {
+        let steps = (row.poses.1 - row.poses.0).saturating_sub(1);
+        row.covers.map_or(&[], |start| &self.covers[start as usize..(start + steps) as usize])
+    }
+
     fn mover<'a>(&'a self, frame: &Frame, roster: &'a Roster, row: u32) -> Mover<'a> {
         let (index, row) = (row as usize, &self.rows[row as usize]);
         let user = frame.users()[index];
@@ -366,7 +394,8 @@ impl Detector {
             shape: &roster.user(user).shape,
             poses: &self.poses[row.poses.0 as usize..row.poses.1 as usize],
             straight: row.straight,
-            bounds: row.bounds,
+            cover: row.cover,
+            covers: self.covers_of(row),
             speed: state.speed,
             brakes: &profile.brakes,
             stop: row.stop,
@@ -374,7 +403,7 @@ impl Detector {
     }
 
     fn meet(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
-        if !self.rows[a as usize].bounds.meet(&self.rows[b as usize].bounds) {
+        if !self.rows[a as usize].cover.meets(&self.rows[b as usize].cover) {
             self.work.ways_apart += 1;
             return None;
         }
@@ -389,11 +418,21 @@ impl Detector {
             let rows = if ego_is_a { (a, b) } else { (b, a) };
             return Some(self.measure(frame, roster, rows, &meeting, true));
         }
-        let (test, met) = accurate::meet(&first, &second, a_is_smaller);
-        match test {
-            Test::InLine => self.work.in_line += 1,
-            Test::Swept => self.work.swept += 1,
-        }
+        let met = match accurate::in_one_dimension(&first, &second, &a_is_smaller) {
+            OneDimension::Unfit => {
+                self.work.swept += 1;
+                self.cover(frame, roster, a);
+                self.cover(frame, roster, b);
+                accurate::swept(&self.mover(frame, roster, a), &self.mover(frame, roster, b), a_is_smaller)
+            }
+            in_line => {
+                self.work.in_line += 1;
+                match in_line {
+                    OneDimension::Meet(ego_is_a, meeting) => Some((ego_is_a, meeting)),
+                    _ => None,
+                }
+            }
+        };
         let (ego_is_a, meeting) = met?;
         let rows = if ego_is_a { (a, b) } else { (b, a) };
         Some(self.measure(frame, roster, rows, &meeting, false))

@@ -50,6 +50,31 @@ impl Rectangle {
         ]
     }
 
+    /// The smallest rectangle along `axis` that covers all of these, larger by `margin` on every side; of none, none.
+    pub fn around(axis: Vector, parts: impl IntoIterator<Item = Self>, margin: Metre) -> Option<Self> {
+        let mut parts = parts.into_iter();
+        let first = parts.next()?;
+        // Measured from the first: far from the origin nothing cancels.
+        let extent = |part: &Self, direction: &Vector| {
+            let (middle, reach) = ((part.centre - first.centre).dot(direction), reach(part, direction));
+            (middle - reach, middle + reach)
+        };
+        let across = left_of(&axis);
+        let (mut along, mut aside) = (extent(&first, &axis), extent(&first, &across));
+        for part in parts {
+            let (low, high) = extent(&part, &axis);
+            along = (along.0.min(low), along.1.max(high));
+            let (low, high) = extent(&part, &across);
+            aside = (aside.0.min(low), aside.1.max(high));
+        }
+        Some(Self {
+            centre: first.centre + axis * ((along.0 + along.1) / 2.0) + across * ((aside.0 + aside.1) / 2.0),
+            axis,
+            half_length: (along.1 - along.0) / 2.0 + margin,
+            half_width: (aside.1 - aside.0) / 2.0 + margin,
+        })
+    }
+
     /// The axis-parallel box around it.
     pub fn bounds(&self) -> Bounds {
         let reach = Vector::new(
@@ -57,6 +82,13 @@ impl Rectangle {
             self.axis.y.abs() * self.half_length + self.axis.x.abs() * self.half_width,
         );
         Bounds { low: self.centre - reach, high: self.centre + reach }
+    }
+}
+
+impl From<Bounds> for Rectangle {
+    fn from(bounds: Bounds) -> Self {
+        let half = (bounds.high - bounds.low) / 2.0;
+        Self { centre: bounds.low + half, axis: Vector::x(), half_length: half.x, half_width: half.y }
     }
 }
 

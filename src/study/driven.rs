@@ -9,17 +9,16 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use crate::Result;
-use crate::accurate::{self, Meeting, Mover, side};
-use crate::braking::{MuModel, stopping_distance};
+use crate::accurate::{self, Cover, Meeting, Mover, side};
+use crate::braking::{Brakes, MuModel, stopping_distance};
 use crate::frame::{Frame, Roster, State, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector, cross};
 use crate::options::Options;
 use crate::path::Pose;
 use crate::precollision::{Circle, Search};
 use crate::replay::recording::{Recording, Step};
-use crate::units::{Metre, Second};
+use crate::units::{Metre, MetrePerSecond, Second};
 
 /// Two within this of the limit are left aside: steps and sizes are rounded in a recording.
 const NEAR: Metre = 0.75;
@@ -143,7 +142,13 @@ impl Driven {
 
 /// A road user on the way that it drove.
 struct Way<'a> {
-    mover: Mover<'a>,
+    rectangle: Rectangle,
+    poses: &'a [Pose],
+    cover: Cover,
+    covers: Vec<Cover>,
+    speed: MetrePerSecond,
+    brakes: &'a Brakes,
+    stop: Metre,
     /// Poses beyond where it would stand.
     all: &'a [Pose],
 }
@@ -155,28 +160,29 @@ impl<'a> Way<'a> {
         let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
         let end = all.partition_point(|pose| pose.way <= stop + epsilon);
         let poses = &all[..end.max(1)];
-        let mut bounds = Bounds::EMPTY;
-        for pose in poses {
-            bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
-        }
-        let bounds = bounds.grown(TOLERANCE);
-        let mover =
-            Mover { rectangle, shape: &[], poses, straight: false, bounds, speed, brakes: &profile.brakes, stop };
-        Self { mover, all }
+        let (length, width) = (profile.length, profile.width);
+        let cover = Cover::of(poses, length, width).unwrap_or(Bounds::EMPTY.into());
+        let covers = poses.windows(2).filter_map(|pair| Cover::of(pair, length, width)).collect();
+        Self { rectangle, poses, cover, covers, speed, brakes: &profile.brakes, stop, all }
+    }
+
+    fn mover(&self) -> Mover<'_> {
+        let Self { rectangle, poses, cover, speed, brakes, stop, .. } = *self;
+        Mover { rectangle, shape: &[], poses, straight: false, cover, covers: &self.covers, speed, brakes, stop }
     }
 }
 
 fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
-    if side::touch_now(&a.mover, &b.mover) {
+    let (first, second) = (a.mover(), b.mover());
+    if side::touch_now(&first, &second) {
         return Truth::Conflict(0.0);
     }
-    let (_, met) = accurate::meet(&a.mover, &b.mover, || true);
-    let Some((ego_is_a, meeting)) = met else { return Truth::None };
+    let Some((ego_is_a, meeting)) = accurate::meet(&first, &second, || true) else { return Truth::None };
     let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
     let sigma = meeting.angle().cos();
     let foe_way = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_way };
     let gap = accurate::gap(meeting.ego_way, foe_way, sigma);
-    let margin = gap - accurate::mu(MuModel::Minimal, &ego.mover, &foe.mover, sigma, options.epsilon);
+    let margin = gap - accurate::mu(MuModel::Minimal, &ego.mover(), &foe.mover(), sigma, options.epsilon);
     match margin {
         _ if margin.abs() < NEAR => Truth::Aside,
         _ if margin < 0.0 => Truth::Conflict(gap),
@@ -186,5 +192,5 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
 
 /// The foe's way until it has left the meeting place; a leader is there now.
 fn way_out(foe: &Way, meeting: &Meeting) -> Metre {
-    if meeting.foe_way <= 0.0 { 0.0 } else { side::departure(foe.all, &foe.mover, &meeting.ego, meeting.foe_way) }
+    if meeting.foe_way <= 0.0 { 0.0 } else { side::departure(foe.all, &foe.mover(), &meeting.ego, meeting.foe_way) }
 }
