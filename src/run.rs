@@ -15,7 +15,7 @@ use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
-use crate::net::Net;
+use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
 use crate::outputs::Outputs;
 use crate::profile::{Category, Profile};
@@ -162,6 +162,12 @@ impl Run {
     /// Phase 1; returns the rows that phase 2 has to have placed.
     pub fn approach(&mut self) -> &[u32] {
         self.detector.approach(&self.frame, &self.roster)
+    }
+
+    /// Whether the road user of a row, if it still has this route, is on the path laid before: nobody needs to know
+    /// where it is on the net.
+    pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
+        !self.outputs.want_lanes() && self.detector.keeps_path(&self.frame, row, route)
     }
 
     /// Says where the road user of a row is on the net.

@@ -49,6 +49,11 @@ impl Outputs {
         Ok(Self { ssm: files.ssm_output.as_deref().map(Ssm::create).transpose()?, trajectories })
     }
 
+    /// Whether any of them says who was on which lane.
+    pub(crate) fn want_lanes(&self) -> bool {
+        self.trajectories.is_some()
+    }
+
     /// Says where on the net the road user of a row is.
     pub(crate) fn place(&mut self, row: u32, placement: &Placement) {
         if let Some(trajectories) = &mut self.trajectories {

@@ -152,15 +152,18 @@ impl Libsumo {
         Ok(())
     }
 
-    /// Whether a vehicle that has come into the scene carries a device that changes its route.
+    /// Whether a vehicle that has come into the scene carries a device that changes its route on the way.
+    ///
+    /// Who is given no route but an origin and a destination carries one too, which has done its work on departure:
+    /// its period is 0.
     fn may_reroute(&self, py: Python, live: &Live) -> PyResult<bool> {
-        for device in ["has.rerouting.device", "has.taxi.device"] {
-            let has: String = self.get.parameter.bind(py).call1((&live.id, device))?.extract()?;
-            if has == "true" {
-                return Ok(true);
-            }
+        let parameter =
+            |name: &str| -> PyResult<String> { self.get.parameter.bind(py).call1((&live.id, name))?.extract() };
+        if parameter("has.taxi.device")? == "true" {
+            return Ok(true);
         }
-        Ok(false)
+        Ok(parameter("has.rerouting.device")? == "true"
+            && parameter("device.rerouting.period")?.parse::<f64>().is_ok_and(|period| period != 0.0))
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
@@ -170,10 +173,10 @@ impl Libsumo {
             let live = &mut self.vehicles.live[live as usize];
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1(live.arguments.bind(py));
             let Some(net) = run.net() else { return Ok(()) };
-            let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let route_id = ask(&self.get.route_id)?;
             let known = live.route.as_ref().filter(|(id, _)| id.bind(py).eq(&route_id).unwrap_or(false));
             let route = match known {
+                Some((_, route)) if run.keeps_path(row, route) => continue,
                 Some((_, route)) => route.clone(),
                 None => {
                     let route = sumo::route(net, &ask(&self.get.route)?)?;
@@ -182,6 +185,8 @@ impl Libsumo {
                 }
             };
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1(live.arguments.bind(py));
+            let Some(net) = run.net() else { return Ok(()) };
+            let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let placement = Placement {
                 lane,
                 position: ask(&self.get.lane_position)?.extract()?,
