@@ -85,8 +85,8 @@ def first_error(text: str) -> str:
 def without(module: str) -> Iterator[None]:
     """What is imported meanwhile does without a module that is not imported yet.
 
-    libsumo imports sumolib, which takes numpy where it is, for nothing that is used here: 0.08 s of each run, and threads
-    of its own.
+    libsumo imports sumolib, which takes numpy where it is, for nothing that is used here: 0.08 s of each run, and
+    threads of its own.
     """
     if module in sys.modules:
         yield
