@@ -9,8 +9,9 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
@@ -82,6 +83,31 @@ def is_alive(process: psutil.Process) -> bool:
         return bool(process.status() != psutil.STATUS_ZOMBIE)
     except psutil.NoSuchProcess:
         return False
+
+
+class Cluster(NamedTuple):
+    """A Dask scheduler with two worker processes, in a process of its own."""
+
+    address: str
+    pid: int
+
+
+@pytest.fixture
+def cluster() -> Iterator[Cluster]:
+    """A cluster that is there already, as somebody else's is."""
+    script = """if True:
+        import sys
+        from distributed import LocalCluster
+        if __name__ == "__main__":
+            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+                print(cluster.scheduler_address, flush=True)
+                sys.stdin.read()
+    """
+    command = [sys.executable, "-c", script]
+    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdin and process.stdout
+        yield Cluster(process.stdout.readline().strip(), process.pid)
+        process.stdin.close()
 
 
 @pytest.fixture(scope="module")
@@ -237,17 +263,36 @@ def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path:
     assert "2 failed; the same command tries them again" in said.stdout
 
 
-def test_a_worker_that_is_killed_loses_no_run(tmp_path: Path) -> None:
+def simulations(of: psutil.Process) -> list[psutil.Process]:
+    """The runs that a sweep or a worker has started."""
+    return [process for process, words in children(of.pid).items() if "closecall._child" in words]
+
+
+def test_a_run_that_is_killed_is_not_lost(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    words = ("--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
+    process = begin(LEFT_TURN, "--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
+    until(lambda: len(files(out)) >= 2)
+    running = simulations(psutil.Process(process.pid))
+    assert len(running) in (1, 2)
+    running[0].kill()
+    stdout, stderr = process.communicate(timeout=120)
+    assert (process.returncode, stderr) == (0, ""), stdout + stderr
+    assert set(files(out)) == {f"seed-{seed}" for seed in range(1, 9)}
+    assert stats(out)["runs"] == 8
+    assert sorted(path.name for path in out.iterdir()) == ["conflicts"]
+
+
+def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = ("--seeds", "1-8", "--out", out, "--scheduler", cluster.address, "--", "--no-warnings")
     process = begin(LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
-    workers = [worker for worker, words in children(process.pid).items() if "spawn_main" in words]
+    workers = [worker for worker, words in children(cluster.pid).items() if "spawn_main" in words]
     assert len(workers) == 2
-    simulations = list(children(workers[0].pid))
+    running = simulations(workers[0])
     workers[0].kill()
     # Its simulation goes with it.
-    until(lambda: not any(map(is_alive, simulations)), 10)
+    until(lambda: not any(map(is_alive, running)), 10)
     stdout, stderr = process.communicate(timeout=120)
     assert (process.returncode, stderr) == (0, ""), stdout + stderr
     assert set(files(out)) == {f"seed-{seed}" for seed in range(1, 9)}
@@ -275,29 +320,16 @@ def test_ctrl_c_leaves_nothing_running(group: bool, tmp_path: Path) -> None:
     assert before.items() <= files(out).items()
 
 
-def test_a_scheduler_by_its_address(tmp_path: Path) -> None:
-    script = """if True:
-        import sys
-        from distributed import LocalCluster
-        if __name__ == "__main__":
-            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
-                print(cluster.scheduler_address, flush=True)
-                sys.stdin.read()
-    """
-    command = [sys.executable, "-c", script]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as cluster:
-        assert cluster.stdin and cluster.stdout
-        address = cluster.stdout.readline().strip()
-        out = tmp_path / "out"
-        sweep(LEFT_TURN, "--seeds", "1-4", "--out", out, "--scheduler", address, *SHORT)
-        assert len(files(out)) == 4
-        # A sweep that is killed lets its runs end: Dask forgets them, and they notice.
-        process = begin(LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", address)
-        until(lambda: files(tmp_path / "more"))
-        process.kill()
-        process.communicate()
-        until(lambda: not any("closecall.sweep" in words for words in children(cluster.pid).values()), 20)
-        cluster.stdin.close()
+def test_a_scheduler_by_its_address(cluster: Cluster, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    sweep(LEFT_TURN, "--seeds", "1-4", "--out", out, "--scheduler", cluster.address, *SHORT)
+    assert len(files(out)) == 4
+    # A sweep that is killed lets its runs end: Dask forgets them, and they notice.
+    process = begin(LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", cluster.address)
+    until(lambda: files(tmp_path / "more"))
+    process.kill()
+    process.communicate()
+    until(lambda: not simulations(psutil.Process(cluster.pid)), 20)
 
 
 def test_what_cannot_be_used_is_one_clear_line(scenario: Copy, tmp_path: Path) -> None:

@@ -7,34 +7,25 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from . import geometry
-from ._closecall import Checker as _Checker
 from ._closecall import Conflict, __version__, mu
 
-try:
-    from traci.step import StepListener
-except ImportError:  # without SUMO a checker takes plain frames
-    StepListener = object
+if TYPE_CHECKING:
+    from ._checker import Checker
 
 __all__ = ["Checker", "Conflict", "__version__", "geometry", "mu"]
 
 
-class Checker(_Checker, StepListener):  # type: ignore[misc]
-    """Finds the conflicts of a simulation, or of plain frames, step by step.
+def __getattr__(name: str) -> type[Checker]:
+    # traci comes with it, whose import takes longer than closecall's: every run of a sweep would wait for it.
+    if name == "Checker":
+        from ._checker import Checker
 
-    >>> checker = Checker()
-    >>> car = {"id": ["a", "b"], "x": [0.0, 20.0], "y": [0.0, 0.0], "heading": [0.0, 0.0], "speed": [20.0, 5.0]}
-    >>> checker.step(0.0, car)
-    True
-    >>> [(conflict.ego, conflict.foe, conflict.kind) for conflict in checker.conflicts]
-    [('a', 'b', 'rear_end')]
-    """
+        return Checker
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
-    def cleanUp(self) -> None:
-        """What traci calls when the simulation is closed."""
 
-    def __enter__(self) -> Checker:
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.close()
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,20 +1,21 @@
 """The runs of `closecall sweep` on Dask: each a task, and in it a process of its own.
 
-libsumo allows one simulation per process, and a simulation that crashes must not take the worker along.
+libsumo allows one simulation per process, and a simulation that crashes must not take the worker along. On this machine
+the workers are therefore threads of the sweep, which wait for their processes: processes of Dask's own would each have
+to start and to import Dask before the first run, and would then only wait too.
 """
 
 from __future__ import annotations
 
 import logging
 import os
-import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from pathlib import Path
 
 from ._closecall import finish_run
@@ -23,9 +24,9 @@ Task = tuple[str, list[str], str]
 """A run: its name, the words of `closecall run`, and what `finish_run` needs to know."""
 
 ASKED_EVERY = 0.2
-"""Seconds after which a run is asked again whether it has ended, and Dask whether it is still wanted."""
+"""Seconds after which Dask is asked again whether a run is still wanted."""
 
-START = "import sys; sys.path[:] = filter(None, sys.path); from closecall.sweep import child; sys.exit(child())"
+START = "import sys; sys.path[:] = filter(None, sys.path); from closecall._child import main; sys.exit(main())"
 """Starts closecall from wherever this interpreter imports it, never from the working folder."""
 
 
@@ -34,8 +35,8 @@ def results(
 ) -> Iterator[tuple[str, str | None]]:
     """Do the tasks; yields the name of each as it ends, with what it said if it failed twice.
 
-    Logs that are not finished lie in `folder`. Without the address of a scheduler so many worker processes of this
-    machine do the work. Whatever ends the iteration, nothing of it goes on running.
+    Logs that are not finished lie in `folder`. Without the address of a scheduler this machine does the work, so many
+    tasks at once. Whatever ends the iteration, nothing of it goes on running.
 
     Raises:
         ImportError: Dask is not installed.
@@ -47,13 +48,12 @@ def results(
     with ExitStack() as stack:
         if scheduler is None:
             cluster = LocalCluster(
-                n_workers=min(workers, len(tasks)),
-                threads_per_worker=1,
-                processes=True,
+                n_workers=1,
+                threads_per_worker=workers,
+                processes=False,
                 memory_limit=0,
                 dashboard_address=None,
                 silence_logs=logging.CRITICAL,
-                preload=__name__,
             )
             stack.enter_context(cluster)
         client = stack.enter_context(Client(scheduler or cluster))
@@ -72,11 +72,6 @@ def results(
                 future.release()
         finally:
             client.cancel(list(names), force=True)
-
-
-def dask_setup(worker: object) -> None:
-    """What Dask calls in each local worker: Ctrl-C, which a terminal sends to all, is for the sweep alone."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def said(error: BaseException) -> str:
@@ -114,12 +109,19 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
 
 def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> None:
     """Wait until the process has ended; it is killed when nobody wants it any more."""
-    while True:
-        with suppress(subprocess.TimeoutExpired):
-            process.wait(ASKED_EVERY)
-            return
-        if not is_wanted():
-            process.kill()
+    ended = threading.Event()
+
+    def watch() -> None:
+        while not ended.wait(ASKED_EVERY):
+            if not is_wanted():
+                process.kill()
+
+    # Popen.wait with a timeout looks only every 50 ms whether the process has ended: hence a thread that asks.
+    watcher = threading.Thread(target=watch, daemon=True)
+    watcher.start()
+    process.wait()
+    ended.set()
+    watcher.join()
 
 
 def wanted() -> Callable[[], bool]:
@@ -143,15 +145,3 @@ def failure(text: str, status: int) -> str:
     if own or lines:
         return (own or lines)[-1]
     return f"killed by signal {-status}" if status < 0 else f"closecall run ended with exit status {status}"
-
-
-def child() -> int:
-    """Closecall as a child of a worker: it ends when the worker does, which holds the other end of standard input."""
-    from .__main__ import main
-
-    def watch() -> None:
-        os.read(0, 1)
-        os._exit(1)
-
-    threading.Thread(target=watch, daemon=True).start()
-    return main()
