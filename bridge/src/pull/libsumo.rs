@@ -152,15 +152,15 @@ impl Libsumo {
         Ok(())
     }
 
-    /// Whether a vehicle that has come into the scene carries a device that changes its route.
+    /// Whether a vehicle that has come into the scene carries a device that changes its route on the way.
     fn may_reroute(&self, py: Python, live: &Live) -> PyResult<bool> {
-        for device in ["has.rerouting.device", "has.taxi.device"] {
-            let has: String = self.get.parameter.bind(py).call1((&live.id, device))?.extract()?;
-            if has == "true" {
-                return Ok(true);
-            }
+        let parameter = |name: &str| self.get.parameter.bind(py).call1((&live.id, name))?.extract::<String>();
+        if parameter("has.taxi.device")? == "true" {
+            return Ok(true);
         }
-        Ok(false)
+        // Every trip has a device that looks for its route; without a period it does so before it departs, then never.
+        let has_router = parameter("has.rerouting.device")? == "true";
+        Ok(has_router && parameter("device.rerouting.period")?.parse() != Ok(0.0))
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
