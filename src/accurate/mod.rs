@@ -105,60 +105,57 @@ pub enum Test {
 
 /// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
 /// of equal ones the first if `a_is_smaller` says that its id is.
-pub fn meet(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> (Test, Option<(bool, Meeting)>) {
-    match in_one_dimension(a, b, &a_is_smaller) {
-        OneDimension::Apart => (Test::InLine, None),
-        OneDimension::Meet(ego_is_a, meeting) => (Test::InLine, Some((ego_is_a, meeting))),
-        OneDimension::Unfit => {
-            let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
-            let met = match (as_ego(a, b), as_ego(b, a)) {
-                (None, None) => None,
-                (Some(as_a), Some(as_b)) => {
-                    let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
-                    Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
-                }
-                (Some(as_a), None) => Some((true, as_a)),
-                (None, Some(as_b)) => Some((false, as_b)),
-            };
-            (Test::Swept, met)
+///
+/// Two that drive in line need one dimension; with `in_one_dimension` false they are swept like all others, and meet in
+/// the same place.
+pub fn meet(
+    a: &Mover,
+    b: &Mover,
+    a_is_smaller: impl Fn() -> bool,
+    in_one_dimension: bool,
+) -> (Test, Option<(bool, Meeting)>) {
+    let in_line = drive_in_line(a, b);
+    if in_line && in_one_dimension {
+        return (Test::InLine, meet_in_one_dimension(a, b, &a_is_smaller));
+    }
+    let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe, in_line) } else { None };
+    let met = match (as_ego(a, b), as_ego(b, a)) {
+        (None, None) => None,
+        (Some(as_a), Some(as_b)) => {
+            let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
+            Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
         }
-    }
+        (Some(as_a), None) => Some((true, as_a)),
+        (None, Some(as_b)) => Some((false, as_b)),
+    };
+    (Test::Swept, met)
 }
 
-/// What a test in one dimension says of a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum OneDimension {
-    /// They do not drive in parallel: to be swept.
-    Unfit,
-    /// They do not meet.
-    Apart,
-    /// They meet; `true` where the first of the pair is the ego.
-    Meet(bool, Meeting),
-}
-
-/// Tries to settle a pair in one dimension.
-fn in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
+/// Whether both drive straight on, side by side or in line.
+fn drive_in_line(a: &Mover, b: &Mover) -> bool {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
-        return OneDimension::Unfit;
+        return false;
     }
-    let (axis, other) = (a.rectangle.axis, b.rectangle.axis);
     let extent = (a.stop + a.length()).max(b.stop + b.length());
-    if cross(&axis, &other).abs() * extent > PARALLEL {
-        return OneDimension::Unfit;
-    }
+    cross(&a.rectangle.axis, &b.rectangle.axis).abs() * extent <= PARALLEL
+}
+
+/// Where two that drive in line meet; `true` where the first of them is the ego.
+fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+    let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
-        return OneDimension::Apart;
+        return None;
     }
     let along = between.dot(&axis);
     let ahead = along.abs() - a.rectangle.half_length - b.rectangle.half_length;
-    if axis.dot(&other) > 0.0 {
+    if axis.dot(&b.rectangle.axis) > 0.0 {
         let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
-        rear_end::in_line(ego, foe, ahead).map_or(OneDimension::Apart, |meeting| OneDimension::Meet(ego_is_a, meeting))
+        rear_end::in_line(ego, foe, ahead).map(|meeting| (ego_is_a, meeting))
     } else if along > 0.0 {
         frontal::in_line(a, b, ahead, a_is_smaller)
     } else {
-        OneDimension::Apart
+        None
     }
 }
 

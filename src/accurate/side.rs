@@ -8,9 +8,12 @@ use crate::geometry::sweep::{Step, TOLERANCE, translation};
 use crate::path::Pose;
 use crate::units::Metre;
 
+/// How far from each other two may be, after both were swept, where they touch, in m.
+const INEXACT: Metre = 2.0 * TOLERANCE;
+
 /// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
 /// to stop; none if there is no such pose.
-pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
+pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
     if !ego.bounds.meet(&foe.bounds) {
         return None;
     }
@@ -18,7 +21,11 @@ pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
     if !foe.shape.is_empty() {
         return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis: None, leads: false });
     }
-    let (foe_way, foe_axis) = arrival(foe, &rectangle);
+    if in_line && rectangle.axis.dot(&foe.rectangle.axis) > 0.0 {
+        let foe_axis = Some(foe.rectangle.axis);
+        return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis, leads: true });
+    }
+    let (foe_way, foe_axis) = arrival(foe, &rectangle, if in_line { 0.0 } else { INEXACT });
     Some(Meeting { ego_way, foe_way, ego: rectangle, foe_axis: Some(foe_axis), leads: false })
 }
 
@@ -62,8 +69,8 @@ fn area(foe: &Mover) -> impl Iterator<Item = Step> {
 /// The foe's way to the ego's rectangle at the meeting place, and its axis there.
 ///
 /// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
-fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
-    let ego = Outline::rectangle(&grown(ego));
+fn arrival(foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
+    let ego = Outline::rectangle(&grown(ego, inexact));
     for (index, (pose, step)) in steps(foe.poses, foe).enumerate() {
         if let Some(enter) = step.enter(&ego) {
             let next = foe.poses[index + 1].way;
@@ -73,13 +80,13 @@ fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
             break;
         }
     }
-    (foe.stop, foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
+    (foe.stop.min(foe.reach()), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
 }
 
 /// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
 /// until it is there.
 pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -> Metre {
-    let ego = Outline::rectangle(&grown(ego));
+    let ego = Outline::rectangle(&grown(ego, INEXACT));
     let mut left = arrival;
     for (pose, next, step) in
         poses.windows(2).map(|pair| (pair[0], pair[1], pair[0].step_to(&pair[1], foe.length(), foe.width())))
@@ -101,12 +108,8 @@ pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -
     left
 }
 
-fn grown(rectangle: &Rectangle) -> Rectangle {
-    Rectangle {
-        half_length: rectangle.half_length + 2.0 * TOLERANCE,
-        half_width: rectangle.half_width + 2.0 * TOLERANCE,
-        ..*rectangle
-    }
+fn grown(rectangle: &Rectangle, by: Metre) -> Rectangle {
+    Rectangle { half_length: rectangle.half_length + by, half_width: rectangle.half_width + by, ..*rectangle }
 }
 
 fn steps<'a>(poses: &'a [Pose], of: &Mover) -> impl Iterator<Item = (Pose, Step)> + 'a {

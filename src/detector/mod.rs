@@ -18,6 +18,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::path::{Pose, arc, straight, turn};
 use crate::precollision::{Circle, Search};
 use crate::profile::{Category, Profile};
+use crate::scene::Exclusions;
 use crate::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
@@ -30,8 +31,10 @@ const STANDS: f64 = 0.0;
 pub struct Work {
     /// Road users, counted in every step.
     pub rows: u64,
-    /// Pairs whose circles meet.
+    /// Pairs that phase 1 lets through.
     pub pairs: u64,
+    /// Pairs left out because their circles do not meet.
+    pub circles_apart: u64,
     /// Of these, left out because both stand.
     pub both_stand: u64,
     /// Of these, left out because one is on a bridge above the other.
@@ -46,12 +49,15 @@ pub struct Work {
     pub swept: u64,
     /// Road users in pairs that were still on the path laid before.
     pub known_paths: u64,
+    /// Road users with the heading of the last step.
+    pub known_directions: u64,
 }
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
     work: Work,
     options: Options,
+    leaves_out: Exclusions,
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
@@ -102,6 +108,7 @@ impl Detector {
         Self {
             work: Work::default(),
             options: options.clone(),
+            leaves_out: Exclusions::of(options),
             net,
             routes_may_change: true,
             sublane: false,
@@ -134,6 +141,11 @@ impl Detector {
         self.sublane = sublane;
     }
 
+    /// What is left out.
+    pub fn leaves_out(&self) -> Exclusions {
+        self.leaves_out
+    }
+
     /// What was done so far.
     pub fn work(&self) -> Work {
         self.work
@@ -155,9 +167,16 @@ impl Detector {
             self.memory.resize(roster.len(), Memory::default());
         }
         self.look(frame, roster);
-        self.search.pairs(&self.circles, &mut self.pairs);
+        if self.leaves_out.circles_apart {
+            self.search.pairs(&self.circles, &mut self.pairs);
+        } else {
+            let count = frame.len() as u32;
+            self.pairs.clear();
+            self.pairs.extend((0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))));
+        }
         self.work.rows += frame.len() as u64;
         self.work.pairs += self.pairs.len() as u64;
+        self.work.circles_apart += all_pairs(frame.len()) - self.pairs.len() as u64;
         let (briefs, work) = (&self.briefs, &mut self.work);
         self.pairs.retain(|&(a, b)| {
             let (a, b) = (&briefs[a as usize], &briefs[b as usize]);
@@ -195,7 +214,10 @@ impl Detector {
             let profile = roster.profile_of(user);
             // Most drive straight on, and most rows are the same road user's as in the last step.
             let axis = match self.rows.get(place) {
-                Some(last) if last.heading == state.heading => last.axis,
+                Some(last) if self.leaves_out.known_directions && last.heading == state.heading => {
+                    self.work.known_directions += 1;
+                    last.axis
+                }
                 _ => direction(state.heading),
             };
             let front = Point::new(state.x, state.y);
@@ -238,10 +260,11 @@ impl Detector {
         }
         let memory = &mut self.memory[frame.users()[row as usize].0 as usize];
         self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
-        if self.routes_may_change || !self.rows[row as usize].on_lanes {
-            self.unplaced.push(row);
-        } else {
+        let is_known = self.leaves_out.known_paths && !self.routes_may_change && self.rows[row as usize].on_lanes;
+        if is_known {
             self.work.known_paths += 1;
+        } else {
+            self.unplaced.push(row);
         }
     }
 
@@ -318,7 +341,11 @@ impl Detector {
         for pose in laid {
             row.bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
         }
-        row.bounds = row.bounds.grown(crate::geometry::sweep::TOLERANCE);
+        row.bounds = if self.leaves_out.ways_apart {
+            row.bounds.grown(crate::geometry::sweep::TOLERANCE)
+        } else {
+            Bounds::EVERYTHING
+        };
     }
 
     /// Poses of a row at the given ways, and between.
@@ -389,7 +416,7 @@ impl Detector {
             let rows = if ego_is_a { (a, b) } else { (b, a) };
             return Some(self.measure(frame, roster, rows, &meeting, true));
         }
-        let (test, met) = accurate::meet(&first, &second, a_is_smaller);
+        let (test, met) = accurate::meet(&first, &second, a_is_smaller, self.leaves_out.in_line);
         match test {
             Test::InLine => self.work.in_line += 1,
             Test::Swept => self.work.swept += 1,
@@ -420,6 +447,12 @@ impl Detector {
         encounter.margin = encounter.gap - encounter.mu;
         Some(encounter)
     }
+}
+
+/// How many pairs so many road users are.
+fn all_pairs(count: usize) -> u64 {
+    let count = count as u64;
+    count * count.saturating_sub(1) / 2
 }
 
 /// The circle that holds all that a road user may cover within `reach` m of way.

@@ -170,7 +170,7 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
     if side::touch_now(&a.mover, &b.mover) {
         return Truth::Conflict(0.0);
     }
-    let (_, met) = accurate::meet(&a.mover, &b.mover, || true);
+    let (_, met) = accurate::meet(&a.mover, &b.mover, || true, true);
     let Some((ego_is_a, meeting)) = met else { return Truth::None };
     let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
     let sigma = meeting.angle().cos();
