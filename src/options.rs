@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use crate::braking::MuModel;
+use crate::scene::Exclusion;
 use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 
@@ -106,9 +107,13 @@ pub struct Options {
     /// Write encounters.csv too: a row per pair in conflict and step.
     #[arg(long)]
     pub log_encounters: bool,
-    /// Run every test on every pair, also those that the scene does not need.
+    /// Run every test on every pair, also those that the scene does not need: the same result, later.
     #[arg(long)]
     pub keep_all: bool,
+    /// The same for single ones, to measure what each saves.
+    #[arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true)]
+    #[serde(skip)]
+    pub keep: Vec<Exclusion>,
     /// Settings of single vehicle types (`[type.NAME]` in the TOML file).
     #[arg(skip)]
     pub types: FxHashMap<String, TypeOptions>,

@@ -19,7 +19,7 @@ use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
 use crate::outputs::Outputs;
 use crate::profile::{Category, Profile};
-use crate::scene::{self, LeftOut};
+use crate::scene::{self, Exclusions, LeftOut};
 use crate::summary::Summary;
 use crate::units::Second;
 
@@ -81,6 +81,11 @@ impl Run {
     /// Writes other files too, besides the log.
     pub fn write_to(&mut self, outputs: Outputs) {
         self.outputs = outputs;
+    }
+
+    /// What is left out.
+    pub fn leaves_out(&self) -> Exclusions {
+        self.detector.leaves_out()
     }
 
     /// Says that no road user's route changes while it is in the scene.
@@ -259,7 +264,7 @@ impl Run {
         self.outputs.conflicts(closed)?;
         self.outputs.finish()?;
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
-        self.summary.left_out = scene::left_out(&self.detector.work(), self.net.as_deref());
+        self.summary.left_out = scene::left_out(&self.detector, self.net.as_deref());
         self.summary.left_out.extend(left_out);
         Ok(self.summary.clone())
     }

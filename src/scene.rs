@@ -1,13 +1,65 @@
 //! What this scene does not need, why, and what leaving it out saved.
 //!
-//! Leaving out changes no result: each entry is a pair or a question that could not have become a conflict.
+//! Leaving out changes no result. What could be computed all the same is an [`Exclusion`], and `--keep-all` computes it;
+//! what is no pair by definition (both stand, both are persons, one on a bridge above the other) is only counted.
 
 use std::fmt;
 
+use clap::ValueEnum;
 use serde::Serialize;
 
-use crate::detector::Work;
+use crate::detector::Detector;
 use crate::net::Net;
+use crate::options::Options;
+
+/// Something that a scene may not need.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Exclusion {
+    /// Pairs whose circles do not meet: phase 1. Kept, every pair goes on to phase 2.
+    CirclesApart,
+    /// Accurate tests of pairs whose ways lie in boxes that do not meet.
+    WaysApart,
+    /// Sweeps of pairs that drive in line, for which one dimension is enough.
+    InLine,
+    /// Asking for the lane of who is still on the path laid before.
+    KnownPaths,
+    /// Computing the direction of who has the heading of the last step.
+    KnownDirections,
+    /// Asking for heights in a flat net.
+    Heights,
+}
+
+/// What is left out of a run where the scene does not need it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exclusions {
+    /// [`Exclusion::CirclesApart`].
+    pub circles_apart: bool,
+    /// [`Exclusion::WaysApart`].
+    pub ways_apart: bool,
+    /// [`Exclusion::InLine`].
+    pub in_line: bool,
+    /// [`Exclusion::KnownPaths`].
+    pub known_paths: bool,
+    /// [`Exclusion::KnownDirections`].
+    pub known_directions: bool,
+    /// [`Exclusion::Heights`].
+    pub heights: bool,
+}
+
+impl Exclusions {
+    /// What these options leave out: all but what they keep.
+    pub fn of(options: &Options) -> Self {
+        let leaves_out = |what| !options.keep_all && !options.keep.contains(&what);
+        Self {
+            circles_apart: leaves_out(Exclusion::CirclesApart),
+            ways_apart: leaves_out(Exclusion::WaysApart),
+            in_line: leaves_out(Exclusion::InLine),
+            known_paths: leaves_out(Exclusion::KnownPaths),
+            known_directions: leaves_out(Exclusion::KnownDirections),
+            heights: leaves_out(Exclusion::Heights),
+        }
+    }
+}
 
 /// Something that was left out.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -38,17 +90,20 @@ impl fmt::Display for LeftOut {
 }
 
 /// What the detector did without.
-pub fn left_out(work: &Work, net: Option<&Net>) -> Vec<LeftOut> {
+pub fn left_out(detector: &Detector, net: Option<&Net>) -> Vec<LeftOut> {
+    let (work, leaves_out) = (detector.work(), detector.leaves_out());
     let counted = [
+        ("pairs", "too far apart to meet before both stand", work.circles_apart),
         ("pairs", "both stand", work.both_stand),
         ("pairs", "more than 2.5 m apart in height", work.other_level),
         ("pairs", "both are persons", work.both_persons),
         ("accurate tests", "the boxes around both ways do not meet", work.ways_apart),
-        ("sweeps", "both drive on parallel straight lines: one dimension", work.in_line),
-        ("lanes asked for", "still on the path laid before", work.known_paths),
+        ("sweeps", "both drive straight on in parallel: one dimension is enough", work.in_line),
+        ("lanes asked for", "still on the path laid before, and nobody's route changes", work.known_paths),
+        ("directions computed", "same heading as in the last step", work.known_directions),
     ];
     let mut all = Vec::new();
-    if net.is_some_and(|net| !net.has_levels) {
+    if leaves_out.heights && net.is_some_and(|net| !net.has_levels) {
         all.push(LeftOut::altogether("heights", "the net is flat"));
     }
     all.extend(counted.into_iter().filter(|(_, _, times)| *times > 0).map(|(what, why, times)| LeftOut {

@@ -1,19 +1,19 @@
 //! Frontal on one straight line: the two paths meet where the areas that both need to stop meet.
 
-use super::{Mover, OneDimension};
+use super::Mover;
 use crate::accurate::Meeting;
 use crate::geometry::rectangle::Rectangle;
 use crate::units::Metre;
 
 /// The meeting of two that drive towards each other with `ahead` m between their fronts. Each one's way ends where
 /// the area that the other needs to stop begins; the ego is the one with the longer way.
-pub(super) fn in_line(a: &Mover, b: &Mover, ahead: Metre, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
+pub(super) fn in_line(a: &Mover, b: &Mover, ahead: Metre, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
     let way = |ego: &Mover, foe: &Mover| {
         let way = (ahead - foe.stop.min(foe.reach())).max(0.0);
         (way <= ego.reach()).then_some(way)
     };
     let (ego_is_a, ego_way) = match (way(a, b), way(b, a)) {
-        (None, None) => return OneDimension::Apart,
+        (None, None) => return None,
         (Some(a), Some(b)) => (a > b || (a == b && a_is_smaller()), a.max(b)),
         (Some(a), None) => (true, a),
         (None, Some(b)) => (false, b),
@@ -27,5 +27,5 @@ pub(super) fn in_line(a: &Mover, b: &Mover, ahead: Metre, a_is_smaller: &impl Fn
         foe_axis: Some(foe.rectangle.axis),
         leads: false,
     };
-    OneDimension::Meet(ego_is_a, meeting)
+    Some((ego_is_a, meeting))
 }

@@ -54,6 +54,29 @@ impl Cover {
     }
 }
 
+impl Cover {
+    /// What meets nothing.
+    pub const NOWHERE: Self = Self {
+        bounds: Bounds::EMPTY,
+        around: Rectangle {
+            centre: Point::new(0.0, 0.0),
+            axis: Vector::new(1.0, 0.0),
+            half_length: 0.0,
+            half_width: 0.0,
+        },
+    };
+    /// What meets everything: nothing is left out.
+    pub const EVERYWHERE: Self = Self {
+        bounds: Bounds::EVERYTHING,
+        around: Rectangle {
+            centre: Point::new(0.0, 0.0),
+            axis: Vector::new(1.0, 0.0),
+            half_length: 1e12,
+            half_width: 1e12,
+        },
+    };
+}
+
 impl From<Bounds> for Cover {
     fn from(bounds: Bounds) -> Self {
         Self { bounds, around: bounds.into() }
@@ -137,17 +160,13 @@ impl Meeting {
 
 /// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
 /// of equal ones the first if `a_is_smaller` says that its id is.
-pub fn meet(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> Option<(bool, Meeting)> {
-    match in_one_dimension(a, b, &a_is_smaller) {
-        OneDimension::Apart => None,
-        OneDimension::Meet(ego_is_a, meeting) => Some((ego_is_a, meeting)),
-        OneDimension::Unfit => swept(a, b, a_is_smaller),
-    }
+pub fn meet(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+    if drive_in_line(a, b) { meet_in_one_dimension(a, b, a_is_smaller) } else { meet_swept(a, b, false, a_is_smaller) }
 }
 
-/// The same by sweeping both rectangles, whichever way they drive.
-pub fn swept(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> Option<(bool, Meeting)> {
-    let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe) } else { None };
+/// The same by sweeping both rectangles: two that drive in line meet in the same place then.
+pub fn meet_swept(a: &Mover, b: &Mover, in_line: bool, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+    let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe, in_line) } else { None };
     match (as_ego(a, b), as_ego(b, a)) {
         (None, None) => None,
         (Some(as_a), Some(as_b)) => {
@@ -159,40 +178,31 @@ pub fn swept(a: &Mover, b: &Mover, a_is_smaller: impl Fn() -> bool) -> Option<(b
     }
 }
 
-/// What a test in one dimension says of a pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum OneDimension {
-    /// They do not drive in parallel: to be swept.
-    Unfit,
-    /// They do not meet.
-    Apart,
-    /// They meet; `true` where the first of the pair is the ego.
-    Meet(bool, Meeting),
+/// Whether both drive straight on, side by side or in line.
+pub fn drive_in_line(a: &Mover, b: &Mover) -> bool {
+    if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
+        return false;
+    }
+    let extent = (a.stop + a.length()).max(b.stop + b.length());
+    cross(&a.rectangle.axis, &b.rectangle.axis).abs() * extent <= PARALLEL
 }
 
-/// Tries to settle a pair in one dimension.
-pub fn in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> OneDimension {
-    if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
-        return OneDimension::Unfit;
-    }
-    let (axis, other) = (a.rectangle.axis, b.rectangle.axis);
-    let extent = (a.stop + a.length()).max(b.stop + b.length());
-    if cross(&axis, &other).abs() * extent > PARALLEL {
-        return OneDimension::Unfit;
-    }
+/// Where two that drive in line meet; `true` where the first of them is the ego.
+pub fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+    let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
-        return OneDimension::Apart;
+        return None;
     }
     let along = between.dot(&axis);
     let ahead = along.abs() - a.rectangle.half_length - b.rectangle.half_length;
-    if axis.dot(&other) > 0.0 {
+    if axis.dot(&b.rectangle.axis) > 0.0 {
         let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
-        rear_end::in_line(ego, foe, ahead).map_or(OneDimension::Apart, |meeting| OneDimension::Meet(ego_is_a, meeting))
+        rear_end::in_line(ego, foe, ahead).map(|meeting| (ego_is_a, meeting))
     } else if along > 0.0 {
         frontal::in_line(a, b, ahead, a_is_smaller)
     } else {
-        OneDimension::Apart
+        None
     }
 }
 

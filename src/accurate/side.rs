@@ -8,14 +8,21 @@ use crate::geometry::sweep::{Step, TOLERANCE, translation};
 use crate::path::Pose;
 use crate::units::Metre;
 
+/// How far from each other two may be, after both were swept, where they touch, in m.
+const INEXACT: Metre = 2.0 * TOLERANCE;
+
 /// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
 /// to stop; none if there is no such pose.
-pub fn meet(ego: &Mover, foe: &Mover) -> Option<Meeting> {
+pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
     let (ego_way, rectangle) = first_touch(ego, foe)?;
     if !foe.shape.is_empty() {
         return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis: None, leads: false });
     }
-    let (foe_way, foe_axis) = arrival(foe, &rectangle);
+    if in_line && rectangle.axis.dot(&foe.rectangle.axis) > 0.0 {
+        let foe_axis = Some(foe.rectangle.axis);
+        return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis, leads: true });
+    }
+    let (foe_way, foe_axis) = arrival(foe, &rectangle, if in_line { 0.0 } else { INEXACT });
     Some(Meeting { ego_way, foe_way, ego: rectangle, foe_axis: Some(foe_axis), leads: false })
 }
 
@@ -53,8 +60,8 @@ fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = Step> + 'a 
 /// The foe's way to the ego's rectangle at the meeting place, and its axis there.
 ///
 /// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
-fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
-    let ego = Outline::rectangle(&grown(ego));
+fn arrival(foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
+    let ego = Outline::rectangle(&grown(ego, inexact));
     for (pair, step) in foe.poses.windows(2).zip(steps(foe)) {
         if let Some(enter) = step.enter(&ego) {
             return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
@@ -63,13 +70,13 @@ fn arrival(foe: &Mover, ego: &Rectangle) -> (Metre, Vector) {
             break;
         }
     }
-    (foe.stop, foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
+    (foe.stop.min(foe.reach()), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
 }
 
 /// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
 /// until it is there.
 pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -> Metre {
-    let ego = Outline::rectangle(&grown(ego));
+    let ego = Outline::rectangle(&grown(ego, INEXACT));
     let mut left = arrival;
     for (pose, next, step) in
         poses.windows(2).map(|pair| (pair[0], pair[1], pair[0].step_to(&pair[1], foe.length(), foe.width())))
@@ -91,12 +98,8 @@ pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -
     left
 }
 
-fn grown(rectangle: &Rectangle) -> Rectangle {
-    Rectangle {
-        half_length: rectangle.half_length + 2.0 * TOLERANCE,
-        half_width: rectangle.half_width + 2.0 * TOLERANCE,
-        ..*rectangle
-    }
+fn grown(rectangle: &Rectangle, by: Metre) -> Rectangle {
+    Rectangle { half_length: rectangle.half_length + by, half_width: rectangle.half_width + by, ..*rectangle }
 }
 
 fn steps<'a>(of: &'a Mover) -> impl Iterator<Item = Step> + 'a {
@@ -116,7 +119,7 @@ pub fn touch_now(a: &Mover, b: &Mover) -> bool {
 mod tests {
     use super::*;
     use crate::braking::Brakes;
-    use crate::geometry::{Bounds, Point};
+    use crate::geometry::Point;
     use crate::path::arc;
     use proptest::prelude::*;
 
@@ -145,16 +148,14 @@ mod tests {
 
         #[test]
         fn covers_leave_out_nothing_that_meets(ego in way(), foe in way()) {
-            let everywhere =
-                Cover::from(Bounds { low: Point::new(-1e3, -1e3), high: Point::new(1e3, 1e3) });
-            let all = vec![everywhere; 1000];
+            let all = vec![Cover::EVERYWHERE; 1000];
             let whole = |poses: &[Pose]| Cover::of(poses, SIZE.0, SIZE.1).unwrap();
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
-            let slow = meet(&mover(&ego, &all, everywhere), &mover(&foe, &all, everywhere));
+            let slow = meet(&mover(&ego, &all, Cover::EVERYWHERE), &mover(&foe, &all, Cover::EVERYWHERE), false);
             let (ego, foe) = (mover(&ego, &ego_parts, whole(&ego)), mover(&foe, &foe_parts, whole(&foe)));
             prop_assert!(slow.is_none() || ego.cover.meets(&foe.cover));
-            prop_assert_eq!(meet(&ego, &foe), slow);
+            prop_assert_eq!(meet(&ego, &foe, false), slow);
         }
     }
 }

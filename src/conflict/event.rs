@@ -11,6 +11,9 @@ use crate::measures;
 use crate::net::LaneIndex;
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
+/// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
+const SAME_MARGIN: Metre = 1e-9;
+
 /// One conflict: a pair and a run of steps with margin < 0.
 ///
 /// Everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and `pet`,
@@ -130,6 +133,11 @@ pub(super) fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Confl
 }
 
 impl Conflict {
+    /// Whether the margin of a step is the smallest so far: that of equal ones the first stays, whatever rounding says.
+    pub(super) fn is_narrower_than(&self, so_far: &Self) -> bool {
+        self.margin < so_far.margin - SAME_MARGIN
+    }
+
     /// Adds a later step of the same event.
     pub(super) fn take(&mut self, now: Self) {
         let extremes = Self {
@@ -145,7 +153,7 @@ impl Conflict {
                 earlier(self.drac, now.drac, self.found[1], now.found[1], f64::gt),
                 None,
             ],
-            ..if now.margin < self.margin { now } else { self.clone() }
+            ..if now.is_narrower_than(self) { now } else { self.clone() }
         };
         *self = extremes;
     }

@@ -116,7 +116,7 @@ impl Tracker {
     fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter, path: &impl Fn(u32) -> Vec<Point>) {
         let pair = (found.ego.min(found.foe), found.ego.max(found.foe));
         let mut now = moment(frame, roster, found);
-        if self.events.get(&pair).is_none_or(|event| now.margin < event.conflict.margin) {
+        if self.events.get(&pair).is_none_or(|event| now.is_narrower_than(&event.conflict)) {
             now.ego_stance.lay(&path(found.ego_row));
             now.foe_stance.lay(&path(found.foe_row));
         }
@@ -265,6 +265,16 @@ mod tests {
         let [closed] = &scene.step(2.5, 1.0)[..] else { panic!() };
         assert_eq!((closed.begin, closed.end, closed.time, closed.margin), (0.5, 1.5, 1.0, -3.0));
         assert_eq!(scene.tracker.alarms().count(), 0);
+    }
+
+    #[test]
+    fn of_margins_that_only_rounding_tells_apart_the_first_is_the_smallest() {
+        let mut scene = Scene::new();
+        for (time, margin) in [(0.0, -1.0), (0.5, -3.0), (1.0, -3.0 - 1e-14), (1.5, -1.0)] {
+            scene.step(time, margin);
+        }
+        let [closed] = scene.tracker.finish() else { panic!() };
+        assert_eq!((closed.time, closed.margin), (0.5, -3.0));
     }
 
     #[test]

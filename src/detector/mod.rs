@@ -6,7 +6,7 @@ mod measure;
 
 use std::sync::Arc;
 
-use crate::accurate::{self, Cover, Meeting, Mover, OneDimension, side};
+use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{self, stopping_distance};
 use crate::encounter::{Encounter, Placement};
 use crate::frame::{Frame, Roster, State, UserIndex};
@@ -19,6 +19,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::path::{Pose, arc, straight, turn};
 use crate::precollision::{Circle, Search};
 use crate::profile::{Category, Profile};
+use crate::scene::Exclusions;
 use crate::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
@@ -31,8 +32,10 @@ const STANDS: f64 = 0.0;
 pub struct Work {
     /// Road users, counted in every step.
     pub rows: u64,
-    /// Pairs whose circles meet.
+    /// Pairs that phase 1 lets through.
     pub pairs: u64,
+    /// Pairs left out because their circles do not meet.
+    pub circles_apart: u64,
     /// Of these, left out because both stand.
     pub both_stand: u64,
     /// Of these, left out because one is on a bridge above the other.
@@ -47,12 +50,15 @@ pub struct Work {
     pub swept: u64,
     /// Road users in pairs that were still on the path laid before.
     pub known_paths: u64,
+    /// Road users with the heading of the last step.
+    pub known_directions: u64,
 }
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
     work: Work,
     options: Options,
+    leaves_out: Exclusions,
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
@@ -106,6 +112,7 @@ impl Detector {
         Self {
             work: Work::default(),
             options: options.clone(),
+            leaves_out: Exclusions::of(options),
             net,
             routes_may_change: true,
             sublane: false,
@@ -139,6 +146,11 @@ impl Detector {
         self.sublane = sublane;
     }
 
+    /// What is left out.
+    pub fn leaves_out(&self) -> Exclusions {
+        self.leaves_out
+    }
+
     /// What was done so far.
     pub fn work(&self) -> Work {
         self.work
@@ -160,9 +172,16 @@ impl Detector {
             self.memory.resize(roster.len(), Memory::default());
         }
         self.look(frame, roster);
-        self.search.pairs(&self.circles, &mut self.pairs);
+        if self.leaves_out.circles_apart {
+            self.search.pairs(&self.circles, &mut self.pairs);
+        } else {
+            let count = frame.len() as u32;
+            self.pairs.clear();
+            self.pairs.extend((0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))));
+        }
         self.work.rows += frame.len() as u64;
         self.work.pairs += self.pairs.len() as u64;
+        self.work.circles_apart += all_pairs(frame.len()) - self.pairs.len() as u64;
         let (briefs, work) = (&self.briefs, &mut self.work);
         self.pairs.retain(|&(a, b)| {
             let (a, b) = (&briefs[a as usize], &briefs[b as usize]);
@@ -200,7 +219,10 @@ impl Detector {
             let profile = roster.profile_of(user);
             // Most drive straight on, and most rows are the same road user's as in the last step.
             let axis = match self.rows.get(place) {
-                Some(last) if last.heading == state.heading => last.axis,
+                Some(last) if self.leaves_out.known_directions && last.heading == state.heading => {
+                    self.work.known_directions += 1;
+                    last.axis
+                }
                 _ => direction(state.heading),
             };
             let front = Point::new(state.x, state.y);
@@ -216,7 +238,7 @@ impl Detector {
                 on_lanes: false,
                 poses: (0, 0),
                 straight: false,
-                cover: Bounds::EMPTY.into(),
+                cover: Cover::NOWHERE,
                 covers: None,
             };
             match self.rows.get_mut(place) {
@@ -244,10 +266,11 @@ impl Detector {
         }
         let memory = &mut self.memory[frame.users()[row as usize].0 as usize];
         self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
-        if self.routes_may_change || !self.rows[row as usize].on_lanes {
-            self.unplaced.push(row);
-        } else {
+        let is_known = self.leaves_out.known_paths && !self.routes_may_change && self.rows[row as usize].on_lanes;
+        if is_known {
             self.work.known_paths += 1;
+        } else {
+            self.unplaced.push(row);
         }
     }
 
@@ -322,6 +345,10 @@ impl Detector {
         let row = &mut self.rows[row];
         row.poses = (start as u32, self.poses.len() as u32);
         row.straight = laid.iter().all(|pose| pose.axis == axis);
+        if !self.leaves_out.ways_apart {
+            row.cover = Cover::EVERYWHERE;
+            return;
+        }
         row.cover = Cover::of(laid, profile.length, profile.width).unwrap_or_else(|| {
             let mut bounds = Bounds::EMPTY;
             for part in roster.user(user).shape.iter() {
@@ -339,8 +366,11 @@ impl Detector {
             let profile = roster.profile_of(user);
             row.covers = Some(self.covers.len() as u32);
             let poses = &self.poses[row.poses.0 as usize..row.poses.1 as usize];
-            let covers = poses.windows(2).filter_map(|pair| Cover::of(pair, profile.length, profile.width));
-            self.covers.extend(covers);
+            let of = |pair: &[Pose]| match self.leaves_out.ways_apart {
+                true => Cover::of(pair, profile.length, profile.width),
+                false => Some(Cover::EVERYWHERE),
+            };
+            self.covers.extend(poses.windows(2).filter_map(of));
         }
     }
 
@@ -418,20 +448,16 @@ impl Detector {
             let rows = if ego_is_a { (a, b) } else { (b, a) };
             return Some(self.measure(frame, roster, rows, &meeting, true));
         }
-        let met = match accurate::in_one_dimension(&first, &second, &a_is_smaller) {
-            OneDimension::Unfit => {
-                self.work.swept += 1;
-                self.cover(frame, roster, a);
-                self.cover(frame, roster, b);
-                accurate::swept(&self.mover(frame, roster, a), &self.mover(frame, roster, b), a_is_smaller)
-            }
-            in_line => {
-                self.work.in_line += 1;
-                match in_line {
-                    OneDimension::Meet(ego_is_a, meeting) => Some((ego_is_a, meeting)),
-                    _ => None,
-                }
-            }
+        let in_line = accurate::drive_in_line(&first, &second);
+        let met = if in_line && self.leaves_out.in_line {
+            let met = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller);
+            self.work.in_line += 1;
+            met
+        } else {
+            self.work.swept += 1;
+            self.cover(frame, roster, a);
+            self.cover(frame, roster, b);
+            accurate::meet_swept(&self.mover(frame, roster, a), &self.mover(frame, roster, b), in_line, &a_is_smaller)
         };
         let (ego_is_a, meeting) = met?;
         let rows = if ego_is_a { (a, b) } else { (b, a) };
@@ -459,6 +485,12 @@ impl Detector {
         encounter.margin = encounter.gap - encounter.mu;
         Some(encounter)
     }
+}
+
+/// How many pairs so many road users are.
+fn all_pairs(count: usize) -> u64 {
+    let count = count as u64;
+    count * count.saturating_sub(1) / 2
 }
 
 /// The circle that holds all that a road user may cover within `reach` m of way.

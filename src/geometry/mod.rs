@@ -33,6 +33,9 @@ impl Bounds {
     pub const EMPTY: Self =
         Self { low: Point::new(f64::INFINITY, f64::INFINITY), high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY) };
 
+    /// Bounds that hold the whole plane.
+    pub const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
+
     /// Grows to hold a point.
     pub fn include(&mut self, point: Point) {
         self.low = self.low.inf(&point);

@@ -92,7 +92,7 @@ impl LanePath {
         self.route = None;
     }
 
-    /// Whether the path still is what it would be if it were laid now: same route, front bumper on it.
+    /// Follows the front bumper; whether it still is on the path.
     pub fn follow(&mut self, front: Point) -> bool {
         self.track.follow(front)
     }

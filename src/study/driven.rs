@@ -13,7 +13,7 @@ use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
 use crate::frame::{Frame, Roster, State, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::{Bounds, Point, Vector, cross};
+use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;
 use crate::path::Pose;
 use crate::precollision::{Circle, Search};
@@ -161,7 +161,7 @@ impl<'a> Way<'a> {
         let end = all.partition_point(|pose| pose.way <= stop + epsilon);
         let poses = &all[..end.max(1)];
         let (length, width) = (profile.length, profile.width);
-        let cover = Cover::of(poses, length, width).unwrap_or(Bounds::EMPTY.into());
+        let cover = Cover::of(poses, length, width).unwrap_or(Cover::NOWHERE);
         let covers = poses.windows(2).filter_map(|pair| Cover::of(pair, length, width)).collect();
         Self { rectangle, poses, cover, covers, speed, brakes: &profile.brakes, stop, all }
     }
@@ -177,7 +177,7 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
     if side::touch_now(&first, &second) {
         return Truth::Conflict(0.0);
     }
-    let Some((ego_is_a, meeting)) = accurate::meet(&first, &second, || true) else { return Truth::None };
+    let Some((ego_is_a, meeting)) = accurate::meet(&first, &second, &|| true) else { return Truth::None };
     let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
     let sigma = meeting.angle().cos();
     let foe_way = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_way };

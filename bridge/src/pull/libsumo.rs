@@ -153,17 +153,14 @@ impl Libsumo {
     }
 
     /// Whether a vehicle that has come into the scene carries a device that changes its route on the way.
-    ///
-    /// Who is given no route but an origin and a destination carries one too, which has done its work on departure:
-    /// its period is 0.
     fn may_reroute(&self, py: Python, live: &Live) -> PyResult<bool> {
-        let parameter =
-            |name: &str| -> PyResult<String> { self.get.parameter.bind(py).call1((&live.id, name))?.extract() };
+        let parameter = |name: &str| self.get.parameter.bind(py).call1((&live.id, name))?.extract::<String>();
         if parameter("has.taxi.device")? == "true" {
             return Ok(true);
         }
-        Ok(parameter("has.rerouting.device")? == "true"
-            && parameter("device.rerouting.period")?.parse::<f64>().is_ok_and(|period| period != 0.0))
+        // Every trip has a device that looks for its route; without a period it does so before it departs, then never.
+        let has_router = parameter("has.rerouting.device")? == "true";
+        Ok(has_router && parameter("device.rerouting.period")?.parse() != Ok(0.0))
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {

@@ -1,0 +1,38 @@
+"""What a scene does not need changes no result: `--keep-all` gives the same bytes on every scenario."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import NETS, closecall
+
+ENDS = {"town": 20, "bridge": 60}
+"""Where a scenario's own end would take long, in s: with every pair kept, a step's time grows with their square."""
+
+
+def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dict[str, Any]]:
+    """The log of a scenario, and its record without what says only how it was computed."""
+    end = ["--end", str(ENDS[config.stem])] if config.stem in ENDS else []
+    settings = ["--config", config.parent / "closecall.toml"]
+    done = closecall("run", config, *settings, *end, "--log-encounters", "--quiet", "--out", out, *words)
+    assert done.returncode == 0, done.stderr
+    record = json.loads((out / "run.json").read_text())
+    assert record["options"].pop("keep_all") is ("--keep-all" in words)
+    record["left_out"] = record["summary"].pop("left_out")
+    return {name: (out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")}, record
+
+
+@pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
+def test_leaving_out_changes_no_result(config: Path, tmp_path: Path) -> None:
+    log, record = checked(config, tmp_path / "left_out")
+    whole_log, whole_record = checked(config, tmp_path / "kept", "--keep-all")
+    assert log == whole_log
+    left_out, kept = record.pop("left_out"), whole_record.pop("left_out")
+    assert record == whole_record
+    by_definition = {"both stand", "both are persons", "more than 2.5 m apart in height"}
+    of_the_scene = {"no sumo-gui", "none enters the scene"}
+    assert {entry["why"] for entry in kept} <= by_definition | of_the_scene
+    assert len(left_out) > len(kept)
