@@ -60,23 +60,23 @@ impl Course {
     /// the end.
     fn contact(&self, other: &Self) -> Option<(Second, Option<Second>)> {
         let corridor = other.steps().map(|(_, _, part)| (part.bounds(), part)).collect::<Vec<(Bounds, Step)>>();
-        let mut first = None;
-        let mut last = None;
-        let mut still = false;
-        for (from, to, step) in self.steps() {
+        let steps = self.steps().collect::<Vec<_>>();
+        // Most of the time goes into the steps in between: they are not looked at.
+        let touch = |step: &Step, of: fn(&Step, &Step) -> Option<f64>, choose: fn(f64, f64) -> f64| {
             let bounds = step.bounds();
-            still = false;
-            for (_, part) in corridor.iter().filter(|(part_bounds, _)| part_bounds.meet(&bounds)) {
-                if let (Some(enters), Some(leaves)) = (step.first_touch(part), step.last_touch(part)) {
-                    let enter = from + (to - from) * enters;
-                    let leave = from + (to - from) * leaves.min(1.0);
-                    first = Some(first.map_or(enter, |known: Second| known.min(enter)));
-                    last = Some(last.map_or(leave, |known: Second| known.max(leave)));
-                    still |= leaves >= 1.0;
-                }
-            }
-        }
-        first.map(|first| (first, last.filter(|_| !still)))
+            let near = corridor.iter().filter(|(part_bounds, _)| part_bounds.meet(&bounds));
+            near.filter_map(|(_, part)| of(step, part)).reduce(choose)
+        };
+        let first = steps.iter().find_map(|(from, to, step)| {
+            let enters = touch(step, Step::first_touch, f64::min)?;
+            Some(from + (to - from) * enters)
+        })?;
+        let last = steps.iter().rev().enumerate().find_map(|(place, (from, to, step))| {
+            let leaves = touch(step, Step::last_touch, f64::max)?;
+            let still = place == 0 && leaves >= 1.0;
+            Some((!still).then(|| from + (to - from) * leaves.min(1.0)))
+        })?;
+        Some((first, last))
     }
 }
 
