@@ -5,7 +5,6 @@
 //! second enters it when its rectangle touches the first's corridor for the first time.
 
 use crate::geometry::Bounds;
-use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::Step;
 use crate::path::Pose;
@@ -57,41 +56,35 @@ impl Course {
         })
     }
 
-    /// The area that it covered, in convex parts.
-    fn corridor(&self) -> Vec<(Bounds, Outline)> {
-        self.steps().map(|(_, _, step)| (step.bounds(), step.hull())).collect()
-    }
-
-    /// The first and the last time at which it touches a corridor; the last is none where it still does at the end.
-    fn contact(&self, corridor: &[(Bounds, Outline)]) -> Option<(Second, Option<Second>)> {
-        let mut first = None;
-        let mut last = None;
-        let mut still = false;
-        for (from, to, step) in self.steps() {
+    /// The first and the last time at which it touches the other's corridor; the last is none where it still does at
+    /// the end.
+    fn contact(&self, other: &Self) -> Option<(Second, Option<Second>)> {
+        let corridor = other.steps().map(|(_, _, part)| (part.bounds(), part)).collect::<Vec<(Bounds, Step)>>();
+        let steps = self.steps().collect::<Vec<_>>();
+        // Most of the time goes into the steps in between: they are not looked at.
+        let touch = |step: &Step, of: fn(&Step, &Step) -> Option<f64>, choose: fn(f64, f64) -> f64| {
             let bounds = step.bounds();
-            still = false;
-            for (part_bounds, part) in corridor {
-                if !part_bounds.meet(&bounds) {
-                    continue;
-                }
-                if let (Some(enters), Some(leaves)) = (step.enter(part), step.leave(part)) {
-                    let enter = from + (to - from) * enters;
-                    let leave = from + (to - from) * leaves.min(1.0);
-                    first = Some(first.map_or(enter, |known: Second| known.min(enter)));
-                    last = Some(last.map_or(leave, |known: Second| known.max(leave)));
-                    still |= leaves >= 1.0;
-                }
-            }
-        }
-        first.map(|first| (first, last.filter(|_| !still)))
+            let near = corridor.iter().filter(|(part_bounds, _)| part_bounds.meet(&bounds));
+            near.filter_map(|(_, part)| of(step, part)).reduce(choose)
+        };
+        let first = steps.iter().find_map(|(from, to, step)| {
+            let enters = touch(step, Step::first_touch, f64::min)?;
+            Some(from + (to - from) * enters)
+        })?;
+        let last = steps.iter().rev().enumerate().find_map(|(place, (from, to, step))| {
+            let leaves = touch(step, Step::last_touch, f64::max)?;
+            let still = place == 0 && leaves >= 1.0;
+            Some((!still).then(|| from + (to - from) * leaves.min(1.0)))
+        })?;
+        Some((first, last))
     }
 }
 
-/// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or both are in the conflict area at once, as
-/// where one merges behind the other.
+/// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or
+/// both are in the conflict area at once, as where one merges behind the other.
 pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<(Second, Second)> {
-    let (a_enters, a_leaves) = a.contact(&b.corridor())?;
-    let (b_enters, b_leaves) = b.contact(&a.corridor())?;
+    let (a_enters, a_leaves) = a.contact(b)?;
+    let (b_enters, b_leaves) = b.contact(a)?;
     if a_enters == b_enters {
         return None;
     }
@@ -102,7 +95,7 @@ pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<(Second, Second)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Point, Vector};
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
     fn course(heading: f64, arrives: f64) -> Course {
@@ -123,6 +116,35 @@ mod tests {
         let (pet, enters) =
             post_encroachment_time(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
         assert!((pet - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9, "{pet} at {enters}");
+    }
+
+    /// A car that turns left from the south to the west on a radius of 9 m, with 8 m/s, in steps of this length.
+    fn turn(step: f64) -> Course {
+        let mut course = Course::default();
+        let steps = (4.0 / step).round() as u32;
+        for time in (0..=steps).map(|number| f64::from(number) * step) {
+            let way = 8.0 * (time - 1.0);
+            let angle = (way / 9.0).clamp(0.0, std::f64::consts::FRAC_PI_2);
+            let beyond =
+                Point::new(9.0 * angle.cos() - way.max(9.0 * angle) + 9.0 * angle, 9.0 * angle.sin() + way.min(0.0));
+            let axis = crate::geometry::rectangle::direction(angle + std::f64::consts::FRAC_PI_2);
+            course.push(time, Rectangle::behind(beyond, axis, 4.0, 2.0));
+        }
+        course
+    }
+
+    #[test]
+    fn a_turn_in_long_steps_covers_hardly_more_than_in_short_ones() {
+        let crossing = |step: f64| {
+            let mut course = Course::default();
+            let steps = (8.0 / step).round() as u32;
+            for time in (0..=steps).map(|number| f64::from(number) * step) {
+                course.push(time, Rectangle::behind(Point::new(10.0 * (time - 5.0), 5.0), Vector::x(), 4.0, 2.0));
+            }
+            post_encroachment_time(&turn(step), &course).unwrap()
+        };
+        let (long, short) = (crossing(0.2), crossing(0.01));
+        assert!((long.0 - short.0).abs() < 0.02, "{long:?} {short:?}");
     }
 
     #[test]

@@ -90,18 +90,32 @@ impl Step {
     }
 
     /// The part of this step at which its rectangle first touches the area that another step covers.
-    ///
-    /// The other's hull decides quickly where they do not; where they do, the hull is cut in halves until it fits.
     pub fn first_touch(&self, other: &Self) -> Option<f64> {
+        self.touch(other, Self::enter, f64::min)
+    }
+
+    /// The part of this step at which its rectangle touches the area that another step covers last; above 1 where it
+    /// still does at the end, none if it never does.
+    pub fn last_touch(&self, other: &Self) -> Option<f64> {
+        self.touch(other, Self::leave, f64::max)
+    }
+
+    /// The other's hull decides quickly where they do not touch; where they do, the hull is cut in halves until it fits.
+    fn touch(
+        &self,
+        other: &Self,
+        of_hull: fn(&Self, &Outline) -> Option<f64>,
+        choose: fn(f64, f64) -> f64,
+    ) -> Option<f64> {
         if !self.bounds().meet(&other.bounds()) {
             return None;
         }
-        let enter = self.enter(&other.hull())?;
+        let part = of_hull(self, &other.hull())?;
         if other.excess() <= TOLERANCE {
-            return Some(enter);
+            return Some(part);
         }
         let halves = [other.between(0.0, 0.5), other.between(0.5, 1.0)];
-        halves.iter().filter_map(|half| self.first_touch(half)).min_by(f64::total_cmp)
+        halves.iter().filter_map(|half| self.touch(half, of_hull, choose)).reduce(choose)
     }
 
     /// The same step between two of its parts.

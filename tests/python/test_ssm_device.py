@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import xml.etree.ElementTree as ET
 from functools import cache
@@ -10,6 +11,8 @@ from typing import Callable, NamedTuple
 
 import pytest
 from conftest import NETS, Row, closecall, rows
+from shapely import Polygon, box, prepare, unary_union
+from shapely.affinity import rotate, translate
 
 FOLLOWER, CROSSING_FOLLOWER = "2", "11"
 
@@ -29,6 +32,7 @@ class Run(NamedTuple):
     encounters: list[Row]
     steps: dict[tuple[float, str, str], Step]
     pets: dict[frozenset[str], float]
+    fcd: Path
 
 
 Compared = Callable[[str], Run]
@@ -48,6 +52,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
         words = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC DRAC PET", "--precision", "6"]
         words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "200"]
         words += ["--device.ssm.trajectories", "true", "--device.ssm.file", str(out / "ssm.xml"), "--no-warnings"]
+        words += ["--fcd-output", str(out / "fcd.xml"), "--fcd-output.attributes", "x,y,angle,lane,pos"]
         done = closecall("run", NETS / name / f"{name}.sumocfg", "--out", out, "--log-encounters", "--", *words)
         assert done.returncode == 0, done.stderr
         steps: dict[tuple[float, str, str], Step] = {}
@@ -62,7 +67,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
             if pet is not None and (value := maybe(pet.get("value"))) is not None:
                 pair = frozenset((ego, foe))
                 pets[pair] = min(value, pets.get(pair, value))
-        return Run(rows(out / "conflicts.csv"), rows(out / "encounters.csv"), steps, pets)
+        return Run(rows(out / "conflicts.csv"), rows(out / "encounters.csv"), steps, pets, out / "fcd.xml")
 
     return run
 
@@ -116,14 +121,89 @@ def test_straight_crossings_have_the_devices_ttc_and_drac(name: str, compared: C
         assert -0.001 <= ours - theirs <= max(0.02, change / 2), (row, step)
 
 
+class Place(NamedTuple):
+    """Where a car is at a time: front, heading in rad, lane, and position on it."""
+
+    time: float
+    x: float
+    y: float
+    heading: float
+    lane: str
+    position: float
+
+
+def courses(run: Run) -> dict[str, list[Place]]:
+    """Where SUMO's fcd-output has each car."""
+    found: dict[str, list[Place]] = {}
+    for _, step in ET.iterparse(run.fcd):
+        if step.tag != "timestep":
+            continue
+        for car in step:
+            value = {name: float(car.get(name, "nan")) for name in ("x", "y", "angle", "pos")}
+            heading = math.radians(90.0 - value["angle"])
+            place = Place(
+                float(step.get("time", "nan")), value["x"], value["y"], heading, car.get("lane", ""), value["pos"]
+            )
+            found.setdefault(car.get("id", ""), []).append(place)
+        step.clear()
+    return found
+
+
+LENGTH, WIDTH = 4.6, 1.8
+LENGTH_IN_SIDE = 5.0
+PARTS = 50
+"""Of a step."""
+
+
+def driven(course: list[Place], length: float, begin: float, end: float) -> list[tuple[float, Polygon]]:
+    """The rectangles of a car from one time to another, evenly moved and turned between the steps."""
+    found = []
+    places = [place for place in course if begin - 1e-6 <= place.time <= end]
+    for before, after in zip(places, places[1:]):
+        turn = (after.heading - before.heading + math.pi) % (2 * math.pi) - math.pi
+        for part in range(PARTS):
+            time, x, y = (a + (b - a) * part / PARTS for a, b in zip(before[:3], after[:3]))
+            heading = before.heading + turn * part / PARTS
+            car = box(-length, -WIDTH / 2, 0.0, WIDTH / 2)
+            found.append((time, translate(rotate(car, heading, (0, 0), use_radians=True), x, y)))
+    return found
+
+
+@pytest.mark.parametrize(("name", "least"), [("side", 1), ("signals", 4), ("left_turn", 3), ("priority", 10)])
+def test_pet_is_that_of_the_rectangles_in_fcd(name: str, least: int, compared: Compared) -> None:
+    run = compared(name)
+    places = courses(run)
+    length = LENGTH_IN_SIDE if name == "side" else LENGTH
+    compared_pets = 0
+    for row in run.conflicts:
+        if not row["pet"]:
+            continue
+        begin, end = float(row["begin"]), float(row["end"]) + 7.0
+        cars = [driven(places[row[user]], length, begin, end) for user in ("ego", "foe")]
+        corridors = [unary_union([rectangle for _, rectangle in car]) for car in cars]
+        spans = []
+        for car, other in zip(cars, reversed(corridors)):
+            prepare(other)
+            times = [time for time, rectangle in car if rectangle.intersects(other)]
+            spans.append((min(times), max(times)))
+        (_, leaves), (enters, _) = sorted(spans)
+        assert float(row["pet"]) == pytest.approx(enters - leaves, abs=0.02), row
+        compared_pets += 1
+    assert compared_pets >= least
+
+
 @pytest.mark.parametrize(
-    ("name", "least", "tolerance"), [("side", 1, 1e-3), ("signals", 4, 1e-3), ("left_turn", 3, 0.25)]
+    ("name", "least", "tolerance"),
+    [("side", 1, 1e-3), ("signals", 4, 1e-3), ("left_turn", 3, 0.26), ("priority", 4, 1e-3)],
 )
 def test_crossings_have_the_devices_pet(name: str, least: int, tolerance: float, compared: Compared) -> None:
     run = compared(name)
     compared_pets = 0
     for row in run.conflicts:
         pair = frozenset((row["ego"], row["foe"]))
+        if name == "priority" and not (STRAIGHT.match(row["ego"]) and STRAIGHT.match(row["foe"])):
+            # Turns: below.
+            continue
         if row["kind"] == "side" and row["pet"]:
             assert float(row["pet"]) == pytest.approx(run.pets[pair], abs=tolerance), row
             compared_pets += 1
@@ -131,6 +211,42 @@ def test_crossings_have_the_devices_pet(name: str, least: int, tolerance: float,
             # Who comes more than 5 s after the conflict closed is not waited for.
             assert run.pets[pair] > 5, row
     assert compared_pets >= least
+
+
+def passes(course: list[Place], starts: dict[str, float], way: float) -> float:
+    """When a car's front has gone so far, from where each of its lanes starts."""
+    gone = [(place.time, starts[place.lane] + place.position) for place in course if place.lane in starts]
+    for (time, before), (later, after) in zip(gone, gone[1:]):
+        if before <= way <= after:
+            return time + (later - time) * (way - before) / (after - before)
+    raise AssertionError(way)
+
+
+def test_the_devices_pet_of_a_left_turn_ends_where_the_rear_is_still_in_the_way(compared: Compared) -> None:
+    # Its area begins `ahead` of where the lines cross (measured: the place at which the second enters it) and is as
+    # long as the other car is wide, whatever the angle (MSDevice_SSM.cpp, egoConflictAreaLength).
+    run = compared("priority")
+    places = courses(run)
+    straight = {"mid_east_0": -235.60, ":yield_5_0": 0.0, "east_out_0": 14.4}
+    turning = {"yield_in_0": -188.8, ":yield_3_0": 0.0, "mid_west_0": 18.19}
+    # Of the lines of both lanes, from the junction's entry (priority.net.xml).
+    cross_straight, cross_turning = (
+        7.2,
+        4.0 + math.dist((251.6, -7.2), (251.05, -3.35)) + math.dist((251.05, -3.35), (250, -1.6)),
+    )
+    ahead = 1.432
+    left_turns = [row for row in run.conflicts if row["pet"] and {row["ego"][:2], row["foe"][:2]} == {"we", "yw"}]
+    frontal = [row for row in left_turns if row["kind"] == "frontal"]
+    assert len(frontal) == 3
+    for row in frontal:
+        first, second = sorted((row["ego"], row["foe"]), reverse=True)
+        enters = passes(places[second], straight, cross_straight - ahead)
+        leaves = passes(places[first], turning, cross_turning - ahead + WIDTH + LENGTH)
+        device = run.pets[frozenset((first, second))]
+        assert device == pytest.approx(enters - leaves, abs=2e-3), row
+        # The rear is then 0.4 m beyond the line that the other's middle follows, where 2.7 m are needed to be out of
+        # its way; and the turning car covers 1.3 m more of that way than the device's area.
+        assert 0.45 < device - float(row["pet"]) < 0.55, row
 
 
 def test_no_ttc_is_0_where_nobody_touches(compared: Compared) -> None:
