@@ -21,7 +21,7 @@ use closecall::options::Options;
 use closecall::reference::chance::Chance;
 use rivals::{AllPairs, Boxes, Tree};
 
-/// With more road users than this the tree, and with as many all pairs, are not asked for more than one answer.
+/// With more road users than this parry2d and all pairs are not asked; with as many, all pairs only once.
 const LARGE: usize = 100_000;
 
 /// The times of one way to look at a step, in s.

@@ -40,7 +40,8 @@ class Lines:
             LookupError: there is no such line.
         """
         for row in self.rows:
-            if (row["what"], row["scene"], row["method"]) == (what, scene, method) and size in (None, int(row["size"])):
+            is_it = (row["what"], row["scene"], row["method"]) == (what, scene, method)
+            if is_it and size in (None, int(row["size"] or 0)):
                 return float(row["value"])
         raise LookupError(what, scene, method, size)
 
@@ -65,10 +66,10 @@ class Goal:
         limit = f"≤ {self.at_most:,g}" if self.at_most < math.inf else f"≥ {self.at_least:,g}"
         try:
             values = self.values(lines)
+            beside = f" ({self.beside(lines)})" if self.beside else ""
         except LookupError:
-            return [self.name, "not measured", limit, "no"]
+            return [self.name, "not measured", limit, "**no**"]
         measured = ", ".join(f"{name} {value:{self.form}}".strip() for name, value in values.items())
-        beside = f" ({self.beside(lines)})" if self.beside else ""
         held = all(self.at_least <= value <= self.at_most for value in values.values())
         return [self.name, measured + beside, limit, "yes" if held else "**no**"]
 
