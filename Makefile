@@ -30,8 +30,8 @@ fuzz: target/tools/bin/cargo-fuzz ## random files into the readers, a minute eac
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
-	$(BIN)/ruff format --check bridge/python tests
-	$(BIN)/ruff check bridge/python tests
+	$(BIN)/ruff format --check bridge/python tests benches
+	$(BIN)/ruff check bridge/python tests benches
 	$(BIN)/mypy
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
 
@@ -47,9 +47,18 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 	$(BIN)/python tests/accuracy/accuracy.py --at-least 98 --end 60 --every 2 \
 		sumo_nets/town/town.sumocfg target/game/ramp.sumocfg target/game/corridor.sumocfg
 
-bench: $(VENV)/wheel $(VENV)/tests ## what the checker costs, beside plain SUMO and device.ssm
-	$(BIN)/python benches/attached.py
-	cargo bench --bench replay
+PARTS := target/bench/parts
+
+bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with its measured ratio, as table and chart
+	rm -rf target/bench && mkdir -p $(PARTS) target/bench/scenes
+	cargo bench --no-run --bench detector --bench replay --bench memory
+	$(BIN)/python benches/attached.py > $(PARTS)/attached.csv
+	cargo bench --bench detector -- --scenes target/bench/scenes > $(PARTS)/detector.csv
+	-$(BIN)/python benches/commonroad.py target/bench/scenes > $(PARTS)/commonroad.csv
+	cargo bench --bench replay > $(PARTS)/replay.csv
+	$(BIN)/python benches/memory.py > $(PARTS)/attached_memory.csv
+	cargo bench --bench memory > $(PARTS)/day.csv
+	$(BIN)/python benches/table.py target/bench $(BENCH)
 
 docs: ## the documentation of the crate, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge
@@ -79,4 +88,8 @@ $(VENV)/wheel: $(VENV)/made $(SOURCES)
 
 $(VENV)/tests: $(VENV)/made tests/requirements.txt
 	$(BIN)/pip install --quiet --disable-pip-version-check -r tests/requirements.txt
+	touch $@
+
+$(VENV)/benches: $(VENV)/made benches/requirements.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check -r benches/requirements.txt
 	touch $@

@@ -1,109 +1,98 @@
-//! The detector alone, both phases, from 10³ to 10⁶ road users: in a jam, in platoons, uniform. `cargo bench --bench
-//! detector`. Straight paths: without SUMO nobody has a route.
+//! The detector alone, both phases, on one core, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
+//! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
+//! per pair, and all pairs with the cheapest test there is. `cargo bench --bench detector`.
+//!
+//! Straight paths: without SUMO nobody has a route. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road
+//! users, for benches/commonroad.py.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 
+#[path = "detector/rivals.rs"]
+mod rivals;
+mod scenes;
+
 use std::hint::black_box;
+use std::path::Path;
 use std::time::Instant;
 
 use closecall::detector::Detector;
 use closecall::frame::{Frame, Roster, State};
 use closecall::options::Options;
-use closecall::profile::{Profile, SumoType};
 use closecall::reference::chance::Chance;
+use rivals::{AllPairs, Boxes, Tree};
 
-type Draw = fn(&mut Chance, usize) -> Vec<State>;
+/// With more road users than this parry2d and all pairs are not asked; with as many, all pairs only once.
+const LARGE: usize = 100_000;
 
-fn state(x: f64, y: f64, heading: f64, speed: f64) -> State {
-    State { x, y, z: 0.0, heading, speed }
-}
+/// The times of one way to look at a step, in s.
+#[derive(Default)]
+struct Times(Vec<f64>);
 
-/// Four lanes of a motorway, bumper to bumper, at walking pace.
-fn jam(chance: &mut Chance, count: usize) -> Vec<State> {
-    let car = |place: usize| {
-        let (row, lane) = (place / 4, place % 4);
-        state(row as f64 * 7.5 + chance.between(-0.5, 0.5), lane as f64 * 3.2, 0.0, chance.between(0.5, 1.5))
-    };
-    (0..count).map(car).collect()
-}
+impl Times {
+    fn add<T>(&mut self, action: impl FnOnce() -> T) -> T {
+        let started = Instant::now();
+        let result = black_box(action());
+        self.0.push(started.elapsed().as_secs_f64());
+        result
+    }
 
-/// Platoons of 20 at 50 km/h, 25 m apart, on a grid of two-way streets 200 m apart.
-fn platoons(chance: &mut Chance, count: usize) -> Vec<State> {
-    let streets = ((count as f64 / 30.0).sqrt().ceil() as usize).max(1);
-    let length = streets as f64 * 200.0;
-    let mut cars = Vec::with_capacity(count);
-    while cars.len() < count {
-        let (street, start) = (chance.below(streets) as f64 * 200.0, chance.between(0.0, length));
-        let way = chance.below(4);
-        for place in 0..20.min(count - cars.len()) {
-            let along = start + 25.0 * place as f64;
-            let heading = way as f64 * std::f64::consts::FRAC_PI_2;
-            let (x, y) =
-                [(along, street - 1.6), (street + 1.6, along), (along, street + 1.6), (street - 1.6, along)][way];
-            cars.push(state(x, y, heading, chance.between(12.0, 14.0)));
+    /// Prints the median per road user in ns, if there is one.
+    fn print(mut self, scene: &str, method: &str, count: usize) {
+        self.0.sort_by(f64::total_cmp);
+        if let Some(median) = self.0.get(self.0.len() / 2) {
+            println!("step,{scene},{method},{count},{:.1},ns per road user", median * 1e9 / count as f64);
         }
     }
-    cars
-}
-
-/// One on 400 m², anywhere, any way, up to 50 km/h.
-fn uniform(chance: &mut Chance, count: usize) -> Vec<State> {
-    let side = (count as f64 * 400.0).sqrt();
-    let mut car =
-        || state(chance.between(0.0, side), chance.between(0.0, side), chance.angle(), chance.between(0.0, 14.0));
-    (0..count).map(|_| car()).collect()
 }
 
 fn main() {
-    let options = Options::default();
-    let sumo = SumoType {
-        name: "car".to_owned(),
-        vehicle_class: "passenger".to_owned(),
-        shape: "passenger".to_owned(),
-        length: 5.0,
-        width: 1.8,
-        mass: 1500.0,
-        emergency_decel: 9.0,
-        decel: 4.5,
-    };
-    let scenes: [(&str, Draw); 3] = [("jam", jam), ("platoons", platoons), ("uniform", uniform)];
-    println!("scene, road users, ns per road user and step: phase 1, phase 2; pairs, encounters per road user");
-    for (scene, draw) in scenes {
-        for count in [1_000, 10_000, 100_000, 1_000_000] {
-            let mut roster = Roster::default();
-            let profile = roster.profile(Profile::vehicle(&sumo, &options)).unwrap();
-            let mut frame = Frame::default();
-            let mut cars = draw(&mut Chance::new(1), count);
-            let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
-            let mut detector = Detector::new(&options, None);
-            let (mut first, mut second, mut found) = (Vec::new(), Vec::new(), 0);
-            let rounds = (3_000_000 / count).clamp(5, 100);
-            for _ in 0..rounds {
-                frame.begin(frame.time + 0.1);
-                for (car, user) in cars.iter_mut().zip(&users) {
-                    car.x += car.speed * 0.1 * car.heading.cos();
-                    car.y += car.speed * 0.1 * car.heading.sin();
-                    frame.push(*user, *car);
-                }
-                let started = Instant::now();
-                black_box(detector.approach(&frame, &roster));
-                let between = Instant::now();
-                found = detector.detect(&frame, &roster).len();
-                first.push(between - started);
-                second.push(between.elapsed());
+    let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
+    println!("what,scene,method,size,value,unit");
+    for (scene, draw) in scenes::SCENES {
+        for count in [1_000, 10_000, LARGE, 1_000_000] {
+            let cars = draw(&mut Chance::new(1), count);
+            if let ([_, folder], true) = (&words[..], count <= 10_000) {
+                scenes::write(&cars, &Path::new(folder).join(format!("{scene}-{count}.csv"))).unwrap();
             }
-            let median = |times: &mut Vec<std::time::Duration>| {
-                times.sort();
-                times[times.len() / 2].as_secs_f64() * 1e9 / count as f64
-            };
-            let work = detector.work();
-            println!(
-                "{scene}, {count}, {:.0}, {:.0}; {:.2}, {:.2}",
-                median(&mut first),
-                median(&mut second),
-                work.pairs as f64 / work.rows as f64,
-                found as f64 / count as f64
-            );
+            measure(scene, cars);
         }
     }
+}
+
+fn measure(scene: &str, mut cars: Vec<State>) {
+    let (count, options) = (cars.len(), Options::default());
+    let mut roster = Roster::default();
+    let profile = roster.profile(scenes::car()).unwrap();
+    let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
+    let (car, mut frame) = (roster.profile_at(profile), Frame::default());
+    let mut detector = Detector::new(&options, None);
+    let [mut tree, mut straight_tree] = [Boxes::Circles, Boxes::StraightWays].map(Tree::new);
+    let mut all_pairs = AllPairs::default();
+    let [mut first, mut second, mut both] = [(); 3].map(|()| Times::default());
+    let [mut with_tree, mut with_straight_tree, mut with_all] = [(); 3].map(|()| Times::default());
+    for round in 0..(3_000_000 / count).clamp(5, 100) {
+        frame.begin(frame.time + 0.1);
+        for (car, user) in cars.iter_mut().zip(&users) {
+            car.x += car.speed * 0.1 * car.heading.cos();
+            car.y += car.speed * 0.1 * car.heading.sin();
+            frame.push(*user, *car);
+        }
+        first.add(|| detector.approach(&frame, &roster).len());
+        second.add(|| detector.detect(&frame, &roster).len());
+        both.0.push(first.0[round] + second.0[round]);
+        if count <= LARGE {
+            let found = with_tree.add(|| tree.contacts(&cars, car, options.epsilon));
+            let again = with_straight_tree.add(|| straight_tree.contacts(&cars, car, options.epsilon));
+            assert_eq!(found, again);
+        }
+        if count < LARGE && round < 5 || count == LARGE && round == 0 {
+            with_all.add(|| all_pairs.contacts(&cars, car, options.epsilon));
+        }
+    }
+    first.print(scene, "phase 1", count);
+    second.print(scene, "phase 2", count);
+    both.print(scene, "closecall", count);
+    with_tree.print(scene, "parry2d", count);
+    with_straight_tree.print(scene, "parry2d (straight)", count);
+    with_all.print(scene, "all pairs", count);
 }

@@ -1,5 +1,5 @@
-//! What parry2d does beside what closecall does itself: candidate search, contact of two rectangles, first contact of
-//! two moving ones. `cargo bench --bench library`.
+//! What parry2d does for one pair beside what closecall does itself: contact of two rectangles, first contact of two
+//! moving ones. `cargo bench --bench library`. Who is near whom: benches/detector.rs and `closecall study`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 
@@ -10,10 +10,7 @@ use closecall::geometry::outline::Outline;
 use closecall::geometry::rectangle::{Rectangle, plainly_touches, touches};
 use closecall::geometry::sweep::translation;
 use closecall::geometry::{Point, Vector};
-use closecall::precollision::{Circle, Search};
-use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
-use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use parry2d_f64::query::{self, ShapeCastOptions};
 use parry2d_f64::shape::Cuboid;
 
@@ -35,33 +32,6 @@ fn nanoseconds(items: usize, mut action: impl FnMut()) -> f64 {
         best = best.min(started.elapsed().as_secs_f64());
     }
     best / items as f64 * 1e9
-}
-
-fn candidates(chance: &mut Chance) {
-    for count in [1_000, 10_000, 100_000] {
-        // Dense traffic: one road user on 400 m², each with 30 m around it.
-        let side = (count as f64 * 400.0).sqrt();
-        let mut circle =
-            || Circle { x: chance.between(0.0, side), y: chance.between(0.0, side), radius: chance.between(5.0, 30.0) };
-        let circles = (0..count).map(|_| circle()).collect::<Vec<_>>();
-        let (mut search, mut pairs) = (Search::default(), Vec::new());
-        let ours = nanoseconds(count, || search.pairs(&circles, &mut pairs));
-        let mut found = 0;
-        let theirs = nanoseconds(count, || {
-            let boxes = circles.iter().map(|circle| {
-                let reach = ParryVector::new(circle.radius, circle.radius);
-                let centre = ParryVector::new(circle.x, circle.y);
-                Aabb::new(centre - reach, centre + reach)
-            });
-            let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes.collect::<Vec<_>>());
-            found = 0;
-            tree.traverse_bvtt_single_tree::<false>(&mut BvhWorkspace::default(), &mut |_, _| found += 1);
-        });
-        println!(
-            "candidates of {count}: strips {ours:.0} ns, parry2d's tree {theirs:.0} ns per road user ({} and {found} pairs)",
-            pairs.len()
-        );
-    }
 }
 
 fn contacts(chance: &mut Chance) {
@@ -101,6 +71,5 @@ fn contacts(chance: &mut Chance) {
 
 fn main() {
     let mut chance = Chance(1);
-    candidates(&mut chance);
     contacts(&mut chance);
 }

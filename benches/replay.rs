@@ -1,14 +1,17 @@
 //! Vehicle-steps per second of a replay, from CSV and from XML: reading alone, and the whole of it, in sparse traffic
-//! (nobody near anybody) and in traffic where everybody has somebody ahead. `cargo bench --bench replay`.
+//! (nobody near anybody) and in platoons (everybody has somebody 25 m ahead); and the largest memory of
+//! `closecall replay` on a small recording and on a large one. `cargo bench --bench replay`.
 //!
-//! Given recordings are read instead: `cargo bench --bench replay -- RECORDING…`; with `--net NET` they are replayed too.
-//! `--write FOLDER MEGABYTES` writes recordings of about that size, with their net, to see that memory stays the same.
+//! `-- --large GIGABYTES` sets the size of the large recording (1). Given recordings are measured instead:
+//! `-- [--net NET] RECORDING…`; with a net they are replayed too.
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "a benchmark may")]
 
+use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -26,9 +29,14 @@ const STEPS: usize = 200;
 
 fn main() {
     let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
-    match &words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => synthetic(),
-        ["--write", folder, megabytes] => write_of_size(Path::new(folder), megabytes.parse().unwrap()),
+    let words = words.iter().map(String::as_str).collect::<Vec<_>>();
+    if let ["--alone", ..] = words[..] {
+        return alone(&words[1..]);
+    }
+    println!("what,scene,method,size,value,unit");
+    match &words[..] {
+        [] => all(1.0),
+        ["--large", gigabytes] => all(gigabytes.parse().unwrap()),
         ["--net", net, recordings @ ..] => {
             recordings.iter().for_each(|path| measure(path, Path::new(path), Some(Path::new(net))));
         }
@@ -36,31 +44,54 @@ fn main() {
     }
 }
 
-fn synthetic() {
-    let folder = tempfile::tempdir().unwrap();
+fn all(large: f64) {
+    // On the disk of the target folder: the system's folder for temporary files may be in memory.
+    let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let net = write_net(folder.path());
-    for (traffic, headway) in [("sparse", 100.0), ("in platoons", 25.0)] {
+    for (traffic, headway) in [("sparse", 100.0), ("platoons", 25.0)] {
         for ending in ["csv", "xml"] {
-            for columns in ["default", "all"] {
+            for columns in ["", " with all attributes"] {
                 let path = folder.path().join(format!("fcd.{ending}"));
-                write_recording(&path, headway, STEPS, columns == "all");
-                measure(&format!("{traffic}, {ending}, {columns} attributes"), &path, Some(&net));
+                write_recording(&path, headway, STEPS, !columns.is_empty());
+                measure(&format!("{traffic}{columns}"), &path, Some(&net));
             }
+        }
+    }
+    for ending in ["csv", "xml"] {
+        for megabytes in [10.0, large * 1000.0] {
+            peak(&net, &folder.path().join(format!("fcd.{ending}")), megabytes);
         }
     }
 }
 
-fn write_of_size(folder: &Path, megabytes: f64) {
-    write_net(folder);
-    for ending in ["csv", "xml"] {
-        let path = folder.join(format!("{megabytes}.{ending}"));
-        write_recording(&path, 100.0, 10, false);
-        let steps = megabytes * 1e6 / std::fs::metadata(&path).unwrap().len() as f64 * 10.0;
-        write_recording(&path, 100.0, steps as usize, false);
-    }
+/// Replays a recording of about this size in a process of its own, and prints the most that was in memory.
+fn peak(net: &Path, path: &Path, megabytes: f64) {
+    write_recording(path, 100.0, 10, false);
+    let steps = megabytes * 1e6 / std::fs::metadata(path).unwrap().len() as f64 * 10.0;
+    write_recording(path, 100.0, steps as usize, false);
+    let out = path.with_extension("log");
+    let mut command = Command::new(std::env::current_exe().unwrap());
+    let words = ["--alone", "closecall", "replay", "--quiet", "--net"];
+    let ended = command.args(words).arg(net).arg("--out").arg(out).arg(path).output().unwrap();
+    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+    let kilobytes = String::from_utf8(ended.stdout).unwrap();
+    println!("peak,{megabytes} MB,{},,{:.1},MB", name(path), kilobytes.trim().parse::<f64>().unwrap() / 1e3);
+    std::fs::remove_file(path).unwrap();
 }
 
-fn measure(name: &str, path: &Path, net: Option<&Path>) {
+/// Runs closecall with these words, and prints the most that was in memory, in kB, where the system tells it (Linux).
+fn alone(words: &[&str]) {
+    assert_eq!(closecall::cli::main(words.iter().map(OsString::from), None), 0);
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    println!("{}", most.map_or("NaN", |most| most.trim_end_matches("kB").trim()));
+}
+
+fn name(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_uppercase()
+}
+
+fn measure(scene: &str, path: &Path, net: Option<&Path>) {
     let mut rows = 0;
     let reading = median(|| {
         let (mut recording, mut step) = (Recording::open(path).unwrap(), Step::default());
@@ -81,10 +112,11 @@ fn measure(name: &str, path: &Path, net: Option<&Path>) {
             while let Ok(Some(_)) = replay.next(&mut run) {}
         })
     });
-    let bytes = std::fs::metadata(path).unwrap().len() as f64 / rows as f64;
-    let per_second = |seconds: f64| format!("{:.2}", rows as f64 / seconds / 1e6);
-    let replaying = replaying.map_or(String::new(), |seconds| format!(", replayed {}", per_second(seconds)));
-    println!("{name} ({rows} of {bytes:.0} bytes): 10⁶/s read {}{replaying}", per_second(reading));
+    for (what, seconds) in [("read", Some(reading)), ("replay", replaying)] {
+        if let Some(seconds) = seconds {
+            println!("{what},{scene},{},{rows},{:.3e},vehicle-steps per s", name(path), rows as f64 / seconds);
+        }
+    }
 }
 
 /// The median of five, in s: of the processor's time where the system tells it, so that other programs do not count.

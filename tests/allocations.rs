@@ -1,38 +1,14 @@
 //! Once warm, the detector takes no memory any more: counted by the allocator itself.
 
-#![allow(unsafe_code, reason = "an allocator that counts is one")]
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
 mod common;
-
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::sync::atomic::{AtomicU64, Ordering};
+#[path = "common/counting.rs"]
+mod counting;
 
 use closecall::detector::Detector;
 use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::Options;
-
-/// The system's allocator, counting.
-struct Counting;
-
-static COUNT: AtomicU64 = AtomicU64::new(0);
-
-// SAFETY: every call is handed on to the system's allocator as it came.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        COUNT.fetch_add(1, Ordering::Relaxed);
-        // SAFETY: as the caller promises.
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
-        // SAFETY: as the caller promises.
-        unsafe { System.dealloc(place, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
 
 /// Four lanes of cars that close up and spread again; every tenth crosses.
 fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
@@ -57,12 +33,12 @@ fn a_warm_detector_allocates_nothing() {
     // One round to get warm, then the same one again.
     for number in 0..40 {
         if number == 20 {
-            before = COUNT.load(Ordering::Relaxed);
+            before = counting::allocations();
         }
         step(&mut frame, &users, number);
         detector.approach(&frame, &roster);
         found += detector.detect(&frame, &roster).len();
     }
     assert!(found > 1000, "{found}");
-    assert_eq!(COUNT.load(Ordering::Relaxed) - before, 0);
+    assert_eq!(counting::allocations() - before, 0);
 }

@@ -1,0 +1,101 @@
+//! What one would build instead of the detector. Both say only who might meet: no way along a path, no kind, no μ.
+
+use closecall::braking::stopping_distance;
+use closecall::frame::State;
+use closecall::geometry::rectangle::direction;
+use closecall::profile::Profile;
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::math::{Pose, Rotation, Vector};
+use parry2d_f64::partitioning::{Bvh, BvhWorkspace};
+use parry2d_f64::query;
+use parry2d_f64::shape::Cuboid;
+
+/// What the boxes of parry2d's tree are laid around.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Boxes {
+    /// The circle that holds whatever a road user may cover until it stands, wherever its road turns: as in phase 1.
+    Circles,
+    /// The rectangle that it covers until it stands if its road is straight, as all are here.
+    StraightWays,
+}
+
+/// parry2d: a tree of boxes, kept from step to step as its documentation advises for what moves, and for each pair of
+/// boxes that meet its intersection test of the rectangles that both cover until they stand.
+pub struct Tree {
+    boxes: Boxes,
+    tree: Bvh,
+    workspace: BvhWorkspace,
+    covered: Vec<(Pose, Cuboid)>,
+}
+
+impl Tree {
+    pub fn new(boxes: Boxes) -> Self {
+        Self { boxes, tree: Bvh::default(), workspace: BvhWorkspace::default(), covered: Vec::new() }
+    }
+
+    /// The number of pairs whose rectangles meet.
+    pub fn contacts(&mut self, cars: &[State], car: &Profile, epsilon: f64) -> usize {
+        self.covered.clear();
+        for (index, state) in (0..).zip(cars) {
+            let ahead = stopping_distance(state.speed, &car.brakes) + epsilon;
+            let axis = direction(state.heading);
+            let half = Vector::new((car.length + ahead) / 2.0, car.width / 2.0);
+            let centre = Vector::new(state.x, state.y) + Vector::new(axis.x, axis.y) * (ahead - half.x);
+            let around = match self.boxes {
+                Boxes::Circles => {
+                    let radius = ahead + car.length.hypot(car.width) / 2.0;
+                    (centre - Vector::new(axis.x, axis.y) * (ahead / 2.0), Vector::new(radius, radius))
+                }
+                Boxes::StraightWays => {
+                    let (across, along) = (axis.y.abs(), axis.x.abs());
+                    (centre, Vector::new(along * half.x + across * half.y, across * half.x + along * half.y))
+                }
+            };
+            let pose = Pose { rotation: Rotation { re: axis.x, im: axis.y }, translation: centre };
+            self.covered.push((pose, Cuboid::new(half)));
+            let aabb = Aabb::new(around.0 - around.1, around.0 + around.1);
+            self.tree.insert_or_update_partially(aabb, index, 0.0);
+        }
+        self.tree.refit(&mut self.workspace);
+        self.tree.optimize_incremental(&mut self.workspace);
+        let (covered, mut found) = (&self.covered, 0);
+        self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |i, j| {
+            let ((a, a_shape), (b, b_shape)) = (&covered[i as usize], &covered[j as usize]);
+            let test = query::intersection_test(a, a_shape, b, b_shape);
+            found += usize::from(test.is_ok_and(|test| test.intersecting));
+        });
+        found
+    }
+}
+
+/// Every pair by the paper's test of two circles, the cheapest that drops no pair.
+#[derive(Default)]
+pub struct AllPairs {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    radius: Vec<f64>,
+}
+
+impl AllPairs {
+    /// The number of pairs whose circles meet.
+    pub fn contacts(&mut self, cars: &[State], car: &Profile, epsilon: f64) -> usize {
+        let Self { x, y, radius } = self;
+        [&mut *x, y, radius].into_iter().for_each(Vec::clear);
+        for state in cars {
+            let axis = direction(state.heading);
+            x.push(state.x - axis.x * car.length / 2.0);
+            y.push(state.y - axis.y * car.length / 2.0);
+            radius.push(stopping_distance(state.speed, &car.brakes) + car.length.hypot(car.width) / 2.0 + epsilon);
+        }
+        let mut found = 0;
+        for i in 0..cars.len() {
+            let later = x[i + 1..].iter().zip(&y[i + 1..]).zip(&radius[i + 1..]);
+            let meets = |((other_x, other_y), other): ((&f64, &f64), &f64)| {
+                let (dx, dy, reach) = (other_x - x[i], other_y - y[i], other + radius[i]);
+                usize::from(dx * dx + dy * dy <= reach * reach)
+            };
+            found += later.map(meets).sum::<usize>();
+        }
+        found
+    }
+}

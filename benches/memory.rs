@@ -1,0 +1,31 @@
+//! What a run holds in memory after the first hour and after a day of traffic that comes and goes (tests/memory.rs
+//! promises that it is the same), and how often a warm detector asks for memory. `cargo bench --bench memory`.
+//!
+//! What it holds per road user beside SUMO: benches/memory.py.
+
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
+
+#[path = "../tests/common/mod.rs"]
+mod common;
+#[path = "../tests/common/counting.rs"]
+mod counting;
+#[path = "../tests/common/day.rs"]
+mod day;
+
+use std::path::Path;
+
+const HOUR: usize = 3600;
+
+fn main() {
+    let folder = tempfile::tempdir().unwrap();
+    let before = counting::live_bytes();
+    let mut day = day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), common::car());
+    println!("what,scene,method,size,value,unit");
+    for hour in 1..=24 {
+        (0..HOUR).for_each(|_| day.step());
+        if [1, 24].contains(&hour) {
+            println!("held,day,after hour {hour},{},{},bytes", day.cars(), counting::live_bytes() - before);
+        }
+    }
+    assert!(day.conflicts() > 0, "a day without conflicts shows little");
+}

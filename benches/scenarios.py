@@ -1,0 +1,76 @@
+"""The simulations on which attached runs are measured, and how they are run with the checker and without.
+
+grid: 10 by 10 signalised junctions with up to 1,700 vehicles. town: sumo_nets/town. motorway: SUMO's own A10, as its
+configuration says, in which nobody teleports. The town ends after 300 s, since device.ssm takes so long there.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import sumo
+
+BIN = Path(sys.executable).parent
+GRID = ["--grid", "--grid.number", "10", "--grid.length", "200", "-L", "2", "-j", "traffic_light"]
+
+PLAIN = """
+import sys, libsumo
+libsumo.start(["sumo", *sys.argv[1:]])
+end = libsumo.simulation.getEndTime()
+while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < end:
+    libsumo.simulationStep()
+libsumo.close()
+"""
+
+
+def scenarios(folder: Path) -> dict[str, Path]:
+    """The configurations; what has to be made is made in the folder."""
+    return {"grid": grid(folder), "town": Path("sumo_nets/town/town.sumocfg"), "motorway": motorway(folder)}
+
+
+def grid(folder: Path) -> Path:
+    """Make the grid and its demand."""
+    net, routes, config = folder / "grid.net.xml", folder / "grid.rou.xml", folder / "grid.sumocfg"
+    tools = Path(sumo.SUMO_HOME) / "tools"
+    environment = {**os.environ, "SUMO_HOME": str(sumo.SUMO_HOME), "PATH": f"{BIN}:{os.environ['PATH']}"}
+    trips = [sys.executable, str(tools / "randomTrips.py"), "-n", str(net), "-o", str(folder / "trips.xml")]
+    trips += ["-r", str(routes), "-e", "600", "-p", "0.2", "--seed", "1"]
+    for command in [[str(BIN / "netgenerate"), *GRID, "-o", str(net)], trips]:
+        subprocess.run(command, env=environment, cwd=folder, check=True, stdout=subprocess.DEVNULL)
+    config.write_text(
+        f'<configuration><net-file value="{net}"/><route-files value="{routes}"/>'
+        '<begin value="0"/><end value="600"/><no-step-log value="true"/></configuration>'
+    )
+    return config
+
+
+def motorway(folder: Path) -> Path:
+    """Copy the motorway from the installed SUMO: it writes beside its configuration."""
+    shutil.copytree(Path(sumo.SUMO_HOME) / "tools" / "game", folder / "game")
+    return folder / "game" / "A10KW.sumocfg"
+
+
+def end(config: Path) -> str:
+    """When a run ends, in s."""
+    return "300" if config.stem == "town" else "600"
+
+
+def plain(config: Path) -> list[str]:
+    """SUMO alone, through libsumo as in every other run."""
+    return [sys.executable, "-c", PLAIN, "-c", str(config), "--end", end(config), "--no-warnings"]
+
+
+def attached(config: Path, out: Path, *options: str) -> list[str]:
+    """SUMO with every road user checked in every step and the conflicts logged."""
+    checked = [sys.executable, "-m", "closecall", "run", str(config), "--end", end(config)]
+    return [*checked, "--quiet", "--out", str(out), *options, "--", "--no-warnings"]
+
+
+def ssm(config: Path, out: Path) -> list[str]:
+    """SUMO with its own device.ssm on all vehicles, TTC alone."""
+    device = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC", "--device.ssm.file", str(out)]
+    return [*plain(config), *device]

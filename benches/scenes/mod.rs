@@ -1,0 +1,81 @@
+//! Traffic without SUMO, for the benches: a jam, platoons, road users anywhere. The same on every machine.
+
+use std::io::Write;
+use std::path::Path;
+
+use closecall::frame::State;
+use closecall::options::Options;
+use closecall::profile::{Profile, SumoType};
+use closecall::reference::chance::Chance;
+
+pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
+
+pub const SCENES: [(&str, Draw); 3] = [("jam", jam), ("platoons", platoons), ("uniform", uniform)];
+
+/// SUMO's default car.
+pub fn car() -> Profile {
+    let sumo = SumoType {
+        name: "car".to_owned(),
+        vehicle_class: "passenger".to_owned(),
+        shape: "passenger".to_owned(),
+        length: 5.0,
+        width: 1.8,
+        mass: 1500.0,
+        emergency_decel: 9.0,
+        decel: 4.5,
+    };
+    Profile::vehicle(&sumo, &Options::default())
+}
+
+/// Writes who is where (rectangles: centre, heading in rad, length, width), for programs that are not ours.
+pub fn write(cars: &[State], path: &Path) -> std::io::Result<()> {
+    let car = car();
+    let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
+    writeln!(file, "x,y,heading,length,width")?;
+    for State { x, y, heading, .. } in cars {
+        let (sine, cosine) = heading.sin_cos();
+        let (x, y) = (x - cosine * car.length / 2.0, y - sine * car.length / 2.0);
+        writeln!(file, "{x},{y},{heading},{},{}", car.length, car.width)?;
+    }
+    file.flush()
+}
+
+fn state(x: f64, y: f64, heading: f64, speed: f64) -> State {
+    State { x, y, z: 0.0, heading, speed }
+}
+
+/// Four lanes of a motorway, bumper to bumper, at walking pace.
+fn jam(chance: &mut Chance, count: usize) -> Vec<State> {
+    let car = |place: usize| {
+        let (row, lane) = (place / 4, place % 4);
+        state(row as f64 * 7.5 + chance.between(-0.5, 0.5), lane as f64 * 3.2, 0.0, chance.between(0.5, 1.5))
+    };
+    (0..count).map(car).collect()
+}
+
+/// Platoons of 20 at 50 km/h, 25 m apart, on a grid of two-way streets 200 m apart.
+fn platoons(chance: &mut Chance, count: usize) -> Vec<State> {
+    let streets = ((count as f64 / 30.0).sqrt().ceil() as usize).max(1);
+    let length = streets as f64 * 200.0;
+    let mut cars = Vec::with_capacity(count);
+    while cars.len() < count {
+        let (street, start) = (chance.below(streets) as f64 * 200.0, chance.between(0.0, length));
+        let way = chance.below(4);
+        for place in 0..20.min(count - cars.len()) {
+            let along = start + 25.0 * place as f64;
+            let heading = way as f64 * std::f64::consts::FRAC_PI_2;
+            let (x, y) =
+                [(along, street - 1.6), (street + 1.6, along), (along, street + 1.6), (street - 1.6, along)][way];
+            cars.push(state(x, y, heading, chance.between(12.0, 14.0)));
+        }
+    }
+    cars
+}
+
+/// One on 400 m², anywhere, any way, up to 50 km/h.
+fn uniform(chance: &mut Chance, count: usize) -> Vec<State> {
+    let side = (count as f64 * 400.0).sqrt();
+    let mut car =
+        || state(chance.between(0.0, side), chance.between(0.0, side), chance.angle(), chance.between(0.0, 14.0));
+    (0..count).map(|_| car()).collect()
+}

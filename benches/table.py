@@ -1,0 +1,199 @@
+"""From what the benches printed to one table of the goals, and one chart.
+
+    python benches/table.py FOLDER [--readme]
+
+Reads the lines `what,scene,method,size,value,unit` of the benches from FOLDER/parts/*.csv, prints the table and writes
+FOLDER/bench.csv and FOLDER/bench.svg. With --readme the table and the chart go into README.md and docs/pictures too.
+"""
+
+from __future__ import annotations
+
+import csv
+import importlib.metadata
+import math
+import os
+import platform
+import shutil
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from chart import draw
+
+COLUMNS = ["what", "scene", "method", "size", "value", "unit"]
+SCENARIOS = ["grid", "town", "motorway"]
+SCENES = ["jam", "platoons", "uniform"]
+MARKS = ("<!-- make bench: begin -->\n", "<!-- make bench: end -->")
+
+
+class Lines:
+    """What the benches printed."""
+
+    def __init__(self, rows: list[dict[str, str]]) -> None:
+        self.rows = rows
+
+    def __call__(self, what: str, scene: str, method: str, size: int | None = None) -> float:
+        """The value of a line; of a `size` only where several differ by it.
+
+        Raises:
+            LookupError: there is no such line.
+        """
+        for row in self.rows:
+            is_it = (row["what"], row["scene"], row["method"]) == (what, scene, method)
+            if is_it and size in (None, int(row["size"] or 0)):
+                return float(row["value"])
+        raise LookupError(what, scene, method, size)
+
+    def ratio(self, what: str, scene: str, method: str, other: str, size: int | None = None) -> float:
+        """How many times the value of one method is that of another."""
+        return self(what, scene, method, size) / self(what, scene, other, size)
+
+
+@dataclass
+class Goal:
+    """One row of the table: it is held where every value is."""
+
+    name: str
+    values: Callable[[Lines], dict[str, float]]
+    at_most: float = math.inf
+    at_least: float = -math.inf
+    form: str = ".2f"
+    beside: Callable[[Lines], str] | None = None
+
+    def row(self, lines: Lines) -> list[str]:
+        """Goal, measured, limit, held."""
+        limit = f"≤ {self.at_most:,g}" if self.at_most < math.inf else f"≥ {self.at_least:,g}"
+        try:
+            values = self.values(lines)
+            beside = f" ({self.beside(lines)})" if self.beside else ""
+        except LookupError:
+            return [self.name, "not measured", limit, "**no**"]
+        measured = ", ".join(f"{name} {value:{self.form}}".strip() for name, value in values.items())
+        held = all(self.at_least <= value <= self.at_most for value in values.values())
+        return [self.name, measured + beside, limit, "yes" if held else "**no**"]
+
+
+def steps(method: str, *sizes: int) -> Callable[[Lines], dict[str, float]]:
+    """How many times longer than the detector another method takes for a step: the least of these sizes."""
+    return lambda lines: {
+        scene: min(lines.ratio("step", scene, method, "closecall", size) for size in sizes) for scene in SCENES
+    }
+
+
+def growth(lines: Lines, scene: str) -> float:
+    """The exponent with which the time of a step grows from 10³ to 10⁶ road users."""
+    few, many = (lines("step", scene, "closecall", size) * size for size in (10**3, 10**6))
+    return math.log10(many / few) / 3
+
+
+def peaks(lines: Lines) -> dict[str, float]:
+    """Memory of the largest recording over that of the smallest."""
+    sizes = sorted(
+        (row["scene"] for row in lines.rows if row["what"] == "peak"), key=lambda size: float(size.split()[0])
+    )
+    return {form: lines("peak", sizes[-1], form) / lines("peak", sizes[0], form) for form in ("CSV", "XML")}
+
+
+GOALS = [
+    Goal(
+        "attached run over plain SUMO",
+        lambda lines: {scene: lines.ratio("run", scene, "closecall", "plain") for scene in SCENARIOS},
+        at_most=1.2,
+        beside=lambda lines: (
+            "device.ssm, TTC alone: "
+            + ", ".join(f"{lines.ratio('run', scene, 'device.ssm', 'plain'):.2f}" for scene in SCENARIOS)
+        ),
+    ),
+    Goal(
+        "detector, ns per road user and step, 10⁵ road users",
+        lambda lines: {scene: lines("step", scene, "closecall", 10**5) for scene in SCENES},
+        at_most=150,
+        form=".0f",
+    ),
+    Goal(
+        "its growth exponent, 10³ to 10⁶ road users",
+        lambda lines: {scene: growth(lines, scene) for scene in SCENES},
+        at_most=1.1,
+    ),
+    Goal("times faster than parry2d's tree and tests, 10⁴ and 10⁵", steps("parry2d", 10**4, 10**5), at_least=3),
+    Goal(
+        "the same, where the tree knows that all ways are straight",
+        steps("parry2d (straight)", 10**4, 10**5),
+        at_least=3,
+    ),
+    Goal("times faster than all pairs of circles, 10⁵", steps("all pairs", 10**5), at_least=1000, form=".0f"),
+    Goal(
+        "times faster than commonroad-drivability-checker, 10³ and 10⁴", steps("commonroad", 10**3, 10**4), at_least=1
+    ),
+    Goal(
+        "detector with two threads, times faster, 10⁵",
+        lambda lines: {scene: lines.ratio("step", scene, "closecall", "two threads", 10**5) for scene in SCENES},
+        at_least=1.7,
+    ),
+    Goal(
+        "replay from CSV, 10⁶ vehicle-steps per s",
+        lambda lines: {scene: lines("replay", scene, "CSV") / 1e6 for scene in ("sparse", "platoons")},
+        at_least=3,
+    ),
+    Goal(
+        "replay from XML, 10⁶ vehicle-steps per s",
+        lambda lines: {scene: lines("replay", scene, "XML") / 1e6 for scene in ("sparse", "platoons")},
+        at_least=1.5,
+    ),
+    # A few pages more or less are the system's.
+    Goal("memory of a replay, 100 times the file over the small one", peaks, at_most=1.05),
+    Goal(
+        "bytes per road user, beside SUMO's own",
+        lambda lines: {scene: lines("held", scene, "closecall") for scene in SCENARIOS},
+        at_most=400,
+        form=",.0f",
+    ),
+    Goal(
+        "memory after a day of traffic over that after an hour",
+        lambda lines: {"": lines("held", "day", "after hour 24") / lines("held", "day", "after hour 1")},
+        at_most=1,
+        form=".3f",
+    ),
+]
+
+
+def machine() -> str:
+    """The processor's name, how many cores it has here, the system, and SUMO's version."""
+    information = Path("/proc/cpuinfo")
+    lines = information.read_text().splitlines() if information.exists() else []
+    models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    model = models[0] if models else platform.processor() or platform.machine()
+    return f"{model}, {os.cpu_count()} cores, {platform.system()}, SUMO {importlib.metadata.version('libsumo')}"
+
+
+def fill(page: Path, text: str) -> None:
+    """Put a text between the page's two marks."""
+    before, rest = page.read_text(encoding="utf-8").split(MARKS[0])
+    after = rest.split(MARKS[1])[1]
+    page.write_text(before + MARKS[0] + text + MARKS[1] + after, encoding="utf-8")
+
+
+def main() -> None:
+    """Table, chart, README."""
+    folder = Path(sys.argv[1])
+    rows: list[dict[str, str]] = []
+    for part in sorted((folder / "parts").glob("*.csv")):
+        with part.open(encoding="utf-8", newline="") as file:
+            rows.extend(csv.DictReader(file))
+    with (folder / "bench.csv").open("w", encoding="utf-8", newline="") as file:
+        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+    lines = Lines(rows)
+    table = [["goal", "measured", "limit", "held"], ["---"] * 4, *(goal.row(lines) for goal in GOALS)]
+    text = "".join(f"| {' | '.join(row)} |\n" for row in table) + f"\nMeasured on: {machine()}.\n"
+    print(text)
+    draw(lines, folder / "bench.svg")
+    if "--readme" in sys.argv:
+        shutil.copy(folder / "bench.svg", "docs/pictures/bench.svg")
+        fill(Path("README.md"), f"![the same as a chart](docs/pictures/bench.svg)\n\n{text}")
+
+
+if __name__ == "__main__":
+    main()

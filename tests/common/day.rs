@@ -1,0 +1,163 @@
+//! A day of traffic on a real junction, made without SUMO: on every way through it a car enters twice a minute and drives
+//! through, so that road users come and go, each with an id of its own, and their number stays the same.
+//!
+//! All that repeats every [`PERIOD`] steps, but for the ids and the time: what a run keeps must repeat too.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::encounter::Placement;
+use closecall::frame::{ProfileIndex, State, UserIndex};
+use closecall::geometry::Point;
+use closecall::log::Log;
+use closecall::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use closecall::options::Options;
+use closecall::profile::Profile;
+use closecall::run::Run;
+
+/// Steps of 1 s that a car needs from one end of its way to the other.
+const PERIOD: usize = 60;
+/// Cars on each way.
+const CARS: usize = 4;
+
+/// A way through the net.
+struct Course {
+    /// Lanes, and where each begins.
+    lanes: Vec<(f64, LaneIndex)>,
+    points: Vec<(f64, Point)>,
+    route: Arc<[EdgeIndex]>,
+}
+
+/// A run that can be stepped for as long as one likes.
+pub struct Day {
+    net: Arc<Net>,
+    courses: Vec<Course>,
+    run: Run,
+    profile: ProfileIndex,
+    cars: Vec<Option<UserIndex>>,
+    rows: Vec<(usize, f64)>,
+    steps: usize,
+    entered: usize,
+}
+
+impl Day {
+    /// A day on the net of a scenario, its conflicts logged.
+    pub fn new(net: &Path, log: &Path, car: Profile) -> Self {
+        let options = Options::default();
+        let net = Arc::new(Net::read(net).unwrap());
+        let mut run = Run::new(&options, Some(net.clone())).unwrap();
+        run.log_to(Log::create(log, false).unwrap(), false);
+        run.routes_are_fixed();
+        let profile = run.roster.profile(car).unwrap();
+        let courses = courses(&net);
+        Self { net, courses, run, profile, cars: Vec::new(), rows: Vec::new(), steps: 0, entered: 0 }
+    }
+
+    /// Cars in the scene, always as many.
+    pub fn cars(&self) -> usize {
+        self.courses.len() * CARS
+    }
+
+    /// Conflicts that have closed.
+    pub fn conflicts(&self) -> u64 {
+        self.run.conflicts_so_far()
+    }
+
+    /// One step of 1 s.
+    pub fn step(&mut self) {
+        self.run.begin(self.steps as f64);
+        self.cars.resize(self.cars(), None);
+        self.rows.clear();
+        let length = self.run.roster.profile_at(self.profile).length;
+        for place in 0..self.cars.len() {
+            let (course, first) = (place % self.courses.len(), place * PERIOD / self.cars.len());
+            let age = (self.steps + PERIOD - first) % PERIOD;
+            if age == 0 || self.cars[place].is_none() {
+                let gone = self.cars[place].replace(self.run.enter(&format!("car{:09}", self.entered), self.profile));
+                gone.into_iter().for_each(|user| self.run.leave(user));
+                self.entered += 1;
+            }
+            let course = &self.courses[course];
+            let speed = (course.end() - length) / PERIOD as f64;
+            let way = length + speed * age as f64;
+            let (front, rear) = (course.at(way), course.at(way - length));
+            let heading = (front.y - rear.y).atan2(front.x - rear.x);
+            let state = State { x: front.x, y: front.y, z: 0.0, heading, speed };
+            self.run.frame.push(self.cars[place].unwrap(), state);
+            self.rows.push((place % self.courses.len(), way));
+        }
+        for row in self.run.approach().to_vec() {
+            let (course, way) = self.rows[row as usize];
+            self.run.place(row, &self.courses[course].placement(&self.net, way));
+        }
+        self.run.finish_step().unwrap();
+        self.steps += 1;
+    }
+}
+
+impl Course {
+    fn end(&self) -> f64 {
+        self.points.last().unwrap().0
+    }
+
+    fn at(&self, way: f64) -> Point {
+        let next = self.points.partition_point(|(start, _)| *start <= way).clamp(1, self.points.len() - 1);
+        let [(start, from), (end, to)] = [self.points[next - 1], self.points[next]];
+        from + (to - from) * ((way - start) / (end - start))
+    }
+
+    fn placement(&self, net: &Net, way: f64) -> Placement {
+        let index = self.lanes.partition_point(|(start, _)| *start <= way).max(1) - 1;
+        let (start, lane) = self.lanes[index];
+        let (drawn, edge) =
+            (*net.lanes[lane.0 as usize].ways.last().unwrap(), |lane: LaneIndex| net.lanes[lane.0 as usize].edge);
+        // Within a junction it is on the way from the edge before.
+        let before = self.lanes[..=index].iter().rev().map(|(_, lane)| edge(*lane));
+        let last = before.filter_map(|edge| self.route.iter().position(|known| *known == edge)).next();
+        Placement {
+            lane,
+            position: (way - start) * net.lanes[lane.0 as usize].length / drawn,
+            route: self.route.clone(),
+            route_position: last.unwrap(),
+            lateral_speed: 0.0,
+        }
+    }
+}
+
+/// Every way from a lane that nothing leads to, to one that leads nowhere.
+fn courses(net: &Net) -> Vec<Course> {
+    let lane = |index: LaneIndex| &net.lanes[index.0 as usize];
+    let is_normal = |index: LaneIndex| net.edges[lane(index).edge.0 as usize].function == EdgeFunction::Normal;
+    let starts = (0..net.lanes.len() as u32).map(LaneIndex);
+    let starts = starts.filter(|&start| is_normal(start) && lane(start).from.is_empty());
+    let mut ways = starts.map(|start| vec![start]).collect::<Vec<_>>();
+    let mut courses = Vec::new();
+    while let Some(lanes) = ways.pop() {
+        let last = lane(*lanes.last().unwrap());
+        ways.extend(last.links.iter().map(|link| [&lanes[..], &[link.via.unwrap_or(link.to)]].concat()));
+        if last.links.is_empty() && lanes.len() > 1 {
+            courses.push(course(net, &lanes));
+        }
+    }
+    courses
+}
+
+fn course(net: &Net, lanes: &[LaneIndex]) -> Course {
+    let mut course = Course { lanes: Vec::new(), points: Vec::new(), route: Arc::new([]) };
+    let mut route = Vec::new();
+    for &index in lanes {
+        let lane = &net.lanes[index.0 as usize];
+        course.lanes.push((course.points.last().map_or(0.0, |(way, _)| *way), index));
+        if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
+            route.push(lane.edge);
+        }
+        for &point in &lane.shape {
+            let way = course.points.last().map_or(0.0, |(way, last): &(f64, Point)| way + (point - last).norm());
+            if course.points.last().is_none_or(|(before, _)| way > *before) {
+                course.points.push((way, point));
+            }
+        }
+    }
+    course.route = route.into();
+    course
+}
