@@ -105,7 +105,7 @@ impl fmt::Display for Summary {
         for left_out in &self.left_out {
             writeln!(f, "{left_out}")?;
         }
-        let parts = self.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.2} s"));
+        let parts = self.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.3} s"));
         if !self.spent.is_empty() {
             writeln!(f, "time: {}", parts.collect::<Vec<_>>().join(", "))?;
         }

@@ -38,7 +38,7 @@ pub struct Checker {
 
 enum Input {
     Simulation(Source),
-    Frames(Frames),
+    Frames(Box<Frames>),
 }
 
 #[pymethods]
@@ -67,7 +67,7 @@ impl Checker {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
                 Input::Simulation(Source::new(source, &mut run, &options)?)
             }
-            None => Input::Frames(Frames::new(&options)),
+            None => Input::Frames(Box::new(Frames::new(&options))),
         };
         let painter = match (source, paint) {
             (Some(source), None) if has_gui(source) => Some(Painter::new(source)),

@@ -16,8 +16,8 @@ ENDS = {"town": 20, "bridge": 60}
 def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dict[str, Any]]:
     """The log of a scenario, and its record without what says only how it was computed."""
     end = ["--end", str(ENDS[config.stem])] if config.stem in ENDS else []
-    settings = ["--config", config.parent / "closecall.toml"]
-    done = closecall("run", config, *settings, *end, "--log-encounters", "--quiet", "--out", out, *words)
+    more = ["--config", str(config.parent / "closecall.toml"), *end, *words]
+    done = closecall("run", config, *more, "--log-encounters", "--quiet", "--out", out)
     assert done.returncode == 0, done.stderr
     record = json.loads((out / "run.json").read_text())
     assert record["options"].pop("keep_all") is ("--keep-all" in words)

@@ -1,0 +1,69 @@
+"""What leaving out saves, thing by thing: runs with one computed all the same, against runs without any of them.
+
+    python benches/exclusions.py [--runs N] [--town S] [--motorway S]
+
+The town of sumo_nets, and SUMO's own motorway (tools/game/A10KW). Attached, on one thread, headless, interleaved. A
+figure is the smallest of its runs: the time of all parts but SUMO's own, in ns per vehicle and step.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+NETS = Path(__file__).parents[1] / "sumo_nets"
+EXCLUSIONS = ["circles-apart", "ways-apart", "in-line", "known-paths", "known-directions", "heights"]
+PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
+
+
+def motorway(folder: Path) -> Path:
+    """A copy of SUMO's motorway: closecall writes beside it."""
+    import sumo
+
+    game = Path(sumo.SUMO_HOME) / "tools" / "game"
+    shutil.copytree(game / "A10KW", folder / "A10KW")
+    shutil.copy(game / "input_additional.add.xml", folder)
+    return Path(shutil.copy(game / "A10KW.sumocfg", folder))
+
+
+def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
+    """Time per road user and step of all parts but SUMO's."""
+    words = ["run", config, "--end", end, "--out", out, "--threads", 1, *(["--keep", keep] if keep else [])]
+    command = [sys.executable, "-m", "closecall", *map(str, words), "--", "--no-warnings"]
+    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    parts = dict(PART.findall(said.rsplit("time:", 1)[1]))
+    spent = sum(float(seconds) for part, seconds in parts.items() if part.strip(" ,") != "SUMO")
+    summary = json.loads((out / "run.json").read_text())["summary"]
+    step = (summary["end"] - summary["begin"]) / (summary["steps"] - 1)
+    return spent * 1e9 / (summary["exposure"]["vehicle_hours"] * 3600 / step)
+
+
+def main() -> None:
+    """Print a row per exclusion and scene."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--town", type=float, default=60, help="end of the town, in s")
+    parser.add_argument("--motorway", type=float, default=300, help="end of the motorway, in s")
+    options = parser.parse_args()
+    print("exclusion,scene,with_ns,without_ns,ratio")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        scenes = [(NETS / "town" / "town.sumocfg", options.town), (motorway(folder), options.motorway)]
+        for config, end in scenes:
+            best = dict.fromkeys([None, *EXCLUSIONS], float("inf"))
+            for _ in range(options.runs):
+                for keep in best:
+                    best[keep] = min(best[keep], nanoseconds(config, end, folder / "out", keep))
+            for keep in EXCLUSIONS:
+                ratio = best[keep] / best[None]
+                print(f"{keep},{config.stem},{best[None]:.0f},{best[keep]:.0f},{ratio:.3f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
