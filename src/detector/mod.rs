@@ -101,8 +101,9 @@ struct Row {
     on_lanes: bool,
     poses: (u32, u32),
     straight: bool,
-    cover: Cover,
-    /// Where the covers from pose to pose begin; none as long as nobody asked.
+    /// The box around all that it covers on the way.
+    bounds: Bounds,
+    /// Where its covers begin, that of the whole way and those from pose to pose; none as long as nobody asked.
     covers: Option<u32>,
 }
 
@@ -238,7 +239,7 @@ impl Detector {
                 on_lanes: false,
                 poses: (0, 0),
                 straight: false,
-                cover: Cover::NOWHERE,
+                bounds: Bounds::EMPTY,
                 covers: None,
             };
             match self.rows.get_mut(place) {
@@ -345,20 +346,19 @@ impl Detector {
         let row = &mut self.rows[row];
         row.poses = (start as u32, self.poses.len() as u32);
         row.straight = laid.iter().all(|pose| pose.axis == axis);
-        if !self.leaves_out.ways_apart {
-            row.cover = Cover::EVERYWHERE;
-            return;
-        }
-        row.cover = Cover::of(laid, profile.length, profile.width).unwrap_or_else(|| {
-            let mut bounds = Bounds::EMPTY;
+        row.bounds = Bounds::EMPTY;
+        if profile.category == Category::Obstacle {
             for part in roster.user(user).shape.iter() {
-                bounds.join(&part.bounds);
+                row.bounds.join(&part.bounds);
             }
-            bounds.grown(TOLERANCE).into()
-        });
+        }
+        for pose in laid {
+            row.bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
+        }
+        row.bounds = if self.leaves_out.ways_apart { row.bounds.grown(TOLERANCE) } else { Bounds::EVERYTHING };
     }
 
-    /// Sees to it that a row's covers from pose to pose are known.
+    /// Sees to it that a row's covers are known.
     fn cover(&mut self, frame: &Frame, roster: &Roster, row: u32) {
         let user = frame.users()[row as usize];
         let row = &mut self.rows[row as usize];
@@ -366,11 +366,12 @@ impl Detector {
             let profile = roster.profile_of(user);
             row.covers = Some(self.covers.len() as u32);
             let poses = &self.poses[row.poses.0 as usize..row.poses.1 as usize];
-            let of = |pair: &[Pose]| match self.leaves_out.ways_apart {
-                true => Cover::of(pair, profile.length, profile.width),
-                false => Some(Cover::EVERYWHERE),
+            let of = |poses: &[Pose]| match self.leaves_out.ways_apart {
+                true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| row.bounds.into()),
+                false => Cover::EVERYWHERE,
             };
-            self.covers.extend(poses.windows(2).filter_map(of));
+            self.covers.push(of(poses));
+            self.covers.extend(poses.windows(2).map(of));
         }
     }
 
@@ -409,9 +410,11 @@ impl Detector {
         }
     }
 
-    fn covers_of(&self, row: &Row) -> &[Cover] {
-        let steps = (row.poses.1 - row.poses.0).saturating_sub(1);
-        row.covers.map_or(&[], |start| &self.covers[start as usize..(start + steps) as usize])
+    /// The covers of a row's whole way and of its steps.
+    fn covers_of(&self, row: &Row) -> (Cover, &[Cover]) {
+        let steps = (row.poses.1 - row.poses.0).saturating_sub(1) as usize;
+        let known = row.covers.map(|start| &self.covers[start as usize..][..=steps]);
+        known.and_then(<[Cover]>::split_first).map_or((Cover::NOWHERE, &[]), |(whole, steps)| (*whole, steps))
     }
 
     fn mover<'a>(&'a self, frame: &Frame, roster: &'a Roster, row: u32) -> Mover<'a> {
@@ -419,13 +422,14 @@ impl Detector {
         let user = frame.users()[index];
         let profile = roster.profile_of(user);
         let state = &frame.states()[index];
+        let (cover, covers) = self.covers_of(row);
         Mover {
             rectangle: Rectangle::behind(Point::new(state.x, state.y), row.axis, profile.length, profile.width),
             shape: &roster.user(user).shape,
             poses: &self.poses[row.poses.0 as usize..row.poses.1 as usize],
             straight: row.straight,
-            cover: row.cover,
-            covers: self.covers_of(row),
+            cover,
+            covers,
             speed: state.speed,
             brakes: &profile.brakes,
             stop: row.stop,
@@ -433,7 +437,7 @@ impl Detector {
     }
 
     fn meet(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
-        if !self.rows[a as usize].cover.meets(&self.rows[b as usize].cover) {
+        if !self.rows[a as usize].bounds.meet(&self.rows[b as usize].bounds) {
             self.work.ways_apart += 1;
             return None;
         }
@@ -454,10 +458,16 @@ impl Detector {
             self.work.in_line += 1;
             met
         } else {
-            self.work.swept += 1;
             self.cover(frame, roster, a);
             self.cover(frame, roster, b);
-            accurate::meet_swept(&self.mover(frame, roster, a), &self.mover(frame, roster, b), in_line, &a_is_smaller)
+            let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
+            if !first.cover.meets(&second.cover) {
+                self.work.ways_apart += 1;
+                return None;
+            }
+            let met = accurate::meet_swept(&first, &second, in_line, &a_is_smaller);
+            self.work.swept += 1;
+            met
         };
         let (ego_is_a, meeting) = met?;
         let rows = if ego_is_a { (a, b) } else { (b, a) };
