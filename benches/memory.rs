@@ -1,5 +1,5 @@
 //! What a run holds in memory after the first hour and after a day of traffic that comes and goes (tests/memory.rs
-//! promises that it is the same), and how often a warm detector asks for memory. `cargo bench --bench memory`.
+//! promises that it is the same). `cargo bench --bench memory`.
 //!
 //! What it holds per road user beside SUMO: benches/memory.py.
 
