@@ -41,7 +41,8 @@ def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
     spent = sum(float(seconds) for part, seconds in parts.items() if part.strip(" ,") != "SUMO")
     summary = json.loads((out / "run.json").read_text())["summary"]
     step = (summary["end"] - summary["begin"]) / (summary["steps"] - 1)
-    return spent * 1e9 / (summary["exposure"]["vehicle_hours"] * 3600 / step)
+    rows: float = summary["exposure"]["vehicle_hours"] * 3600 / step
+    return spent * 1e9 / rows
 
 
 def main() -> None:
