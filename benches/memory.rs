@@ -5,8 +5,6 @@
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 
-#[path = "../tests/common/mod.rs"]
-mod common;
 #[path = "../tests/common/counting.rs"]
 mod counting;
 #[path = "../tests/common/day.rs"]
@@ -19,7 +17,8 @@ const HOUR: usize = 3600;
 fn main() {
     let folder = tempfile::tempdir().unwrap();
     let before = counting::live_bytes();
-    let mut day = day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), common::car());
+    let mut day =
+        day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), closecall::stress::car());
     println!("what,scene,method,size,value,unit");
     for hour in 1..=24 {
         (0..HOUR).for_each(|_| day.step());

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-mod common;
 #[path = "common/counting.rs"]
 mod counting;
 
@@ -25,7 +24,7 @@ fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
 #[test]
 fn a_warm_detector_allocates_nothing() {
     let mut roster = Roster::default();
-    let profile = roster.profile(common::car()).unwrap();
+    let profile = roster.profile(closecall::stress::car()).unwrap();
     let users = (0..1000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detector = Detector::new(&Options::default(), None);
     let mut frame = Frame::default();

@@ -2,7 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-mod common;
 #[path = "common/counting.rs"]
 mod counting;
 #[path = "common/day.rs"]
@@ -15,7 +14,8 @@ const HOUR: usize = 3600;
 #[test]
 fn a_day_of_traffic_takes_no_more_memory_than_its_first_hour() {
     let folder = tempfile::tempdir().unwrap();
-    let mut day = day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), common::car());
+    let mut day =
+        day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), closecall::stress::car());
     (0..HOUR).for_each(|_| day.step());
     let (live, conflicts) = (counting::live_bytes(), day.conflicts());
     (HOUR..24 * HOUR).for_each(|_| day.step());

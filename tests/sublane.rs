@@ -2,8 +2,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-mod common;
-
 use std::path::Path;
 use std::sync::Arc;
 
@@ -22,7 +20,7 @@ const STREET: &str = r#"<net>
 fn encounters(y: f64, drift: f64) -> usize {
     let net = Arc::new(Net::parse(Path::new("street.net.xml"), STREET).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(common::car()).unwrap();
+    let profile = roster.profile(closecall::stress::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     let states = [(80.0, y, 0.0), (120.0, 1.6, std::f64::consts::PI)];

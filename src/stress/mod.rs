@@ -11,6 +11,7 @@ mod table;
 mod tally;
 mod time;
 
+pub use scene::car;
 pub use tally::{Property, Row, Unit};
 
 use crate::reference::chance::Chance;

@@ -13,8 +13,8 @@ use crate::profile::{Category, Profile};
 use crate::run::Run;
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 
-/// A car of 5 m by 2 m.
-pub(super) fn car() -> Profile {
+/// A car of 5 m by 2 m, as the cases and the tests have it.
+pub fn car() -> Profile {
     Profile {
         name: "car".to_owned(),
         category: Category::Vehicle,
