@@ -1,4 +1,4 @@
-//! The detector alone, both phases, on one core, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
+//! The detector alone, both phases, on one core and on two, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
 //! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
 //! per pair, and all pairs with the cheapest test there is. `cargo bench --bench detector`.
 //!
@@ -59,27 +59,36 @@ fn main() {
     }
 }
 
-fn measure(scene: &str, mut cars: Vec<State>) {
+fn measure(scene: &str, start: Vec<State>) {
+    let mut cars = start.clone();
     let (count, options) = (cars.len(), Options::default());
     let mut roster = Roster::default();
     let profile = roster.profile(scenes::car()).unwrap();
     let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let (car, mut frame) = (roster.profile_at(profile), Frame::default());
     let mut detector = Detector::new(&options, None);
+    let mut detector_of_two = Detector::new(&options, None);
+    detector_of_two.set_threads(2);
     let [mut tree, mut straight_tree] = [Boxes::Circles, Boxes::StraightWays].map(Tree::new);
     let mut all_pairs = AllPairs::default();
-    let [mut first, mut second, mut both] = [(); 3].map(|()| Times::default());
+    let [mut first, mut second, mut both, mut by_two] = [(); 4].map(|()| Times::default());
     let [mut with_tree, mut with_straight_tree, mut with_all] = [(); 3].map(|()| Times::default());
     for round in 0..(3_000_000 / count).clamp(5, 100) {
         frame.begin(frame.time + 0.1);
-        for (car, user) in cars.iter_mut().zip(&users) {
-            car.x += car.speed * 0.1 * car.heading.cos();
-            car.y += car.speed * 0.1 * car.heading.sin();
+        // To and fro: nobody yields here, and however many rounds there are, they shall not drive into each other.
+        let time = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1][round % 6];
+        for ((car, start), user) in cars.iter_mut().zip(&start).zip(&users) {
+            car.x = start.x + start.speed * time * start.heading.cos();
+            car.y = start.y + start.speed * time * start.heading.sin();
             frame.push(*user, *car);
         }
         first.add(|| detector.approach(&frame, &roster).len());
         second.add(|| detector.detect(&frame, &roster).len());
         both.0.push(first.0[round] + second.0[round]);
+        by_two.add(|| {
+            detector_of_two.approach(&frame, &roster);
+            detector_of_two.detect(&frame, &roster).len()
+        });
         if count <= LARGE {
             let found = with_tree.add(|| tree.contacts(&cars, car, options.epsilon));
             let again = with_straight_tree.add(|| straight_tree.contacts(&cars, car, options.epsilon));
@@ -92,6 +101,7 @@ fn measure(scene: &str, mut cars: Vec<State>) {
     first.print(scene, "phase 1", count);
     second.print(scene, "phase 2", count);
     both.print(scene, "closecall", count);
+    by_two.print(scene, "two threads", count);
     with_tree.print(scene, "parry2d", count);
     with_straight_tree.print(scene, "parry2d (straight)", count);
     with_all.print(scene, "all pairs", count);

@@ -88,6 +88,11 @@ impl Run {
         self.detector.leaves_out()
     }
 
+    /// Looks at each step with so many threads, at least one; the results are the same.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.detector.set_threads(threads);
+    }
+
     /// Says that no road user's route changes while it is in the scene.
     pub fn routes_are_fixed(&mut self) {
         self.detector.set_fixed_routes(true);
@@ -199,8 +204,8 @@ impl Run {
                 self.in_conflict.push(found);
             }
         }
-        let detector = &self.detector;
-        let closed = self.tracker.step(&self.frame, &self.roster, &self.in_conflict, |row| detector.path(row));
+        let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
+        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(frame, roster, row));
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
                 log.conflicts(closed, self.net.as_deref(), &self.roster)?;

@@ -48,7 +48,7 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     }
     let mut detector = Detector::new(&options, None);
     detector.approach(&frame, &roster);
-    let found = detector.detect(&frame, &roster).to_vec();
+    let found = detector.detect(&frame, &roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
 }
 
@@ -109,4 +109,35 @@ fn in_a_merge_the_foe_first_has_to_come_and_go() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (20.0, -4.0, 0.3, 15.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
     assert!(found.foe_way > 5.0 && found.foe_way < 15.0, "{}", found.foe_way);
+}
+
+#[test]
+fn any_number_of_threads_finds_the_same() {
+    let (options, mut roster, mut frame) = (options(), Roster::default(), Frame::default());
+    let profile = roster.profile(car(&options)).unwrap();
+    let users = (0..5000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
+    let mut detectors = [1, 2, 3, 8].map(|threads| {
+        let mut detector = Detector::new(&options, None);
+        detector.set_threads(threads);
+        detector
+    });
+    for step in 0..5 {
+        frame.begin(f64::from(step));
+        // Prime numbers, so that everybody goes another way and the rows are in no order of place.
+        for (number, user) in (0_u32..).zip(&users) {
+            let of = |prime: u32| f64::from(number * prime % 4999) / 4999.0;
+            let way = f64::from(step) * 10.0;
+            let (x, y) = (of(1709) * 1500.0 + way * of(7), of(2903) * 1500.0);
+            frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
+        }
+        let [alone, others @ ..] = &mut detectors;
+        alone.approach(&frame, &roster);
+        let found = alone.detect(&frame, &roster).copied().collect::<Vec<_>>();
+        assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
+        for detector in others {
+            detector.approach(&frame, &roster);
+            assert!(detector.detect(&frame, &roster).eq(&found));
+            assert_eq!(detector.work(), alone.work());
+        }
+    }
 }

@@ -153,6 +153,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     }
     let net = files.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
     let mut run = Run::new(&request.options, net)?;
+    run.set_threads(usize::from(request.threads).saturating_sub(1));
     pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;
     if has_no_rerouters(sumo).map_err(said)? {
         run.routes_are_fixed();

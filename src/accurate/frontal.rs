@@ -9,8 +9,8 @@ use crate::units::Metre;
 /// the area that the other needs to stop begins; the ego is the one with the longer way.
 pub(super) fn in_line(a: &Mover, b: &Mover, ahead: Metre, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
     let way = |ego: &Mover, foe: &Mover| {
-        let way = (ahead - foe.stop.min(foe.reach())).max(0.0);
-        (way <= ego.reach()).then_some(way)
+        let way = (ahead - foe.stop.min(foe.reach)).max(0.0);
+        (way <= ego.reach).then_some(way)
     };
     let (ego_is_a, ego_way) = match (way(a, b), way(b, a)) {
         (None, None) => return None,

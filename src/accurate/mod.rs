@@ -90,12 +90,14 @@ pub struct Mover<'a> {
     pub rectangle: Rectangle,
     /// Convex parts of an obstacle; empty for all others.
     pub shape: &'a [Polygon],
-    /// Poses from now until it stands and ε further.
+    /// Poses from now until it stands and ε further; may be left out of who drives in line.
     pub poses: &'a [Pose],
     /// Whether it drives straight on all the way.
     pub straight: bool,
+    /// How far ahead its path is known to go: S + ε, or less where the path ends.
+    pub reach: Metre,
     /// The boxes around all that it covers on the way.
-    pub cover: Cover,
+    pub cover: &'a Cover,
     /// The same from each pose to the next.
     pub covers: &'a [Cover],
     /// Speed in m/s.
@@ -120,11 +122,6 @@ impl Mover<'_> {
     /// Its part in μ.
     pub fn braking(&self) -> Braking<'_> {
         Braking { speed: self.speed, brakes: self.brakes }
-    }
-
-    /// How far ahead its path is known to go: S + ε, or less where the path ends.
-    pub fn reach(&self) -> Metre {
-        self.poses.last().map_or(0.0, |pose| pose.way)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::units::Metre;
 /// follower does not get there.
 pub fn in_line(ego: &Mover, foe: &Mover, ahead: Metre) -> Option<Meeting> {
     let ego_way = ahead.max(0.0);
-    (ego_way <= ego.reach()).then(|| Meeting {
+    (ego_way <= ego.reach).then(|| Meeting {
         ego_way,
         foe_way: 0.0,
         ego: Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_way, ..ego.rectangle },

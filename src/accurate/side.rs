@@ -29,7 +29,7 @@ pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
 /// The ego's way to the foe's area and its rectangle there.
 fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
     for ((pair, step), cover) in ego.poses.windows(2).zip(steps(ego)).zip(ego.covers) {
-        if !cover.meets(&foe.cover) {
+        if !cover.meets(foe.cover) {
             continue;
         }
         let of_shape = foe.shape.iter().filter(|part| part.bounds.meet(&cover.bounds));
@@ -70,7 +70,7 @@ fn arrival(foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
             break;
         }
     }
-    (foe.stop.min(foe.reach()), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
+    (foe.stop.min(foe.reach), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
 }
 
 /// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
@@ -126,11 +126,22 @@ mod tests {
     const SIZE: (Metre, Metre) = (5.0, 2.0);
     const BRAKES: Brakes = Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 };
 
-    fn mover<'a>(poses: &'a [Pose], covers: &'a [Cover], cover: Cover) -> Mover<'a> {
+    fn mover<'a>(poses: &'a [Pose], covers: &'a [Cover], cover: &'a Cover) -> Mover<'a> {
         let (length, width) = SIZE;
         let rectangle = Rectangle::behind(poses[0].front, poses[0].axis, length, width);
-        let stop = poses[poses.len() - 2].way;
-        Mover { rectangle, shape: &[], poses, straight: false, cover, covers, speed: 10.0, brakes: &BRAKES, stop }
+        let (stop, reach) = (poses[poses.len() - 2].way, poses[poses.len() - 1].way);
+        Mover {
+            rectangle,
+            shape: &[],
+            poses,
+            straight: false,
+            reach,
+            cover,
+            covers,
+            speed: 10.0,
+            brakes: &BRAKES,
+            stop,
+        }
     }
 
     prop_compose! {
@@ -152,9 +163,10 @@ mod tests {
             let whole = |poses: &[Pose]| Cover::of(poses, SIZE.0, SIZE.1).unwrap();
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
-            let slow = meet(&mover(&ego, &all, Cover::EVERYWHERE), &mover(&foe, &all, Cover::EVERYWHERE), false);
-            let (ego, foe) = (mover(&ego, &ego_parts, whole(&ego)), mover(&foe, &foe_parts, whole(&foe)));
-            prop_assert!(slow.is_none() || ego.cover.meets(&foe.cover));
+            let slow = meet(&mover(&ego, &all, &Cover::EVERYWHERE), &mover(&foe, &all, &Cover::EVERYWHERE), false);
+            let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
+            let (ego, foe) = (mover(&ego, &ego_parts, &ego_whole), mover(&foe, &foe_parts, &foe_whole));
+            prop_assert!(slow.is_none() || ego.cover.meets(foe.cover));
             prop_assert_eq!(meet(&ego, &foe, false), slow);
         }
     }

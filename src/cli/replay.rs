@@ -35,6 +35,9 @@ pub struct ReplayArgs {
     /// TOML file of options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
+    /// Threads that look at the pairs of a step: worth more than one where there are thousands of road users.
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
+    threads: u8,
     /// Print nothing but errors.
     #[arg(short, long)]
     quiet: bool,
@@ -51,6 +54,7 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
     let net = Arc::new(Net::read(&arguments.net)?);
     let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
     let mut run = Run::new(&options, Some(net.clone()))?;
+    run.set_threads(arguments.threads.into());
     run.routes_are_fixed();
     let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
     let mut record = RunRecord {

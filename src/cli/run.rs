@@ -41,8 +41,9 @@ pub struct RunArgs {
     /// TOML file of options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// 2: accurate tests, events and log beside SUMO's next step; 1: after it, for many runs at once.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=2))]
+    /// 2: accurate tests, events and log beside SUMO's next step, more: with all but SUMO's own; 1: after it, for many
+    /// runs at once.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
     /// Print nothing but errors.
     #[arg(short, long)]
@@ -67,7 +68,7 @@ pub struct RunRequest {
     pub out: PathBuf,
     /// Simulated second at which the run ends; none for the scenario's own end.
     pub end: Option<Second>,
-    /// How many threads to use, 1 or 2: the results are the same.
+    /// How many threads to use, SUMO's own included: the results are the same.
     pub threads: u8,
     /// Whether to print nothing but errors.
     pub quiet: bool,

@@ -1,31 +1,36 @@
 //! Frame in, encounters out: both phases, one after the other.
 //!
-//! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output.
+//! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output. What a
+//! step changes in what is remembered is done by one thread, in [`look`] and here; what only reads it ([`ways`], [`meet`],
+//! [`measure`]) by as many as the caller wants, each on its part of the pairs. The results are the same.
 
+mod look;
 mod measure;
+mod meet;
+mod order;
+mod parts;
 mod ways;
 
 use std::sync::Arc;
 
-use crate::accurate::{self, Cover, Meeting, side};
-use crate::braking::{self, stopping_distance};
+use crate::accurate::Meeting;
 use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, Roster, UserIndex};
-use crate::geometry::rectangle::{self, direction};
-use crate::geometry::{Bounds, Point, Vector};
+use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
-use crate::options::{Mode, Options, PathModel};
+use crate::options::Options;
+use crate::path::Pose;
 use crate::path::lanes::{LanePath, Start};
-use crate::path::{Pose, arc, turn};
-use crate::precollision::{Circle, Search};
+use crate::precollision::{Area, Search};
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::units::{Metre, Radian};
+use order::Order;
+use parts::each;
+use ways::Ways;
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
 pub const LEVEL: Metre = 2.5;
-/// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
-const STANDS: f64 = 0.0;
 
 /// How much each part of the detector had to do since the run began, and what it could leave out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -34,13 +39,13 @@ pub struct Work {
     pub rows: u64,
     /// Pairs that phase 1 lets through.
     pub pairs: u64,
-    /// Pairs left out because their circles do not meet.
+    /// Pairs left out because they are too far apart to meet before both stand.
     pub circles_apart: u64,
-    /// Of these, left out because both stand.
+    /// Of the others, left out because both stand.
     pub both_stand: u64,
-    /// Of these, left out because one is on a bridge above the other.
+    /// Left out because one is on a bridge above the other.
     pub other_level: u64,
-    /// Of these, left out because both are persons.
+    /// Left out because both are persons.
     pub both_persons: u64,
     /// Left out because the boxes around both ways do not meet.
     pub ways_apart: u64,
@@ -54,6 +59,22 @@ pub struct Work {
     pub known_directions: u64,
 }
 
+impl std::ops::AddAssign for Work {
+    fn add_assign(&mut self, other: Self) {
+        self.rows += other.rows;
+        self.pairs += other.pairs;
+        self.circles_apart += other.circles_apart;
+        self.both_stand += other.both_stand;
+        self.other_level += other.other_level;
+        self.both_persons += other.both_persons;
+        self.ways_apart += other.ways_apart;
+        self.in_line += other.in_line;
+        self.swept += other.swept;
+        self.known_paths += other.known_paths;
+        self.known_directions += other.known_directions;
+    }
+}
+
 /// Finds the encounters of one step after the other.
 pub struct Detector {
     work: Work,
@@ -62,17 +83,13 @@ pub struct Detector {
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
-    search: Search,
     memory: Vec<Memory>,
-    circles: Vec<Circle>,
-    briefs: Vec<Brief>,
     rows: Vec<Row>,
-    pairs: Vec<(u32, u32)>,
+    areas: Vec<Area>,
+    search: Search,
+    order: Order,
     unplaced: Vec<u32>,
-    poses: Vec<Pose>,
-    covers: Vec<Cover>,
-    scratch: [Vec<Pose>; 2],
-    encounters: Vec<Encounter>,
+    workers: Vec<Worker>,
 }
 
 /// What is remembered of a road user from step to step.
@@ -83,28 +100,70 @@ struct Memory {
     curvature: f64,
 }
 
-/// What decides, before anything else, whether a pair is one.
-#[derive(Clone, Copy, Debug)]
-struct Brief {
-    z: Metre,
-    moves: bool,
-    category: Category,
-}
-
 /// What is known of a frame's row in the step under way.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     heading: Radian,
     axis: Vector,
     stop: Metre,
+    profile: ProfileIndex,
+    category: Category,
+    moves: bool,
+    /// Whether it can only go straight on: no lanes, no arc.
+    ahead: bool,
     in_pair: bool,
     on_lanes: bool,
-    poses: (u32, u32),
-    straight: bool,
-    /// The box around all that it covers on the way.
-    bounds: Bounds,
-    /// Where its covers begin, that of the whole way and those from pose to pose; none as long as nobody asked.
-    covers: Option<u32>,
+}
+
+/// What one thread needs for its part of a step, and what it finds.
+#[derive(Default)]
+struct Worker {
+    work: Work,
+    pairs: Vec<(u32, u32)>,
+    ways: Ways,
+    encounters: Vec<Encounter>,
+    unmeasured: Vec<Met>,
+    courses: [Vec<Pose>; 2],
+}
+
+/// A pair that would meet and is not measured yet.
+#[derive(Clone, Copy)]
+struct Met {
+    /// Which of the worker's encounters.
+    encounter: u32,
+    meeting: Meeting,
+    /// Whether the gap waits for when the foe has left the meeting place.
+    leaves: bool,
+}
+
+/// What phase 2 reads of the step under way.
+#[derive(Clone, Copy)]
+struct Scene<'a> {
+    options: &'a Options,
+    leaves_out: Exclusions,
+    frame: &'a Frame,
+    roster: &'a Roster,
+    memory: &'a [Memory],
+    rows: &'a [Row],
+    areas: &'a [Area],
+}
+
+impl Scene<'_> {
+    fn user(&self, row: u32) -> UserIndex {
+        self.frame.users()[row as usize]
+    }
+
+    fn state(&self, row: u32) -> &State {
+        &self.frame.states()[row as usize]
+    }
+
+    fn row(&self, row: u32) -> &Row {
+        &self.rows[row as usize]
+    }
+
+    fn profile(&self, row: u32) -> &Profile {
+        self.roster.profile_at(self.row(row).profile)
+    }
 }
 
 impl Detector {
@@ -117,18 +176,19 @@ impl Detector {
             net,
             routes_may_change: true,
             sublane: false,
-            search: Search::default(),
             memory: Vec::new(),
-            circles: Vec::new(),
-            briefs: Vec::new(),
             rows: Vec::new(),
-            pairs: Vec::new(),
+            areas: Vec::new(),
+            search: Search::default(),
+            order: Order::default(),
             unplaced: Vec::new(),
-            poses: Vec::new(),
-            covers: Vec::new(),
-            scratch: [Vec::new(), Vec::new()],
-            encounters: Vec::new(),
+            workers: vec![Worker::default()],
         }
+    }
+
+    /// Looks at the pairs of a step with so many threads, at least one; the results are the same.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.workers.resize_with(threads.max(1), Worker::default);
     }
 
     /// Says whether no road user's route changes while it is in the scene, so that a path once laid holds until the
@@ -166,115 +226,6 @@ impl Detector {
         }
     }
 
-    /// Phase 1: which pairs may meet. Returns the frame's rows whose lane the detector has to know for phase 2;
-    /// the caller says it with [`Detector::place`], and leaves out whom it cannot place.
-    pub fn approach(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
-        if self.memory.len() < roster.len() {
-            self.memory.resize(roster.len(), Memory::default());
-        }
-        self.look(frame, roster);
-        if self.leaves_out.circles_apart {
-            self.search.pairs(&self.circles, &mut self.pairs);
-        } else {
-            let count = frame.len() as u32;
-            self.pairs.clear();
-            self.pairs.extend((0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))));
-        }
-        self.work.rows += frame.len() as u64;
-        self.work.pairs += self.pairs.len() as u64;
-        self.work.circles_apart += all_pairs(frame.len()) - self.pairs.len() as u64;
-        let (briefs, work) = (&self.briefs, &mut self.work);
-        self.pairs.retain(|&(a, b)| {
-            let (a, b) = (&briefs[a as usize], &briefs[b as usize]);
-            let is_obstacle = |brief: &Brief| brief.category == Category::Obstacle;
-            let left_out = if !a.moves && !b.moves {
-                &mut work.both_stand
-            } else if (a.z - b.z).abs() > LEVEL && !is_obstacle(a) && !is_obstacle(b) {
-                &mut work.other_level
-            } else if a.category == Category::Person && b.category == Category::Person {
-                &mut work.both_persons
-            } else {
-                return true;
-            };
-            *left_out += 1;
-            false
-        });
-        self.unplaced.clear();
-        for index in 0..self.pairs.len() {
-            for row in [self.pairs[index].0, self.pairs[index].1] {
-                if !std::mem::replace(&mut self.rows[row as usize].in_pair, true) {
-                    self.follow(frame, row);
-                }
-            }
-        }
-        &self.unplaced
-    }
-
-    /// Every row's circle and what else follows from its state alone.
-    fn look(&mut self, frame: &Frame, roster: &Roster) {
-        self.circles.clear();
-        self.briefs.clear();
-        self.rows.truncate(frame.len());
-        let arcs = self.options.path == PathModel::Arc;
-        for (place, (&user, state)) in frame.users().iter().zip(frame.states()).enumerate() {
-            let profile = roster.profile_of(user);
-            // Most drive straight on, and most rows are the same road user's as in the last step.
-            let axis = match self.rows.get(place) {
-                Some(last) if self.leaves_out.known_directions && last.heading == state.heading => {
-                    self.work.known_directions += 1;
-                    last.axis
-                }
-                _ => direction(state.heading),
-            };
-            let front = Point::new(state.x, state.y);
-            let moves = state.speed > STANDS;
-            let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
-            self.circles.push(circle(roster, user, profile, front, axis, stop + self.options.epsilon));
-            self.briefs.push(Brief { z: state.z, moves, category: profile.category });
-            let row = Row {
-                heading: state.heading,
-                axis,
-                stop,
-                in_pair: false,
-                on_lanes: false,
-                poses: (0, 0),
-                straight: false,
-                bounds: Bounds::EMPTY,
-                covers: None,
-            };
-            match self.rows.get_mut(place) {
-                Some(last) => *last = row,
-                None => self.rows.push(row),
-            }
-            if arcs {
-                let memory = &mut self.memory[user.0 as usize];
-                if let Some((last, last_axis)) = memory.last {
-                    memory.curvature = arc::curvature(turn(&last_axis, &axis), (front - last).norm());
-                }
-                memory.last = Some((front, axis));
-            }
-        }
-    }
-
-    /// Follows a row's path along the lanes, or asks for its lane.
-    fn follow(&mut self, frame: &Frame, row: u32) {
-        let state = &frame.states()[row as usize];
-        let by_lanes = self.options.path == PathModel::Lanes && self.options.mode == Mode::Closecall;
-        let moving_vehicle =
-            self.briefs[row as usize].moves && self.briefs[row as usize].category == Category::Vehicle && by_lanes;
-        if !moving_vehicle || self.net.is_none() {
-            return;
-        }
-        let memory = &mut self.memory[frame.users()[row as usize].0 as usize];
-        self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
-        let is_known = self.leaves_out.known_paths && !self.routes_may_change && self.rows[row as usize].on_lanes;
-        if is_known {
-            self.work.known_paths += 1;
-        } else {
-            self.unplaced.push(row);
-        }
-    }
-
     /// Whether the road user of a row is still on the path that was laid for this route.
     pub fn keeps_path(&self, frame: &Frame, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
         let user = frame.users()[row as usize];
@@ -303,112 +254,67 @@ impl Detector {
     }
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
-    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> &[Encounter] {
-        self.encounters.clear();
-        self.poses.clear();
-        self.covers.clear();
-        for row in 0..self.rows.len() {
-            if self.rows[row].in_pair {
-                self.lay_poses(frame, roster, row);
+    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
+        for row in 0..self.rows.len() as u32 {
+            if self.rows[row as usize].in_pair {
+                self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
             }
         }
-        let pairs = std::mem::take(&mut self.pairs);
-        for &(a, b) in &pairs {
-            let met = match self.options.mode {
-                Mode::Closecall => self.meet(frame, roster, a, b),
-                Mode::Paper => self.meet_on_paper(frame, roster, a, b),
-            };
-            self.encounters.extend(met);
+        let mut workers = std::mem::take(&mut self.workers);
+        for worker in &mut workers {
+            worker.encounters.clear();
+            worker.unmeasured.clear();
+            worker.ways.begin(self.rows.len());
         }
-        self.pairs = pairs;
-        &self.encounters
-    }
-
-    /// The path of a row's front bumper from where it is until it stands and ε further, as the last phase 2 laid it;
-    /// empty for an obstacle and for who was in no pair.
-    pub fn path(&self, row: u32) -> Vec<Point> {
-        let (start, end) = self.rows[row as usize].poses;
-        self.poses[start as usize..end as usize].iter().map(|pose| pose.front).collect()
-    }
-
-    fn meet(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
-        if !self.rows[a as usize].bounds.meet(&self.rows[b as usize].bounds) {
-            self.work.ways_apart += 1;
-            return None;
-        }
-        let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
-        let (first, second, a, b) = if first.shape.is_empty() { (first, second, a, b) } else { (second, first, b, a) };
-        let a_is_smaller = || roster.user(frame.users()[a as usize]).id <= roster.user(frame.users()[b as usize]).id;
-        if side::touch_now(&first, &second) {
-            let ego_is_a = !second.shape.is_empty() || a_is_smaller();
-            let (ego, foe) = if ego_is_a { (&first, &second) } else { (&second, &first) };
-            let foe_axis = foe.shape.is_empty().then_some(foe.rectangle.axis);
-            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: ego.rectangle, foe_axis, leads: true };
-            let rows = if ego_is_a { (a, b) } else { (b, a) };
-            return Some(self.measure(frame, roster, rows, &meeting, true));
-        }
-        let in_line = accurate::drive_in_line(&first, &second);
-        let met = if in_line && self.leaves_out.in_line {
-            let met = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller);
-            self.work.in_line += 1;
-            met
-        } else {
-            self.cover(frame, roster, a);
-            self.cover(frame, roster, b);
-            let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
-            if !first.cover.meets(&second.cover) {
-                self.work.ways_apart += 1;
-                return None;
+        let scene = self.scene(frame, roster);
+        let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
+        each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
+        for worker in &workers {
+            for met in &worker.unmeasured {
+                let ways = self.scene(frame, roster).ways_to_measure(&worker.encounters[met.encounter as usize], met);
+                for (row, way) in ways {
+                    self.lengthen(frame, roster, row, way);
+                }
             }
-            let met = accurate::meet_swept(&first, &second, in_line, &a_is_smaller);
-            self.work.swept += 1;
-            met
-        };
-        let (ego_is_a, meeting) = met?;
-        let rows = if ego_is_a { (a, b) } else { (b, a) };
-        Some(self.measure(frame, roster, rows, &meeting, false))
+        }
+        let scene = self.scene(frame, roster);
+        let busy = workers.iter_mut().filter(|worker| !worker.unmeasured.is_empty());
+        each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
+        self.order.sort(self.rows.len(), &workers);
+        for worker in &mut workers {
+            self.work += std::mem::take(&mut worker.work);
+        }
+        self.workers = workers;
+        self.order.sorted(&self.workers)
     }
 
-    fn meet_on_paper(&mut self, frame: &Frame, roster: &Roster, a: u32, b: u32) -> Option<Encounter> {
-        let (first, second) = (self.mover(frame, roster, a), self.mover(frame, roster, b));
-        if !first.shape.is_empty() || !second.shape.is_empty() {
-            return None;
+    /// Sees to it that the path of a row's road user reaches so far ahead, if its route does.
+    fn lengthen(&mut self, frame: &Frame, roster: &Roster, row: u32, way: Metre) {
+        let user = frame.users()[row as usize];
+        if self.rows[row as usize].on_lanes
+            && let Some(net) = &self.net
+        {
+            self.memory[user.0 as usize].path.reach(net, roster.profile_of(user).chord, way);
         }
-        let found = accurate::paper::measure(&first, &second, &self.options);
-        let (ego, foe) = if found.ego_is_a { (&first, &second) } else { (&second, &first) };
-        let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
-        let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
-        // Eq. 4: the ego's detection radius reaches the foe's front.
-        if between - foe.rectangle.half_length > radius || !found.distance.is_finite() {
-            return None;
-        }
-        let collision = rectangle::touches(&ego.rectangle, &foe.rectangle);
-        let rows = if found.ego_is_a { (a, b) } else { (b, a) };
-        let mut encounter = self.measure(frame, roster, rows, &found.meeting, collision);
-        encounter.kind = found.kind;
-        encounter.gap = found.distance;
-        encounter.margin = encounter.gap - encounter.mu;
-        Some(encounter)
     }
-}
 
-/// How many pairs so many road users are.
-fn all_pairs(count: usize) -> u64 {
-    let count = count as u64;
-    count * count.saturating_sub(1) / 2
-}
-
-/// The circle that holds all that a road user may cover within `reach` m of way.
-fn circle(roster: &Roster, user: UserIndex, profile: &Profile, front: Point, axis: Vector, reach: Metre) -> Circle {
-    if profile.category == Category::Obstacle {
-        let mut bounds = Bounds::EMPTY;
-        for part in roster.user(user).shape.iter() {
-            bounds.join(&part.bounds);
+    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Scene<'a> {
+        Scene {
+            options: &self.options,
+            leaves_out: self.leaves_out,
+            frame,
+            roster,
+            memory: &self.memory,
+            rows: &self.rows,
+            areas: &self.areas,
         }
-        let centre = nalgebra::center(&bounds.low, &bounds.high);
-        return Circle { x: centre.x, y: centre.y, radius: (bounds.high - bounds.low).norm() / 2.0 };
     }
-    let centre = front - axis * (profile.length / 2.0);
-    let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
-    Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }
+
+    /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
+    pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
+        let (scene, mut poses) = (self.scene(frame, roster), Vec::new());
+        let stop = scene.row(row).stop;
+        scene.course(row, &[stop, stop + self.options.epsilon], false, &mut poses);
+        poses.iter().map(|pose| pose.front).collect()
+    }
 }

@@ -9,11 +9,15 @@
 
 use super::outline::Outline;
 use super::rectangle::Rectangle;
-use super::{Bounds, Point, Vector};
+use super::{Bounds, Point, Vector, cross};
 use crate::units::Metre;
 
 /// How far a corner of a sweeping rectangle may be from where it really goes, in m.
 pub const TOLERANCE: Metre = 0.01;
+
+/// A step that leaves its own direction by less than this covers a rectangle, in m: more than rounding, far less than
+/// the tolerance.
+const STRAIGHT: Metre = 1e-9;
 
 /// The part of a movement, 0 at its beginning and 1 at its end, during which two outlines touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,6 +84,12 @@ impl Step {
 
     /// A convex outline around the area that the step covers.
     pub fn hull(&self) -> Outline {
+        let by = self.to - self.from;
+        let ahead = by.dot(&self.from_axis);
+        if self.from_axis == self.to_axis && ahead >= 0.0 && cross(&self.from_axis, &by).abs() <= STRAIGHT {
+            let covered = Rectangle::behind(self.to, self.from_axis, self.length + ahead, self.width);
+            return Outline::rectangle(&covered);
+        }
         Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0))
     }
 

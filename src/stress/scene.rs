@@ -47,7 +47,7 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     }
     let mut detector = Detector::new(&Options::default(), None);
     detector.approach(&frame, &roster);
-    detector.detect(&frame, &roster).first().copied()
+    detector.detect(&frame, &roster).next().copied()
 }
 
 /// A run of cars, step by step.

@@ -13,7 +13,7 @@ use rstar::{AABB, RTree};
 
 use super::clock::{Timed, interleaved};
 use super::{Axis, Measurement, Plan};
-use crate::precollision::{Circle, Search};
+use crate::precollision::{Area, Circle, Search};
 use crate::reference::chance::Chance;
 use crate::units::Second;
 
@@ -28,7 +28,9 @@ const METHODS: [Method; 6] = [
     ("sweep and prune", |circles, _, pairs| in_order(pairs, |pairs| sweep_and_prune(circles, pairs))),
     ("parry2d tree", |circles, _, pairs| in_order(pairs, |pairs| parry2d_tree(circles, pairs))),
     ("rstar", |circles, _, pairs| in_order(pairs, |pairs| rstar_tree(circles, pairs))),
-    (DEFAULT, |circles, search, pairs| search.pairs(circles, pairs)),
+    (DEFAULT, |circles, search, pairs| {
+        search.pairs(&circles.iter().copied().map(Area::from).collect::<Vec<_>>(), pairs);
+    }),
 ];
 const SCENES: [Scene; 3] = [("uniform", uniform), ("platoons", platoons), ("jam", jam)];
 

@@ -16,7 +16,7 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;
 use crate::path::Pose;
-use crate::precollision::{Circle, Search};
+use crate::precollision::{Area, Circle, Search};
 use crate::replay::recording::{Recording, Step};
 use crate::units::{Metre, MetrePerSecond, Second};
 
@@ -82,7 +82,8 @@ impl Driven {
             Circle { x: state.x, y: state.y, radius: stop + profile.length + profile.width + options.epsilon }
         });
         let mut pairs = Vec::new();
-        Search::default().pairs(&circles.collect::<Vec<_>>(), &mut pairs);
+        Search::default().pairs(&circles.map(Area::from).collect::<Vec<_>>(), &mut pairs);
+        pairs.sort_unstable();
         let ways = (0..frame.len()).map(|row| {
             let profile = roster.profile_of(frame.users()[row]);
             let beyond = profile.length + profile.width + 30.0;
@@ -167,8 +168,9 @@ impl<'a> Way<'a> {
     }
 
     fn mover(&self) -> Mover<'_> {
-        let Self { rectangle, poses, cover, speed, brakes, stop, .. } = *self;
-        Mover { rectangle, shape: &[], poses, straight: false, cover, covers: &self.covers, speed, brakes, stop }
+        let Self { rectangle, poses, ref cover, ref covers, speed, brakes, stop, .. } = *self;
+        let reach = poses.last().map_or(0.0, |pose| pose.way);
+        Mover { rectangle, shape: &[], poses, straight: false, reach, cover, covers, speed, brakes, stop }
     }
 }
 

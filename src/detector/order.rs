@@ -1,0 +1,55 @@
+//! The pairs that different threads have met, in the order of the frame's rows.
+
+use super::Worker;
+use crate::encounter::Encounter;
+
+/// Brings encounters into order where they are; keeps its memory.
+#[derive(Default)]
+pub(super) struct Order {
+    starts: Vec<u32>,
+    sorted: Vec<Place>,
+}
+
+/// Which rows met, the smaller first, and which of whose finds that is.
+type Place = ((u32, u32), u32, u32);
+
+impl Order {
+    /// Sorts what the workers have met, between rows below `count`.
+    ///
+    /// Counting sort by the smaller row of each pair; the few of one row are then sorted by the other.
+    pub(super) fn sort(&mut self, count: usize, workers: &[Worker]) {
+        let places = || {
+            workers.iter().zip(0..).flat_map(|(worker, number)| {
+                worker.encounters.iter().zip(0..).map(move |(&Encounter { ego_row: a, foe_row: b, .. }, index)| {
+                    ((a.min(b), a.max(b)), number, index)
+                })
+            })
+        };
+        self.starts.clear();
+        self.starts.resize(count + 1, 0);
+        for ((first, _), ..) in places() {
+            self.starts[first as usize + 1] += 1;
+        }
+        for row in 0..count {
+            self.starts[row + 1] += self.starts[row];
+        }
+        self.sorted.clear();
+        self.sorted.resize(self.starts[count] as usize, Place::default());
+        for found in places() {
+            let place = &mut self.starts[found.0.0 as usize];
+            self.sorted[*place as usize] = found;
+            *place += 1;
+        }
+        // Every start has moved up to where the next one's was.
+        let mut start = 0;
+        for end in &self.starts[..count] {
+            self.sorted[start..*end as usize].sort_unstable();
+            start = *end as usize;
+        }
+    }
+
+    /// The sorted encounters of these workers.
+    pub(super) fn sorted<'a>(&'a self, workers: &'a [Worker]) -> impl ExactSizeIterator<Item = &'a Encounter> {
+        self.sorted.iter().map(|&(_, worker, index)| &workers[worker as usize].encounters[index as usize])
+    }
+}
