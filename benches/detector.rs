@@ -82,11 +82,15 @@ fn measure(scene: &str, start: Vec<State>) {
             car.y = start.y + start.speed * time * start.heading.sin();
             frame.push(*user, *car);
         }
-        first.add(|| detector.approach(&frame, &roster).len());
+        first.add(|| {
+            detector.follow(&frame, &roster);
+            detector.approach(&frame);
+        });
         second.add(|| detector.detect(&frame, &roster).len());
         both.0.push(first.0[round] + second.0[round]);
         by_two.add(|| {
-            detector_of_two.approach(&frame, &roster);
+            detector_of_two.follow(&frame, &roster);
+            detector_of_two.approach(&frame);
             detector_of_two.detect(&frame, &roster).len()
         });
         if count <= LARGE {

@@ -1,8 +1,8 @@
 //! One run, from its first frame to its summary: the detector, the events and the log, in the order of the flow.
 //!
 //! Whoever has the data drives it, step by step: [`Run::begin`], a row into [`Run::frame`] per road user,
-//! [`Run::approach`], [`Run::place`] for the rows that it names, [`Run::finish_step`]; after the last step
-//! [`Run::finish`].
+//! [`Run::follow`], [`Run::place`] for the rows that it names, [`Run::finish_step`] (or its parts, to time them); after
+//! the last step [`Run::finish`].
 
 use std::sync::Arc;
 
@@ -169,9 +169,9 @@ impl Run {
         }
     }
 
-    /// Phase 1; returns the rows that phase 2 has to have placed.
-    pub fn approach(&mut self) -> &[u32] {
-        self.detector.approach(&self.frame, &self.roster)
+    /// Where everybody is now; returns the rows that have to be placed.
+    pub fn follow(&mut self) -> &[u32] {
+        self.detector.follow(&self.frame, &self.roster)
     }
 
     /// Whether the road user of a row, if it still has this route, is on the path laid before: nobody needs to know
@@ -186,16 +186,27 @@ impl Run {
         self.outputs.place(row, placement);
     }
 
-    /// Phase 2, the events and the log; returns the pairs that are in conflict in this step.
+    /// Both phases, the events and the log; returns the pairs that are in conflict in this step.
     ///
     /// # Errors
-    /// An error that names the log's file if it cannot be written.
+    /// As [`Run::write`].
     pub fn finish_step(&mut self) -> Result<&[Encounter]> {
+        self.approach();
+        self.detect();
+        self.close_conflicts();
+        self.write()?;
+        Ok(&self.in_conflict)
+    }
+
+    /// Phase 1.
+    pub fn approach(&mut self) {
+        self.detector.approach(&self.frame);
+    }
+
+    /// Phase 2.
+    pub fn detect(&mut self) {
         self.in_conflict.clear();
-        for found in self.detector.detect(&self.frame, &self.roster) {
-            if !found.in_conflict() {
-                continue;
-            }
+        for found in self.detector.detect(&self.frame, &self.roster).filter(|found| found.in_conflict()) {
             let mut found = *found;
             if let (None, Some(net)) = (found.lane, &self.net) {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
@@ -204,8 +215,21 @@ impl Run {
                 self.in_conflict.push(found);
             }
         }
+    }
+
+    /// The events.
+    pub fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(frame, roster, row));
+        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
+    }
+
+    /// The log and the other files; ends the step.
+    ///
+    /// # Errors
+    /// An error that names the log's file if it cannot be written.
+    pub fn write(&mut self) -> Result<()> {
+        let closed = self.tracker.closed();
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
                 log.conflicts(closed, self.net.as_deref(), &self.roster)?;
@@ -214,13 +238,12 @@ impl Run {
         }
         self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.conflicts(closed)?;
-        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         // Only now may their indices be given to others: the events of this step have seen that they are gone.
         for user in self.leaving.drain(..) {
             self.roster.leave(user);
             self.detector.forget(user);
         }
-        Ok(&self.in_conflict)
+        Ok(())
     }
 
     /// The pairs that were in conflict in the last step.

@@ -35,7 +35,8 @@ fn a_warm_detector_allocates_nothing() {
             before = counting::allocations();
         }
         step(&mut frame, &users, number);
-        detector.approach(&frame, &roster);
+        detector.follow(&frame, &roster);
+        detector.approach(&frame);
         found += detector.detect(&frame, &roster).len();
     }
     assert!(found > 1000, "{found}");

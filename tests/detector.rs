@@ -47,7 +47,8 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
         frame.push(user, State { x, y, z: 0.0, heading, speed });
     }
     let mut detector = Detector::new(&options, None);
-    detector.approach(&frame, &roster);
+    detector.follow(&frame, &roster);
+    detector.approach(&frame);
     let found = detector.detect(&frame, &roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
 }
@@ -131,11 +132,13 @@ fn any_number_of_threads_finds_the_same() {
             frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
         }
         let [alone, others @ ..] = &mut detectors;
-        alone.approach(&frame, &roster);
+        alone.follow(&frame, &roster);
+        alone.approach(&frame);
         let found = alone.detect(&frame, &roster).copied().collect::<Vec<_>>();
         assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
         for detector in others {
-            detector.approach(&frame, &roster);
+            detector.follow(&frame, &roster);
+            detector.approach(&frame);
             assert!(detector.detect(&frame, &roster).eq(&found));
             assert_eq!(detector.work(), alone.work());
         }

@@ -30,7 +30,7 @@ fn encounters(y: f64, drift: f64) -> usize {
     }
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_sublane(true);
-    for row in detector.approach(&frame, &roster).to_vec() {
+    for row in detector.follow(&frame, &roster).to_vec() {
         let name = ["east", "west"][row as usize];
         let placement = Placement {
             lane: net.lane(&format!("{name}_0")).unwrap(),
@@ -41,6 +41,7 @@ fn encounters(y: f64, drift: f64) -> usize {
         };
         detector.place(&frame, &roster, row, &placement);
     }
+    detector.approach(&frame);
     detector.detect(&frame, &roster).len()
 }
 

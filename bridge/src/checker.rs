@@ -99,12 +99,12 @@ impl Checker {
         match (&mut self.input, states) {
             (Input::Simulation(source), None) => {
                 source.pull(py, &mut self.run)?;
-                let rows = py.detach(|| self.run.approach().to_vec());
+                let rows = py.detach(|| self.run.follow().to_vec());
                 source.place(py, &mut self.run, &rows)?;
             }
             (Input::Frames(frames), Some(states)) => {
                 frames.pull(&mut self.run, time, states)?;
-                py.detach(|| self.run.approach().len());
+                py.detach(|| self.run.follow().len());
             }
             (Input::Simulation(_), Some(_)) => {
                 return Err(PyTypeError::new_err("a checker with a simulation takes no states: it asks for them"));

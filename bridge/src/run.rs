@@ -27,7 +27,7 @@ use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
-/// With fewer road users than this phase 2 is done sooner than a thread has started (some 20 µs).
+/// With fewer road users than this both phases are done sooner than a thread has started (some 20 µs).
 const WORTH_A_THREAD: usize = 100;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
@@ -116,7 +116,7 @@ struct Session<'a, 'py> {
     painter: Option<Painter>,
     step_length: f64,
     spent: Spent,
-    /// Whether phase 2 of the last step is still to be done.
+    /// Whether the phases of the last step are still to be done.
     is_unfinished: bool,
 }
 
@@ -126,15 +126,13 @@ struct Spent {
     parts: [Duration; PARTS.len()],
 }
 
-/// The parts of a step, in their order.
-const PARTS: [&str; 6] =
-    ["SUMO", "pull", "phase 1", "paths", "painting", "beside SUMO's next step: phase 2, events and log"];
+/// The parts of a step, in their order; the last four beside SUMO's next step.
+const PARTS: [&str; 8] = ["SUMO", "pull", "paths", "painting", "phase 1", "phase 2", "events", "log"];
 const SUMO: usize = 0;
 const PULL: usize = 1;
-const PHASE_1: usize = 2;
-const PATHS: usize = 3;
-const PAINTING: usize = 4;
-const PHASE_2: usize = 5;
+const PATHS: usize = 2;
+const PAINTING: usize = 3;
+const PHASE_1: usize = 4;
 
 impl Spent {
     /// Adds the time since the last part ended to this one.
@@ -142,6 +140,11 @@ impl Spent {
         let now = Instant::now();
         self.parts[part] += now - *since;
         *since = now;
+    }
+
+    /// Adds what finishing a step took.
+    fn add_finished(&mut self, parts: [Duration; PARTS.len() - PHASE_1]) {
+        self.parts[PHASE_1..].iter_mut().zip(parts).for_each(|(sum, part)| *sum += part);
     }
 }
 
@@ -247,8 +250,7 @@ impl Session<'_, '_> {
         *now = simulation.call_method0("getTime")?.extract()?;
         self.source.pull(py, &mut self.run)?;
         self.spent.add(PULL, &mut since);
-        let rows = py.detach(|| self.run.approach().to_vec());
-        self.spent.add(PHASE_1, &mut since);
+        let rows = py.detach(|| self.run.follow().to_vec());
         self.source.place(py, &mut self.run, &rows)?;
         self.is_unfinished = true;
         self.spent.add(PATHS, &mut since);
@@ -265,40 +267,31 @@ impl Session<'_, '_> {
         Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
     }
 
-    /// SUMO's next step, while another thread finishes the last one: phase 2 needs nothing of SUMO any more.
+    /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
     fn simulate(&mut self) -> std::result::Result<(), Stop> {
         let sumo = self.sumo;
         let (run, spent) = (&mut self.run, &mut self.spent);
         let unfinished = std::mem::take(&mut self.is_unfinished);
         let mut since = Instant::now();
         let (stepped, finished) = std::thread::scope(|scope| {
-            let worker = unfinished.then(|| {
-                scope.spawn(|| {
-                    let started = Instant::now();
-                    (run.finish_step().map(|_| ()), started.elapsed())
-                })
-            });
+            let worker = unfinished.then(|| scope.spawn(|| finish(run)));
             let stepped = sumo.call_method0("simulationStep").map(|_| ());
             spent.add(SUMO, &mut since);
             (stepped, worker.map(std::thread::ScopedJoinHandle::join))
         });
         match finished {
-            Some(Ok((done, lasted))) => {
-                self.spent.parts[PHASE_2] += lasted;
-                done?;
-            }
+            Some(Ok(done)) => self.spent.add_finished(done?),
             Some(Err(panic)) => std::panic::resume_unwind(panic),
             None => {}
         }
         Ok(stepped?)
     }
 
-    /// Phase 2, events and log of the step under way, if that is still to be done.
+    /// The rest of the step under way, if that is still to be done.
     fn finish_step(&mut self) -> Result<()> {
         if std::mem::take(&mut self.is_unfinished) {
-            let (run, mut since) = (&mut self.run, Instant::now());
-            self.sumo.py().detach(|| run.finish_step().map(|_| ()))?;
-            self.spent.add(PHASE_2, &mut since);
+            let run = &mut self.run;
+            self.spent.add_finished(self.sumo.py().detach(|| finish(run))?);
         }
         Ok(())
     }
@@ -314,6 +307,20 @@ impl Session<'_, '_> {
         }
         Error::Failed { time, message: message(py, error) }
     }
+}
+
+/// Phase 1, phase 2, events and log of a step; how long each took.
+fn finish(run: &mut Run) -> Result<[Duration; PARTS.len() - PHASE_1]> {
+    let mut ends = [Instant::now(); PARTS.len() - PHASE_1 + 1];
+    run.approach();
+    ends[1] = Instant::now();
+    run.detect();
+    ends[2] = Instant::now();
+    run.close_conflicts();
+    ends[3] = Instant::now();
+    run.write()?;
+    ends[4] = Instant::now();
+    Ok(std::array::from_fn(|part| ends[part + 1] - ends[part]))
 }
 
 /// Why a step was the last.

@@ -14,7 +14,11 @@ const INEXACT: Metre = 2.0 * TOLERANCE;
 /// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
 /// to stop; none if there is no such pose.
 pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
-    let (ego_way, rectangle) = first_touch(ego, foe)?;
+    let (ego_way, mut rectangle) = first_touch(ego, foe)?;
+    if in_line {
+        // Its poses stand along the path, which its heading may leave by as much as rounding to centimetres.
+        rectangle = Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_way, ..ego.rectangle };
+    }
     if !foe.shape.is_empty() {
         return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis: None, leads: false });
     }

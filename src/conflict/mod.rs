@@ -91,6 +91,11 @@ impl Tracker {
         &self.closed
     }
 
+    /// The conflicts that the last step settled.
+    pub fn closed(&self) -> &[Conflict] {
+        &self.closed
+    }
+
     /// Closes whatever is still open: the run has ended.
     pub fn finish(&mut self) -> &[Conflict] {
         self.closed.clear();

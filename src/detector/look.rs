@@ -1,4 +1,4 @@
-//! Phase 1: who is where, how far each needs to stand, and which pairs may meet before they do.
+//! Who is where and how far each needs to stand; phase 1: which pairs may meet before they do.
 
 use super::parts::{each, share};
 use super::{Detector, LEVEL, Row, Work, Worker};
@@ -34,14 +34,31 @@ impl Row {
 const NOWHERE: Area = Area { bounds: Bounds::EMPTY, radius: 0.0 };
 
 impl Detector {
-    /// Phase 1: which pairs may meet. Returns the frame's rows whose lane the detector has to know for phase 2;
-    /// the caller says it with [`Detector::place`], and leaves out whom it cannot place.
-    pub fn approach(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
+    /// Where everybody is now. Returns the frame's rows whose lane the detector has to know for both phases; the caller
+    /// says it with [`Detector::place`], and leaves out whom it cannot place.
+    ///
+    /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
+    /// followed, in a pair or not, and what phase 1 leaves out changes no path.
+    pub fn follow(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
         if self.memory.len() < roster.len() {
             self.memory.resize(roster.len(), Default::default());
         }
         self.look(frame, roster);
         self.turns(frame);
+        self.work.rows += frame.len() as u64;
+        self.unplaced.clear();
+        if self.options.path == PathModel::Lanes {
+            for row in 0..self.rows.len() {
+                if !self.rows[row].ahead {
+                    self.keep_on_path(frame, row);
+                }
+            }
+        }
+        &self.unplaced
+    }
+
+    /// Phase 1: which pairs may meet.
+    pub fn approach(&mut self, frame: &Frame) {
         self.find_pairs(frame);
         for worker in &mut self.workers {
             self.work += std::mem::take(&mut worker.work);
@@ -50,14 +67,6 @@ impl Detector {
                 self.rows[b as usize].in_pair = true;
             }
         }
-        self.work.rows += frame.len() as u64;
-        self.unplaced.clear();
-        for row in 0..self.rows.len() {
-            if self.rows[row].in_pair {
-                self.follow(frame, row as u32);
-            }
-        }
-        &self.unplaced
     }
 
     /// Every row's area and what else follows from its state alone.
@@ -86,7 +95,7 @@ impl Detector {
                 row.category = profile.category;
                 row.moves = state.speed > STANDS;
                 row.stop = if row.moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
-                row.ahead = !by_arcs && !(by_lanes && row.moves && row.category == Category::Vehicle);
+                row.ahead = !(by_arcs || by_lanes && row.moves && row.category == Category::Vehicle);
                 (row.in_pair, row.on_lanes) = (false, false);
                 let front = Point::new(state.x, state.y);
                 *area = if row.category == Category::Obstacle {
@@ -155,18 +164,14 @@ impl Detector {
     }
 
     /// Follows a row's path along the lanes, or asks for its lane.
-    fn follow(&mut self, frame: &Frame, row: u32) {
-        if self.rows[row as usize].ahead || self.options.path != PathModel::Lanes {
-            return;
-        }
-        let state = &frame.states()[row as usize];
-        let memory = &mut self.memory[frame.users()[row as usize].0 as usize];
-        self.rows[row as usize].on_lanes = memory.path.follow(Point::new(state.x, state.y));
-        let is_known = self.leaves_out.known_paths && !self.routes_may_change && self.rows[row as usize].on_lanes;
-        if is_known {
+    fn keep_on_path(&mut self, frame: &Frame, row: usize) {
+        let state = &frame.states()[row];
+        let memory = &mut self.memory[frame.users()[row].0 as usize];
+        self.rows[row].on_lanes = memory.path.follow(Point::new(state.x, state.y));
+        if self.leaves_out.known_paths && !self.routes_may_change && self.rows[row].on_lanes {
             self.work.known_paths += 1;
         } else {
-            self.unplaced.push(row);
+            self.unplaced.push(row as u32);
         }
     }
 }

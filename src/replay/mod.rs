@@ -116,7 +116,7 @@ impl Replay {
         run.begin(self.step.time);
         self.fill(run)?;
         self.approaching.clear();
-        self.approaching.extend_from_slice(run.approach());
+        self.approaching.extend_from_slice(run.follow());
         for index in 0..self.approaching.len() {
             self.place(run, self.approaching[index])?;
         }

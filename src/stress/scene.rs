@@ -46,7 +46,8 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
         frame.push(user, state);
     }
     let mut detector = Detector::new(&Options::default(), None);
-    detector.approach(&frame, &roster);
+    detector.follow(&frame, &roster);
+    detector.approach(&frame);
     detector.detect(&frame, &roster).next().copied()
 }
 
@@ -91,7 +92,7 @@ impl Scene {
         for &(user, state) in states {
             self.run.frame.push(user, state);
         }
-        let unplaced = self.run.approach().to_vec();
+        let unplaced = self.run.follow().to_vec();
         if let Some(placement) = placement {
             unplaced.into_iter().for_each(|row| self.run.place(row, placement));
         }

@@ -86,7 +86,7 @@ impl Day {
             self.run.frame.push(self.cars[place].unwrap(), state);
             self.rows.push((place % self.courses.len(), way));
         }
-        for row in self.run.approach().to_vec() {
+        for row in self.run.follow().to_vec() {
             let (course, way) = self.rows[row as usize];
             self.run.place(row, &self.courses[course].placement(&self.net, way));
         }
