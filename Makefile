@@ -2,7 +2,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
-	Cargo.toml Cargo.lock bridge/Cargo.toml pyproject.toml
+	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml
 
 .PHONY: demo test lint regress stress study fuzz accuracy bench docs clean help
 

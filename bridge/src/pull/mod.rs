@@ -1,5 +1,8 @@
 //! From libsumo or traci into a [`closecall::run::Run`]: who is in the scene, and where.
 
+#[cfg(compiled_getters)]
+mod compiled;
+mod getters;
 mod libsumo;
 mod sumo;
 mod traci;
@@ -15,7 +18,7 @@ use self::traci::Traci;
 
 /// Where road users come from.
 pub enum Source {
-    /// libsumo, in this process: through its compiled getters.
+    /// libsumo, in this process: through its getters.
     Libsumo(Box<Libsumo>),
     /// traci, over its socket: through subscriptions.
     Traci(Box<Traci>),

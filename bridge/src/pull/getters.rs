@@ -1,0 +1,130 @@
+//! Where a road user is, how it is turned and how fast: asked of libsumo's C++ functions where they can be called and
+//! say what its Python getters say, else of the Python getters.
+
+use std::path::PathBuf;
+
+use closecall::frame::State;
+use pyo3::prelude::*;
+use pyo3::types::{PyString, PyTuple};
+
+#[cfg(compiled_getters)]
+use super::compiled::Compiled;
+use super::sumo;
+
+/// Vehicles or persons.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Domain {
+    Vehicle,
+    Person,
+}
+
+/// What libsumo says of a road user.
+#[derive(Clone, Copy)]
+pub enum Reading {
+    /// It is inside a vehicle: no road user of its own.
+    Inside,
+    /// Position in m, angle in degrees as SUMO has it, speed in m/s.
+    At { x: f64, y: f64, z: f64, angle: f64, speed: f64 },
+}
+
+/// The getters of one domain.
+pub struct Getters {
+    position: Py<PyAny>,
+    angle: Py<PyAny>,
+    speed: Py<PyAny>,
+    inside: Option<Py<PyAny>>,
+    with_heights: bool,
+    compiled: Option<Compiled>,
+}
+
+/// Stands where compiled.cpp is not compiled: there is none.
+#[cfg(not(compiled_getters))]
+enum Compiled {}
+
+#[cfg(not(compiled_getters))]
+impl Compiled {
+    fn of(_: &std::path::Path, _: Domain) -> Option<Self> {
+        None
+    }
+
+    fn read(&self, _: &str) -> Option<Reading> {
+        match *self {}
+    }
+}
+
+impl Getters {
+    /// Those of the compiled module inside libsumo.
+    pub fn new(module: &Bound<PyAny>, domain: Domain, with_heights: bool) -> PyResult<Self> {
+        let name = match domain {
+            Domain::Vehicle => "vehicle",
+            Domain::Person => "person",
+        };
+        let function = |getter: &str| module.getattr(format!("{name}_{getter}")).map(Bound::unbind);
+        let file = module.getattr("__file__").and_then(|file| file.extract::<PathBuf>()).ok();
+        Ok(Self {
+            position: function(if with_heights { "getPosition3D" } else { "getPosition" })?,
+            angle: function("getAngle")?,
+            speed: function("getSpeed")?,
+            inside: if domain == Domain::Person { Some(function("getVehicle")?) } else { None },
+            with_heights,
+            compiled: file.and_then(|file| Compiled::of(&file, domain)),
+        })
+    }
+
+    /// Compares both ways for a road user that enters: from the first difference on, Python's getters are asked.
+    pub fn enters(&mut self, py: Python, id: &str) {
+        if let Some(compiled) = &self.compiled
+            && let Ok(said) = self.ask(py, id)
+            && compiled.read(id).is_none_or(|read| !self.same(read, said))
+        {
+            self.compiled = None;
+        }
+    }
+
+    /// The state of a road user; none for one inside a vehicle.
+    pub fn state(&self, py: Python, id: &str) -> PyResult<Option<State>> {
+        let reading = match self.compiled.as_ref().and_then(|compiled| compiled.read(id)) {
+            Some(reading) => reading,
+            // Python says of an unknown id what is wrong with it.
+            None => self.ask(py, id)?,
+        };
+        Ok(match reading {
+            Reading::Inside => None,
+            Reading::At { x, y, z, angle, speed } => {
+                let z = if self.with_heights { z } else { 0.0 };
+                Some(State { x, y, z, heading: sumo::heading(angle), speed })
+            }
+        })
+    }
+
+    /// Asks Python's getters.
+    fn ask(&self, py: Python, id: &str) -> PyResult<Reading> {
+        let id = PyString::new(py, id);
+        let ask = |getter: &Py<PyAny>| getter.bind(py).call1((&id,));
+        if let Some(inside) = &self.inside
+            && !ask(inside)?.extract::<&str>()?.is_empty()
+        {
+            return Ok(Reading::Inside);
+        }
+        let point = ask(&self.position)?.cast_into::<PyTuple>()?;
+        Ok(Reading::At {
+            x: point.get_item(0)?.extract()?,
+            y: point.get_item(1)?.extract()?,
+            z: if self.with_heights { point.get_item(2)?.extract()? } else { 0.0 },
+            angle: ask(&self.angle)?.extract()?,
+            speed: ask(&self.speed)?.extract()?,
+        })
+    }
+
+    /// Whether two readings are the same to the last bit.
+    fn same(&self, one: Reading, other: Reading) -> bool {
+        let numbers = |reading| match reading {
+            Reading::Inside => None,
+            Reading::At { x, y, z, angle, speed } => {
+                let z = if self.with_heights { z } else { 0.0 };
+                Some([x, y, z, angle, speed].map(f64::to_bits))
+            }
+        };
+        numbers(one) == numbers(other)
+    }
+}

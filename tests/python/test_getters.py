@@ -1,0 +1,139 @@
+"""States through libsumo's C++ functions: the same as through its Python getters, which are asked where those cannot be
+called or say something else."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ET
+from pathlib import Path
+from typing import Any
+
+import pytest
+from conftest import NETS, python
+
+CHECK = """
+import collections, json, sys
+import libsumo
+from libsumo import _libsumo
+import closecall
+
+config, out, end, change = sys.argv[1:5]
+calls = collections.Counter()
+
+def counted(domain, getter, changed):
+    asked = getattr(_libsumo, f"{domain}_{getter}")
+    def ask(*words):
+        calls[domain] += 1
+        return changed(asked(*words))
+    setattr(_libsumo, f"{domain}_{getter}", ask)
+
+for domain in ("vehicle", "person"):
+    turned = change == "turned"
+    counted(domain, "getAngle", (lambda angle: angle + 90) if turned else (lambda angle: angle))
+if change == "nowhere":
+    _libsumo.__file__ = "/nowhere/_libsumo.so"
+libsumo.start(["sumo", "-c", config, "--no-warnings"])
+checker = closecall.Checker(libsumo, out=out, log_encounters=True, epsilon=10.0)
+entered, steps = collections.Counter(), collections.Counter()
+domains = {"vehicle": libsumo.vehicle, "person": libsumo.person}
+while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < float(end):
+    libsumo.simulationStep()
+    checker.step()
+    for name, domain in domains.items():
+        steps[name] += domain.getIDCount()
+    entered["vehicle"] += libsumo.simulation.getDepartedNumber()
+    entered["person"] += libsumo.simulation.getDepartedPersonNumber()
+asked, said = dict(calls), ""
+libsumo.load(["-c", config, "--no-warnings"])
+try:
+    for _ in range(2):
+        libsumo.simulationStep()
+        checker.step()
+except Exception as error:
+    said = str(error)
+checker.close()
+libsumo.close()
+print(json.dumps({"calls": asked, "entered": entered, "steps": steps, "said": said}))
+"""
+"""Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
+is not where it says. In the end the simulation begins anew, in which nobody whom the checker knows exists."""
+
+SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 40), ("town", 20)]
+"""With levels, with persons who walk, with persons and sublanes, with persons who ride in vehicles."""
+
+
+def checked(scene: str, end: int, out: Path, change: str = "none") -> dict[str, Any]:
+    """Check a scene and tell who was asked."""
+    done = python(CHECK, NETS / scene / f"{scene}.sumocfg", out, str(end), change)
+    assert done.returncode == 0, done.stderr
+    asked: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return asked
+
+
+def logged(out: Path) -> list[bytes]:
+    """The files of a log."""
+    return [(out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")]
+
+
+needs_compiled = pytest.mark.skipif(
+    not sys.platform.startswith("linux") or shutil.which("c++") is None,
+    reason="libsumo's C++ functions are called on Linux only, where closecall was built with a C++ compiler",
+)
+# The system's to install; .ci/run does.
+needs_valgrind = pytest.mark.skipif(
+    shutil.which("valgrind") is None, reason="valgrind is not installed: apt install valgrind"
+)
+
+
+@needs_compiled
+@pytest.mark.parametrize(("scene", "end"), SCENES)
+def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) -> None:
+    compiled = checked(scene, end, tmp_path / "compiled")
+    through_python = checked(scene, end, tmp_path / "python", "nowhere")
+    assert logged(tmp_path / "compiled") == logged(tmp_path / "python")
+    assert logged(tmp_path / "compiled")[1].count(b"\n") > 1
+    assert scene == "bridge" or compiled["steps"]["person"] > 0
+    for domain, asked in compiled["calls"].items():
+        assert asked <= compiled["entered"][domain]
+        assert through_python["calls"][domain] > asked
+
+
+@needs_compiled
+def test_where_the_two_ways_differ_python_is_asked(tmp_path: Path) -> None:
+    turned = checked("pedestrian", 60, tmp_path / "turned", "turned")
+    assert turned["calls"]["vehicle"] >= turned["steps"]["vehicle"] > 0
+    checked("pedestrian", 60, tmp_path / "same")
+    assert logged(tmp_path / "turned") != logged(tmp_path / "same")
+
+
+@pytest.mark.parametrize("change", ["none", "nowhere"])
+def test_an_id_that_libsumo_does_not_know_is_named(change: str, tmp_path: Path) -> None:
+    assert "is not known" in checked("reckless", 30, tmp_path, change)["said"]
+
+
+@needs_compiled
+@needs_valgrind
+def test_valgrind_finds_no_fault_in_a_call_of_the_compiled_functions(tmp_path: Path) -> None:
+    errors = tmp_path / "errors.xml"
+    valgrind = ["valgrind", "--leak-check=full", "--xml=yes", f"--xml-file={errors}", sys.executable, "-c", CHECK]
+    words = [NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none"]
+    # Python's own allocator would hide from valgrind what is read beyond its end.
+    environment = {**os.environ, "PYTHONMALLOC": "malloc"}
+    command = [*valgrind, *map(str, words)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, env=environment)
+    assert done.returncode == 0, done.stderr
+    asked = json.loads(done.stdout.splitlines()[-1])
+    assert asked["said"]
+    assert asked["steps"]["person"] > asked["calls"]["person"]
+    found = [error for error in ET.parse(errors).getroot().findall("error") if is_ours(error)]
+    assert [ET.tostring(error, encoding="unicode") for error in found] == []
+
+
+def is_ours(error: ET.Element) -> bool:
+    """Whether closecall is on the way to an error; what is only possibly lost is not counted."""
+    objects = [frame.findtext("obj", "") for frame in error.iter("frame")]
+    return error.findtext("kind") != "Leak_PossiblyLost" and any("_closecall" in name for name in objects)
