@@ -93,7 +93,7 @@ impl Roster {
 
     /// Takes a road user into the scene.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
-        self.enter_shaped(id, profile, Arc::new([]))
+        self.enter_shaped(id, profile, Arc::default())
     }
 
     /// Takes an obstacle with a polygon for a shape into the scene.

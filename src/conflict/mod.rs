@@ -57,9 +57,9 @@ const ABSENT: u32 = u32::MAX;
 #[derive(Debug)]
 struct Event {
     pair: (UserIndex, UserIndex),
-    conflict: Conflict,
     alarm: Alarm,
-    courses: Option<[pet::Course; 2]>,
+    conflict: Box<Conflict>,
+    courses: Option<Box<[pet::Course; 2]>>,
 }
 
 impl Tracker {
@@ -113,7 +113,7 @@ impl Tracker {
     /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self) -> Vec<Conflict> {
         let mut open =
-            self.events.values().chain(&self.waiting).map(|event| event.conflict.clone()).collect::<Vec<_>>();
+            self.events.values().chain(&self.waiting).map(|event| (*event.conflict).clone()).collect::<Vec<_>>();
         sort(&mut open);
         open
     }
@@ -126,8 +126,12 @@ impl Tracker {
             now.foe_stance.lay(&path(found.foe_row));
         }
         let alarm = Alarm { ego: found.ego, foe: found.foe, severity: now.severity, kind: found.kind };
-        let event =
-            self.events.entry(pair).or_insert_with(|| Event { pair, conflict: now.clone(), alarm, courses: None });
+        let event = self.events.entry(pair).or_insert_with(|| Event {
+            pair,
+            alarm,
+            conflict: Box::new(now.clone()),
+            courses: None,
+        });
         event.alarm = alarm;
         event.conflict.take(now);
         if found.kind != Kind::RearEnd && event.courses.is_none() {
@@ -139,7 +143,7 @@ impl Tracker {
     fn follow(&mut self, frame: &Frame, roster: &Roster) {
         for event in self.events.values_mut().chain(&mut self.waiting) {
             let Some(courses) = &mut event.courses else { continue };
-            for (user, course) in [event.pair.0, event.pair.1].into_iter().zip(courses) {
+            for (user, course) in [event.pair.0, event.pair.1].into_iter().zip(courses.iter_mut()) {
                 let row = self.rows.get(user.0 as usize).copied().unwrap_or(ABSENT);
                 // An index that was given to another road user meanwhile is not followed.
                 if row == ABSENT || course.has_ended() {
@@ -184,7 +188,7 @@ impl Tracker {
                     return true;
                 }
             }
-            self.closed.push(event.conflict.clone());
+            self.closed.push((*event.conflict).clone());
             false
         });
         self.waiting = waiting;

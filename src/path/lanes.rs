@@ -7,9 +7,10 @@
 
 use std::sync::Arc;
 
+use super::beside::{Beside, Offset};
 use super::track::Track;
 use crate::encounter::Placement;
-use crate::geometry::{Point, Vector, cross, left_of};
+use crate::geometry::{Point, Vector, cross};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::units::{Metre, MetrePerSecond};
 
@@ -31,40 +32,25 @@ const OFF_THE_BORDER: Metre = 0.05;
 pub struct LanePath {
     /// The line of the front bumper.
     pub track: Track,
-    route: Option<Arc<[EdgeIndex]>>,
-    /// Centre line as far as it is laid, its last lane, and that lane's edge in the route.
-    tip: Option<Tip>,
-    /// Where lanes begin, as ways from the track's beginning.
-    lanes: Vec<(Metre, LaneIndex)>,
-    offset: Offset,
-    /// The last two points of the centre line: the offset line's corner between them waits for the next.
-    centre: Vec<Point>,
-    /// Way along the centre line up to the last point of `centre`, from the front bumper at laying.
-    centre_way: Metre,
+    plan: Option<Box<Plan>>,
 }
 
+/// What a path was laid along, and how it goes on: what following it does not need.
+#[derive(Clone, Debug, Default)]
+struct Plan {
+    route: Arc<[EdgeIndex]>,
+    tip: Option<Tip>,
+    /// On which lane the line is from which of its points on.
+    lanes: Vec<(u32, LaneIndex)>,
+    /// None on the lanes' centre line.
+    beside: Option<Box<Beside>>,
+}
+
+/// The last lane that is laid, and the place in the route of its edge or of the one before.
 #[derive(Clone, Copy, Debug)]
 struct Tip {
     lane: LaneIndex,
-    route_position: usize,
-}
-
-/// Lateral offset from the centre line, to the left: `now` at way 0, changing evenly to `target` over `over`.
-#[derive(Clone, Copy, Debug, Default)]
-struct Offset {
-    now: Metre,
-    target: Metre,
-    over: Metre,
-}
-
-impl Offset {
-    fn at(&self, way: Metre) -> Metre {
-        if way <= 0.0 || self.over <= 0.0 {
-            self.now
-        } else {
-            self.now + (self.target - self.now) * (way / self.over).min(1.0)
-        }
-    }
+    route_position: u32,
 }
 
 /// What laying a path starts from.
@@ -87,9 +73,7 @@ pub struct Start {
 impl LanePath {
     /// Forgets the path.
     pub fn clear(&mut self) {
-        self.track.clear();
-        self.tip = None;
-        self.route = None;
+        *self = Self::default();
     }
 
     /// Follows the front bumper; whether it still is on the path.
@@ -99,91 +83,119 @@ impl LanePath {
 
     /// Whether it was laid for this route.
     pub fn is_for(&self, route: &Arc<[EdgeIndex]>) -> bool {
-        self.route.as_ref().is_some_and(|known| Arc::ptr_eq(known, route) || known == route)
+        self.plan.as_ref().is_some_and(|plan| Arc::ptr_eq(&plan.route, route) || plan.route == *route)
     }
 
     /// Lays the path anew; without geometry to lay it on, none.
     pub fn lay(&mut self, net: &Net, start: &Start, placement: &Placement) {
-        self.clear();
-        self.lanes.clear();
-        self.centre.clear();
         let lane = &net.lanes[placement.lane.0 as usize];
         let hint = placement.position * lane.ways.last().copied().unwrap_or(0.0) / lane.length.max(f64::MIN_POSITIVE);
         let foot = Foot::of(&lane.shape, &lane.ways, start.front, hint);
         let against = foot.direction.dot(&start.axis) < 0.0;
-        self.offset = offset(net, start, placement, &foot, against);
-        self.route = Some(placement.route.clone());
         let mut line = Vec::new();
         if against {
             behind_against(lane, &foot, start, &mut line);
         } else {
             behind(net, placement.lane, &foot, start, &mut line);
         }
-        line.reverse();
+        let (track, plan) = (&mut self.track, self.plan.get_or_insert_default());
+        plan.route = placement.route.clone();
+        plan.tip = None;
+        plan.lanes.clear();
+        plan.beside = Beside::new(offset(net, start, placement, &foot, against));
+        track.clear();
+        track.reserve(line.len() + 1 + lane.shape.len());
         // The rear part of the line: its offset is that of now.
-        self.centre_way = f64::NEG_INFINITY;
-        for point in line {
-            self.push_centre(point, f64::NEG_INFINITY);
+        for point in line.into_iter().rev() {
+            match &mut plan.beside {
+                Some(beside) => beside.push_behind(track, point),
+                None => track.push(point),
+            }
         }
-        self.centre_way = 0.0;
-        self.push_centre(foot.point, 0.0);
-        let front = self.flush();
-        self.track.set_front(front);
-        self.lanes.push((front, placement.lane));
+        match &mut plan.beside {
+            Some(beside) => beside.push_front(track, foot.point),
+            None => track.push(foot.point),
+        }
+        plan.begin_lane(track, placement.lane);
+        track.set_front(track.end());
         if against {
-            for point in lane.shape[..=foot.segment].iter().rev() {
-                self.push_ahead(*point);
-            }
+            plan.push_ahead(track, lane.shape[..=foot.segment].iter().rev());
         } else {
-            for point in &lane.shape[foot.segment + 1..] {
-                self.push_ahead(*point);
-            }
-            self.tip = Some(Tip { lane: placement.lane, route_position: placement.route_position });
+            plan.push_ahead(track, &lane.shape[foot.segment + 1..]);
+            plan.tip = Some(Tip { lane: placement.lane, route_position: placement.route_position as u32 });
         }
-        self.flush();
+        plan.forget(track.drop_behind(start.length + KEPT_BEHIND));
+        track.shrink();
     }
 
     /// Makes the path reach at least `way` ahead of the front bumper, if the route does, and forgets what lies
     /// behind the rear bumper.
     pub fn reach(&mut self, net: &Net, length: Metre, way: Metre) {
-        if self.track.end() - self.track.front() >= way {
+        let track = &mut self.track;
+        let Some(plan) = &mut self.plan else { return };
+        if track.end() - track.front() >= way {
             return;
         }
-        let shift = self.track.forget_behind(length + KEPT_BEHIND);
-        if shift > 0.0 {
-            for (start, _) in &mut self.lanes {
-                *start -= shift;
-            }
-            let behind = self.lanes.partition_point(|(start, _)| *start <= 0.0).saturating_sub(1);
-            self.lanes.drain(..behind);
-        }
+        plan.forget(track.forget_behind(length + KEPT_BEHIND));
         // A ring of lanes of length 0 would go on for ever.
         let mut in_vain = 0;
-        while self.track.end() - self.track.front() < way + SPARE && in_vain <= net.lanes.len() {
-            let Some(next) = self.tip.and_then(|tip| self.next(net, tip)) else { break };
-            let before = self.track.end();
-            self.lanes.push((self.track.end(), next.lane));
-            for point in &net.lanes[next.lane.0 as usize].shape {
-                self.push_ahead(*point);
-            }
-            self.flush();
-            self.tip = Some(next);
-            in_vain = if self.track.end() > before { 0 } else { in_vain + 1 };
+        while track.end() - track.front() < way + SPARE && in_vain <= net.lanes.len() {
+            let Some(next) = plan.tip.and_then(|tip| plan.next(net, tip)) else { break };
+            let before = track.end();
+            let shape = &net.lanes[next.lane.0 as usize].shape;
+            track.reserve(shape.len());
+            plan.begin_lane(track, next.lane);
+            plan.push_ahead(track, shape);
+            plan.tip = Some(next);
+            in_vain = if track.end() > before { 0 } else { in_vain + 1 };
         }
+        track.shrink();
     }
 
     /// The lane at a way ahead of the front bumper.
     pub fn lane_at(&self, way: Metre) -> Option<LaneIndex> {
-        let way = self.track.front() + way;
-        let index = self.lanes.partition_point(|(start, _)| *start <= way).saturating_sub(1);
-        self.lanes.get(index).map(|(_, lane)| *lane)
+        let lanes = &self.plan.as_ref()?.lanes;
+        let last = self.track.corner_before(self.track.front() + way);
+        let index = lanes.partition_point(|(corner, _)| *corner as usize <= last).saturating_sub(1);
+        lanes.get(index).map(|(_, lane)| *lane)
+    }
+}
+
+impl Plan {
+    /// From the end of the line on it is on this lane.
+    fn begin_lane(&mut self, track: &mut Track, lane: LaneIndex) {
+        if let Some(beside) = &mut self.beside {
+            beside.flush(track);
+        }
+        self.lanes.reserve_exact(1);
+        self.lanes.push((track.len().saturating_sub(1) as u32, lane));
+    }
+
+    /// The line along these points of the centre line.
+    fn push_ahead<'a>(&mut self, track: &mut Track, points: impl IntoIterator<Item = &'a Point>) {
+        match &mut self.beside {
+            Some(beside) => {
+                points.into_iter().for_each(|point| beside.push_ahead(track, *point));
+                beside.flush(track);
+            }
+            None => points.into_iter().for_each(|point| track.push(*point)),
+        }
+    }
+
+    /// Takes account of points that the line's beginning has lost.
+    fn forget(&mut self, points: usize) {
+        for (corner, _) in &mut self.lanes {
+            *corner = corner.saturating_sub(points as u32);
+        }
+        let behind = self.lanes.partition_point(|(corner, _)| *corner == 0).saturating_sub(1);
+        self.lanes.drain(..behind);
     }
 
     fn next(&self, net: &Net, tip: Tip) -> Option<Tip> {
-        let route = self.route.as_deref().unwrap_or_default();
+        let (route, position) = (&*self.route, tip.route_position as usize);
         let lane = &net.lanes[tip.lane.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
-        let wanted = route.get(tip.route_position + 1).copied();
+        let wanted = route.get(position + 1).copied();
         let leads = |link: &&crate::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
         if wanted.is_none() && !inside && !route.is_empty() {
             return None;
@@ -192,7 +204,7 @@ impl LanePath {
             let worth = if lane.links.len() < 2 {
                 0.0
             } else if wanted.is_some() {
-                continuation(net, route, link.to, tip.route_position + 1, EDGES_AHEAD)
+                continuation(net, route, link.to, position + 1, EDGES_AHEAD)
             } else {
                 straightness(net, tip.lane, link.via.unwrap_or(link.to))
             };
@@ -203,68 +215,10 @@ impl LanePath {
             Some(via) => Tip { lane: via, ..tip },
             None => {
                 let arrives = wanted == Some(edge_of(net, link.to));
-                Tip { lane: link.to, route_position: tip.route_position + usize::from(arrives) }
+                Tip { lane: link.to, route_position: tip.route_position + u32::from(arrives) }
             }
         })
     }
-
-    fn push_ahead(&mut self, point: Point) {
-        let way = self.centre_way + self.centre.last().map_or(0.0, |last| (point - last).norm());
-        // An offset that changes needs a corner where the change ends.
-        if self.centre_way < self.offset.over
-            && self.offset.over < way
-            && let Some(&last) = self.centre.last()
-        {
-            let part = (self.offset.over - self.centre_way) / (way - self.centre_way);
-            self.push_centre(last + (point - last) * part, self.offset.over);
-        }
-        self.push_centre(point, way);
-    }
-
-    /// Adds a point of the centre line; the offset line's corner before it is settled by it.
-    fn push_centre(&mut self, point: Point, way: Metre) {
-        if self.centre.last().is_some_and(|last| (point - last).norm() < 1e-3) {
-            return;
-        }
-        if self.offset.now == 0.0 && self.offset.target == 0.0 {
-            self.track.push(point);
-            self.centre.clear();
-            self.centre.push(point);
-            self.centre_way = way;
-            return;
-        }
-        if let [.., before, last] = self.centre[..] {
-            let corner = last + miter(&(last - before), &(point - last)) * self.offset.at(self.centre_way);
-            self.track.push(corner);
-        } else if let [first] = self.centre[..] {
-            let normal = left_of(&(point - first).try_normalize(0.0).unwrap_or_else(Vector::x));
-            self.track.push(first + normal * self.offset.at(self.centre_way));
-        }
-        if self.centre.len() == 2 {
-            self.centre.remove(0);
-        }
-        self.centre.push(point);
-        self.centre_way = way;
-    }
-
-    /// Ends the offset line at the last centre point for now; returns the way there.
-    fn flush(&mut self) -> Metre {
-        if let [before, last] = self.centre[..] {
-            let normal = left_of(&(last - before).try_normalize(0.0).unwrap_or_else(Vector::x));
-            self.track.push(last + normal * self.offset.at(self.centre_way));
-        }
-        self.track.end()
-    }
-}
-
-/// The shift, for an offset of 1 to the left, of the corner between two edges of a line.
-fn miter(before: &Vector, after: &Vector) -> Vector {
-    /// Sharper corners than this are cut: their miter would lie far away.
-    const LONGEST: f64 = 2.0;
-    let (a, b) = (left_of(&before.normalize()), left_of(&after.normalize()));
-    let sum = a + b;
-    let length = 2.0 / sum.norm_squared().max(1e-12);
-    (sum * length).cap_magnitude(LONGEST)
 }
 
 /// The place on a lane's centre line next to a front bumper.

@@ -4,7 +4,9 @@
 //! need nothing but the state, [`lanes`] the net and the route; the latter lays a [`track::Track`] once and follows it.
 
 pub mod arc;
+mod beside;
 pub mod lanes;
+mod segment;
 pub mod straight;
 pub mod track;
 

@@ -1,11 +1,10 @@
 //! A line on the ground and a road user's place on it: the front bumper is on the line, and so is the rear.
 
+use super::segment::{Corner, ON_THE_LINE, Segment};
 use super::{Pose, largest_turn, rotated, turn};
-use crate::geometry::{Point, Vector};
+use crate::geometry::{Point, Vector, cross};
 use crate::units::{Metre, Radian};
 
-/// How far from the line a front bumper may be found and still be on it, in m.
-const ON_THE_LINE: Metre = 1e-3;
 /// A heading that differs by less than this from the line's chord is the chord, in rad.
 const SAME_HEADING: Radian = 1e-6;
 /// A way along the line is at most this many times as long as the straight line between its ends, where a road user
@@ -15,42 +14,54 @@ const LONGEST_DETOUR: f64 = 4.0;
 const SAME_DIRECTION: f64 = 1e-10;
 
 /// A polyline with a place on it.
+///
+/// What following needs stands in front: most steps end on the segment that they began on, and look at nothing else.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
-    points: Vec<Point>,
-    ways: Vec<Metre>,
-    segment: usize,
+    under: Segment,
     front: Metre,
+    segment: usize,
+    corners: Vec<Corner>,
 }
 
 impl Track {
     /// Forgets the line.
     pub fn clear(&mut self) {
-        self.points.clear();
-        self.ways.clear();
-        self.segment = 0;
-        self.front = 0.0;
+        self.corners.clear();
+        (self.under, self.front, self.segment) = Default::default();
     }
 
     /// Appends a point; one that repeats the last is left out.
     pub fn push(&mut self, point: Point) {
-        let way = match (self.points.last(), self.ways.last()) {
-            (Some(last), Some(way)) => {
-                let step = (point - last).norm();
+        let way = match self.corners.last() {
+            Some(last) => {
+                let step = (point - last.point).norm();
                 if step < ON_THE_LINE {
                     return;
                 }
-                way + step
+                last.way + step
             }
-            _ => 0.0,
+            None => 0.0,
         };
-        self.points.push(point);
-        self.ways.push(way);
+        self.corners.push(Corner { point, way });
+        if self.corners.len() == self.segment + 2 {
+            self.enter(self.segment);
+        }
+    }
+
+    /// Takes the memory for so many further points, no more.
+    pub fn reserve(&mut self, points: usize) {
+        self.corners.reserve_exact(points);
+    }
+
+    /// Gives back the memory for further points.
+    pub fn shrink(&mut self) {
+        self.corners.shrink_to_fit();
     }
 
     /// Whether there is a line at all.
     pub fn is_laid(&self) -> bool {
-        self.points.len() >= 2
+        self.corners.len() >= 2
     }
 
     /// The way from the line's beginning to the front bumper.
@@ -60,56 +71,87 @@ impl Track {
 
     /// The way from the line's beginning to its end.
     pub fn end(&self) -> Metre {
-        self.ways.last().copied().unwrap_or(0.0)
+        self.corners.last().map_or(0.0, |last| last.way)
+    }
+
+    /// How many points there are.
+    pub fn len(&self) -> usize {
+        self.corners.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.corners.is_empty()
+    }
+
+    /// The last point at this way from the line's beginning, or before it.
+    pub fn corner_before(&self, way: Metre) -> usize {
+        self.corners.partition_point(|corner| corner.way <= way).saturating_sub(1)
     }
 
     /// Puts the front bumper at a way from the line's beginning.
     pub fn set_front(&mut self, way: Metre) {
         self.front = way;
-        self.segment =
-            self.ways.partition_point(|&start| start <= way).saturating_sub(1).min(self.points.len().saturating_sub(2));
+        self.segment = self.corner_before(way).min(self.corners.len().saturating_sub(2));
+        if self.is_laid() {
+            self.enter(self.segment);
+        }
+    }
+
+    fn enter(&mut self, segment: usize) {
+        self.segment = segment;
+        self.under = self.part(segment);
+    }
+
+    fn part(&self, segment: usize) -> Segment {
+        Segment::between(&self.corners[segment], &self.corners[segment + 1])
     }
 
     /// Follows the front bumper to where it is now; `false` if it is not on the line ahead any more.
     pub fn follow(&mut self, front: Point) -> bool {
-        if !self.is_laid() {
+        if self.under.length <= 0.0 {
             return false;
         }
-        let moved = (front - Cursor::at(self, self.segment, self.front).point()).norm();
+        if let Some(way) = self.under.way_to(front) {
+            self.front = way;
+            return true;
+        }
+        let moved = (front - self.under.at(self.front)).norm();
         let furthest = self.front + LONGEST_DETOUR * moved + ON_THE_LINE;
-        for segment in self.segment..self.points.len() - 1 {
-            if self.ways[segment] > furthest {
+        for segment in self.segment + 1..self.corners.len() - 1 {
+            if self.corners[segment].way > furthest {
                 return false;
             }
-            let (start, end) = (self.points[segment], self.points[segment + 1]);
-            let length = self.ways[segment + 1] - self.ways[segment];
-            let direction = (end - start) / length;
-            let along = (front - start).dot(&direction);
-            let aside = (front - (start + direction * along)).norm_squared();
-            if along <= length && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE {
-                self.segment = segment;
-                self.front = self.ways[segment] + along.max(0.0);
+            if let Some(way) = self.part(segment).way_to(front) {
+                self.enter(segment);
+                self.front = way;
                 return true;
             }
         }
         false
     }
 
-    /// Forgets what lies further behind the front bumper than `behind`; returns by how much all ways have shrunk.
-    pub fn forget_behind(&mut self, behind: Metre) -> Metre {
-        let keep = self.ways.partition_point(|&way| way <= self.front - behind).saturating_sub(1);
-        if keep == 0 {
-            return 0.0;
+    /// Drops the points that lie further behind the front bumper than `behind`, but the last of them; returns how many.
+    /// All ways stay as they are.
+    pub fn drop_behind(&mut self, behind: Metre) -> usize {
+        let dropped = self.corner_before(self.front - behind);
+        self.corners.drain(..dropped);
+        self.segment -= dropped;
+        dropped
+    }
+
+    /// Does so, and lets the line begin at the first point that is left: along a long way its points stay precise.
+    pub fn forget_behind(&mut self, behind: Metre) -> usize {
+        let dropped = self.drop_behind(behind);
+        let shift = self.corners.first().map_or(0.0, |first| first.way);
+        if shift > 0.0 {
+            for corner in &mut self.corners {
+                corner.way -= shift;
+            }
+            self.front -= shift;
+            self.enter(self.segment);
         }
-        let shift = self.ways[keep];
-        self.points.drain(..keep);
-        self.ways.drain(..keep);
-        for way in &mut self.ways {
-            *way -= shift;
-        }
-        self.segment -= keep;
-        self.front -= shift;
-        shift
+        dropped
     }
 
     /// Adds the poses at the given ways ahead of the front bumper (ascending, from 0 on), where the line's points
@@ -120,15 +162,12 @@ impl Track {
     /// known) the difference fades out over the road user's own length.
     pub fn poses(&self, axis: Vector, length: Metre, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
         let limit = if beyond { f64::INFINITY } else { self.end() - self.front };
-        let mut front = Cursor::at(self, self.segment, self.front);
+        let mut front = Cursor { track: self, segment: self.segment, under: self.under, way: self.front };
         let rear_way = self.front - length;
-        let rear_segment = self.ways[..=self.segment].partition_point(|&way| way <= rear_way).saturating_sub(1);
-        let mut rear = Cursor::at(self, rear_segment, rear_way);
+        let mut rear = Cursor::at(self, self.corner_before(rear_way).min(self.segment), rear_way);
         let chord_now = chord(&front, &rear, axis);
-        let mut skew = turn(&chord_now, &axis);
-        if skew.abs() < SAME_HEADING {
-            skew = 0.0;
-        }
+        let skew = if turns_less(&chord_now, &axis, SAME_HEADING) { 0.0 } else { turn(&chord_now, &axis) };
+        let skew = if skew.abs() < SAME_HEADING { 0.0 } else { skew };
         let widest = largest_turn(length);
         let start = poses.len();
         let first = if skew == 0.0 { chord_now } else { axis };
@@ -143,17 +182,19 @@ impl Track {
                 }
                 // Rounding may leave a room too small to move by; the next point is then as good as reached.
                 let step = (next - way).max(f64::EPSILON * self.end().max(1.0));
-                let (before_front, before_rear, before_axis) = (front, rear, axis_of_last(poses, axis));
+                let before = [(front.segment, front.way), (rear.segment, rear.way)];
+                let before_axis = axis_of_last(poses, axis);
                 front.advance(step);
                 rear.advance(step);
                 let after = skewed(chord(&front, &rear, before_axis), skew, way + step, length);
-                let bend = turn(&before_axis, &after).abs();
-                let parts = (bend / widest).ceil().max(1.0);
+                let parts = if turns_less(&before_axis, &after, widest) {
+                    1.0
+                } else {
+                    (turn(&before_axis, &after).abs() / widest).ceil().max(1.0)
+                };
                 for part in 1..parts as u32 {
                     let share = step * f64::from(part) / parts;
-                    let (mut front, mut rear) = (before_front, before_rear);
-                    front.advance_within(share);
-                    rear.advance_within(share);
+                    let [front, rear] = before.map(|(segment, way)| Cursor::at(self, segment, way + share));
                     let axis = skewed(chord(&front, &rear, before_axis), skew, way + share, length);
                     poses.push(Pose { way: way + share, front: front.point(), axis });
                 }
@@ -202,52 +243,47 @@ fn chord(front: &Cursor, rear: &Cursor, otherwise: Vector) -> Vector {
     (front.point() - rear.point()).try_normalize(1e-9).unwrap_or(otherwise)
 }
 
+/// Whether the angle from one direction to another is surely smaller than this one, without any trigonometry: an
+/// angle is smaller than its tangent.
+fn turns_less(from: &Vector, to: &Vector, angle: Radian) -> bool {
+    /// Far more than rounding can add to either side.
+    const SURELY: f64 = 1.0 - 1e-9;
+    cross(from, to).abs() < from.dot(to) * (angle * SURELY)
+}
+
 /// A place on a track that moves ahead.
 #[derive(Clone, Copy)]
 struct Cursor<'a> {
     track: &'a Track,
     segment: usize,
-    direction: Vector,
+    under: Segment,
     way: Metre,
 }
 
 impl<'a> Cursor<'a> {
     fn at(track: &'a Track, segment: usize, way: Metre) -> Self {
-        let mut cursor = Self { track, segment, direction: Vector::x(), way };
-        cursor.aim();
-        cursor
-    }
-
-    fn aim(&mut self) {
-        let (points, ways) = (&self.track.points, &self.track.ways);
-        self.direction =
-            (points[self.segment + 1] - points[self.segment]) / (ways[self.segment + 1] - ways[self.segment]);
+        Self { track, segment, under: track.part(segment), way }
     }
 
     /// Before the line's beginning and beyond its end, straight on.
     fn point(&self) -> Point {
-        self.track.points[self.segment] + self.direction * (self.way - self.track.ways[self.segment])
+        self.under.at(self.way)
     }
 
     /// Way to the next point of the line.
     fn room(&self) -> Metre {
-        if self.segment + 2 >= self.track.points.len() {
-            f64::INFINITY
-        } else {
-            self.track.ways[self.segment + 1] - self.way
+        match self.track.corners.get(self.segment + 1) {
+            Some(next) if self.segment + 2 < self.track.corners.len() => next.way - self.way,
+            _ => f64::INFINITY,
         }
     }
 
     fn advance(&mut self, way: Metre) {
-        self.advance_within(way);
+        self.way += way;
         while self.room() <= f64::EPSILON * self.track.end() {
             self.segment += 1;
-            self.aim();
+            self.under = self.track.part(self.segment);
         }
-    }
-
-    fn advance_within(&mut self, way: Metre) {
-        self.way += way;
     }
 }
 
