@@ -26,7 +26,6 @@ impl Row {
         category: Category::Obstacle,
         moves: false,
         ahead: true,
-        in_pair: false,
         on_lanes: false,
     };
 }
@@ -62,10 +61,6 @@ impl Detector {
         self.find_pairs(frame);
         for worker in &mut self.workers {
             self.work += std::mem::take(&mut worker.work);
-            for &(a, b) in &worker.pairs {
-                self.rows[a as usize].in_pair = true;
-                self.rows[b as usize].in_pair = true;
-            }
         }
     }
 
@@ -96,7 +91,7 @@ impl Detector {
                 row.moves = state.speed > STANDS;
                 row.stop = if row.moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
                 row.ahead = !(by_arcs || by_lanes && row.moves && row.category == Category::Vehicle);
-                (row.in_pair, row.on_lanes) = (false, false);
+                row.on_lanes = false;
                 let front = Point::new(state.x, state.y);
                 *area = if row.category == Category::Obstacle {
                     let mut bounds = Bounds::EMPTY;

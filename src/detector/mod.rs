@@ -111,7 +111,6 @@ struct Row {
     moves: bool,
     /// Whether it can only go straight on: no lanes, no arc.
     ahead: bool,
-    in_pair: bool,
     on_lanes: bool,
 }
 
@@ -255,10 +254,9 @@ impl Detector {
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
     pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
+        // In a pair or not: who came to the end of its path would be given another one.
         for row in 0..self.rows.len() as u32 {
-            if self.rows[row as usize].in_pair {
-                self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
-            }
+            self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
         }
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {

@@ -117,13 +117,15 @@ impl Step {
         of_hull: fn(&Self, &Outline) -> Option<f64>,
         choose: fn(f64, f64) -> f64,
     ) -> Option<f64> {
+        if !self.bounds().meet(&other.bounds()) {
+            return None;
+        }
         let part = of_hull(self, &other.hull())?;
         if other.excess() <= TOLERANCE {
             return Some(part);
         }
         let halves = [other.between(0.0, 0.5), other.between(0.5, 1.0)];
-        let near = halves.iter().filter(|half| self.bounds().meet(&half.bounds()));
-        near.filter_map(|half| self.touch(half, of_hull, choose)).reduce(choose)
+        halves.iter().filter_map(|half| self.touch(half, of_hull, choose)).reduce(choose)
     }
 
     /// The same step between two of its parts.
