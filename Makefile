@@ -54,6 +54,7 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	cargo bench --no-run --bench detector --bench replay --bench memory
 	$(BIN)/python benches/attached.py > $(PARTS)/attached.csv
 	cargo bench --bench detector -- --scenes target/bench/scenes > $(PARTS)/detector.csv
+	$(BIN)/python benches/exclusions.py > $(PARTS)/exclusions.csv
 	-$(BIN)/python benches/commonroad.py target/bench/scenes > $(PARTS)/commonroad.csv
 	cargo bench --bench replay > $(PARTS)/replay.csv
 	$(BIN)/python benches/memory.py > $(PARTS)/attached_memory.csv

@@ -15,10 +15,12 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
+use clap::ValueEnum;
 use closecall::detector::Detector;
 use closecall::frame::{Frame, Roster, State};
 use closecall::options::Options;
 use closecall::reference::chance::Chance;
+use closecall::scene::Exclusion;
 use rivals::{AllPairs, Boxes, Tree};
 
 /// With more road users than this parry2d and all pairs are not asked; with as many, all pairs only once.
@@ -69,6 +71,14 @@ fn measure(scene: &str, start: Vec<State>) {
     let mut detector = Detector::new(&options, None);
     let mut detector_of_two = Detector::new(&options, None);
     detector_of_two.set_threads(2);
+    let mut keeping = [Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
+        let options = Options { keep: vec![kept], ..Options::default() };
+        (
+            format!("keep {}", kept.to_possible_value().unwrap().get_name()),
+            Detector::new(&options, None),
+            Times::default(),
+        )
+    });
     let [mut tree, mut straight_tree] = [Boxes::Circles, Boxes::StraightWays].map(Tree::new);
     let mut all_pairs = AllPairs::default();
     let [mut first, mut second, mut both, mut by_two] = [(); 4].map(|()| Times::default());
@@ -93,6 +103,15 @@ fn measure(scene: &str, start: Vec<State>) {
             detector_of_two.approach(&frame);
             detector_of_two.detect(&frame, &roster).len()
         });
+        if count == LARGE && round < 6 {
+            for (_, detector, times) in &mut keeping {
+                times.add(|| {
+                    detector.follow(&frame, &roster);
+                    detector.approach(&frame);
+                    detector.detect(&frame, &roster).len()
+                });
+            }
+        }
         if count <= LARGE {
             let found = with_tree.add(|| tree.contacts(&cars, car, options.epsilon));
             let again = with_straight_tree.add(|| straight_tree.contacts(&cars, car, options.epsilon));
@@ -106,6 +125,9 @@ fn measure(scene: &str, start: Vec<State>) {
     second.print(scene, "phase 2", count);
     both.print(scene, "closecall", count);
     by_two.print(scene, "two threads", count);
+    for (name, _, times) in keeping {
+        times.print(scene, &name, count);
+    }
     with_tree.print(scene, "parry2d", count);
     with_straight_tree.print(scene, "parry2d (straight)", count);
     with_all.print(scene, "all pairs", count);

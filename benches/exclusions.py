@@ -11,25 +11,16 @@ from __future__ import annotations
 import argparse
 import json
 import re
-import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
+from scenarios import motorway
+
 NETS = Path(__file__).parents[1] / "sumo_nets"
-EXCLUSIONS = ["circles-apart", "ways-apart", "in-line", "known-paths", "known-directions", "heights"]
+EXCLUSIONS = ["circles-apart", "ways-apart", "in-line", "known-paths"]
 PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
-
-
-def motorway(folder: Path) -> Path:
-    """A copy of SUMO's motorway: closecall writes beside it."""
-    import sumo
-
-    game = Path(sumo.SUMO_HOME) / "tools" / "game"
-    shutil.copytree(game / "A10KW", folder / "A10KW")
-    shutil.copy(game / "input_additional.add.xml", folder)
-    return Path(shutil.copy(game / "A10KW.sumocfg", folder))
 
 
 def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
@@ -48,22 +39,23 @@ def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
 def main() -> None:
     """Print a row per exclusion and scene."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--runs", type=int, default=2)
     parser.add_argument("--town", type=float, default=60, help="end of the town, in s")
-    parser.add_argument("--motorway", type=float, default=300, help="end of the motorway, in s")
+    parser.add_argument("--motorway", type=float, default=120, help="end of the motorway, in s")
     options = parser.parse_args()
-    print("exclusion,scene,with_ns,without_ns,ratio")
+    print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        scenes = [(NETS / "town" / "town.sumocfg", options.town), (motorway(folder), options.motorway)]
-        for config, end in scenes:
+        ends = {"town": options.town, "motorway": options.motorway}
+        configs = {"town": NETS / "town" / "town.sumocfg", "motorway": motorway(folder)}
+        for scene, config in configs.items():
             best = dict.fromkeys([None, *EXCLUSIONS], float("inf"))
             for _ in range(options.runs):
                 for keep in best:
-                    best[keep] = min(best[keep], nanoseconds(config, end, folder / "out", keep))
-            for keep in EXCLUSIONS:
-                ratio = best[keep] / best[None]
-                print(f"{keep},{config.stem},{best[None]:.0f},{best[keep]:.0f},{ratio:.3f}", flush=True)
+                    best[keep] = min(best[keep], nanoseconds(config, ends[scene], folder / "out", keep))
+            for keep, least in best.items():
+                method = f"keep {keep}" if keep else "closecall"
+                print(f"kept,{scene},{method},{ends[scene]:.0f},{least:.0f},ns per road user", flush=True)
 
 
 if __name__ == "__main__":

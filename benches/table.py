@@ -81,6 +81,30 @@ def steps(method: str, *sizes: int) -> Callable[[Lines], dict[str, float]]:
     }
 
 
+def saving(lines: Lines, exclusion: str) -> dict[str, float]:
+    """How many times longer what closecall does in a step takes where this is not left out, the largest first."""
+    kept = {
+        row["scene"]: lines.ratio(row["what"], row["scene"], row["method"], "closecall", int(row["size"]))
+        for row in lines.rows
+        if row["method"] == f"keep {exclusion}"
+    }
+    if not kept:
+        raise LookupError(exclusion)
+    return dict(sorted(kept.items(), key=lambda entry: -entry[1]))
+
+
+def left_out(name: str, exclusion: str) -> Goal:
+    """The row of an exclusion: one that saves nothing anywhere would have to go."""
+    return Goal(
+        f"left out: {name}; times longer without",
+        lambda lines: dict([*saving(lines, exclusion).items()][:1]),
+        at_least=1.05,
+        beside=lambda lines: ", ".join(
+            f"{scene} {ratio:.2f}" for scene, ratio in [*saving(lines, exclusion).items()][1:]
+        ),
+    )
+
+
 def growth(lines: Lines, scene: str) -> float:
     """The exponent with which the time of a step grows from 10³ to 10⁶ road users."""
     few, many = (lines("step", scene, "closecall", size) * size for size in (10**3, 10**6))
@@ -131,6 +155,10 @@ GOALS = [
         lambda lines: {scene: lines.ratio("step", scene, "closecall", "two threads", 10**5) for scene in SCENES},
         at_least=1.7,
     ),
+    left_out("pairs too far apart", "circles-apart"),
+    left_out("tests where the boxes around both ways do not meet", "ways-apart"),
+    left_out("sweeps of who drives in line", "in-line"),
+    left_out("lanes of who is on the path laid before", "known-paths"),
     Goal(
         "replay from CSV, 10⁶ vehicle-steps per s",
         lambda lines: {scene: lines("replay", scene, "CSV") / 1e6 for scene in ("sparse", "platoons")},

@@ -292,7 +292,7 @@ impl Run {
         self.outputs.conflicts(closed)?;
         self.outputs.finish()?;
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
-        self.summary.left_out = scene::left_out(&self.detector, self.net.as_deref());
+        self.summary.left_out = scene::left_out(&self.detector);
         self.summary.left_out.extend(left_out);
         Ok(self.summary.clone())
     }

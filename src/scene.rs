@@ -9,7 +9,6 @@ use clap::ValueEnum;
 use serde::Serialize;
 
 use crate::detector::Detector;
-use crate::net::Net;
 use crate::options::Options;
 
 /// Something that a scene may not need.
@@ -23,10 +22,6 @@ pub enum Exclusion {
     InLine,
     /// Asking for the lane of who is still on the path laid before.
     KnownPaths,
-    /// Computing the direction of who has the heading of the last step.
-    KnownDirections,
-    /// Asking for heights in a flat net.
-    Heights,
 }
 
 /// What is left out of a run where the scene does not need it.
@@ -40,10 +35,6 @@ pub struct Exclusions {
     pub in_line: bool,
     /// [`Exclusion::KnownPaths`].
     pub known_paths: bool,
-    /// [`Exclusion::KnownDirections`].
-    pub known_directions: bool,
-    /// [`Exclusion::Heights`].
-    pub heights: bool,
 }
 
 impl Exclusions {
@@ -55,8 +46,6 @@ impl Exclusions {
             ways_apart: leaves_out(Exclusion::WaysApart),
             in_line: leaves_out(Exclusion::InLine),
             known_paths: leaves_out(Exclusion::KnownPaths),
-            known_directions: leaves_out(Exclusion::KnownDirections),
-            heights: leaves_out(Exclusion::Heights),
         }
     }
 }
@@ -90,8 +79,8 @@ impl fmt::Display for LeftOut {
 }
 
 /// What the detector did without.
-pub fn left_out(detector: &Detector, net: Option<&Net>) -> Vec<LeftOut> {
-    let (work, leaves_out) = (detector.work(), detector.leaves_out());
+pub fn left_out(detector: &Detector) -> Vec<LeftOut> {
+    let work = detector.work();
     let counted = [
         ("pairs", "too far apart to meet before both stand", work.circles_apart),
         ("pairs", "both stand", work.both_stand),
@@ -100,16 +89,7 @@ pub fn left_out(detector: &Detector, net: Option<&Net>) -> Vec<LeftOut> {
         ("accurate tests", "the boxes around both ways do not meet", work.ways_apart),
         ("sweeps", "both drive straight on in parallel: one dimension is enough", work.in_line),
         ("lanes asked for", "still on the path laid before, and nobody's route changes", work.known_paths),
-        ("directions computed", "same heading as in the last step", work.known_directions),
     ];
-    let mut all = Vec::new();
-    if leaves_out.heights && net.is_some_and(|net| !net.has_levels) {
-        all.push(LeftOut::altogether("heights", "the net is flat"));
-    }
-    all.extend(counted.into_iter().filter(|(_, _, times)| *times > 0).map(|(what, why, times)| LeftOut {
-        what,
-        why,
-        times: Some(times),
-    }));
-    all
+    let done_without = counted.into_iter().filter(|(_, _, times)| *times > 0);
+    done_without.map(|(what, why, times)| LeftOut { what, why, times: Some(times) }).collect()
 }

@@ -19,7 +19,6 @@ const STANDS: f64 = 0.0;
 impl Row {
     /// Nobody's yet.
     const EMPTY: Self = Self {
-        heading: f64::NAN,
         axis: Vector::new(1.0, 0.0),
         stop: 0.0,
         profile: ProfileIndex(0),
@@ -75,17 +74,11 @@ impl Detector {
         let share = share(frame.len(), self.workers.len());
         let rows = self.rows.chunks_mut(share).zip(self.areas.chunks_mut(share));
         let parts = rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share)));
-        each(&mut self.workers, parts, |worker, ((rows, areas), (users, states))| {
+        each(&mut self.workers, parts, |_, ((rows, areas), (users, states))| {
             for (((row, area), user), state) in rows.iter_mut().zip(areas).zip(users).zip(states) {
                 let road_user = roster.user(*user);
                 let profile = roster.profile_at(road_user.profile);
-                // Most drive straight on, and most rows are the same road user's as in the last step.
-                if leaves_out.known_directions && row.heading == state.heading {
-                    worker.work.known_directions += 1;
-                } else {
-                    row.heading = state.heading;
-                    row.axis = direction(state.heading);
-                }
+                row.axis = direction(state.heading);
                 row.profile = road_user.profile;
                 row.category = profile.category;
                 row.moves = state.speed > STANDS;

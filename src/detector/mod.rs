@@ -24,7 +24,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::precollision::{Area, Search};
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
-use crate::units::{Metre, Radian};
+use crate::units::Metre;
 use order::Order;
 use parts::each;
 use ways::Ways;
@@ -55,8 +55,6 @@ pub struct Work {
     pub swept: u64,
     /// Road users in pairs that were still on the path laid before.
     pub known_paths: u64,
-    /// Road users with the heading of the last step.
-    pub known_directions: u64,
 }
 
 impl std::ops::AddAssign for Work {
@@ -71,7 +69,6 @@ impl std::ops::AddAssign for Work {
         self.in_line += other.in_line;
         self.swept += other.swept;
         self.known_paths += other.known_paths;
-        self.known_directions += other.known_directions;
     }
 }
 
@@ -103,7 +100,6 @@ struct Memory {
 /// What is known of a frame's row in the step under way.
 #[derive(Clone, Copy, Debug)]
 struct Row {
-    heading: Radian,
     axis: Vector,
     stop: Metre,
     profile: ProfileIndex,

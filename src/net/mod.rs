@@ -105,8 +105,6 @@ pub struct Net {
     pub edges: Vec<Edge>,
     /// All junctions.
     pub junctions: Vec<Junction>,
-    /// Whether any two lane points differ in height by more than road users that are a pair may.
-    pub has_levels: bool,
     lane_ids: FxHashMap<String, LaneIndex>,
     edge_ids: FxHashMap<String, EdgeIndex>,
     finder: OnceLock<finder::Finder>,
@@ -176,7 +174,6 @@ mod tests {
         assert_eq!(net.lanes[via.0 as usize].links, [Link { to: bc, via: None }]);
         assert_eq!(net.lanes[bc.0 as usize].from, [via]);
         assert_eq!(net.edges[net.edge(":b_0").unwrap().0 as usize].junction, "b");
-        assert!(!net.has_levels);
     }
 
     #[test]

@@ -32,8 +32,7 @@ pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
 
 /// Reads a net; `path` is what errors call it.
 pub fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
-    NetReader { path, line: 1, net: Net::default(), connections: Vec::new(), heights: (f64::MAX, f64::MIN) }
-        .read(source)
+    NetReader { path, line: 1, net: Net::default(), connections: Vec::new() }.read(source)
 }
 
 struct NetReader<'a> {
@@ -41,7 +40,6 @@ struct NetReader<'a> {
     line: u64,
     net: Net,
     connections: Vec<Connection>,
-    heights: (f64, f64),
 }
 
 /// A `<connection>` before its ends are looked up: a lane may stand behind it.
@@ -186,7 +184,6 @@ impl NetReader<'_> {
                 from_lanes.push(from);
             }
         }
-        self.net.has_levels = self.heights.1 - self.heights.0 > crate::detector::LEVEL;
         Ok(self.net)
     }
 
@@ -199,7 +196,7 @@ impl NetReader<'_> {
     }
 
     /// The points of a shape; points that repeat are dropped, since they have no direction, but two are kept.
-    fn shape(&mut self, id: &str, text: &str) -> Result<Vec<Point>> {
+    fn shape(&self, id: &str, text: &str) -> Result<Vec<Point>> {
         let mut points: Vec<Point> = Vec::new();
         for triple in text.split_ascii_whitespace() {
             let mut values = triple.split(',').map(|value| value.parse::<f64>().ok());
@@ -211,7 +208,6 @@ impl NetReader<'_> {
             if !(x.abs() < FURTHEST && y.abs() < FURTHEST && z.abs() < FURTHEST) {
                 return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is out of range")));
             }
-            self.heights = (self.heights.0.min(z), self.heights.1.max(z));
             let point = Point::new(x, y);
             if points.len() != 1 && points.last() == Some(&point) {
                 continue;

@@ -33,7 +33,6 @@ pub struct Getters {
     angle: Py<PyAny>,
     speed: Py<PyAny>,
     inside: Option<Py<PyAny>>,
-    with_heights: bool,
     compiled: Option<Compiled>,
 }
 
@@ -54,7 +53,7 @@ impl Compiled {
 
 impl Getters {
     /// Those of the compiled module inside libsumo.
-    pub fn new(module: &Bound<PyAny>, domain: Domain, with_heights: bool) -> PyResult<Self> {
+    pub fn new(module: &Bound<PyAny>, domain: Domain) -> PyResult<Self> {
         let name = match domain {
             Domain::Vehicle => "vehicle",
             Domain::Person => "person",
@@ -62,11 +61,10 @@ impl Getters {
         let function = |getter: &str| module.getattr(format!("{name}_{getter}")).map(Bound::unbind);
         let file = module.getattr("__file__").and_then(|file| file.extract::<PathBuf>()).ok();
         Ok(Self {
-            position: function(if with_heights { "getPosition3D" } else { "getPosition" })?,
+            position: function("getPosition3D")?,
             angle: function("getAngle")?,
             speed: function("getSpeed")?,
             inside: if domain == Domain::Person { Some(function("getVehicle")?) } else { None },
-            with_heights,
             compiled: file.and_then(|file| Compiled::of(&file, domain)),
         })
     }
@@ -75,7 +73,7 @@ impl Getters {
     pub fn enters(&mut self, py: Python, id: &str) {
         if let Some(compiled) = &self.compiled
             && let Ok(said) = self.ask(py, id)
-            && compiled.read(id).is_none_or(|read| !self.same(read, said))
+            && compiled.read(id).is_none_or(|read| !same(read, said))
         {
             self.compiled = None;
         }
@@ -90,10 +88,7 @@ impl Getters {
         };
         Ok(match reading {
             Reading::Inside => None,
-            Reading::At { x, y, z, angle, speed } => {
-                let z = if self.with_heights { z } else { 0.0 };
-                Some(State { x, y, z, heading: sumo::heading(angle), speed })
-            }
+            Reading::At { x, y, z, angle, speed } => Some(State { x, y, z, heading: sumo::heading(angle), speed }),
         })
     }
 
@@ -110,21 +105,18 @@ impl Getters {
         Ok(Reading::At {
             x: point.get_item(0)?.extract()?,
             y: point.get_item(1)?.extract()?,
-            z: if self.with_heights { point.get_item(2)?.extract()? } else { 0.0 },
+            z: point.get_item(2)?.extract()?,
             angle: ask(&self.angle)?.extract()?,
             speed: ask(&self.speed)?.extract()?,
         })
     }
+}
 
-    /// Whether two readings are the same to the last bit.
-    fn same(&self, one: Reading, other: Reading) -> bool {
-        let numbers = |reading| match reading {
-            Reading::Inside => None,
-            Reading::At { x, y, z, angle, speed } => {
-                let z = if self.with_heights { z } else { 0.0 };
-                Some([x, y, z, angle, speed].map(f64::to_bits))
-            }
-        };
-        numbers(one) == numbers(other)
-    }
+/// Whether two readings are the same to the last bit.
+fn same(one: Reading, other: Reading) -> bool {
+    let numbers = |reading| match reading {
+        Reading::Inside => None,
+        Reading::At { x, y, z, angle, speed } => Some([x, y, z, angle, speed].map(f64::to_bits)),
+    };
+    numbers(one) == numbers(other)
 }

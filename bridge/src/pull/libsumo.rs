@@ -68,7 +68,7 @@ struct Live {
 const PARKS: [bool; 2] = [true, false];
 
 impl Libsumo {
-    pub fn new(module: &Bound<PyAny>, options: &Options, with_heights: bool) -> PyResult<Self> {
+    pub fn new(module: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
         let compiled = module.getattr("_libsumo")?;
         let function = |name: &str| compiled.getattr(name).map(Bound::unbind);
         let domain = |name: &str, infix: &str, domain: getters::Domain| -> PyResult<Domain> {
@@ -77,7 +77,7 @@ impl Libsumo {
                 arrived: function(&format!("simulation_getArrived{infix}IDList"))?,
                 ids: function(&format!("{name}_getIDList"))?,
                 type_id: function(&format!("{name}_getTypeID"))?,
-                getters: Getters::new(&compiled, domain, with_heights)?,
+                getters: Getters::new(&compiled, domain)?,
                 live: Vec::new(),
                 places: FxHashMap::default(),
                 rows: Vec::new(),

@@ -28,14 +28,13 @@ impl Source {
     /// The source that a Python object is: the module libsumo, the module traci or one of traci's connections; the
     /// run is told what the simulation says of itself.
     pub fn new(source: &Bound<PyAny>, run: &mut Run, options: &Options) -> PyResult<Self> {
-        let with_heights = !run.leaves_out().heights || run.net().is_none_or(|net| net.has_levels);
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
             run.has_sublanes();
         }
         Ok(if is_libsumo(source) {
-            Self::Libsumo(Box::new(Libsumo::new(source, options, with_heights)?))
+            Self::Libsumo(Box::new(Libsumo::new(source, options)?))
         } else {
-            Self::Traci(Box::new(Traci::new(source, options, with_heights)?))
+            Self::Traci(Box::new(Traci::new(source, options)?))
         })
     }
 

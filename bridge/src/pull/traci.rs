@@ -21,7 +21,6 @@ pub struct Traci {
     persons: Domain,
     types: Types,
     step_length: Second,
-    with_heights: bool,
     variable: Variables,
 }
 
@@ -61,11 +60,11 @@ struct Live {
 }
 
 impl Traci {
-    pub fn new(source: &Bound<PyAny>, options: &Options, with_heights: bool) -> PyResult<Self> {
+    pub fn new(source: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
         let constants = source.py().import("traci.constants")?;
         let number = |name: &str| constants.getattr(name)?.extract::<i32>();
         let variable = Variables {
-            position: number(if with_heights { "VAR_POSITION3D" } else { "VAR_POSITION" })?,
+            position: number("VAR_POSITION3D")?,
             angle: number("VAR_ANGLE")?,
             speed: number("VAR_SPEED")?,
             lane: number("VAR_LANE_ID")?,
@@ -90,7 +89,6 @@ impl Traci {
             types: Types::new(source, options)?,
             step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
             source: source.clone().unbind(),
-            with_heights,
             variable,
         })
     }
@@ -99,9 +97,9 @@ impl Traci {
         let time: Second = self.source.bind(py).getattr("simulation")?.call_method0("getTime")?.extract()?;
         run.begin(sumo::time_of_states(time, self.step_length));
         let types = &mut self.types;
-        self.vehicles.read(py, run, &self.variable, self.with_heights, |run, name| types.vehicle(py, run, name))?;
+        self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;
-        self.persons.read(py, run, &self.variable, self.with_heights, |run, name| types.person(py, run, name))
+        self.persons.read(py, run, &self.variable, |run, name| types.person(py, run, name))
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
@@ -142,7 +140,6 @@ impl Domain {
         py: Python,
         run: &mut Run,
         variable: &Variables,
-        with_heights: bool,
         mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::frame::ProfileIndex>,
     ) -> PyResult<()> {
         let domain = self.domain.bind(py);
@@ -180,7 +177,7 @@ impl Domain {
             let state = State {
                 x: point.get_item(0)?.extract()?,
                 y: point.get_item(1)?.extract()?,
-                z: if with_heights { point.get_item(2)?.extract()? } else { 0.0 },
+                z: point.get_item(2)?.extract()?,
                 heading: sumo::heading(value(variable.angle)?.extract()?),
                 speed: value(variable.speed)?.extract()?,
             };
