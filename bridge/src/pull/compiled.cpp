@@ -31,12 +31,13 @@ using NameOf = std::string (*)(const std::string& id);
 
 extern "C" {
 
-// Functions of libsumo; `inside` is null where road users are inside nobody.
+// Functions of libsumo; `inside` is null where road users are inside nobody, `route` where they have none.
 struct ClosecallGetters {
     PositionOf position;
     NumberOf angle;
     NumberOf speed;
     NameOf inside;
+    NameOf route;
 };
 
 struct ClosecallReading {
@@ -62,10 +63,11 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, Cl
         getters->angle = reinterpret_cast<NumberOf>(find("8getAngle", ""));
         getters->speed = reinterpret_cast<NumberOf>(find("8getSpeed", ""));
         getters->inside = may_be_inside ? reinterpret_cast<NameOf>(find("10getVehicle", "")) : nullptr;
+        getters->route = may_be_inside ? nullptr : reinterpret_cast<NameOf>(find("10getRouteID", ""));
     } catch (...) {
         return false;
     }
-    return getters->position && getters->angle && getters->speed && (getters->inside || !may_be_inside);
+    return getters->position && getters->angle && getters->speed && (may_be_inside ? getters->inside : getters->route);
 }
 
 // The state of the road user of this id; false if libsumo throws, as it does for an id that it does not know. Of who is
@@ -84,6 +86,17 @@ bool closecall_read(const ClosecallGetters* getters, const char* id, size_t leng
         reading->angle = getters->angle(name);
         reading->speed = getters->speed(name);
         return true;
+    } catch (...) {
+        return false;
+    }
+}
+
+// Whether the road user of this id has the route of that id; false too if libsumo throws.
+bool closecall_has_route(const ClosecallGetters* getters, const char* id, size_t length, const char* route,
+                         size_t route_length) noexcept {
+    try {
+        return getters->route != nullptr &&
+               getters->route(std::string(id, length)).compare(0, std::string::npos, route, route_length) == 0;
     } catch (...) {
         return false;
     }

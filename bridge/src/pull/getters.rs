@@ -49,6 +49,10 @@ impl Compiled {
     fn read(&self, _: &str) -> Option<Reading> {
         match *self {}
     }
+
+    fn has_route(&self, _: &str, _: &str) -> bool {
+        match *self {}
+    }
 }
 
 impl Getters {
@@ -90,6 +94,11 @@ impl Getters {
             Reading::Inside => None,
             Reading::At { x, y, z, angle, speed } => Some(State { x, y, z, heading: sumo::heading(angle), speed }),
         })
+    }
+
+    /// Whether a vehicle certainly still has the route of this id.
+    pub fn has_route(&self, id: &str, route: &str) -> bool {
+        self.compiled.as_ref().is_some_and(|compiled| compiled.has_route(id, route))
     }
 
     /// Asks Python's getters.

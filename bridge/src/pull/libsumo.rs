@@ -161,7 +161,14 @@ impl Libsumo {
             let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
             let Some(&live) = self.vehicles.rows.get(place as usize) else { continue };
             let live = &mut self.vehicles.live[live as usize];
-            let id = PyString::new(py, &run.roster.user(live.user).id);
+            let name = &run.roster.user(live.user).id;
+            if let Some((id, route)) = &live.route
+                && run.keeps_path(row, route)
+                && self.vehicles.getters.has_route(name, id)
+            {
+                continue;
+            }
+            let id = PyString::new(py, name);
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1((&id,));
             let Some(net) = run.net() else { return Ok(()) };
             let route_id = ask(&self.get.route_id)?;
