@@ -2,7 +2,7 @@
 //! severity.
 
 use super::ways::Ways;
-use super::{Met, Scene, Worker};
+use super::{Scene, Worker};
 use crate::accurate::{self, Meeting, side};
 use crate::approach::{self, Course};
 use crate::encounter::{Encounter, Kind, Nearness};
@@ -17,11 +17,9 @@ use crate::units::{Metre, MetrePerSecondSquared, Second};
 type Courses = [Vec<Pose>; 2];
 
 impl Scene<'_> {
-    /// How far ahead the paths of which rows have to be known to measure a pair.
-    pub(super) fn ways_to_measure(&self, encounter: &Encounter, met: &Met) -> [(u32, Metre); 2] {
-        let (ego, foe) = (encounter.ego_row, encounter.foe_row);
-        let kept_speed = |row: u32| self.state(row).speed * approach::HORIZON;
-        [(ego, kept_speed(ego)), (foe, kept_speed(foe).max(self.furthest_way_out(foe, &met.meeting)))]
+    /// How far ahead the path of a row has to be known to measure a pair that it is in.
+    pub(super) fn way_to_measure(&self, row: u32, meeting: &Meeting) -> Metre {
+        (self.state(row).speed * approach::HORIZON).max(self.furthest_way_out(row, meeting))
     }
 
     /// Completes what a worker has met.

@@ -20,7 +20,8 @@ impl Scene<'_> {
             let Some((encounter, meeting)) = met else { continue };
             let leaves = meeting.foe_axis.is_some() && encounter.angle.cos() > 0.0 && !meeting.leads;
             if leaves || encounter.in_conflict() {
-                unmeasured.push(Met { encounter: encounters.len() as u32, meeting, leaves });
+                let rows = [encounter.ego_row, encounter.foe_row];
+                unmeasured.push(Met { encounter: encounters.len() as u32, rows, meeting, leaves });
             }
             encounters.push(encounter);
         }

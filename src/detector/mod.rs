@@ -126,6 +126,8 @@ struct Worker {
 struct Met {
     /// Which of the worker's encounters.
     encounter: u32,
+    /// The ego's row and the foe's.
+    rows: [u32; 2],
     meeting: Meeting,
     /// Whether the gap waits for when the foe has left the meeting place.
     leaves: bool,
@@ -252,7 +254,9 @@ impl Detector {
     pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
         // In a pair or not: who came to the end of its path would be given another one.
         for row in 0..self.rows.len() as u32 {
-            self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
+            if self.rows[row as usize].on_lanes {
+                self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
+            }
         }
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
@@ -263,10 +267,10 @@ impl Detector {
         let scene = self.scene(frame, roster);
         let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
         each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
-        for worker in &workers {
-            for met in &worker.unmeasured {
-                let ways = self.scene(frame, roster).ways_to_measure(&worker.encounters[met.encounter as usize], met);
-                for (row, way) in ways {
+        for met in workers.iter().flat_map(|worker| &worker.unmeasured) {
+            for row in met.rows {
+                if self.rows[row as usize].on_lanes {
+                    let way = self.scene(frame, roster).way_to_measure(row, &met.meeting);
                     self.lengthen(frame, roster, row, way);
                 }
             }
@@ -285,9 +289,7 @@ impl Detector {
     /// Sees to it that the path of a row's road user reaches so far ahead, if its route does.
     fn lengthen(&mut self, frame: &Frame, roster: &Roster, row: u32, way: Metre) {
         let user = frame.users()[row as usize];
-        if self.rows[row as usize].on_lanes
-            && let Some(net) = &self.net
-        {
+        if let Some(net) = &self.net {
             self.memory[user.0 as usize].path.reach(net, roster.profile_of(user).chord, way);
         }
     }
