@@ -61,74 +61,80 @@ fn main() {
     }
 }
 
+/// To and fro: nobody yields here, and however many steps there are, they shall not drive into each other.
+const TIMES: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
+
+/// One after the other looks at all steps: in a process there is only one, with its data in the cache.
 fn measure(scene: &str, start: Vec<State>) {
-    let mut cars = start.clone();
-    let (count, options) = (cars.len(), Options::default());
+    let (count, options) = (start.len(), Options::default());
     let mut roster = Roster::default();
     let profile = roster.profile(scenes::car()).unwrap();
     let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
-    let (car, mut frame) = (roster.profile_at(profile), Frame::default());
-    let mut detector = Detector::new(&options, None);
-    let mut detector_of_two = Detector::new(&options, None);
-    detector_of_two.set_threads(2);
-    let mut keeping = [Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
-        let options = Options { keep: vec![kept], ..Options::default() };
-        (
-            format!("keep {}", kept.to_possible_value().unwrap().get_name()),
-            Detector::new(&options, None),
-            Times::default(),
-        )
-    });
-    let [mut tree, mut straight_tree] = [Boxes::Circles, Boxes::StraightWays].map(Tree::new);
-    let mut all_pairs = AllPairs::default();
-    let [mut first, mut second, mut both, mut by_two] = [(); 4].map(|()| Times::default());
-    let [mut with_tree, mut with_straight_tree, mut with_all] = [(); 3].map(|()| Times::default());
-    for round in 0..(3_000_000 / count).clamp(5, 100) {
+    let (car, mut frame, mut cars) = (roster.profile_at(profile), Frame::default(), start.clone());
+    let advance = |frame: &mut Frame, cars: &mut [State], time: f64| {
         frame.begin(frame.time + 0.1);
-        // To and fro: nobody yields here, and however many rounds there are, they shall not drive into each other.
-        let time = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1][round % 6];
         for ((car, start), user) in cars.iter_mut().zip(&start).zip(&users) {
             car.x = start.x + start.speed * time * start.heading.cos();
             car.y = start.y + start.speed * time * start.heading.sin();
             frame.push(*user, *car);
         }
+    };
+    let mut detector = Detector::new(&options, None);
+    let [mut first, mut second, mut both] = [(); 3].map(|()| Times::default());
+    let mut two = Detector::new(&options, None);
+    two.set_threads(2);
+    let mut others = vec![("two threads".to_owned(), two, Times::default())];
+    if count == LARGE {
+        others.extend([Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
+            let options = Options { keep: vec![kept], ..Options::default() };
+            let name = format!("keep {}", kept.to_possible_value().unwrap().get_name());
+            (name, Detector::new(&options, None), Times::default())
+        }));
+    }
+    let mut trees = [("parry2d", Boxes::Circles), ("parry2d (straight)", Boxes::StraightWays)]
+        .map(|(name, boxes)| (name, Tree::new(boxes), Times::default(), 0));
+    let (mut all_pairs, mut with_all) = (AllPairs::default(), Times::default());
+    let steps = TIMES.repeat((500_000 / count).clamp(1, 16));
+    for &time in &steps {
+        advance(&mut frame, &mut cars, time);
         first.add(|| {
             detector.follow(&frame, &roster);
             detector.approach(&frame);
         });
         second.add(|| detector.detect(&frame, &roster).len());
-        both.0.push(first.0[round] + second.0[round]);
-        by_two.add(|| {
-            detector_of_two.follow(&frame, &roster);
-            detector_of_two.approach(&frame);
-            detector_of_two.detect(&frame, &roster).len()
-        });
-        if count == LARGE && round < 6 {
-            for (_, detector, times) in &mut keeping {
-                times.add(|| {
-                    detector.follow(&frame, &roster);
-                    detector.approach(&frame);
-                    detector.detect(&frame, &roster).len()
-                });
+        both.0.push(first.0[first.0.len() - 1] + second.0[second.0.len() - 1]);
+    }
+    drop(detector);
+    for (_, detector, times) in &mut others {
+        for &time in &steps {
+            advance(&mut frame, &mut cars, time);
+            times.add(|| {
+                detector.follow(&frame, &roster);
+                detector.approach(&frame);
+                detector.detect(&frame, &roster).len()
+            });
+        }
+    }
+    if count <= LARGE {
+        for (_, tree, times, found) in &mut trees {
+            for &time in &steps {
+                advance(&mut frame, &mut cars, time);
+                *found += times.add(|| tree.contacts(&cars, car, options.epsilon));
             }
         }
-        if count <= LARGE {
-            let found = with_tree.add(|| tree.contacts(&cars, car, options.epsilon));
-            let again = with_straight_tree.add(|| straight_tree.contacts(&cars, car, options.epsilon));
-            assert_eq!(found, again);
-        }
-        if count < LARGE && round < 5 || count == LARGE && round == 0 {
+        assert_eq!(trees[0].3, trees[1].3);
+        for _ in 0..if count < LARGE { 5 } else { 1 } {
             with_all.add(|| all_pairs.contacts(&cars, car, options.epsilon));
         }
     }
     first.print(scene, "phase 1", count);
     second.print(scene, "phase 2", count);
     both.print(scene, "closecall", count);
-    by_two.print(scene, "two threads", count);
-    for (name, _, times) in keeping {
+    for (name, _, times) in others {
         times.print(scene, &name, count);
     }
-    with_tree.print(scene, "parry2d", count);
-    with_straight_tree.print(scene, "parry2d (straight)", count);
+    for (name, _, times, _) in trees {
+        times.print(scene, name, count);
+    }
     with_all.print(scene, "all pairs", count);
 }

@@ -116,19 +116,19 @@ fn in_a_merge_the_foe_first_has_to_come_and_go() {
 fn any_number_of_threads_finds_the_same() {
     let (options, mut roster, mut frame) = (options(), Roster::default(), Frame::default());
     let profile = roster.profile(car(&options)).unwrap();
-    let users = (0..5000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
+    let users = (0..9000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detectors = [1, 2, 3, 8].map(|threads| {
         let mut detector = Detector::new(&options, None);
         detector.set_threads(threads);
         detector
     });
-    for step in 0..5 {
+    for step in 0..3 {
         frame.begin(f64::from(step));
         // Prime numbers, so that everybody goes another way and the rows are in no order of place.
         for (number, user) in (0_u32..).zip(&users) {
-            let of = |prime: u32| f64::from(number * prime % 4999) / 4999.0;
+            let of = |prime: u32| f64::from(number * prime % 8999) / 8999.0;
             let way = f64::from(step) * 10.0;
-            let (x, y) = (of(1709) * 1500.0 + way * of(7), of(2903) * 1500.0);
+            let (x, y) = (of(1709) * 2000.0 + way * of(7), of(2903) * 2000.0);
             frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
         }
         let [alone, others @ ..] = &mut detectors;
