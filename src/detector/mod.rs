@@ -1,8 +1,8 @@
 //! Frame in, encounters out: both phases, one after the other.
 //!
 //! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output. What a
-//! step changes in what is remembered is done by one thread, in [`look`] and here; what only reads it ([`ways`], [`meet`],
-//! [`measure`]) by as many as the caller wants, each on its part of the pairs. The results are the same.
+//! step changes in what is remembered is done by one thread, in `look` and here; what only reads it (`ways`, `meet`,
+//! `measure`) by as many as the caller wants, each on its part of the pairs. The results are the same.
 
 mod look;
 mod measure;
