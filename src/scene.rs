@@ -14,7 +14,7 @@ use crate::options::Options;
 /// Something that a scene may not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Exclusion {
-    /// Pairs whose circles do not meet: phase 1. Kept, every pair goes on to phase 2.
+    /// Pairs whose areas do not meet: phase 1. Kept, every pair goes on to phase 2.
     CirclesApart,
     /// Accurate tests of pairs whose ways lie in boxes that do not meet.
     WaysApart,

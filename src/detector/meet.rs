@@ -18,7 +18,7 @@ impl Scene<'_> {
                 Mode::Paper => self.meet_on_paper(ways, a, b),
             };
             let Some((encounter, meeting)) = met else { continue };
-            let leaves = meeting.foe_axis.is_some() && encounter.angle.cos() > 0.0 && !meeting.leads;
+            let leaves = !meeting.leads && meeting.foe_axis.is_some() && encounter.angle.cos() > 0.0;
             if leaves || encounter.in_conflict() {
                 let rows = [encounter.ego_row, encounter.foe_row];
                 unmeasured.push(Met { encounter: encounters.len() as u32, rows, meeting, leaves });

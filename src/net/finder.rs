@@ -1,60 +1,46 @@
-//! Which lane is at a place: lanes in groups of neighbours, with a box around each group.
+//! Which lane is at a place: parry2d's bounding-volume tree over the lanes.
 //!
-//! Asked only for conflicts whose ego is on no path along lanes (it stands, or paths are straight), so the groups are
-//! made when they are first asked for. A tree over the pieces of all lanes takes 30 times the memory.
+//! Asked only for conflicts whose ego is on no path along lanes (it stands, or paths are straight), so the tree is
+//! built when it is first asked for. The lanes of sumo_nets/town have three times as many pieces.
+
+use parry2d_f64::bounding_volume::Aabb;
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::{Lane, LaneIndex};
-use crate::geometry::{Bounds, Point};
+use crate::geometry::{Bounds, Point, parry};
 use crate::units::Metre;
 
 /// A place further than this from any lane's centre line is on none, in m.
 const REACH: Metre = 10.0;
-/// How many lanes are in a group: few enough to be looked at one by one, so many that there are few groups.
-const GROUP: usize = 4;
 
 /// Finds lanes by place.
 #[derive(Clone, Debug)]
 pub(super) struct Finder {
-    lanes: Vec<LaneIndex>,
-    /// Around each [`GROUP`] of them.
-    bounds: Vec<Bounds>,
+    tree: Bvh,
 }
 
 impl Finder {
     pub(super) fn new(lanes: &[Lane]) -> Self {
-        let middles = lanes.iter().map(|lane| nalgebra::center(&bounds(lane).low, &bounds(lane).high));
-        let mut order = (0..).map(LaneIndex).zip(middles).collect::<Vec<_>>();
-        // In columns from left to right, and within a column upwards (Leutenegger et al. 1997).
-        order.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
-        let columns = (lanes.len() as f64 / GROUP as f64).sqrt().ceil().max(1.0) as usize;
-        for column in order.chunks_mut(lanes.len().div_ceil(columns).max(1)) {
-            column.sort_by(|a, b| a.1.y.total_cmp(&b.1.y));
-        }
-        let lanes_in_order = order.into_iter().map(|(lane, _)| lane).collect::<Vec<_>>();
-        let around = |group: &[LaneIndex]| {
-            group.iter().fold(Bounds::EMPTY, |mut around, lane| {
-                around.join(&bounds(&lanes[lane.0 as usize]));
-                around
-            })
+        let around = |lane: &Lane| {
+            let mut bounds = Bounds::EMPTY;
+            lane.shape.iter().for_each(|point| bounds.include(*point));
+            aabb(&bounds)
         };
-        Self { bounds: lanes_in_order.chunks(GROUP).map(around).collect(), lanes: lanes_in_order }
+        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &lanes.iter().map(around).collect::<Vec<_>>()) }
     }
 
     /// The lane whose centre line is nearest; of two at the same distance the first of the net.
     pub(super) fn lane_at(&self, lanes: &[Lane], place: Point) -> Option<LaneIndex> {
-        let window = Bounds { low: place, high: place }.grown(REACH);
-        let groups = self.lanes.chunks(GROUP).zip(&self.bounds).filter(|(_, bounds)| bounds.meet(&window));
-        let distances =
-            groups.flat_map(|(group, _)| group).map(|&lane| (distance(&lanes[lane.0 as usize], place), lane));
-        let nearest = distances.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
+        let near =
+            self.tree.intersect_aabb(&window).map(|leaf| (distance(&lanes[leaf as usize], place), LaneIndex(leaf)));
+        let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         nearest.filter(|(distance, _)| *distance <= REACH).map(|(_, lane)| lane)
     }
 }
 
-fn bounds(lane: &Lane) -> Bounds {
-    let mut bounds = Bounds::EMPTY;
-    lane.shape.iter().for_each(|point| bounds.include(*point));
-    bounds
+fn aabb(bounds: &Bounds) -> Aabb {
+    Aabb::new(parry::vector(bounds.low), parry::vector(bounds.high))
 }
 
 /// The distance of a place from a lane's centre line.

@@ -161,34 +161,25 @@ impl Libsumo {
             let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
             let Some(&live) = self.vehicles.rows.get(place as usize) else { continue };
             let live = &mut self.vehicles.live[live as usize];
-            let name = &run.roster.user(live.user).id;
-            if let Some((id, route)) = &live.route
-                && run.keeps_path(row, route)
-                && self.vehicles.getters.has_route(name, id)
-            {
+            let Some(net) = run.net() else { return Ok(()) };
+            let id = &*run.roster.user(live.user).id;
+            let ask = |getter: &Py<PyAny>| getter.bind(py).call1((id,));
+            if !live.route.as_ref().is_some_and(|(known, _)| self.vehicles.getters.has_route(id, known)) {
+                let route_id = ask(&self.get.route_id)?;
+                let route_id = route_id.extract::<&str>()?;
+                if live.route.as_ref().is_none_or(|(known, _)| **known != *route_id) {
+                    live.route = Some((route_id.into(), sumo::route(net, &ask(&self.get.route)?)?));
+                }
+            }
+            let Some((_, route)) = &live.route else { continue };
+            if run.keeps_path(row, route) {
                 continue;
             }
-            let id = PyString::new(py, name);
-            let ask = |getter: &Py<PyAny>| getter.bind(py).call1((&id,));
-            let Some(net) = run.net() else { return Ok(()) };
-            let route_id = ask(&self.get.route_id)?;
-            let route_id = route_id.extract::<&str>()?;
-            let known = live.route.as_ref().filter(|(id, _)| **id == *route_id);
-            let route = match known {
-                Some((_, route)) if run.keeps_path(row, route) => continue,
-                Some((_, route)) => route.clone(),
-                None => {
-                    let route = sumo::route(net, &ask(&self.get.route)?)?;
-                    live.route = Some((route_id.into(), route.clone()));
-                    route
-                }
-            };
-            let Some(net) = run.net() else { return Ok(()) };
             let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let placement = Placement {
                 lane,
                 position: ask(&self.get.lane_position)?.extract()?,
-                route,
+                route: route.clone(),
                 route_position: usize::try_from(ask(&self.get.route_index)?.extract::<i64>()?).unwrap_or(0),
                 lateral_speed: ask(&self.get.lateral_speed)?.extract()?,
             };
