@@ -99,9 +99,9 @@ fn measure(scene: &str, start: Vec<State>) {
         advance(&mut frame, &mut cars, time);
         first.add(|| {
             detector.follow(&frame, &roster);
-            detector.approach(&frame);
+            detector.approach();
         });
-        second.add(|| detector.detect(&frame, &roster).len());
+        second.add(|| detector.detect(&roster).len());
         both.0.push(first.0[first.0.len() - 1] + second.0[second.0.len() - 1]);
     }
     drop(detector);
@@ -110,8 +110,8 @@ fn measure(scene: &str, start: Vec<State>) {
             advance(&mut frame, &mut cars, time);
             times.add(|| {
                 detector.follow(&frame, &roster);
-                detector.approach(&frame);
-                detector.detect(&frame, &roster).len()
+                detector.approach();
+                detector.detect(&roster).len()
             });
         }
     }

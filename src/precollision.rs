@@ -36,6 +36,9 @@ pub struct Area {
 }
 
 impl Area {
+    /// What meets nothing.
+    pub const NOWHERE: Self = Self { bounds: Bounds::EMPTY, radius: 0.0 };
+
     /// Whether two areas meet.
     pub fn meets(&self, other: &Self) -> bool {
         let (middle, other_middle) = (self.middle(), other.middle());
@@ -82,27 +85,30 @@ const MOVES: usize = 8;
 
 /// An area in its strip.
 #[derive(Clone, Copy)]
-struct Entry {
+struct Place {
     strip: i32,
     item: u32,
     area: Area,
 }
 
-impl Entry {
+impl Place {
     fn is_before(&self, other: &Self) -> bool {
         (self.strip, self.area.bounds.low.x) < (other.strip, other.area.bounds.low.x)
     }
 }
 
 /// Finds the pairs of areas that meet; keeps its memory, and the order that it found, from step to step.
+///
+/// Every area of a step has a place in that order: those that meet are near each other.
 #[derive(Default)]
 pub struct Search {
-    entries: Vec<Entry>,
+    /// Those in strips, sorted; then the large ones.
+    places: Vec<Place>,
+    in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip.
     longest: Metre,
-    is_known: Vec<bool>,
-    large: Vec<u32>,
+    large: Vec<Place>,
 }
 
 impl Search {
@@ -110,135 +116,137 @@ impl Search {
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
         self.prepare(areas);
-        self.sweep(0..self.places(), |a, b| pairs.push((a, b)));
-        self.compare_large(areas, |a, b| pairs.push((a, b)));
+        self.sweep(0..areas.len(), |a, b| {
+            let (a, b) = (self.item(a), self.item(b));
+            pairs.push((a.min(b), a.max(b)));
+        });
     }
 
-    /// Takes the areas of a step and sorts them.
+    /// Takes the areas of a step and gives each a place, as many as there are areas.
     pub fn prepare(&mut self, areas: &[Area]) {
-        let highest = self.fill(areas);
-        self.sort(highest);
+        let (known, count) = (self.places.len(), areas.len());
+        if count < known {
+            self.places.retain(|place| (place.item as usize) < count);
+        }
+        // Nearly in order: as it was in the last step.
+        for place in &mut self.places {
+            place.area = areas[place.item as usize];
+        }
+        let further = (0..).zip(areas).skip(known);
+        self.places.extend(further.map(|(item, area)| Place { strip: 0, item, area: *area }));
+        self.part_large();
+        self.sort();
+        self.in_strips = self.places.len();
+        self.places.append(&mut self.large);
     }
 
-    /// The number of places from which to sweep.
-    pub fn places(&self) -> usize {
-        self.entries.len()
+    /// Which area has this place.
+    pub fn item(&self, place: u32) -> u32 {
+        self.places[place as usize].item
     }
 
-    /// Takes the areas of now in the order of the last step, those that it did not know at the end; returns the
-    /// largest height.
-    fn fill(&mut self, areas: &[Area]) -> Metre {
-        let limit = limit(areas);
-        let is_large = |area: &Area| {
-            let (size, Bounds { low, high }) = (area.size(), area.bounds);
+    /// The area that has this place.
+    pub fn area(&self, place: u32) -> &Area {
+        &self.places[place as usize].area
+    }
+
+    /// Sets aside what is too large for a strip.
+    fn part_large(&mut self) {
+        let limit = limit(&self.places);
+        let is_large = |place: &Place| {
+            let (size, Bounds { low, high }) = (place.area.size(), place.area.bounds);
             !(size.x.max(size.y) <= limit && low.x.min(low.y) > -FAR && high.x.max(high.y) < FAR)
         };
-        let Self { entries, is_known, large, .. } = self;
-        is_known.clear();
-        is_known.resize(areas.len(), false);
-        let mut largest = Vector::zeros();
-        entries.retain_mut(|entry| match areas.get(entry.item as usize) {
-            Some(area) if !is_large(area) => {
-                is_known[entry.item as usize] = true;
-                entry.area = *area;
-                largest = largest.sup(&area.size());
-                true
+        let Self { places, large, .. } = self;
+        places.retain(|place| {
+            let is_large = is_large(place);
+            if is_large {
+                large.push(*place);
             }
-            _ => false,
+            !is_large
         });
-        large.clear();
-        for (item, area) in (0..).zip(areas).filter(|(item, _)| !is_known[*item as usize]) {
-            if is_large(area) {
-                large.push(item);
-            } else {
-                largest = largest.sup(&area.size());
-                entries.push(Entry { strip: 0, item, area: *area });
-            }
-        }
-        self.longest = largest.x;
-        largest.y
     }
 
     /// Sorts the boxes into strips by their middle, and within each along x. Two that meet are then in the same strip
     /// or in neighbouring ones.
-    fn sort(&mut self, highest: Metre) {
-        let least = highest.max(LOWEST_STRIP);
+    fn sort(&mut self) {
+        let places = &mut self.places[..];
+        let largest = places.iter().fold(Vector::zeros(), |largest, place| place.area.size().sup(&largest));
+        self.longest = largest.x;
+        let least = largest.y.max(LOWEST_STRIP);
         let same_strips = (least..=SPARE_HEIGHT * least).contains(&self.strip_height);
         if !same_strips {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
         }
         let per_metre = 1.0 / self.strip_height;
-        let entries = &mut self.entries[..];
-        for entry in entries.iter_mut() {
-            let Bounds { low, high } = entry.area.bounds;
-            entry.strip = ((low.y + high.y) * 0.5 * per_metre).floor() as i32;
+        for place in &mut *places {
+            let Bounds { low, high } = place.area.bounds;
+            place.strip = ((low.y + high.y) * 0.5 * per_metre).floor() as i32;
         }
-        let mut moves = if same_strips { MOVES * entries.len() } else { 0 };
-        for place in 1..entries.len() {
-            let entry = entries[place];
-            let mut to = place;
-            while to > 0 && entry.is_before(&entries[to - 1]) {
-                if moves == 0 {
-                    entries[to] = entry;
-                    let x = |entry: &Entry| entry.area.bounds.low.x;
-                    entries.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
-                    return;
-                }
-                moves -= 1;
-                entries[to] = entries[to - 1];
-                to -= 1;
-            }
-            entries[to] = entry;
+        let moves = if same_strips { MOVES * places.len() } else { 0 };
+        if !sort_nearly_sorted(places, moves) {
+            let x = |place: &Place| place.area.bounds.low.x;
+            places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
         }
     }
 
-    /// From each of these places ahead in its own strip, and to both sides in the next; `found` gets the smaller index
-    /// first.
-    pub fn sweep(&self, places: Range<usize>, mut found: impl FnMut(u32, u32)) {
-        let mut compare = |a: &Entry, b: &Entry| {
-            if a.area.meets(&b.area) {
-                found(a.item.min(b.item), a.item.max(b.item));
-            }
-        };
-        let entries = &self.entries[..];
-        let mut next = places.start;
-        for place in places {
-            let a = &entries[place];
+    /// From each of these places ahead in its own strip, and to both sides in the next; from a large one at everybody
+    /// before it. `found` gets two places.
+    pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
+        let (in_strips, large) = self.places.split_at(self.in_strips);
+        let mut compare =
+            |place: usize, a: &Place, first: usize, others: &[Place], is_near: &dyn Fn(&Place) -> bool| {
+                for (other, b) in (first..).zip(others.iter().take_while(|b| is_near(b))) {
+                    if a.area.meets(&b.area) {
+                        found(place as u32, other as u32);
+                    }
+                }
+            };
+        let mut next = from.start;
+        for place in from.start..from.end.min(in_strips.len()) {
+            let a = &in_strips[place];
             let (above, end) = (a.strip + 1, a.area.bounds.high.x);
-            let ahead = entries[place + 1..].iter();
-            ahead.take_while(|b| b.strip == a.strip && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
+            compare(place, a, place + 1, &in_strips[place + 1..], &|b| {
+                b.strip == a.strip && b.area.bounds.low.x <= end
+            });
             let begin = a.area.bounds.low.x - self.longest;
-            next += entries[next..]
+            next += in_strips[next..]
                 .iter()
                 .take_while(|b| b.strip < above || (b.strip == above && b.area.bounds.low.x < begin))
                 .count();
-            let aside = entries[next..].iter();
-            aside.take_while(|b| b.strip == above && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
+            compare(place, a, next, &in_strips[next..], &|b| b.strip == above && b.area.bounds.low.x <= end);
         }
-    }
-
-    /// Each of the large ones with everybody.
-    pub fn compare_large(&self, areas: &[Area], mut found: impl FnMut(u32, u32)) {
-        for &large in &self.large {
-            for other in 0..areas.len() as u32 {
-                let both_large = self.large.binary_search(&other).is_ok();
-                if other != large
-                    && !(both_large && other < large)
-                    && areas[large as usize].meets(&areas[other as usize])
-                {
-                    found(large.min(other), large.max(other));
-                }
-            }
+        for place in from.start.max(in_strips.len())..from.end {
+            compare(place, &large[place - in_strips.len()], 0, &self.places[..place], &|_| true);
         }
     }
 }
 
+/// Sorts by insertion; gives up after so many moves, with all places still there.
+fn sort_nearly_sorted(places: &mut [Place], mut moves: usize) -> bool {
+    for start in 1..places.len() {
+        let place = places[start];
+        let mut to = start;
+        while to > 0 && place.is_before(&places[to - 1]) {
+            if moves == 0 {
+                places[to] = place;
+                return false;
+            }
+            moves -= 1;
+            places[to] = places[to - 1];
+            to -= 1;
+        }
+        places[to] = place;
+    }
+    true
+}
+
 /// The largest size of a box that gets a strip: a few times the mean, more where too many are larger than that.
-fn limit(areas: &[Area]) -> Metre {
-    let sizes = || areas.iter().map(|area| area.size().max());
-    let mean = sizes().map(|size| size.clamp(0.0, 1e3)).sum::<f64>() / areas.len().max(1) as f64;
+fn limit(places: &[Place]) -> Metre {
+    let sizes = || places.iter().map(|place| place.area.size().max());
+    let mean = sizes().map(|size| size.clamp(0.0, 1e3)).sum::<f64>() / places.len().max(1) as f64;
     let mut limit = LARGE * mean.max(LOWEST_STRIP);
-    let allowed = areas.len() / SHARE_OF_LARGE + 1;
+    let allowed = places.len() / SHARE_OF_LARGE + 1;
     while limit < FAR && sizes().filter(|size| *size > limit).count() > allowed {
         limit *= 2.0;
     }
@@ -265,12 +273,14 @@ mod tests {
     /// What the search finds, swept in this many parts, in order.
     fn found(search: &mut Search, areas: &[Area], parts: usize) -> Vec<(u32, u32)> {
         search.prepare(areas);
-        let mut pairs = Vec::new();
-        let share = search.places().div_ceil(parts).max(1);
-        for start in (0..search.places()).step_by(share) {
-            search.sweep(start..(start + share).min(search.places()), |a, b| pairs.push((a, b)));
+        let (count, mut pairs) = (areas.len(), Vec::new());
+        let share = count.div_ceil(parts).max(1);
+        for start in (0..count).step_by(share) {
+            search.sweep(start..(start + share).min(count), |a, b| {
+                let (a, b) = (search.item(a), search.item(b));
+                pairs.push((a.min(b), a.max(b)));
+            });
         }
-        search.compare_large(areas, |a, b| pairs.push((a, b)));
         pairs.sort_unstable();
         pairs
     }

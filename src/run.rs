@@ -177,12 +177,12 @@ impl Run {
     /// Whether the road user of a row, if it still has this route, is on the path laid before: nobody needs to know
     /// where it is on the net.
     pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        !self.outputs.want_lanes() && self.detector.keeps_path(&self.frame, row, route)
+        !self.outputs.want_lanes() && self.detector.keeps_path(row, route)
     }
 
     /// Says where the road user of a row is on the net.
     pub fn place(&mut self, row: u32, placement: &Placement) {
-        self.detector.place(&self.frame, &self.roster, row, placement);
+        self.detector.place(&self.roster, row, placement);
         self.outputs.place(row, placement);
     }
 
@@ -200,13 +200,13 @@ impl Run {
 
     /// Phase 1.
     pub fn approach(&mut self) {
-        self.detector.approach(&self.frame);
+        self.detector.approach();
     }
 
     /// Phase 2.
     pub fn detect(&mut self) {
         self.in_conflict.clear();
-        for found in self.detector.detect(&self.frame, &self.roster).filter(|found| found.in_conflict()) {
+        for found in self.detector.detect(&self.roster).filter(|found| found.in_conflict()) {
             let mut found = *found;
             if let (None, Some(net)) = (found.lane, &self.net) {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
@@ -220,7 +220,7 @@ impl Run {
     /// The events.
     pub fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
-        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(frame, roster, row));
+        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(roster, row));
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
     }
 

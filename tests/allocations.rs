@@ -36,8 +36,8 @@ fn a_warm_detector_allocates_nothing() {
         }
         step(&mut frame, &users, number);
         detector.follow(&frame, &roster);
-        detector.approach(&frame);
-        found += detector.detect(&frame, &roster).len();
+        detector.approach();
+        found += detector.detect(&roster).len();
     }
     assert!(found > 1000, "{found}");
     assert_eq!(counting::allocations() - before, 0);

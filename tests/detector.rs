@@ -48,8 +48,8 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     }
     let mut detector = Detector::new(&options, None);
     detector.follow(&frame, &roster);
-    detector.approach(&frame);
-    let found = detector.detect(&frame, &roster).copied().collect::<Vec<_>>();
+    detector.approach();
+    let found = detector.detect(&roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
 }
 
@@ -133,13 +133,13 @@ fn any_number_of_threads_finds_the_same() {
         }
         let [alone, others @ ..] = &mut detectors;
         alone.follow(&frame, &roster);
-        alone.approach(&frame);
-        let found = alone.detect(&frame, &roster).copied().collect::<Vec<_>>();
+        alone.approach();
+        let found = alone.detect(&roster).copied().collect::<Vec<_>>();
         assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
         for detector in others {
             detector.follow(&frame, &roster);
-            detector.approach(&frame);
-            assert!(detector.detect(&frame, &roster).eq(&found));
+            detector.approach();
+            assert!(detector.detect(&roster).eq(&found));
             assert_eq!(detector.work(), alone.work());
         }
     }

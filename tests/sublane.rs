@@ -39,10 +39,10 @@ fn encounters(y: f64, drift: f64) -> usize {
             route_position: 0,
             lateral_speed: if row == 0 { drift } else { 0.0 },
         };
-        detector.place(&frame, &roster, row, &placement);
+        detector.place(&roster, row, &placement);
     }
-    detector.approach(&frame);
-    detector.detect(&frame, &roster).len()
+    detector.approach();
+    detector.detect(&roster).len()
 }
 
 #[test]

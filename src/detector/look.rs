@@ -1,9 +1,11 @@
 //! Who is where and how far each needs to stand; phase 1: which pairs may meet before they do.
 
+use std::ops::Range;
+
 use super::parts::{each, share};
-use super::{Detector, LEVEL, Row, Work, Worker};
+use super::{Detector, LEVEL, User, Work};
 use crate::braking::stopping_distance;
-use crate::frame::{Frame, ProfileIndex, Roster};
+use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
@@ -16,21 +18,6 @@ use crate::units::Metre;
 /// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
 const STANDS: f64 = 0.0;
 
-impl Row {
-    /// Nobody's yet.
-    const EMPTY: Self = Self {
-        axis: Vector::new(1.0, 0.0),
-        stop: 0.0,
-        profile: ProfileIndex(0),
-        category: Category::Obstacle,
-        moves: false,
-        ahead: true,
-        on_lanes: false,
-    };
-}
-
-const NOWHERE: Area = Area { bounds: Bounds::EMPTY, radius: 0.0 };
-
 impl Detector {
     /// Where everybody is now. Returns the frame's rows whose lane the detector has to know for both phases; the caller
     /// says it with [`Detector::place`], and leaves out whom it cannot place.
@@ -42,13 +29,13 @@ impl Detector {
             self.memory.resize(roster.len(), Default::default());
         }
         self.look(frame, roster);
-        self.turns(frame);
+        self.turns();
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
         if self.options.path == PathModel::Lanes {
             for row in 0..self.rows.len() {
                 if !self.rows[row].ahead {
-                    self.keep_on_path(frame, row);
+                    self.keep_on_path(row);
                 }
             }
         }
@@ -56,107 +43,103 @@ impl Detector {
     }
 
     /// Phase 1: which pairs may meet.
-    pub fn approach(&mut self, frame: &Frame) {
-        self.find_pairs(frame);
+    pub fn approach(&mut self) {
+        self.search.prepare(&self.areas);
+        self.users.clear();
+        let (search, rows) = (&self.search, &self.rows);
+        self.users.extend((0..rows.len() as u32).map(|place| rows[search.item(place) as usize]));
+        self.find_pairs();
         for worker in &mut self.workers {
             self.work += std::mem::take(&mut worker.work);
         }
     }
 
-    /// Every row's area and what else follows from its state alone.
+    /// Everybody's area and what else follows from its state alone.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
-        self.rows.resize(frame.len(), Row::EMPTY);
-        self.areas.resize(frame.len(), NOWHERE);
         let straight_only = self.options.mode == Mode::Paper || self.options.path == PathModel::Straight;
         let by_lanes = !straight_only && self.options.path == PathModel::Lanes && self.net.is_some();
         let by_arcs = !straight_only && self.options.path == PathModel::Arc;
         let (leaves_out, epsilon) = (self.leaves_out, self.options.epsilon);
+        self.rows.resize(frame.len(), User::NOBODY);
+        self.areas.resize(frame.len(), Area::NOWHERE);
         let share = share(frame.len(), self.workers.len());
         let rows = self.rows.chunks_mut(share).zip(self.areas.chunks_mut(share));
-        let parts = rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share)));
-        each(&mut self.workers, parts, |_, ((rows, areas), (users, states))| {
-            for (((row, area), user), state) in rows.iter_mut().zip(areas).zip(users).zip(states) {
-                let road_user = roster.user(*user);
-                let profile = roster.profile_at(road_user.profile);
-                row.axis = direction(state.heading);
-                row.profile = road_user.profile;
-                row.category = profile.category;
-                row.moves = state.speed > STANDS;
-                row.stop = if row.moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
-                row.ahead = !(by_arcs || by_lanes && row.moves && row.category == Category::Vehicle);
-                row.on_lanes = false;
-                let front = Point::new(state.x, state.y);
-                *area = if row.category == Category::Obstacle {
+        let parts = (0..).step_by(share).zip(rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share))));
+        each(&mut self.workers, parts, |_, (first, ((rows, areas), (users, states)))| {
+            let frame_rows = (first..).zip(users).zip(states);
+            for ((now, area), ((row, &index), state)) in rows.iter_mut().zip(areas).zip(frame_rows) {
+                let profile_index = roster.user(index).profile;
+                let profile = roster.profile_at(profile_index);
+                let moves = state.speed > STANDS;
+                *now = User {
+                    front: Point::new(state.x, state.y),
+                    axis: direction(state.heading),
+                    z: state.z,
+                    speed: state.speed,
+                    stop: if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 },
+                    row,
+                    index,
+                    profile: profile_index,
+                    category: profile.category,
+                    moves,
+                    ahead: !(by_arcs || by_lanes && moves && profile.category == Category::Vehicle),
+                    on_lanes: false,
+                };
+                let reach = now.stop + epsilon;
+                *area = if now.category == Category::Obstacle {
                     let mut bounds = Bounds::EMPTY;
-                    road_user.shape.iter().for_each(|part| bounds.join(&part.bounds));
+                    roster.user(index).shape.iter().for_each(|part| bounds.join(&part.bounds));
                     bounds.into()
-                } else if row.ahead && leaves_out.ways_apart {
-                    straight_ahead(profile, front, row.axis, row.stop + epsilon).into()
+                } else if now.ahead && leaves_out.ways_apart {
+                    straight_ahead(profile, now.front, now.axis, reach).into()
                 } else {
-                    circle(profile, front, row.axis, row.stop + epsilon).into()
+                    circle(profile, now.front, now.axis, reach).into()
                 };
             }
         });
     }
 
     /// How the paths of now turn, where they are arcs.
-    fn turns(&mut self, frame: &Frame) {
+    fn turns(&mut self) {
         if self.options.path != PathModel::Arc {
             return;
         }
-        for (row, (user, state)) in self.rows.iter().zip(frame.users().iter().zip(frame.states())) {
-            let (memory, front) = (&mut self.memory[user.0 as usize], Point::new(state.x, state.y));
+        for user in &self.rows {
+            let memory = &mut self.memory[user.index.0 as usize];
             if let Some((last, last_axis)) = memory.last {
-                memory.curvature = arc::curvature(turn(&last_axis, &row.axis), (front - last).norm());
+                memory.curvature = arc::curvature(turn(&last_axis, &user.axis), (user.front - last).norm());
             }
-            memory.last = Some((front, row.axis));
+            memory.last = Some((user.front, user.axis));
         }
     }
 
-    /// The pairs whose areas meet, but for those that are none; each worker keeps those that it found.
-    fn find_pairs(&mut self, frame: &Frame) {
+    /// The pairs whose areas meet, but for those that are none. Each worker keeps those that it found.
+    fn find_pairs(&mut self) {
+        let (search, users, all) = (&self.search, &self.users[..], !self.leaves_out.circles_apart);
+        let share = share(users.len(), self.workers.len());
         for worker in &mut self.workers {
             worker.pairs.clear();
         }
-        let rows = &self.rows[..];
-        let count = frame.len() as u32;
-        if !self.leaves_out.circles_apart {
-            let worker = &mut self.workers[0];
-            for (a, b) in (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))) {
-                if is_pair(rows, frame, a, b, &mut worker.work) {
-                    worker.pairs.push((a, b));
-                }
-            }
-            return;
-        }
-        self.search.prepare(&self.areas);
-        let (search, areas) = (&self.search, &self.areas);
-        let share = share(search.places(), self.workers.len());
-        let parts = (0..search.places()).step_by(share).map(|start| start..(start + share).min(search.places()));
+        let parts = (0..users.len()).step_by(share).map(|start| start..(start + share).min(users.len()));
         each(&mut self.workers, parts, |worker, part| {
             let (pairs, work) = (&mut worker.pairs, &mut worker.work);
-            search.sweep(part, |a, b| {
-                if is_pair(rows, frame, a, b, work) {
-                    pairs.push((a, b))
+            let found = |a: u32, b: u32| {
+                let (first, second) = (&users[a as usize], &users[b as usize]);
+                if is_pair(first, second, work) {
+                    pairs.push(if first.row < second.row { (a, b) } else { (b, a) });
                 }
-            });
+            };
+            if all { every_pair(part, found) } else { search.sweep(part, found) }
         });
-        let Worker { pairs, work, .. } = &mut self.workers[0];
-        search.compare_large(areas, |a, b| {
-            if is_pair(rows, frame, a, b, work) {
-                pairs.push((a, b))
-            }
-        });
-        self.work.circles_apart += all_pairs(frame.len());
+        self.work.circles_apart += all_pairs(users.len());
         self.work.circles_apart -= self.workers.iter().map(|worker| worker.work.pairs).sum::<u64>();
     }
 
     /// Follows a row's path along the lanes, or asks for its lane.
-    fn keep_on_path(&mut self, frame: &Frame, row: usize) {
-        let state = &frame.states()[row];
-        let memory = &mut self.memory[frame.users()[row].0 as usize];
-        self.rows[row].on_lanes = memory.path.follow(Point::new(state.x, state.y));
-        if self.leaves_out.known_paths && !self.routes_may_change && self.rows[row].on_lanes {
+    fn keep_on_path(&mut self, row: usize) {
+        let user = &mut self.rows[row];
+        user.on_lanes = self.memory[user.index.0 as usize].path.follow(user.front);
+        if self.leaves_out.known_paths && !self.routes_may_change && user.on_lanes {
             self.work.known_paths += 1;
         } else {
             self.unplaced.push(row as u32);
@@ -164,21 +147,43 @@ impl Detector {
     }
 }
 
+impl User {
+    /// Nobody yet.
+    const NOBODY: Self = Self {
+        front: Point::new(0.0, 0.0),
+        axis: Vector::new(1.0, 0.0),
+        z: 0.0,
+        speed: 0.0,
+        stop: 0.0,
+        row: 0,
+        index: UserIndex(0),
+        profile: ProfileIndex(0),
+        category: Category::Obstacle,
+        moves: false,
+        ahead: true,
+        on_lanes: false,
+    };
+}
+
+/// Each of these places with all before it.
+fn every_pair(places: Range<usize>, mut found: impl FnMut(u32, u32)) {
+    for place in places {
+        (0..place).for_each(|other| found(other as u32, place as u32));
+    }
+}
+
 /// Whether two road users near each other are a pair at all.
-fn is_pair(rows: &[Row], frame: &Frame, first: u32, second: u32, work: &mut Work) -> bool {
-    let (a, b) = (&rows[first as usize], &rows[second as usize]);
+fn is_pair(a: &User, b: &User, work: &mut Work) -> bool {
     work.pairs += 1;
     if !a.moves && !b.moves {
         work.both_stand += 1;
         return false;
     }
-    let (a_is, b_is) = (a.category, b.category);
-    let heights = [first, second].map(|row| frame.states()[row as usize].z);
-    if (heights[0] - heights[1]).abs() > LEVEL && a_is != Category::Obstacle && b_is != Category::Obstacle {
+    if (a.z - b.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
         work.other_level += 1;
         return false;
     }
-    if a_is == Category::Person && b_is == Category::Person {
+    if a.category == Category::Person && b.category == Category::Person {
         work.both_persons += 1;
         return false;
     }

@@ -1,140 +1,155 @@
 //! Phase 2, first half: where a pair would meet, what gap and μ are there.
 
 use super::ways::Ways;
-use super::{Met, Scene, Work, Worker};
+use super::{Found, Met, Scene, Work, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
-use crate::encounter::Encounter;
+use crate::encounter::{Encounter, Kind};
 use crate::geometry::rectangle;
 use crate::options::Mode;
+use crate::units::{Metre, Radian};
+
+/// Who of a pair meets whom.
+struct Roles<'a> {
+    /// The ego's place and the foe's.
+    places: [u32; 2],
+    ego: &'a Mover<'a>,
+    foe: &'a Mover<'a>,
+}
+
+impl<'a> Roles<'a> {
+    fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Mover<'a>; 2]) -> Self {
+        match ego_is_first {
+            true => Self { places: [first, second], ego: a, foe: b },
+            false => Self { places: [second, first], ego: b, foe: a },
+        }
+    }
+}
+
+/// How a pair would meet.
+struct How {
+    kind: Kind,
+    angle: Radian,
+    /// cos α.
+    sigma: f64,
+    gap: Metre,
+    collision: bool,
+}
 
 impl Scene<'_> {
     /// The pairs of a worker that would meet.
     pub(super) fn meet_all(&self, worker: &mut Worker) {
-        let Worker { pairs, work, ways, encounters, unmeasured, .. } = worker;
+        let Worker { pairs, work, ways, found } = worker;
         for &(a, b) in pairs.iter() {
-            let met = match self.options.mode {
-                Mode::Closecall => self.meet(ways, work, a, b),
-                Mode::Paper => self.meet_on_paper(ways, a, b),
-            };
-            let Some((encounter, meeting)) = met else { continue };
-            let leaves = !meeting.leads && meeting.foe_axis.is_some() && encounter.angle.cos() > 0.0;
-            if leaves || encounter.in_conflict() {
-                let rows = [encounter.ego_row, encounter.foe_row];
-                unmeasured.push(Met { encounter: encounters.len() as u32, rows, meeting, leaves });
+            match self.options.mode {
+                Mode::Closecall => self.meet(ways, work, [a, b], found),
+                Mode::Paper => self.meet_on_paper(ways, [a, b], found),
             }
-            encounters.push(encounter);
         }
     }
 
-    fn meet(&self, ways: &mut Ways, work: &mut Work, a: u32, b: u32) -> Option<(Encounter, Meeting)> {
-        ways.see(self, a);
-        ways.see(self, b);
-        if self.leaves_out.ways_apart && !ways.bounds(self, a).meet(ways.bounds(self, b)) {
+    fn meet(&self, ways: &mut Ways, work: &mut Work, places: [u32; 2], found: &mut Found) {
+        places.iter().for_each(|place| ways.see(self, *place));
+        let [a, b] = places;
+        if self.leaves_out.ways_apart && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
             work.ways_apart += 1;
-            return None;
+            return;
         }
-        let (first, second) = (ways.mover(self, a), ways.mover(self, b));
-        let (first, second, a, b) = if first.shape.is_empty() { (first, second, a, b) } else { (second, first, b, a) };
-        let id = |row: u32| &self.roster.user(self.user(row)).id;
-        let a_is_smaller = || id(a) <= id(b);
+        // An obstacle is nobody's ego.
+        let places = if self.is_obstacle(a) { [b, a] } else { places };
+        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
+        let id = |place: u32| &self.roster.user(self.user(place).index).id;
+        let a_is_smaller = || id(places[0]) <= id(places[1]);
         if side::touch_now(&first, &second) {
-            let ego_is_a = !second.shape.is_empty() || a_is_smaller();
-            let (ego, foe) = if ego_is_a { (&first, &second) } else { (&second, &first) };
-            let foe_axis = foe.shape.is_empty().then_some(foe.rectangle.axis);
-            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: ego.rectangle, foe_axis, leads: true };
-            let rows = if ego_is_a { (a, b) } else { (b, a) };
-            return Some(self.met(rows, (ego, foe), meeting, true));
+            let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), places, [&first, &second]);
+            let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
+            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
+            return self.met(found, &roles, &meeting, true);
         }
         let in_line = accurate::drive_in_line(&first, &second);
         if in_line && self.leaves_out.in_line {
             work.in_line += 1;
-            let (ego_is_a, meeting) = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller)?;
-            return Some(self.met_as(ego_is_a, (a, b), (&first, &second), meeting));
+            if let Some((ego_is_first, meeting)) = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller) {
+                self.met(found, &Roles::new(ego_is_first, places, [&first, &second]), &meeting, false);
+            }
+            return;
         }
-        ways.cover(self, a);
-        ways.cover(self, b);
-        let (first, second) = (ways.mover(self, a), ways.mover(self, b));
+        places.iter().for_each(|place| ways.cover(self, *place));
+        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
         if !first.cover.meets(second.cover) {
             work.ways_apart += 1;
-            return None;
+            return;
         }
         work.swept += 1;
-        let (ego_is_a, meeting) = accurate::meet_swept(&first, &second, in_line, &a_is_smaller)?;
-        Some(self.met_as(ego_is_a, (a, b), (&first, &second), meeting))
+        if let Some((ego_is_first, meeting)) = accurate::meet_swept(&first, &second, in_line, &a_is_smaller) {
+            self.met(found, &Roles::new(ego_is_first, places, [&first, &second]), &meeting, false);
+        }
     }
 
-    fn meet_on_paper(&self, ways: &Ways, a: u32, b: u32) -> Option<(Encounter, Meeting)> {
-        let (first, second) = (ways.mover(self, a), ways.mover(self, b));
-        if !first.shape.is_empty() || !second.shape.is_empty() {
-            return None;
+    fn meet_on_paper(&self, ways: &Ways, places: [u32; 2], found: &mut Found) {
+        if places.iter().any(|place| self.is_obstacle(*place)) {
+            return;
         }
-        let found = accurate::paper::measure(&first, &second, self.options);
-        let (ego, foe) = if found.ego_is_a { (&first, &second) } else { (&second, &first) };
+        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
+        let measured = accurate::paper::measure(&first, &second, self.options);
+        let roles = Roles::new(measured.ego_is_a, places, [&first, &second]);
+        let (ego, foe) = (roles.ego, roles.foe);
         let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
         let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
         // Eq. 4: the ego's detection radius reaches the foe's front.
-        if between - foe.rectangle.half_length > radius || !found.distance.is_finite() {
-            return None;
+        if between - foe.rectangle.half_length > radius || !measured.distance.is_finite() {
+            return;
         }
         let collision = rectangle::touches(&ego.rectangle, &foe.rectangle);
-        let rows = if found.ego_is_a { (a, b) } else { (b, a) };
-        let (mut encounter, meeting) = self.met(rows, (ego, foe), found.meeting, collision);
-        encounter.kind = found.kind;
-        encounter.gap = found.distance;
-        encounter.margin = encounter.gap - encounter.mu;
-        Some((encounter, meeting))
+        let angle = measured.meeting.angle();
+        let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, collision };
+        self.add(found, &roles, &measured.meeting, how);
     }
 
-    fn met_as(
-        &self,
-        ego_is_a: bool,
-        (a, b): (u32, u32),
-        (first, second): (&Mover, &Mover),
-        meeting: Meeting,
-    ) -> (Encounter, Meeting) {
-        if ego_is_a {
-            self.met((a, b), (first, second), meeting, false)
-        } else {
-            self.met((b, a), (second, first), meeting, false)
-        }
-    }
-
-    /// Gap, μ and margin of a pair that would meet, as ego and foe; the gap of one whose foe has to come and go is not
-    /// known yet.
-    fn met(
-        &self,
-        rows: (u32, u32),
-        (ego, foe): (&Mover, &Mover),
-        meeting: Meeting,
-        collision: bool,
-    ) -> (Encounter, Meeting) {
+    fn met(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
         let angle = meeting.angle();
         let sigma = angle.cos();
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, meeting.foe_way, sigma) };
-        let mu = accurate::mu(self.mu_model(), ego, foe, sigma, self.options.epsilon);
-        let place = meeting.place();
-        let user = self.user(rows.0);
-        let path = self.row(rows.0).on_lanes.then(|| &self.memory[user.0 as usize].path);
-        let encounter = Encounter {
-            ego: user,
-            foe: self.user(rows.1),
-            ego_row: rows.0,
-            foe_row: rows.1,
-            kind: accurate::kind_at(angle, self.options),
+        let how = How { kind: accurate::kind_at(angle, self.options), angle, sigma, gap, collision };
+        self.add(found, roles, meeting, how);
+    }
+
+    /// Adds a pair that would meet, and measures it; later where a path may have to be laid further for that.
+    fn add(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, how: How) {
+        let How { kind, angle, sigma, gap, collision } = how;
+        let mu = accurate::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
+        let at = meeting.place();
+        let [ego, foe] = roles.places.map(|place| self.user(place));
+        let path = ego.on_lanes.then(|| &self.memory[ego.index.0 as usize].path);
+        let mut encounter = Encounter {
+            ego: ego.index,
+            foe: foe.index,
+            ego_row: ego.row,
+            foe_row: foe.row,
+            kind,
             angle,
             gap,
             mu,
             margin: gap - mu,
             ego_way: meeting.ego_way,
             foe_way: meeting.foe_way,
-            x: place.x,
-            y: place.y,
+            x: at.x,
+            y: at.y,
             lane: path.and_then(|path| path.lane_at(meeting.ego_way)),
             collision,
             nearness: None,
         };
-        (encounter, meeting)
+        let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
+        if leaves || encounter.in_conflict() {
+            let met = Met { places: roles.places, meeting: *meeting, sigma, leaves };
+            if ego.on_lanes || foe.on_lanes {
+                found.unmeasured.push((found.encounters.len() as u32, met));
+            } else {
+                self.measure(&mut found.courses, [roles.ego, roles.foe], &met, &mut encounter);
+            }
+        }
+        found.pairs.push((ego.row.min(foe.row), ego.row.max(foe.row)));
+        found.encounters.push(encounter);
     }
 
     fn mu_model(&self) -> MuModel {

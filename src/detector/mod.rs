@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use crate::accurate::Meeting;
 use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::frame::{ProfileIndex, Roster, UserIndex};
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
@@ -24,7 +24,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::precollision::{Area, Search};
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
-use crate::units::Metre;
+use crate::units::{Metre, MetrePerSecond};
 use order::Order;
 use parts::each;
 use ways::Ways;
@@ -81,9 +81,12 @@ pub struct Detector {
     routes_may_change: bool,
     sublane: bool,
     memory: Vec<Memory>,
-    rows: Vec<Row>,
+    /// Everybody in the step, in the order of the frame's rows.
+    rows: Vec<User>,
     areas: Vec<Area>,
     search: Search,
+    /// The same in the search's places: who meets is near in memory too.
+    users: Vec<User>,
     order: Order,
     unplaced: Vec<u32>,
     workers: Vec<Worker>,
@@ -97,11 +100,18 @@ struct Memory {
     curvature: f64,
 }
 
-/// What is known of a frame's row in the step under way.
+/// What the phases know of a road user in the step under way.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct User {
+    /// Front-bumper centre.
+    front: Point,
     axis: Vector,
+    z: Metre,
+    speed: MetrePerSecond,
     stop: Metre,
+    /// Which row of the frame.
+    row: u32,
+    index: UserIndex,
     profile: ProfileIndex,
     category: Category,
     moves: bool,
@@ -114,23 +124,44 @@ struct Row {
 #[derive(Default)]
 struct Worker {
     work: Work,
+    /// Places of two, the smaller row first.
     pairs: Vec<(u32, u32)>,
     ways: Ways,
-    encounters: Vec<Encounter>,
-    unmeasured: Vec<Met>,
-    courses: [Vec<Pose>; 2],
+    found: Found,
 }
 
-/// A pair that would meet and is not measured yet.
+/// The pairs that would meet.
+#[derive(Default)]
+struct Found {
+    encounters: Vec<Encounter>,
+    /// The rows of each, the smaller first.
+    pairs: Vec<(u32, u32)>,
+    /// Which of them are not measured yet.
+    unmeasured: Vec<(u32, Met)>,
+    courses: Courses,
+}
+
+/// Poses further ahead than the ways of the step: the ego's and the foe's.
+type Courses = [Vec<Pose>; 2];
+
+/// What measuring a pair that would meet starts from.
 #[derive(Clone, Copy)]
 struct Met {
-    /// Which of the worker's encounters.
-    encounter: u32,
-    /// The ego's row and the foe's.
-    rows: [u32; 2],
+    /// The ego's place and the foe's.
+    places: [u32; 2],
     meeting: Meeting,
+    /// cos α.
+    sigma: f64,
     /// Whether the gap waits for when the foe has left the meeting place.
     leaves: bool,
+}
+
+impl Found {
+    fn clear(&mut self) {
+        self.encounters.clear();
+        self.pairs.clear();
+        self.unmeasured.clear();
+    }
 }
 
 /// What phase 2 reads of the step under way.
@@ -138,28 +169,23 @@ struct Met {
 struct Scene<'a> {
     options: &'a Options,
     leaves_out: Exclusions,
-    frame: &'a Frame,
     roster: &'a Roster,
     memory: &'a [Memory],
-    rows: &'a [Row],
-    areas: &'a [Area],
+    search: &'a Search,
+    users: &'a [User],
 }
 
 impl Scene<'_> {
-    fn user(&self, row: u32) -> UserIndex {
-        self.frame.users()[row as usize]
+    fn user(&self, place: u32) -> &User {
+        &self.users[place as usize]
     }
 
-    fn state(&self, row: u32) -> &State {
-        &self.frame.states()[row as usize]
+    fn is_obstacle(&self, place: u32) -> bool {
+        self.user(place).category == Category::Obstacle
     }
 
-    fn row(&self, row: u32) -> &Row {
-        &self.rows[row as usize]
-    }
-
-    fn profile(&self, row: u32) -> &Profile {
-        self.roster.profile_at(self.row(row).profile)
+    fn profile(&self, user: &User) -> &Profile {
+        self.roster.profile_at(user.profile)
     }
 }
 
@@ -177,6 +203,7 @@ impl Detector {
             rows: Vec::new(),
             areas: Vec::new(),
             search: Search::default(),
+            users: Vec::new(),
             order: Order::default(),
             unplaced: Vec::new(),
             workers: vec![Worker::default()],
@@ -224,61 +251,61 @@ impl Detector {
     }
 
     /// Whether the road user of a row is still on the path that was laid for this route.
-    pub fn keeps_path(&self, frame: &Frame, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        let user = frame.users()[row as usize];
-        self.rows[row as usize].on_lanes && self.memory[user.0 as usize].path.is_for(route)
+    pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
+        let user = &self.rows[row as usize];
+        user.on_lanes && self.memory[user.index.0 as usize].path.is_for(route)
     }
 
     /// Where the road user of a row is on the net.
-    pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
+    pub fn place(&mut self, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
-        if self.keeps_path(frame, row, &placement.route) {
+        if self.keeps_path(row, &placement.route) {
             return;
         }
-        let user = frame.users()[row as usize];
-        let memory = &mut self.memory[user.0 as usize];
-        let state = &frame.states()[row as usize];
+        let user = &mut self.rows[row as usize];
+        let (path, profile) = (&mut self.memory[user.index.0 as usize].path, roster.profile_at(user.profile));
         let start = Start {
-            front: Point::new(state.x, state.y),
-            axis: self.rows[row as usize].axis,
-            length: roster.profile_of(user).chord,
-            width: roster.profile_of(user).width,
-            speed: state.speed,
+            front: user.front,
+            axis: user.axis,
+            length: profile.chord,
+            width: profile.width,
+            speed: user.speed,
             sublane: self.sublane,
         };
-        memory.path.lay(net, &start, placement);
-        self.rows[row as usize].on_lanes = memory.path.track.is_laid();
+        path.lay(net, &start, placement);
+        user.on_lanes = path.track.is_laid();
     }
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
-    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
+    pub fn detect(&mut self, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
         // In a pair or not: who came to the end of its path would be given another one.
-        for row in 0..self.rows.len() as u32 {
-            if self.rows[row as usize].on_lanes {
-                self.lengthen(frame, roster, row, self.rows[row as usize].stop + self.options.epsilon);
+        for row in 0..self.rows.len() {
+            let user = self.rows[row];
+            if user.on_lanes {
+                self.lengthen(roster, &user, user.stop + self.options.epsilon);
             }
         }
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
-            worker.encounters.clear();
-            worker.unmeasured.clear();
-            worker.ways.begin(self.rows.len());
+            worker.found.clear();
+            worker.ways.begin(self.users.len());
         }
-        let scene = self.scene(frame, roster);
+        let scene = self.scene(roster);
         let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
         each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
-        for met in workers.iter().flat_map(|worker| &worker.unmeasured) {
-            for row in met.rows {
-                if self.rows[row as usize].on_lanes {
-                    let way = self.scene(frame, roster).way_to_measure(row, &met.meeting);
-                    self.lengthen(frame, roster, row, way);
+        for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
+            for place in met.places {
+                let user = self.users[place as usize];
+                if user.on_lanes {
+                    let way = self.scene(roster).way_to_measure(&user, &met.meeting);
+                    self.lengthen(roster, &user, way);
                 }
             }
         }
-        let scene = self.scene(frame, roster);
-        let busy = workers.iter_mut().filter(|worker| !worker.unmeasured.is_empty());
+        let scene = self.scene(roster);
+        let busy = workers.iter_mut().filter(|worker| !worker.found.unmeasured.is_empty());
         each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
-        self.order.sort(self.rows.len(), &workers);
+        self.order.sort(self.users.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);
         }
@@ -286,31 +313,28 @@ impl Detector {
         self.order.sorted(&self.workers)
     }
 
-    /// Sees to it that the path of a row's road user reaches so far ahead, if its route does.
-    fn lengthen(&mut self, frame: &Frame, roster: &Roster, row: u32, way: Metre) {
-        let user = frame.users()[row as usize];
+    /// Sees to it that somebody's path reaches so far ahead, if the route does.
+    fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
         if let Some(net) = &self.net {
-            self.memory[user.0 as usize].path.reach(net, roster.profile_of(user).chord, way);
+            self.memory[user.index.0 as usize].path.reach(net, roster.profile_at(user.profile).chord, way);
         }
     }
 
-    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Scene<'a> {
+    fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {
         Scene {
             options: &self.options,
             leaves_out: self.leaves_out,
-            frame,
             roster,
             memory: &self.memory,
-            rows: &self.rows,
-            areas: &self.areas,
+            search: &self.search,
+            users: &self.users,
         }
     }
 
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
-    pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
-        let (scene, mut poses) = (self.scene(frame, roster), Vec::new());
-        let stop = scene.row(row).stop;
-        scene.course(row, &[stop, stop + self.options.epsilon], false, &mut poses);
+    pub fn path(&self, roster: &Roster, row: u32) -> Vec<Point> {
+        let (user, mut poses) = (&self.rows[row as usize], Vec::new());
+        self.scene(roster).course(user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
 }

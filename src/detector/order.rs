@@ -20,9 +20,7 @@ impl Order {
     pub(super) fn sort(&mut self, count: usize, workers: &[Worker]) {
         let places = || {
             workers.iter().zip(0..).flat_map(|(worker, number)| {
-                worker.encounters.iter().zip(0..).map(move |(&Encounter { ego_row: a, foe_row: b, .. }, index)| {
-                    ((a.min(b), a.max(b)), number, index)
-                })
+                worker.found.pairs.iter().zip(0..).map(move |(&pair, index)| (pair, number, index))
             })
         };
         self.starts.clear();
@@ -50,6 +48,6 @@ impl Order {
 
     /// The sorted encounters of these workers.
     pub(super) fn sorted<'a>(&'a self, workers: &'a [Worker]) -> impl ExactSizeIterator<Item = &'a Encounter> {
-        self.sorted.iter().map(|&(_, worker, index)| &workers[worker as usize].encounters[index as usize])
+        self.sorted.iter().map(|&(_, worker, index)| &workers[worker as usize].found.encounters[index as usize])
     }
 }

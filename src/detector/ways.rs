@@ -1,18 +1,17 @@
 //! Where the road users of a step will go: their poses, and the boxes around what they cover on the way. Laid when
 //! somebody asks, then kept until the step ends.
 
-use super::{Row, Scene};
+use super::{Scene, User};
 use crate::accurate::{Cover, Mover};
-use crate::frame::State;
+use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{Bounds, Point};
 use crate::options::{Mode, PathModel};
 use crate::path::{Pose, arc, straight};
 use crate::profile::Category;
 use crate::units::Metre;
 
-/// The ways of a step that were asked for.
+/// The ways of a step that were asked for, by place.
 #[derive(Default)]
 pub(super) struct Ways {
     step: u32,
@@ -21,7 +20,7 @@ pub(super) struct Ways {
     covers: Vec<Cover>,
 }
 
-/// The way of a row.
+/// The way of who is in a place.
 #[derive(Clone, Copy)]
 struct Laid {
     /// The step it was laid in.
@@ -39,37 +38,38 @@ impl Laid {
 }
 
 impl Ways {
-    /// Forgets those of the last step; rows below `rows` may be asked for.
-    pub(super) fn begin(&mut self, rows: usize) {
-        if self.laid.len() < rows {
-            self.laid.resize(rows, Laid::NOTHING);
+    /// Forgets those of the last step; places below `places` may be asked for.
+    pub(super) fn begin(&mut self, places: usize) {
+        if self.laid.len() < places {
+            self.laid.resize(places, Laid::NOTHING);
         }
         self.step = self.step.wrapping_add(1).max(1);
         self.poses.clear();
         self.covers.clear();
     }
 
-    /// Lays a row's poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where
-    /// it will be.
-    pub(super) fn see(&mut self, scene: &Scene, row: u32) {
-        if !scene.row(row).ahead {
-            self.lay(scene, row);
+    /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
+    /// will be.
+    pub(super) fn see(&mut self, scene: &Scene, place: u32) {
+        if !scene.user(place).ahead {
+            self.lay(scene, place);
         }
     }
 
-    fn lay(&mut self, scene: &Scene, row: u32) {
-        let laid = &mut self.laid[row as usize];
+    fn lay(&mut self, scene: &Scene, place: u32) {
+        let laid = &mut self.laid[place as usize];
         if laid.step == self.step {
             return;
         }
-        let (profile, stop, start) = (scene.profile(row), scene.row(row).stop, self.poses.len());
-        scene.course(row, &[stop, stop + scene.options.epsilon], false, &mut self.poses);
+        let user = scene.user(place);
+        let (profile, start) = (scene.profile(user), self.poses.len());
+        scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, &mut self.poses);
         let poses = &self.poses[start..];
-        let axis = poses.first().map_or(scene.row(row).axis, |pose| pose.axis);
+        let axis = poses.first().map_or(user.axis, |pose| pose.axis);
         let bounds = if !scene.leaves_out.ways_apart {
             Bounds::EVERYTHING
-        } else if scene.row(row).ahead {
-            scene.areas[row as usize].bounds
+        } else if user.ahead {
+            scene.search.area(place).bounds
         } else {
             let mut bounds = Bounds::EMPTY;
             for pose in poses {
@@ -86,15 +86,15 @@ impl Ways {
         };
     }
 
-    /// Lays a row's poses and the boxes around them.
-    pub(super) fn cover(&mut self, scene: &Scene, row: u32) {
-        self.lay(scene, row);
-        let laid = &mut self.laid[row as usize];
+    /// Lays the poses and the boxes around them.
+    pub(super) fn cover(&mut self, scene: &Scene, place: u32) {
+        self.lay(scene, place);
+        let laid = &mut self.laid[place as usize];
         if laid.covers.is_some() {
             return;
         }
         laid.covers = Some(self.covers.len() as u32);
-        let profile = scene.profile(row);
+        let profile = scene.profile(scene.user(place));
         let poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.leaves_out.ways_apart {
             true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
@@ -110,35 +110,35 @@ impl Ways {
         }
     }
 
-    /// The box around all that a row covers on its way.
-    pub(super) fn bounds<'a>(&'a self, scene: &'a Scene, row: u32) -> &'a Bounds {
-        match self.laid(row) {
-            Some(laid) => &laid.bounds,
-            None => &scene.areas[row as usize].bounds,
+    /// The box around all that it covers on its way.
+    pub(super) fn bounds(&self, scene: &Scene, place: u32) -> Bounds {
+        match self.laid(place) {
+            Some(laid) => laid.bounds,
+            None => scene.search.area(place).bounds,
         }
     }
 
-    /// A row with as much of its way as was asked for.
-    pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, row: u32) -> Mover<'a> {
-        let Row { axis, stop, category, .. } = *scene.row(row);
-        let (profile, State { x, y, speed, .. }) = (scene.roster.profile_at(scene.row(row).profile), *scene.state(row));
+    /// Who is in a place, with as much of its way as was asked for.
+    pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, place: u32) -> Mover<'a> {
+        let user = scene.user(place);
+        let profile = scene.roster.profile_at(user.profile);
         let mut mover = Mover {
-            rectangle: Rectangle::behind(Point::new(x, y), axis, profile.length, profile.width),
+            rectangle: Rectangle::behind(user.front, user.axis, profile.length, profile.width),
             shape: &[],
             poses: &[],
             straight: true,
-            reach: stop + scene.options.epsilon,
+            reach: user.stop + scene.options.epsilon,
             cover: &Cover::NOWHERE,
             covers: &[],
-            speed,
+            speed: user.speed,
             brakes: &profile.brakes,
-            stop,
+            stop: user.stop,
         };
-        if category == Category::Obstacle {
-            mover.shape = &scene.roster.user(scene.user(row)).shape;
+        if user.category == Category::Obstacle {
+            mover.shape = &scene.roster.user(user.index).shape;
             mover.reach = 0.0;
         }
-        if let Some(laid) = self.laid(row) {
+        if let Some(laid) = self.laid(place) {
             mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
             mover.straight = laid.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
@@ -151,29 +151,27 @@ impl Ways {
         mover
     }
 
-    fn laid(&self, row: u32) -> Option<&Laid> {
-        self.laid.get(row as usize).filter(|laid| laid.step == self.step)
+    fn laid(&self, place: u32) -> Option<&Laid> {
+        self.laid.get(place as usize).filter(|laid| laid.step == self.step)
     }
 }
 
 impl Scene<'_> {
-    /// Adds a row's poses at the given ways, and between, as far as its path is known; `beyond` that straight on.
-    pub(super) fn course(&self, row: u32, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
-        let Row { axis, category, on_lanes, .. } = *self.row(row);
+    /// Adds a road user's poses at the given ways, and between, as far as its path is known; `beyond` that straight on.
+    pub(super) fn course(&self, user: &User, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
+        let User { front, axis, category, on_lanes, .. } = *user;
         if category == Category::Obstacle {
             return;
         }
-        let State { x, y, .. } = *self.state(row);
-        let (front, profile) = (Point::new(x, y), self.profile(row));
-        let memory = &self.memory[self.user(row).0 as usize];
+        let chord = || self.profile(user).chord;
         if on_lanes {
-            memory.path.track.poses(axis, profile.chord, ways, beyond, poses);
+            self.memory[user.index.0 as usize].path.track.poses(axis, chord(), ways, beyond, poses);
             return;
         }
         poses.push(Pose { way: 0.0, front, axis });
         let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, memory.curvature, profile.chord, ways, poses);
+            arc::poses(front, axis, self.memory[user.index.0 as usize].curvature, chord(), ways, poses);
         } else {
             straight::poses(front, axis, ways, poses);
         }

@@ -47,8 +47,8 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     }
     let mut detector = Detector::new(&Options::default(), None);
     detector.follow(&frame, &roster);
-    detector.approach(&frame);
-    detector.detect(&frame, &roster).next().copied()
+    detector.approach();
+    detector.detect(&roster).next().copied()
 }
 
 /// A run of cars, step by step.
