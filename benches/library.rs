@@ -1,4 +1,4 @@
-//! What parry2d does for one pair beside what closecall does itself: contact of two rectangles, first contact of two
+//! What parry2d does for one pair beside what closecall does itself: contact and distance of two rectangles, first contact of two
 //! moving ones. `cargo bench --bench library`. Who is near whom: benches/detector.rs and `closecall study`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::geometry::outline::Outline;
-use closecall::geometry::rectangle::{Rectangle, plainly_touches, touches};
+use closecall::geometry::rectangle::{Rectangle, distance, plainly_touches, touches};
 use closecall::geometry::sweep::translation;
 use closecall::geometry::{Point, Vector};
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
@@ -52,6 +52,11 @@ fn contacts(chance: &mut Chance) {
     });
     let plain = nanoseconds(PAIRS, || pairs.iter().for_each(|(a, b)| _ = black_box(plainly_touches(a, b))));
     println!("contact: exact {ours:.0} ns, separating axes {plain:.0} ns, parry2d's intersection_test {theirs:.0} ns");
+    let ours = nanoseconds(PAIRS, || pairs.iter().for_each(|(a, b)| _ = black_box(distance(a, b))));
+    let theirs = nanoseconds(PAIRS, || {
+        pairs.iter().for_each(|(a, b)| _ = black_box(query::distance(&pose(a), &shape, &pose(b), &shape)));
+    });
+    println!("distance: of the corners {ours:.0} ns, parry2d's distance {theirs:.0} ns");
     let by = Vector::new(20.0, 3.0);
     let ours = nanoseconds(PAIRS, || {
         pairs.iter().for_each(|(a, b)| {

@@ -2,9 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use parry2d_f64::query;
-
-use super::{Bounds, Point, Vector, exact, left_of, parry};
+use super::{Bounds, Point, Vector, cross, exact, left_of};
 use crate::units::{Metre, Radian};
 
 /// A rectangle that may stand at any angle.
@@ -130,19 +128,32 @@ fn reach(rectangle: &Rectangle, direction: &Vector) -> Metre {
 
 /// The smallest distance between two rectangles in m; 0 where they touch or overlap.
 ///
-/// parry2d's, at 67 ns a pair: only pairs in conflict ask for it.
+/// Of two that are apart a corner is nearest. Measured (`cargo bench --bench library`): 28 ns, parry2d's `distance` 91.
 pub fn distance(a: &Rectangle, b: &Rectangle) -> Metre {
     if touches(a, b) {
         return 0.0;
     }
-    let (pose_a, shape_a) = parry::cuboid(a);
-    let (pose_b, shape_b) = parry::cuboid(b);
-    query::distance(&pose_a, &shape_a, &pose_b, &shape_b).map_or(0.0, |found| found.distance)
+    let from = |a: &Rectangle, b: &Rectangle| {
+        b.corners().map(|corner| distance_squared(a, corner)).into_iter().fold(f64::INFINITY, f64::min)
+    };
+    from(a, b).min(from(b, a)).sqrt()
+}
+
+/// The square of the distance of a point from a rectangle, in m².
+fn distance_squared(rectangle: &Rectangle, point: Point) -> f64 {
+    let between = point - rectangle.centre;
+    let along = between.dot(&rectangle.axis).abs() - rectangle.half_length;
+    let across = cross(&rectangle.axis, &between).abs() - rectangle.half_width;
+    Vector::new(along.max(0.0), across.max(0.0)).norm_squared()
 }
 
 #[cfg(test)]
 mod tests {
+    use parry2d_f64::query;
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::geometry::parry;
 
     #[test]
     fn touching_counts_and_a_hair_apart_does_not() {
@@ -162,5 +173,18 @@ mod tests {
         let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
         let b = Rectangle::new(Point::new(9.0, 0.0), 0.0, 4.0, 2.0);
         assert!((distance(&a, &b) - 5.0).abs() < 1e-12);
+    }
+
+    proptest! {
+        #[test]
+        fn the_distance_is_parrys(
+            x in -20.0..20.0, y in -20.0..20.0, heading in -4.0..4.0, turn in -4.0..4.0, length in 0.1..20.0,
+        ) {
+            let a = Rectangle::new(Point::new(1e4, -2e3), heading, 5.0, 1.8);
+            let b = Rectangle::new(Point::new(1e4 + x, -2e3 + y), heading + turn, length, 2.5);
+            let ((pose_a, shape_a), (pose_b, shape_b)) = (parry::cuboid(&a), parry::cuboid(&b));
+            let reference = query::distance(&pose_a, &shape_a, &pose_b, &shape_b).unwrap().distance;
+            prop_assert!((distance(&a, &b) - reference).abs() < 1e-6, "{} {reference}", distance(&a, &b));
+        }
     }
 }
