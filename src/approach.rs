@@ -1,5 +1,6 @@
 //! Time to collision: when two rectangles touch if both keep their speed along their paths.
 
+use crate::geometry::halves;
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{TOLERANCE, translation};
@@ -70,7 +71,7 @@ pub fn time_to_fixed(a: &Course, fixed: &[Outline]) -> Option<Second> {
     for (pose, next) in a.poses.windows(2).map(|pair| (pair[0], pair[1])) {
         let step = pose.step_to(&next, a.length, a.width);
         for outline in fixed {
-            if let Some(enter) = step.enter(outline) {
+            if let Some(enter) = halves::scratch(|halves| halves.enter(step, outline)) {
                 let time = (pose.way + (next.way - pose.way) * enter) / a.speed;
                 first = Some(first.map_or(time, |earliest| earliest.min(time)));
             }

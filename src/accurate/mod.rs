@@ -163,15 +163,14 @@ pub fn meet(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(b
 
 /// The same by sweeping both rectangles: two that drive in line meet in the same place then.
 pub fn meet_swept(a: &Mover, b: &Mover, in_line: bool, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
-    let as_ego = |ego: &Mover, foe: &Mover| if ego.shape.is_empty() { side::meet(ego, foe, in_line) } else { None };
-    match (as_ego(a, b), as_ego(b, a)) {
-        (None, None) => None,
-        (Some(as_a), Some(as_b)) => {
+    match side::meet_both(a, b, in_line) {
+        [None, None] => None,
+        [Some(as_a), Some(as_b)] => {
             let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
             Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
         }
-        (Some(as_a), None) => Some((true, as_a)),
-        (None, Some(as_b)) => Some((false, as_b)),
+        [Some(as_a), None] => Some((true, as_a)),
+        [None, Some(as_b)] => Some((false, as_b)),
     }
 }
 

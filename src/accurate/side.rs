@@ -2,6 +2,7 @@
 
 use super::{Cover, Meeting, Mover};
 use crate::geometry::Vector;
+use crate::geometry::halves::{self, Area, Halves, Touch};
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{Step, TOLERANCE, translation};
@@ -14,7 +15,32 @@ const INEXACT: Metre = 2.0 * TOLERANCE;
 /// The first pose on the ego's path at which its rectangle touches the area that the foe covers now and still needs
 /// to stop; none if there is no such pose.
 pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
-    let (ego_way, mut rectangle) = first_touch(ego, foe)?;
+    halves::scratch(|halves| meet_among(halves, [0, numbers(ego)], ego, foe, in_line))
+}
+
+/// The same of both as the ego.
+pub fn meet_both(a: &Mover, b: &Mover, in_line: bool) -> [Option<Meeting>; 2] {
+    let as_ego = |halves: &mut Halves, numbers, ego: &Mover, foe: &Mover| {
+        ego.shape.is_empty().then(|| meet_among(halves, numbers, ego, foe, in_line)).flatten()
+    };
+    let behind_a = numbers(a);
+    halves::scratch(|halves| [as_ego(halves, [0, behind_a], a, b), as_ego(halves, [behind_a, 0], b, a)])
+}
+
+/// How many numbers the steps of a mover need: one is that of who stands.
+fn numbers(of: &Mover) -> usize {
+    of.poses.len() + 1
+}
+
+/// The same with steps that may be known already: those of the ego and those of the foe by their numbers from these on.
+fn meet_among(
+    halves: &mut Halves,
+    numbers: [usize; 2],
+    ego: &Mover,
+    foe: &Mover,
+    in_line: bool,
+) -> Option<Meeting> {
+    let (ego_way, mut rectangle) = first_touch(halves, numbers, ego, foe)?;
     if in_line {
         // Its poses stand along the path, which its heading may leave by as much as rounding to centimetres.
         rectangle = Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_way, ..ego.rectangle };
@@ -26,29 +52,41 @@ pub fn meet(ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
         let foe_axis = Some(foe.rectangle.axis);
         return Some(Meeting { ego_way, foe_way: 0.0, ego: rectangle, foe_axis, leads: true });
     }
-    let (foe_way, foe_axis) = arrival(foe, &rectangle, if in_line { 0.0 } else { INEXACT });
+    let (foe_way, foe_axis) = arrival(halves, numbers[1], foe, &rectangle, if in_line { 0.0 } else { INEXACT });
     Some(Meeting { ego_way, foe_way, ego: rectangle, foe_axis: Some(foe_axis), leads: false })
 }
 
 /// The ego's way to the foe's area and its rectangle there.
-fn first_touch(ego: &Mover, foe: &Mover) -> Option<(Metre, Rectangle)> {
-    for ((pair, step), cover) in ego.poses.windows(2).zip(steps(ego)).zip(ego.covers) {
+fn first_touch(
+    halves: &mut Halves,
+    [of_ego, of_foe]: [usize; 2],
+    ego: &Mover,
+    foe: &Mover,
+) -> Option<(Metre, Rectangle)> {
+    for (index, (pair, cover)) in ego.poses.windows(2).zip(ego.covers).enumerate() {
         if !cover.meets(foe.cover) {
             continue;
         }
-        let of_shape = foe.shape.iter().filter(|part| part.bounds.meet(&cover.bounds));
-        let of_shape = of_shape.filter_map(|part| step.enter(&part.outline));
-        let enter = of_shape.chain(area(foe, cover).filter_map(|part| step.first_touch(&part))).min_by(f64::total_cmp);
-        if let Some(enter) = enter.filter(|enter| *enter <= 1.0) {
+        let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
+        let part = halves.numbered(of_ego + index, || step);
+        let mut enter = Touch::First.none();
+        for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
+            enter = halves.meet(part, &shape.into(), Touch::First).map_or(enter, |found| found.min(enter));
+        }
+        for (index, step) in area(foe, cover) {
+            let other = halves.numbered(of_foe + index, || step);
+            enter = halves.touch(part, other, Touch::First, enter);
+        }
+        if enter <= 1.0 {
             return Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)));
         }
     }
     None
 }
 
-/// The steps near an ego's over which the foe covers the area that it is in now and still needs to stop; none of an
-/// obstacle.
-fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = Step> + 'a {
+/// The steps near an ego's over which the foe covers the area that it is in now and still needs to stop, with their
+/// numbers; none of an obstacle.
+fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = (usize, Step)> + 'a {
     let stands = foe.shape.is_empty() && foe.stop <= 0.0;
     let now = Pose {
         way: 0.0,
@@ -56,18 +94,19 @@ fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = Step> + 'a 
         axis: foe.rectangle.axis,
     };
     let before_it_stands = foe.poses.iter().take_while(|pose| pose.way < foe.stop);
-    let moving = before_it_stands.zip(steps(foe)).zip(foe.covers).filter(|(_, cover)| cover.meets(near));
-    let moving = moving.map(|((_, step), _)| step);
-    stands.then(|| now.step_to(&now, foe.length(), foe.width())).into_iter().chain(moving)
+    let moving = before_it_stands.zip(steps(foe).enumerate()).zip(foe.covers);
+    let moving = moving.filter(|(_, cover)| cover.meets(near)).map(|((_, step), _)| step);
+    stands.then(|| (foe.poses.len(), now.step_to(&now, foe.length(), foe.width()))).into_iter().chain(moving)
 }
 
 /// The foe's way to the ego's rectangle at the meeting place, and its axis there.
 ///
 /// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
-fn arrival(foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
-    let ego = Outline::rectangle(&grown(ego, inexact));
-    for (pair, step) in foe.poses.windows(2).zip(steps(foe)) {
-        if let Some(enter) = step.enter(&ego) {
+fn arrival(halves: &mut Halves, numbers: usize, foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
+    let ego = Area::from(Outline::rectangle(&grown(ego, inexact)));
+    for (index, (pair, step)) in foe.poses.windows(2).zip(steps(foe)).enumerate() {
+        let part = halves.numbered(numbers + index, || step);
+        if let Some(enter) = halves.meet(part, &ego, Touch::First) {
             return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
         }
         if pair[0].way >= foe.stop {
@@ -80,15 +119,19 @@ fn arrival(foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
 /// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
 /// until it is there.
 pub fn departure(poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -> Metre {
-    let ego = Outline::rectangle(&grown(ego, INEXACT));
+    let ego = Area::from(Outline::rectangle(&grown(ego, INEXACT)));
     let mut left = arrival;
-    for (pose, next, step) in
-        poses.windows(2).map(|pair| (pair[0], pair[1], pair[0].step_to(&pair[1], foe.length(), foe.width())))
-    {
+    for pair in poses.windows(2) {
+        let (pose, next) = (pair[0], pair[1]);
         if next.way < arrival {
             continue;
         }
-        let Some(leave) = step.leave(&ego) else {
+        let step = pose.step_to(&next, foe.length(), foe.width());
+        let leave = halves::scratch(|halves| {
+            let part = halves.add(step);
+            halves.meet(part, &ego, Touch::Last)
+        });
+        let Some(leave) = leave else {
             if pose.way > arrival {
                 return left;
             }

@@ -5,8 +5,9 @@
 //! second enters it when its rectangle touches the first's corridor for the first time.
 
 use crate::geometry::Bounds;
+use crate::geometry::halves::{Halves, Part, Touch};
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::Step;
+use crate::geometry::sweep::TOLERANCE;
 use crate::path::Pose;
 use crate::units::Second;
 
@@ -43,38 +44,59 @@ impl Course {
         self.ended
     }
 
-    fn steps(&self) -> impl Iterator<Item = (Second, Second, Step)> {
-        self.moments.windows(2).map(|pair| {
-            let [(from, start), (to, end)] = [&pair[0], &pair[1]];
-            let pose = |rectangle: &Rectangle, way| Pose {
-                way,
-                front: rectangle.centre + rectangle.axis * rectangle.half_length,
-                axis: rectangle.axis,
-            };
-            let (length, width) = (2.0 * start.half_length, 2.0 * start.half_width);
-            (*from, *to, pose(start, 0.0).step_to(&pose(end, 1.0), length, width))
-        })
+    /// The box around all that it covered; larger than what rounding can do.
+    fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        self.moments.iter().for_each(|(_, rectangle)| bounds.join(&rectangle.bounds()));
+        bounds.grown(TOLERANCE)
     }
 
+    /// The steps that may touch what lies within these bounds.
+    fn corridor(&self, near: &Bounds, halves: &mut Halves) -> Corridor {
+        let pose = |rectangle: &Rectangle, way| Pose {
+            way,
+            front: rectangle.centre + rectangle.axis * rectangle.half_length,
+            axis: rectangle.axis,
+        };
+        let steps = self.moments.windows(2).filter_map(|pair| {
+            let [(from, start), (to, end)] = [&pair[0], &pair[1]];
+            let mut bounds = start.bounds();
+            bounds.join(&end.bounds());
+            if !bounds.grown(TOLERANCE).meet(near) {
+                return None;
+            }
+            let (length, width) = (2.0 * start.half_length, 2.0 * start.half_width);
+            let part = halves.add(pose(start, 0.0).step_to(&pose(end, 1.0), length, width));
+            Some((*from, *to, part))
+        });
+        Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |(time, _)| *time) }
+    }
+}
+
+/// What one road user covered, as far as the other may have been there.
+struct Corridor {
+    steps: Vec<(Second, Second, Part)>,
+    /// When it ends.
+    end: Second,
+}
+
+impl Corridor {
     /// The first and the last time at which it touches the other's corridor; the last is none where it still does at
     /// the end.
-    fn contact(&self, other: &Self) -> Option<(Second, Option<Second>)> {
-        let corridor = other.steps().map(|(_, _, part)| (part.bounds(), part)).collect::<Vec<(Bounds, Step)>>();
-        let steps = self.steps().collect::<Vec<_>>();
+    fn contact(&self, other: &Self, halves: &mut Halves) -> Option<(Second, Option<Second>)> {
         // Most of the time goes into the steps in between: they are not looked at.
-        let touch = |step: &Step, of: fn(&Step, &Step) -> Option<f64>, choose: fn(f64, f64) -> f64| {
-            let bounds = step.bounds();
-            let near = corridor.iter().filter(|(part_bounds, _)| part_bounds.meet(&bounds));
-            near.filter_map(|(_, part)| of(step, part)).reduce(choose)
+        let mut touch = |part: Part, which: Touch| {
+            let touch = other.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
+            (touch != which.none()).then_some(touch)
         };
-        let first = steps.iter().find_map(|(from, to, step)| {
-            let enters = touch(step, Step::first_touch, f64::min)?;
+        let first = self.steps.iter().find_map(|&(from, to, part)| {
+            let enters = touch(part, Touch::First)?;
             Some(from + (to - from) * enters)
         })?;
-        let last = steps.iter().rev().enumerate().find_map(|(place, (from, to, step))| {
-            let leaves = touch(step, Step::last_touch, f64::max)?;
-            let still = place == 0 && leaves >= 1.0;
-            Some((!still).then(|| from + (to - from) * leaves.min(1.0)))
+        let last = self.steps.iter().rev().find_map(|&(from, to, part)| {
+            let leaves = touch(part, Touch::Last)?.min(1.0);
+            let still = to == self.end && leaves >= 1.0;
+            Some((!still).then(|| from + (to - from) * leaves))
         })?;
         Some((first, last))
     }
@@ -83,8 +105,11 @@ impl Course {
 /// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or
 /// both are in the conflict area at once, as where one merges behind the other.
 pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<(Second, Second)> {
-    let (a_enters, a_leaves) = a.contact(b)?;
-    let (b_enters, b_leaves) = b.contact(a)?;
+    let near = a.bounds().shared_with(&b.bounds())?;
+    let mut halves = Halves::default();
+    let [a, b] = [a, b].map(|course| course.corridor(&near, &mut halves));
+    let (a_enters, a_leaves) = a.contact(&b, &mut halves)?;
+    let (b_enters, b_leaves) = b.contact(&a, &mut halves)?;
     if a_enters == b_enters {
         return None;
     }

@@ -4,6 +4,7 @@
 //! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
 pub mod exact;
+pub mod halves;
 pub mod outline;
 pub(crate) mod parry;
 pub mod polygon;
@@ -54,6 +55,11 @@ impl Bounds {
             && other.low.x <= self.high.x
             && self.low.y <= other.high.y
             && other.low.y <= self.high.y
+    }
+
+    /// What both hold; none if they do not meet.
+    pub fn shared_with(&self, other: &Self) -> Option<Self> {
+        self.meet(other).then(|| Self { low: self.low.sup(&other.low), high: self.high.inf(&other.high) })
     }
 
     /// The same, larger by `margin` on every side.

@@ -72,10 +72,26 @@ impl Outline {
         let mut high = f64::NEG_INFINITY;
         for corner in self.corners() {
             let along = corner.coords.dot(direction);
-            low = low.min(along);
-            high = high.max(along);
+            // Not `f64::min`, which asks for NaN as well: this is the innermost loop of phase 2.
+            low = if along < low { along } else { low };
+            high = if along > high { along } else { high };
         }
         (low, high)
+    }
+
+    /// Whether it shares a point with another; touching counts.
+    pub fn overlaps(&self, other: &Self) -> bool {
+        !self.is_apart(other, 0.0)
+    }
+
+    /// Whether it is further than `room` m away from another, seen along one of the normals of both.
+    pub fn is_apart(&self, other: &Self, room: Metre) -> bool {
+        self.normals().chain(other.normals()).any(|normal| {
+            let (low, high) = self.extent(&normal);
+            let (other_low, other_high) = other.extent(&normal);
+            let room = if room > 0.0 { room * normal.norm() } else { 0.0 };
+            other_low - high > room || low - other_high > room
+        })
     }
 
     /// The axis-parallel box around it.

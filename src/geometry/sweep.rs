@@ -9,7 +9,7 @@
 
 use super::outline::Outline;
 use super::rectangle::Rectangle;
-use super::{Bounds, Point, Vector, cross};
+use super::{Point, Vector, cross};
 use crate::units::Metre;
 
 /// How far a corner of a sweeping rectangle may be from where it really goes, in m.
@@ -92,115 +92,11 @@ impl Step {
         }
         Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0))
     }
-
-    /// How far the hull reaches beyond what the step covers: on the inner side of a turn it cuts the corner between
-    /// the sides of the first and the last rectangle.
-    fn excess(&self) -> Metre {
-        (self.to_axis - self.from_axis).norm() * self.length / 4.0
-    }
-
-    /// The part of this step at which its rectangle first touches the area that another step covers.
-    pub fn first_touch(&self, other: &Self) -> Option<f64> {
-        self.touch(other, Self::enter, f64::min)
-    }
-
-    /// The part of this step at which its rectangle touches the area that another step covers last; above 1 where it
-    /// still does at the end, none if it never does.
-    pub fn last_touch(&self, other: &Self) -> Option<f64> {
-        self.touch(other, Self::leave, f64::max)
-    }
-
-    /// The other's hull decides quickly where they do not touch; where they do, the hull is cut in halves until it fits.
-    fn touch(
-        &self,
-        other: &Self,
-        of_hull: fn(&Self, &Outline) -> Option<f64>,
-        choose: fn(f64, f64) -> f64,
-    ) -> Option<f64> {
-        if !self.bounds().meet(&other.bounds()) {
-            return None;
-        }
-        let part = of_hull(self, &other.hull())?;
-        if other.excess() <= TOLERANCE {
-            return Some(part);
-        }
-        let halves = [other.between(0.0, 0.5), other.between(0.5, 1.0)];
-        halves.iter().filter_map(|half| self.touch(half, of_hull, choose)).reduce(choose)
-    }
-
-    /// The same step between two of its parts.
-    fn between(&self, start: f64, end: f64) -> Self {
-        let (first, last) = (self.rectangle(start), self.rectangle(end));
-        Self {
-            from: self.from + (self.to - self.from) * start,
-            from_axis: first.axis,
-            to: self.from + (self.to - self.from) * end,
-            to_axis: last.axis,
-            ..*self
-        }
-    }
-
-    /// How far turning takes a corner from where a translation in the middle's direction would take it.
-    fn bend(&self) -> Metre {
-        (self.to_axis - self.from_axis).norm() * (self.length + self.width) / 2.0
-    }
-
-    /// The part of the step at which the moving rectangle first touches a fixed outline; none if it does not.
-    pub fn enter(&self, fixed: &Outline) -> Option<f64> {
-        self.enter_within(fixed, &fixed.bounds())
-    }
-
-    fn enter_within(&self, fixed: &Outline, bounds: &Bounds) -> Option<f64> {
-        if self.bend() <= TOLERANCE {
-            return self.as_translation(fixed).map(|contact| contact.enter);
-        }
-        if self.misses(fixed, bounds) {
-            return None;
-        }
-        let first = self.between(0.0, 0.5).enter_within(fixed, bounds).map(|enter| enter / 2.0);
-        first.or_else(|| self.between(0.5, 1.0).enter_within(fixed, bounds).map(|enter| 0.5 + enter / 2.0))
-    }
-
-    /// The part of the step at which the moving rectangle touches a fixed outline last; above 1 where it still does
-    /// at the end, none if it never does.
-    pub fn leave(&self, fixed: &Outline) -> Option<f64> {
-        self.leave_within(fixed, &fixed.bounds())
-    }
-
-    fn leave_within(&self, fixed: &Outline, bounds: &Bounds) -> Option<f64> {
-        if self.bend() <= TOLERANCE {
-            return self.as_translation(fixed).map(|contact| contact.leave);
-        }
-        if self.misses(fixed, bounds) {
-            return None;
-        }
-        let second = self.between(0.5, 1.0).leave_within(fixed, bounds).map(|leave| 0.5 + leave / 2.0);
-        second.or_else(|| self.between(0.0, 0.5).leave_within(fixed, bounds).map(|leave| (leave / 2.0).min(0.5)))
-    }
-
-    /// A step that hardly turns, as a translation of the rectangle in its middle.
-    fn as_translation(&self, fixed: &Outline) -> Option<Contact> {
-        let middle = self.rectangle(0.5);
-        let by = self.to - self.from;
-        let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
-        translation(&Outline::rectangle(&start), &by, fixed)
-    }
-
-    /// Whether the step stays clear of a fixed outline: by the boxes around both, then by the hull.
-    fn misses(&self, fixed: &Outline, bounds: &Bounds) -> bool {
-        !self.bounds().meet(bounds) || translation(&self.hull(), &Vector::zeros(), fixed).is_none()
-    }
-
-    /// The box around the area that the step covers.
-    pub fn bounds(&self) -> Bounds {
-        let mut bounds = self.rectangle(0.0).bounds();
-        bounds.join(&self.rectangle(1.0).bounds());
-        bounds
-    }
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::halves::Halves;
     use super::*;
 
     fn rectangle(x: f64, y: f64, heading: f64) -> Outline {
@@ -243,7 +139,7 @@ mod tests {
             width: 2.0,
         };
         let fixed = Outline::rectangle(&Rectangle::new(Point::new(-3.0, -2.5), 0.0, 1.0, 1.0));
-        let found = step.enter(&fixed).unwrap();
+        let found = Halves::default().enter(step, &fixed).unwrap();
         let touching =
             |part| translation(&Outline::rectangle(&step.rectangle(part)), &Vector::zeros(), &fixed).is_some();
         let sampled = (0..=10_000).map(|i| f64::from(i) / 10_000.0).find(|&part| touching(part)).unwrap();

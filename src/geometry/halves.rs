@@ -1,0 +1,294 @@
+//! Where rectangles on their way touch: steps, cut in halves until each part hardly turns.
+//!
+//! A part of the one is a translation, a part of the other its hull. Whoever asks again (another step of the other,
+//! the last touch after the first) finds the parts, their boxes and their hulls as they are.
+
+use std::cell::RefCell;
+
+use super::outline::Outline;
+use super::polygon::Polygon;
+use super::rectangle::Rectangle;
+use super::sweep::{Step, TOLERANCE, translation};
+use super::{Bounds, Vector};
+use crate::units::Metre;
+
+/// More than rounding can move anything, in m.
+const ROUNDING: Metre = 1e-6;
+
+/// Which touch is looked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Touch {
+    /// Where two begin to touch.
+    First,
+    /// Where they touch last; 1 and more where they still do at the end.
+    Last,
+}
+
+impl Touch {
+    /// What every touch is better than.
+    pub fn none(self) -> f64 {
+        match self {
+            Self::First => f64::INFINITY,
+            Self::Last => f64::NEG_INFINITY,
+        }
+    }
+
+    /// Whether no part of a step can be better than this.
+    fn is_best(self, part: f64) -> bool {
+        match self {
+            Self::First => part <= 0.0,
+            Self::Last => part >= 1.0,
+        }
+    }
+
+    fn better(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::First => a.min(b),
+            Self::Last => a.max(b),
+        }
+    }
+
+    /// The halves of a step in the order in which they are searched.
+    fn halves(self) -> [u32; 2] {
+        match self {
+            Self::First => [0, 1],
+            Self::Last => [1, 0],
+        }
+    }
+}
+
+/// A convex area that stands.
+#[derive(Clone, Copy, Debug)]
+pub struct Area {
+    outline: Outline,
+    bounds: Bounds,
+}
+
+impl From<&Polygon> for Area {
+    fn from(polygon: &Polygon) -> Self {
+        Self { outline: polygon.outline, bounds: polygon.bounds }
+    }
+}
+
+impl From<Outline> for Area {
+    fn from(outline: Outline) -> Self {
+        Self { outline, bounds: outline.bounds() }
+    }
+}
+
+/// A step among [`Halves`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Part(u32);
+
+/// Steps, and the halves that they were cut in so far.
+#[derive(Clone, Debug, Default)]
+pub struct Halves {
+    parts: Vec<Swept>,
+    /// Where the steps stand whose number is known.
+    numbered: Vec<Option<Part>>,
+}
+
+thread_local! {
+    /// Memory that a warm thread has already.
+    static SCRATCH: RefCell<Halves> = RefCell::default();
+}
+
+/// Does some work on steps that are forgotten afterwards.
+pub fn scratch<R>(work: impl FnOnce(&mut Halves) -> R) -> R {
+    SCRATCH.with_borrow_mut(|halves| {
+        halves.clear();
+        work(halves)
+    })
+}
+
+/// A step or a part of it, and what was computed of it.
+#[derive(Clone, Copy, Debug)]
+struct Swept {
+    step: Step,
+    /// The axes of the first and the last rectangle, normalised.
+    axes: [Vector; 2],
+    bounds: Bounds,
+    turn: f64,
+    hull: Option<Area>,
+    slide: Option<(Outline, Vector)>,
+    /// The first half, which the second one stands behind.
+    halves: Option<u32>,
+}
+
+impl Swept {
+    fn new(step: Step) -> Self {
+        let [first, last] = [step.rectangle(0.0), step.rectangle(1.0)];
+        let mut bounds = first.bounds();
+        bounds.join(&last.bounds());
+        let turn = (step.to_axis - step.from_axis).norm();
+        Self { step, axes: [first.axis, last.axis], bounds, turn, hull: None, slide: None, halves: None }
+    }
+
+    fn hull(&mut self) -> &Area {
+        self.hull.get_or_insert_with(|| self.step.hull().into())
+    }
+
+    /// As a translation of the rectangle in its middle.
+    fn slide(&mut self) -> &(Outline, Vector) {
+        self.slide.get_or_insert_with(|| {
+            let middle = self.step.rectangle(0.5);
+            let by = self.step.to - self.step.from;
+            let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
+            (Outline::rectangle(&start), by)
+        })
+    }
+
+    fn halve(&self) -> [Self; 2] {
+        let Step { from, to, .. } = self.step;
+        let middle = self.step.rectangle(0.5).axis;
+        let at = |part| from + (to - from) * part;
+        let first = Step { from: at(0.0), from_axis: self.axes[0], to: at(0.5), to_axis: middle, ..self.step };
+        let second = Step { from: at(0.5), from_axis: middle, to: at(1.0), to_axis: self.axes[1], ..self.step };
+        [Self::new(first), Self::new(second)]
+    }
+
+    /// How far the hull reaches beyond what the step covers: on the inner side of a turn it cuts the corner between
+    /// the sides of the first and the last rectangle.
+    fn excess(&self) -> Metre {
+        self.turn * self.step.length / 4.0
+    }
+
+    /// How far turning takes a corner from where a translation in the middle's direction would take it.
+    fn bend(&self) -> Metre {
+        self.turn * (self.step.length + self.step.width) / 2.0
+    }
+
+    /// How far the hull of a part of it may reach beyond its own: an arc beyond its chord.
+    fn stray(&self) -> Metre {
+        self.turn * self.turn / 3.0 * (self.step.length + self.step.width) + ROUNDING
+    }
+}
+
+impl Halves {
+    /// Forgets all steps.
+    pub fn clear(&mut self) {
+        self.parts.clear();
+        self.numbered.clear();
+    }
+
+    /// Adds a step.
+    pub fn add(&mut self, step: Step) -> Part {
+        self.parts.push(Swept::new(step));
+        Part(self.parts.len() as u32 - 1)
+    }
+
+    /// The step with this number; added when it is asked for first.
+    pub fn numbered(&mut self, number: usize, step: impl FnOnce() -> Step) -> Part {
+        if self.numbered.len() <= number {
+            self.numbered.resize(number + 1, None);
+        }
+        if let Some(known) = self.numbered[number] {
+            return known;
+        }
+        let added = self.add(step());
+        self.numbered[number] = Some(added);
+        added
+    }
+
+    /// The part of a step at which its rectangle first touches a fixed outline; none if it does not.
+    pub fn enter(&mut self, step: Step, fixed: &Outline) -> Option<f64> {
+        let part = self.add(step);
+        self.meet(part, &(*fixed).into(), Touch::First)
+    }
+
+    /// The box around the area that a step covers.
+    pub fn bounds(&self, part: Part) -> &Bounds {
+        &self.parts[part.0 as usize].bounds
+    }
+
+    /// The part of a step, 0 to 1, at which its rectangle touches a convex area; none if it does not.
+    pub fn meet(&mut self, of: Part, fixed: &Area, which: Touch) -> Option<f64> {
+        self.search(of.0, fixed, which, which.none())
+    }
+
+    /// The part of a step at which its rectangle touches the area that another step covers, or `known` if that is
+    /// better.
+    pub fn touch(&mut self, of: Part, other: Part, which: Touch, known: f64) -> f64 {
+        self.search_swept(of.0, other.0, which, known)
+    }
+
+    /// The other's hull decides quickly where they do not touch; where they do, it is cut in halves until it fits.
+    fn search_swept(&mut self, of: u32, other: u32, which: Touch, known: f64) -> f64 {
+        let area = &mut self.parts[other as usize];
+        let (bounds, fits) = (area.bounds, area.excess() <= TOLERANCE);
+        if which.is_best(known) || !self.parts[of as usize].bounds.meet(&bounds) {
+            return known;
+        }
+        if !fits && known != which.none() && self.is_clear(of, other, which, known) {
+            return known;
+        }
+        let hull = *self.parts[other as usize].hull();
+        // A half's hull may reach beyond that of the whole: of this one no more counts than whether it is touched.
+        let Some(found) = self.search(of, &hull, which, if fits { known } else { which.none() }) else { return known };
+        if fits {
+            return which.better(known, found);
+        }
+        let first = self.halve(other);
+        let known = self.search_swept(of, first, which, known);
+        self.search_swept(of, first + 1, which, known)
+    }
+
+    /// Where a part touches a convex area, if that is better than what is known.
+    fn search(&mut self, of: u32, fixed: &Area, which: Touch, known: f64) -> Option<f64> {
+        if which.is_best(known) {
+            return None;
+        }
+        let part = &mut self.parts[of as usize];
+        if part.bend() <= TOLERANCE {
+            if !part.bounds.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
+                return None;
+            }
+            let (start, by) = part.slide();
+            return translation(start, by, &fixed.outline).map(|contact| match which {
+                Touch::First => contact.enter,
+                Touch::Last => contact.leave,
+            });
+        }
+        if !part.bounds.meet(&fixed.bounds) || !part.hull().outline.overlaps(&fixed.outline) {
+            return None;
+        }
+        let first = self.halve(of);
+        which.halves().into_iter().find_map(|half| {
+            let found = self.search(first + half, fixed, which, 2.0 * known - f64::from(half))?;
+            Some(if half == 0 { (found / 2.0).min(0.5) } else { 0.5 + found / 2.0 })
+        })
+    }
+
+    /// Whether what is better than what is known stays so clear of another's hull that it touches no part of it.
+    fn is_clear(&mut self, of: u32, other: u32, which: Touch, known: f64) -> bool {
+        if which.is_best(known) {
+            return true;
+        }
+        let area = &mut self.parts[other as usize];
+        let (bounds, stray, hull) = (area.bounds, area.stray(), area.hull().outline);
+        let part = &mut self.parts[of as usize];
+        let room = stray + part.stray() + TOLERANCE;
+        if !part.bounds.grown(room).meet(&bounds) || part.hull().outline.is_apart(&hull, room) {
+            return true;
+        }
+        if part.bend() <= TOLERANCE {
+            return false;
+        }
+        let first = self.halve(of);
+        which.halves().into_iter().rev().all(|half| {
+            self.is_clear(first + half, other, which, 2.0 * known - f64::from(half))
+        })
+    }
+
+    fn halve(&mut self, part: u32) -> u32 {
+        let whole = &self.parts[part as usize];
+        if let Some(first) = whole.halves {
+            return first;
+        }
+        let halves = whole.halve();
+        let first = self.parts.len() as u32;
+        self.parts.extend(halves);
+        self.parts[part as usize].halves = Some(first);
+        first
+    }
+}
