@@ -53,14 +53,16 @@ impl Course<'_> {
 
 /// Time until a moving road user touches another, in s; none where it does not within [`HORIZON`].
 pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
-    let mut time = 0.0;
-    while time < HORIZON {
-        let end = a.next_pose(time).min(b.next_pose(time)).min(HORIZON).max(time + 1e-6);
-        let contact = contact_between(a, b, time, end, 0);
+    let both_at = |time| (time, [a.at(time), b.at(time)]);
+    let mut start = both_at(0.0);
+    while start.0 < HORIZON {
+        let time = a.next_pose(start.0).min(b.next_pose(start.0)).min(HORIZON).max(start.0 + 1e-6);
+        let end = both_at(time);
+        let contact = contact_between(&both_at, start, end, 0);
         if contact.is_some() {
             return contact;
         }
-        time = end;
+        start = end;
     }
     None
 }
@@ -83,25 +85,27 @@ pub fn time_to_fixed(a: &Course, fixed: &[Outline]) -> Option<Second> {
     first.filter(|time| *time <= HORIZON)
 }
 
+/// A time, and both rectangles at it.
+type Moment = (Second, [Rectangle; 2]);
+
 /// Between two times in which both move almost straight: relative translation in closed form; halved as long as the
 /// turning of the two is more than the tolerance allows.
-fn contact_between(a: &Course, b: &Course, start: Second, end: Second, depth: u32) -> Option<Second> {
+fn contact_between(at: &impl Fn(Second) -> Moment, start: Moment, end: Moment, depth: u32) -> Option<Second> {
     /// Halving this often leaves less than a millionth of the interval.
     const DEEPEST: u32 = 20;
-    let (a_start, a_end, b_start, b_end) = (a.at(start), a.at(end), b.at(start), b.at(end));
+    let ([a_start, b_start], [a_end, b_end]) = (&start.1, &end.1);
+    if !near(a_start, a_end, b_start, b_end) {
+        return None;
+    }
     let bend =
         |first: &Rectangle, last: &Rectangle| (last.axis - first.axis).norm() * (first.half_length + first.half_width);
-    if depth < DEEPEST && bend(&a_start, &a_end) + bend(&b_start, &b_end) > TOLERANCE {
-        let middle = (start + end) / 2.0;
-        if !near(&a_start, &a_end, &b_start, &b_end) {
-            return None;
-        }
-        return contact_between(a, b, start, middle, depth + 1)
-            .or_else(|| contact_between(a, b, middle, end, depth + 1));
+    if depth < DEEPEST && bend(a_start, a_end) + bend(b_start, b_end) > TOLERANCE {
+        let middle = at((start.0 + end.0) / 2.0);
+        return contact_between(at, start, middle, depth + 1).or_else(|| contact_between(at, middle, end, depth + 1));
     }
     let by = (a_end.centre - a_start.centre) - (b_end.centre - b_start.centre);
-    let contact = translation(&Outline::rectangle(&a_start), &by, &Outline::rectangle(&b_start))?;
-    Some(start + (end - start) * contact.enter)
+    let contact = translation(&Outline::rectangle(a_start), &by, &Outline::rectangle(b_start))?;
+    Some(start.0 + (end.0 - start.0) * contact.enter)
 }
 
 /// Whether the boxes around the two movements meet at all.

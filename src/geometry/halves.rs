@@ -8,7 +8,7 @@ use std::cell::RefCell;
 use super::outline::Outline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
-use super::sweep::{Step, TOLERANCE, translation};
+use super::sweep::{Contact, Step, TOLERANCE, translation};
 use super::{Bounds, Vector};
 use crate::units::Metre;
 
@@ -110,7 +110,8 @@ struct Swept {
     bounds: Bounds,
     turn: f64,
     hull: Option<Area>,
-    slide: Option<(Outline, Vector)>,
+    /// The axis of the rectangle in the middle.
+    middle: Option<Vector>,
     /// The first half, which the second one stands behind.
     halves: Option<u32>,
 }
@@ -121,26 +122,28 @@ impl Swept {
         let mut bounds = first.bounds();
         bounds.join(&last.bounds());
         let turn = (step.to_axis - step.from_axis).norm();
-        Self { step, axes: [first.axis, last.axis], bounds, turn, hull: None, slide: None, halves: None }
+        Self { step, axes: [first.axis, last.axis], bounds, turn, hull: None, middle: None, halves: None }
     }
 
     fn hull(&mut self) -> &Area {
         self.hull.get_or_insert_with(|| self.step.hull().into())
     }
 
-    /// As a translation of the rectangle in its middle.
-    fn slide(&mut self) -> &(Outline, Vector) {
-        self.slide.get_or_insert_with(|| {
-            let middle = self.step.rectangle(0.5);
-            let by = self.step.to - self.step.from;
-            let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
-            (Outline::rectangle(&start), by)
-        })
+    fn middle(&mut self) -> Vector {
+        *self.middle.get_or_insert_with(|| self.step.rectangle(0.5).axis)
     }
 
-    fn halve(&self) -> [Self; 2] {
-        let Step { from, to, .. } = self.step;
-        let middle = self.step.rectangle(0.5).axis;
+    /// Its contact with a convex area, as a translation of the rectangle in its middle.
+    fn slide_to(&mut self, fixed: &Outline) -> Option<Contact> {
+        let (axis, Step { from, to, length, width, .. }) = (self.middle(), self.step);
+        let by = to - from;
+        let middle = Rectangle::behind(from + by * 0.5, axis, length, width);
+        let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
+        translation(&Outline::rectangle(&start), &by, fixed)
+    }
+
+    fn halve(&mut self) -> [Self; 2] {
+        let (middle, Step { from, to, .. }) = (self.middle(), self.step);
         let at = |part| from + (to - from) * part;
         let first = Step { from: at(0.0), from_axis: self.axes[0], to: at(0.5), to_axis: middle, ..self.step };
         let second = Step { from: at(0.5), from_axis: middle, to: at(1.0), to_axis: self.axes[1], ..self.step };
@@ -214,23 +217,25 @@ impl Halves {
 
     /// The other's hull decides quickly where they do not touch; where they do, it is cut in halves until it fits.
     fn search_swept(&mut self, of: u32, other: u32, which: Touch, known: f64) -> f64 {
-        let area = &mut self.parts[other as usize];
-        let (bounds, fits) = (area.bounds, area.excess() <= TOLERANCE);
-        if which.is_best(known) || !self.parts[of as usize].bounds.meet(&bounds) {
+        if which.is_best(known) || !self.bounds(Part(of)).meet(self.bounds(Part(other))) {
             return known;
         }
-        if !fits && known != which.none() && self.is_clear(of, other, which, known) {
+        let (whole, area) = (self.parts[of as usize].step, &mut self.parts[other as usize]);
+        let (fits, stray, hull) = (area.excess() <= TOLERANCE, area.stray(), *area.hull());
+        if !fits && known != which.none() && self.is_clear(of, &hull, stray, which, known) {
             return known;
         }
-        let hull = *self.parts[other as usize].hull();
         // A half's hull may reach beyond that of the whole: of this one no more counts than whether it is touched.
         let Some(found) = self.search(of, &hull, which, if fits { known } else { which.none() }) else { return known };
         if fits {
             return which.better(known, found);
         }
+        let place = whole.rectangle(found.min(1.0)).centre;
         let first = self.halve(other);
-        let known = self.search_swept(of, first, which, known);
-        self.search_swept(of, first + 1, which, known)
+        let room = |half: u32| (self.parts[half as usize].step.rectangle(0.5).centre - place).norm_squared();
+        // What is found in the nearer half leaves out most of the other.
+        let halves = if room(first) <= room(first + 1) { [first, first + 1] } else { [first + 1, first] };
+        halves.into_iter().fold(known, |known, half| self.search_swept(of, half, which, known))
     }
 
     /// Where a part touches a convex area, if that is better than what is known.
@@ -243,8 +248,7 @@ impl Halves {
             if !part.bounds.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
                 return None;
             }
-            let (start, by) = part.slide();
-            return translation(start, by, &fixed.outline).map(|contact| match which {
+            return part.slide_to(&fixed.outline).map(|contact| match which {
                 Touch::First => contact.enter,
                 Touch::Last => contact.leave,
             });
@@ -259,29 +263,29 @@ impl Halves {
         })
     }
 
-    /// Whether what is better than what is known stays so clear of another's hull that it touches no part of it.
-    fn is_clear(&mut self, of: u32, other: u32, which: Touch, known: f64) -> bool {
+    /// Whether all that is better than what is known stays so clear of a hull that it touches nothing which strays from
+    /// that by so much.
+    fn is_clear(&mut self, of: u32, hull: &Area, stray: Metre, which: Touch, known: f64) -> bool {
         if which.is_best(known) {
             return true;
         }
-        let area = &mut self.parts[other as usize];
-        let (bounds, stray, hull) = (area.bounds, area.stray(), area.hull().outline);
         let part = &mut self.parts[of as usize];
         let room = stray + part.stray() + TOLERANCE;
-        if !part.bounds.grown(room).meet(&bounds) || part.hull().outline.is_apart(&hull, room) {
+        if !part.bounds.grown(room).meet(&hull.bounds) || part.hull().outline.is_apart(&hull.outline, room) {
             return true;
         }
         if part.bend() <= TOLERANCE {
             return false;
         }
         let first = self.halve(of);
+        // The half that ends at what is known is the likelier one to be near.
         which.halves().into_iter().rev().all(|half| {
-            self.is_clear(first + half, other, which, 2.0 * known - f64::from(half))
+            self.is_clear(first + half, hull, stray, which, 2.0 * known - f64::from(half))
         })
     }
 
     fn halve(&mut self, part: u32) -> u32 {
-        let whole = &self.parts[part as usize];
+        let whole = &mut self.parts[part as usize];
         if let Some(first) = whole.halves {
             return first;
         }

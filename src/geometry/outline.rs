@@ -7,6 +7,9 @@ use crate::units::Metre;
 /// The hull of two rectangles has eight corners at most.
 const MOST_CORNERS: usize = 8;
 
+/// What lies inside by so much, in m, is inside whatever rounding does.
+const INSIDE: Metre = 1e-6;
+
 /// A convex polygon with up to eight corners, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
 pub struct Outline {
@@ -81,16 +84,36 @@ impl Outline {
 
     /// Whether it shares a point with another; touching counts.
     pub fn overlaps(&self, other: &Self) -> bool {
-        !self.is_apart(other, 0.0)
+        self.surely_holds(&other.middle()) || other.surely_holds(&self.middle()) || !self.is_apart(other, 0.0)
     }
 
     /// Whether it is further than `room` m away from another, seen along one of the normals of both.
     pub fn is_apart(&self, other: &Self, room: Metre) -> bool {
-        self.normals().chain(other.normals()).any(|normal| {
+        self.is_apart_along(self, other, room) || self.is_apart_along(other, other, room)
+    }
+
+    fn is_apart_along(&self, normals: &Self, other: &Self, room: Metre) -> bool {
+        normals.normals().any(|normal| {
             let (low, high) = self.extent(&normal);
             let (other_low, other_high) = other.extent(&normal);
             let room = if room > 0.0 { room * normal.norm() } else { 0.0 };
             other_low - high > room || low - other_high > room
+        })
+    }
+
+    /// A point inside.
+    fn middle(&self) -> Point {
+        nalgebra::center(&self.corners[0], &self.corners[self.count / 2])
+    }
+
+    /// Whether a point lies inside by more than rounding can move it.
+    fn surely_holds(&self, point: &Point) -> bool {
+        let mut before = self.corners[self.count - 1];
+        self.corners().iter().all(|corner| {
+            let edge = corner - before;
+            let inside = cross(&edge, &(point - before)) > INSIDE * (edge.x.abs() + edge.y.abs());
+            before = *corner;
+            inside
         })
     }
 

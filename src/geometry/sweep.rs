@@ -31,7 +31,7 @@ pub struct Contact {
 /// Contact of `moving`, displaced by `by`, with `fixed`; none if they do not touch on the way.
 pub fn translation(moving: &Outline, by: &Vector, fixed: &Outline) -> Option<Contact> {
     let mut contact = Contact { enter: 0.0, leave: f64::INFINITY };
-    for normal in moving.normals().chain(fixed.normals()) {
+    for normal in [moving, fixed].into_iter().flat_map(Outline::normals) {
         let (low, high) = moving.extent(&normal);
         let (fixed_low, fixed_high) = fixed.extent(&normal);
         let speed = by.dot(&normal);
