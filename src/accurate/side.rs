@@ -33,13 +33,7 @@ fn numbers(of: &Mover) -> usize {
 }
 
 /// The same with steps that may be known already: those of the ego and those of the foe by their numbers from these on.
-fn meet_among(
-    halves: &mut Halves,
-    numbers: [usize; 2],
-    ego: &Mover,
-    foe: &Mover,
-    in_line: bool,
-) -> Option<Meeting> {
+fn meet_among(halves: &mut Halves, numbers: [usize; 2], ego: &Mover, foe: &Mover, in_line: bool) -> Option<Meeting> {
     let (ego_way, mut rectangle) = first_touch(halves, numbers, ego, foe)?;
     if in_line {
         // Its poses stand along the path, which its heading may leave by as much as rounding to centimetres.

@@ -1,7 +1,11 @@
-//! Where rectangles on their way touch: steps, cut in halves until each part hardly turns.
+//! Where rectangles on their way touch: their steps, cut in halves until each part hardly turns.
 //!
-//! A part of the one is a translation, a part of the other its hull. Whoever asks again (another step of the other,
-//! the last touch after the first) finds the parts, their boxes and their hulls as they are.
+//! Of the one the last parts are translations, of the other hulls ([`super::sweep`]); between them, a hull that is not
+//! touched leaves out all parts of it. Whoever asks again (another step, the other direction, the last touch after the
+//! first) finds the parts, their boxes and hulls as they are.
+//!
+//! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. So what has been found leaves out
+//! only what stays clear of it by more than that, and the result is that of trying all parts, to the last bit.
 
 use std::cell::RefCell;
 
@@ -271,7 +275,7 @@ impl Halves {
         }
         let part = &mut self.parts[of as usize];
         let room = stray + part.stray() + TOLERANCE;
-        if !part.bounds.grown(room).meet(&hull.bounds) || part.hull().outline.is_apart(&hull.outline, room) {
+        if !part.bounds.grown(room).meet(&hull.bounds) || part.hull().outline.room_to(&hull.outline, room) > room {
             return true;
         }
         if part.bend() <= TOLERANCE {
@@ -279,9 +283,11 @@ impl Halves {
         }
         let first = self.halve(of);
         // The half that ends at what is known is the likelier one to be near.
-        which.halves().into_iter().rev().all(|half| {
-            self.is_clear(first + half, hull, stray, which, 2.0 * known - f64::from(half))
-        })
+        which
+            .halves()
+            .into_iter()
+            .rev()
+            .all(|half| self.is_clear(first + half, hull, stray, which, 2.0 * known - f64::from(half)))
     }
 
     fn halve(&mut self, part: u32) -> u32 {

@@ -1,14 +1,15 @@
 //! A convex outline of a few corners, kept on the stack: the shape that sweeping works on.
 
 use super::rectangle::Rectangle;
+use super::sweep::translation;
 use super::{Bounds, Point, Vector, cross};
 use crate::units::Metre;
 
 /// The hull of two rectangles has eight corners at most.
 const MOST_CORNERS: usize = 8;
 
-/// What lies inside by so much, in m, is inside whatever rounding does.
-const INSIDE: Metre = 1e-6;
+/// Room and overlap of less than this may be rounding's, in m.
+const UNSURE: Metre = 1e-6;
 
 /// A convex polygon with up to eight corners, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
@@ -84,37 +85,38 @@ impl Outline {
 
     /// Whether it shares a point with another; touching counts.
     pub fn overlaps(&self, other: &Self) -> bool {
-        self.surely_holds(&other.middle()) || other.surely_holds(&self.middle()) || !self.is_apart(other, 0.0)
+        let room = self.room_to(other, UNSURE);
+        if room.abs() > UNSURE {
+            return room < 0.0;
+        }
+        translation(self, &Vector::zeros(), other).is_some()
     }
 
-    /// Whether it is further than `room` m away from another, seen along one of the normals of both.
-    pub fn is_apart(&self, other: &Self, room: Metre) -> bool {
-        self.is_apart_along(self, other, room) || self.is_apart_along(other, other, room)
+    /// How far another surely is away, in m: the widest room between one's edge and the other, or the first that is more
+    /// than `enough`. Negative where the two overlap by so much.
+    pub fn room_to(&self, other: &Self, enough: Metre) -> Metre {
+        let room = self.room_beside_edges(other, enough);
+        if room > enough { room } else { room.max(other.room_beside_edges(self, enough)) }
     }
 
-    fn is_apart_along(&self, normals: &Self, other: &Self, room: Metre) -> bool {
-        normals.normals().any(|normal| {
-            let (low, high) = self.extent(&normal);
-            let (other_low, other_high) = other.extent(&normal);
-            let room = if room > 0.0 { room * normal.norm() } else { 0.0 };
-            other_low - high > room || low - other_high > room
-        })
-    }
-
-    /// A point inside.
-    fn middle(&self) -> Point {
-        nalgebra::center(&self.corners[0], &self.corners[self.count / 2])
-    }
-
-    /// Whether a point lies inside by more than rounding can move it.
-    fn surely_holds(&self, point: &Point) -> bool {
-        let mut before = self.corners[self.count - 1];
-        self.corners().iter().all(|corner| {
-            let edge = corner - before;
-            let inside = cross(&edge, &(point - before)) > INSIDE * (edge.x.abs() + edge.y.abs());
-            before = *corner;
-            inside
-        })
+    fn room_beside_edges(&self, other: &Self, enough: Metre) -> Metre {
+        let mut widest = f64::NEG_INFINITY;
+        let mut start = self.corners[self.count - 1];
+        for end in self.corners() {
+            let normal = Vector::new(end.y - start.y, start.x - end.x);
+            let mut nearest = f64::INFINITY;
+            for corner in other.corners() {
+                let beside = (corner - start).dot(&normal);
+                nearest = if beside < nearest { beside } else { nearest };
+            }
+            // No root: the sum is the length or more, and the room the true one or less.
+            widest = widest.max(nearest / (normal.x.abs() + normal.y.abs()));
+            if widest > enough {
+                break;
+            }
+            start = *end;
+        }
+        widest
     }
 
     /// The axis-parallel box around it.

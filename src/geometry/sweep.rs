@@ -2,7 +2,8 @@
 //!
 //! Closed form for a translation: on each edge normal the two projections overlap during one interval of the way;
 //! they touch where all intervals do (the swept form of the separating-axes test; Eberly, "Dynamic collision
-//! detection using oriented bounding boxes"). A turn is cut into translations short enough for [`TOLERANCE`].
+//! detection using oriented bounding boxes"). A turn is cut into translations short enough for [`TOLERANCE`], by
+//! [`super::halves`].
 //!
 //! Measured (`cargo bench --bench library`): 66 ns for a pair of rectangles, parry2d's `cast_shapes` 211 ns; its
 //! `cast_shapes_nonlinear`, which would turn too, has no cap on its iterations and was seen not to return.
