@@ -96,7 +96,7 @@ impl Corridor {
         let last = self.steps.iter().rev().find_map(|&(from, to, part)| {
             let leaves = touch(part, Touch::Last)?.min(1.0);
             let still = to == self.end && leaves >= 1.0;
-            Some((!still).then(|| from + (to - from) * leaves))
+            Some((!still).then_some(from + (to - from) * leaves))
         })?;
         Some((first, last))
     }
