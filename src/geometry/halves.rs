@@ -146,6 +146,14 @@ impl Swept {
         translation(&Outline::rectangle(&start), &by, fixed)
     }
 
+    /// The part of that translation which is better than what is known.
+    fn slide_before(&mut self, which: Touch, known: f64) -> Self {
+        let (axis, Step { from, to, .. }) = (self.middle(), self.step);
+        let at = from + (to - from) * known;
+        let (from, to) = if which == Touch::First { (from, at) } else { (at, to) };
+        Self::new(Step { from, from_axis: axis, to, to_axis: axis, ..self.step })
+    }
+
     fn halve(&mut self) -> [Self; 2] {
         let (middle, Step { from, to, .. }) = (self.middle(), self.step);
         let at = |part| from + (to - from) * part;
@@ -249,7 +257,8 @@ impl Halves {
         }
         let part = &mut self.parts[of as usize];
         if part.bend() <= TOLERANCE {
-            if !part.bounds.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
+            let near = if known == which.none() { part.bounds } else { part.slide_before(which, known).bounds };
+            if !near.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
                 return None;
             }
             return part.slide_to(&fixed.outline).map(|contact| match which {
@@ -279,7 +288,9 @@ impl Halves {
             return true;
         }
         if part.bend() <= TOLERANCE {
-            return false;
+            let mut better = part.slide_before(which, known);
+            return !better.bounds.grown(room).meet(&hull.bounds)
+                || better.hull().outline.room_to(&hull.outline, room) > room;
         }
         let first = self.halve(of);
         // The half that ends at what is known is the likelier one to be near.
