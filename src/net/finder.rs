@@ -1,7 +1,6 @@
 //! Which lane is at a place: parry2d's bounding-volume tree over the lanes.
 //!
-//! Asked only for conflicts whose ego is on no path along lanes (it stands, or paths are straight), so the tree is
-//! built when it is first asked for. The lanes of sumo_nets/town have three times as many pieces.
+//! Of whole lanes: those of sumo_nets/town have three times as many pieces.
 
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -14,7 +13,7 @@ use crate::units::Metre;
 const REACH: Metre = 10.0;
 
 /// Finds lanes by place.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Finder {
     tree: Bvh,
 }

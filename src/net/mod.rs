@@ -6,7 +6,6 @@ mod finder;
 mod reader;
 
 use std::path::Path;
-use std::sync::OnceLock;
 
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
@@ -107,7 +106,7 @@ pub struct Net {
     pub junctions: Vec<Junction>,
     lane_ids: FxHashMap<String, LaneIndex>,
     edge_ids: FxHashMap<String, EdgeIndex>,
-    finder: OnceLock<finder::Finder>,
+    finder: finder::Finder,
 }
 
 impl Net {
@@ -123,7 +122,7 @@ impl Net {
 
     /// The lane whose centre line is nearest to a place; none where that is far off.
     pub fn lane_at(&self, place: Point2<Metre>) -> Option<LaneIndex> {
-        self.finder.get_or_init(|| finder::Finder::new(&self.lanes)).lane_at(&self.lanes, place)
+        self.finder.lane_at(&self.lanes, place)
     }
 
     /// The id of a lane.

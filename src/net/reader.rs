@@ -9,6 +9,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
+use super::finder::Finder;
 use super::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link, Net};
 use crate::geometry::Point;
 use crate::{Error, Result};
@@ -184,6 +185,7 @@ impl NetReader<'_> {
                 from_lanes.push(from);
             }
         }
+        self.net.finder = Finder::new(&self.net.lanes);
         Ok(self.net)
     }
 
