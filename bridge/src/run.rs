@@ -109,7 +109,7 @@ fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>
 
 /// One run of a simulation that has been started.
 struct Session<'a, 'py> {
-    sumo: &'a Bound<'py, PyAny>,
+    simulation: Simulation<'py>,
     request: &'a RunRequest,
     run: Run,
     source: Source,
@@ -118,6 +118,45 @@ struct Session<'a, 'py> {
     spent: Spent,
     /// Whether the phases of the last step are still to be done.
     is_unfinished: bool,
+}
+
+/// The simulation's functions, looked up once: whatever name Python is asked for anew in every step stays in its cache of
+/// attributes.
+struct Simulation<'py> {
+    step: Bound<'py, PyAny>,
+    time: Bound<'py, PyAny>,
+    end: Bound<'py, PyAny>,
+    expected: Bound<'py, PyAny>,
+}
+
+impl<'py> Simulation<'py> {
+    fn of(sumo: &Bound<'py, PyAny>) -> PyResult<Self> {
+        let simulation = sumo.getattr("simulation")?;
+        Ok(Self {
+            step: sumo.getattr("simulationStep")?,
+            time: simulation.getattr("getTime")?,
+            end: simulation.getattr("getEndTime")?,
+            expected: simulation.getattr("getMinExpectedNumber")?,
+        })
+    }
+
+    fn py(&self) -> Python<'py> {
+        self.step.py()
+    }
+
+    fn time(&self) -> PyResult<f64> {
+        self.time.call0()?.extract()
+    }
+
+    /// None where it has none.
+    fn end(&self) -> Option<f64> {
+        self.end.call0().and_then(|end| end.extract()).ok().filter(|end| *end >= 0.0)
+    }
+
+    /// Whether anybody is still to come or to arrive.
+    fn goes_on(&self) -> PyResult<bool> {
+        Ok(self.expected.call0()?.extract::<i64>()? > 0)
+    }
 }
 
 /// Where the time goes.
@@ -182,8 +221,17 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     log.run(&record)?;
     run.log_to(log, false);
     run.write_to(outputs);
-    let mut session =
-        Session { sumo, request, run, source, painter, step_length, spent: Spent::default(), is_unfinished: false };
+    let simulation = Simulation::of(sumo).map_err(said)?;
+    let mut session = Session {
+        simulation,
+        request,
+        run,
+        source,
+        painter,
+        step_length,
+        spent: Spent::default(),
+        is_unfinished: false,
+    };
     let ended = session.steps();
     let ended = session.finish_step().and(ended);
     let exposure = session.run.summary().exposure;
@@ -216,13 +264,8 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
 impl Session<'_, '_> {
     /// From step to step until the scenario ends.
     fn steps(&mut self) -> Result<()> {
-        let py = self.sumo.py();
-        let simulation = self.sumo.getattr("simulation");
-        let time = |name: &str| -> PyResult<f64> {
-            simulation.as_ref().map_err(|error| error.clone_ref(py))?.call_method0(name)?.extract()
-        };
-        let begin = time("getTime").map_err(|error| self.failed(f64::NAN, &error))?;
-        let end = time("getEndTime").ok().filter(|end| *end >= 0.0);
+        let begin = self.simulation.time().map_err(|error| self.failed(f64::NAN, &error))?;
+        let end = self.simulation.end();
         let mut progress = Progress::new(begin, end, !self.request.quiet);
         let mut now = begin;
         loop {
@@ -241,13 +284,12 @@ impl Session<'_, '_> {
 
     /// One step; whether there is another.
     fn step(&mut self, now: &mut f64) -> std::result::Result<bool, Stop> {
-        let py = self.sumo.py();
+        let py = self.simulation.py();
         let started = Instant::now();
         py.check_signals()?;
         self.simulate()?;
         let mut since = Instant::now();
-        let simulation = self.sumo.getattr("simulation")?;
-        *now = simulation.call_method0("getTime")?.extract()?;
+        *now = self.simulation.time()?;
         self.source.pull(py, &mut self.run)?;
         self.spent.add(PULL, &mut since);
         let rows = py.detach(|| self.run.follow().to_vec());
@@ -264,18 +306,18 @@ impl Session<'_, '_> {
             py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
             self.spent.add(PAINTING, &mut since);
         }
-        Ok(simulation.call_method0("getMinExpectedNumber")?.extract::<i64>()? > 0)
+        Ok(self.simulation.goes_on()?)
     }
 
     /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
     fn simulate(&mut self) -> std::result::Result<(), Stop> {
-        let sumo = self.sumo;
+        let simulation = &self.simulation;
         let (run, spent) = (&mut self.run, &mut self.spent);
         let unfinished = std::mem::take(&mut self.is_unfinished);
         let mut since = Instant::now();
         let (stepped, finished) = std::thread::scope(|scope| {
             let worker = unfinished.then(|| scope.spawn(|| finish(run)));
-            let stepped = sumo.call_method0("simulationStep").map(|_| ());
+            let stepped = simulation.step.call0().map(|_| ());
             spent.add(SUMO, &mut since);
             (stepped, worker.map(std::thread::ScopedJoinHandle::join))
         });
@@ -291,13 +333,13 @@ impl Session<'_, '_> {
     fn finish_step(&mut self) -> Result<()> {
         if std::mem::take(&mut self.is_unfinished) {
             let run = &mut self.run;
-            self.spent.add_finished(self.sumo.py().detach(|| finish(run))?);
+            self.spent.add_finished(self.simulation.py().detach(|| finish(run))?);
         }
         Ok(())
     }
 
     fn failed(&self, time: f64, error: &PyErr) -> Error {
-        let py = self.sumo.py();
+        let py = self.simulation.py();
         if error.is_instance_of::<PyKeyboardInterrupt>(py) {
             return Error::Interrupted { time };
         }

@@ -1,4 +1,7 @@
 //! From traci, over its socket: everything by subscription, since each single question costs a round trip.
+//!
+//! The names of its functions are interned: whatever name Python is asked for anew in every step stays in its cache of
+//! attributes.
 
 use std::sync::Arc;
 
@@ -8,6 +11,7 @@ use closecall::net::EdgeIndex;
 use closecall::options::Options;
 use closecall::run::Run;
 use closecall::units::Second;
+use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use rustc_hash::FxHashMap;
@@ -94,7 +98,8 @@ impl Traci {
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let time: Second = self.source.bind(py).getattr("simulation")?.call_method0("getTime")?.extract()?;
+        let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
+        let time: Second = simulation.call_method0(intern!(py, "getTime"))?.extract()?;
         run.begin(sumo::time_of_states(time, self.step_length));
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
@@ -116,7 +121,7 @@ impl Traci {
             let route = match &live.route {
                 Some((known, route)) if *known == route_id => route.clone(),
                 _ => {
-                    let route = sumo::route(net, &domain.call_method1("getRoute", (id,))?)?;
+                    let route = sumo::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?;
                     live.route = Some((route_id, route.clone()));
                     route
                 }
@@ -148,17 +153,17 @@ impl Domain {
         }
         self.rows.clear();
         self.first_row = run.frame.len() as u32;
-        let ids = domain.call_method0("getIDList")?.cast_into::<PyTuple>()?;
+        let ids = domain.call_method0(intern!(py, "getIDList"))?.cast_into::<PyTuple>()?;
         for id in ids.iter() {
             if !self.live.contains_key(id.extract::<&str>()?) {
-                domain.call_method1("subscribe", (&id, self.variables.clone()))?;
-                let type_id = domain.call_method1("getTypeID", (&id,))?;
+                domain.call_method1(intern!(py, "subscribe"), (&id, self.variables.clone()))?;
+                let type_id = domain.call_method1(intern!(py, "getTypeID"), (&id,))?;
                 let profile = profile(run, type_id.extract::<&str>()?)?;
                 let user = run.enter(id.extract::<&str>()?, profile);
                 self.live.insert(id.extract()?, Live { user, seen: false, route: None, latest: None });
             }
         }
-        let results = domain.call_method0("getAllSubscriptionResults")?;
+        let results = domain.call_method0(intern!(py, "getAllSubscriptionResults"))?;
         for id in ids.iter() {
             let id: Bound<PyString> = id.cast_into()?;
             let Some(live) = self.live.get_mut(id.extract::<&str>()?) else { continue };
