@@ -39,18 +39,12 @@ pub struct LanePath {
 #[derive(Clone, Debug, Default)]
 struct Plan {
     route: Arc<[EdgeIndex]>,
-    tip: Option<Tip>,
+    /// The place in the route of the last lane's edge, or of the one before; none where the line does not go on.
+    route_position: Option<u32>,
     /// On which lane the line is from which of its points on.
     lanes: Vec<(u32, LaneIndex)>,
     /// None on the lanes' centre line.
     beside: Option<Box<Beside>>,
-}
-
-/// The last lane that is laid, and the place in the route of its edge or of the one before.
-#[derive(Clone, Copy, Debug)]
-struct Tip {
-    lane: LaneIndex,
-    route_position: u32,
 }
 
 /// What laying a path starts from.
@@ -100,7 +94,7 @@ impl LanePath {
         }
         let (track, plan) = (&mut self.track, self.plan.get_or_insert_default());
         plan.route = placement.route.clone();
-        plan.tip = None;
+        plan.route_position = None;
         plan.lanes.clear();
         plan.beside = Beside::new(offset(net, start, placement, &foot, against));
         track.clear();
@@ -122,7 +116,7 @@ impl LanePath {
             plan.push_ahead(track, lane.shape[..=foot.segment].iter().rev());
         } else {
             plan.push_ahead(track, &lane.shape[foot.segment + 1..]);
-            plan.tip = Some(Tip { lane: placement.lane, route_position: placement.route_position as u32 });
+            plan.route_position = Some(placement.route_position as u32);
         }
         plan.forget(track.drop_behind(start.length + KEPT_BEHIND));
         track.shrink();
@@ -140,13 +134,13 @@ impl LanePath {
         // A ring of lanes of length 0 would go on for ever.
         let mut in_vain = 0;
         while track.end() - track.front() < way + SPARE && in_vain <= net.lanes.len() {
-            let Some(next) = plan.tip.and_then(|tip| plan.next(net, tip)) else { break };
+            let Some((lane, route_position)) = plan.next(net) else { break };
             let before = track.end();
-            let shape = &net.lanes[next.lane.0 as usize].shape;
+            let shape = &net.lanes[lane.0 as usize].shape;
             track.reserve(shape.len());
-            plan.begin_lane(track, next.lane);
+            plan.begin_lane(track, lane);
             plan.push_ahead(track, shape);
-            plan.tip = Some(next);
+            plan.route_position = Some(route_position);
             in_vain = if track.end() > before { 0 } else { in_vain + 1 };
         }
         track.shrink();
@@ -191,9 +185,11 @@ impl Plan {
         self.lanes.drain(..behind);
     }
 
-    fn next(&self, net: &Net, tip: Tip) -> Option<Tip> {
-        let (route, position) = (&*self.route, tip.route_position as usize);
-        let lane = &net.lanes[tip.lane.0 as usize];
+    /// The lane after the last one, and its place in the route.
+    fn next(&self, net: &Net) -> Option<(LaneIndex, u32)> {
+        let (route, route_position, (_, last)) = (&*self.route, self.route_position?, *self.lanes.last()?);
+        let position = route_position as usize;
+        let lane = &net.lanes[last.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
         let wanted = route.get(position + 1).copied();
         let leads = |link: &&crate::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
@@ -206,17 +202,14 @@ impl Plan {
             } else if wanted.is_some() {
                 continuation(net, route, link.to, position + 1, EDGES_AHEAD)
             } else {
-                straightness(net, tip.lane, link.via.unwrap_or(link.to))
+                straightness(net, last, link.via.unwrap_or(link.to))
             };
             if best.is_some_and(|(_, most)| most >= worth) { best } else { Some((link, worth)) }
         })?;
         let (link, _) = link;
         Some(match link.via {
-            Some(via) => Tip { lane: via, ..tip },
-            None => {
-                let arrives = wanted == Some(edge_of(net, link.to));
-                Tip { lane: link.to, route_position: tip.route_position + u32::from(arrives) }
-            }
+            Some(via) => (via, route_position),
+            None => (link.to, route_position + u32::from(wanted == Some(edge_of(net, link.to)))),
         })
     }
 }
