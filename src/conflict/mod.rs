@@ -72,7 +72,8 @@ impl Tracker {
         encounters: &[Encounter],
         path: impl Fn(u32) -> Vec<Point>,
     ) -> &[Conflict] {
-        self.closed.clear();
+        // A step in which many close would keep its room for the rest of the run.
+        self.closed = Vec::new();
         if self.events.is_empty() && self.waiting.is_empty() && encounters.iter().all(|found| !found.in_conflict()) {
             return &self.closed;
         }
