@@ -105,6 +105,7 @@ impl Roster {
                 UserIndex(index)
             }
             None => {
+                make_room(&mut self.users, 1);
                 self.users.push(user);
                 UserIndex(self.users.len() as u32 - 1)
             }
@@ -139,6 +140,14 @@ impl Roster {
     /// Whether nobody was ever in the scene.
     pub fn is_empty(&self) -> bool {
         self.users.is_empty()
+    }
+}
+
+/// Makes room for further rows in a table that has one per road user: where there is none, for an eighth more than that;
+/// doubling, as [`Vec`] does, would leave up to half of it empty.
+pub fn make_room<T>(table: &mut Vec<T>, further: usize) {
+    if table.capacity() - table.len() < further {
+        table.reserve_exact(further + (table.len() + further) / 8);
     }
 }
 
@@ -180,6 +189,8 @@ impl Frame {
         let State { x, y, z, heading, speed } = state;
         let valid = (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0;
         if valid {
+            make_room(&mut self.users, 1);
+            make_room(&mut self.states, 1);
             self.users.push(user);
             self.states.push(state);
         }
