@@ -70,7 +70,7 @@ impl From<Bounds> for Area {
 
 /// A box larger than this many mean ones is compared with everybody: it would make all strips high.
 const LARGE: f64 = 2.5;
-/// No more than one in so many is compared with everybody, that would be all pairs again.
+/// No more than one in so many is: that would be all pairs again. Where more are that large, strips are higher.
 const SHARE_OF_LARGE: usize = 1000;
 /// Who is further from the origin than this is compared with everybody, in m; SUMO's own invalid value is −2³⁰.
 const FAR: Metre = 1e9;
@@ -92,6 +92,12 @@ struct Place {
 }
 
 impl Place {
+    /// Puts it into its strip.
+    fn lay(&mut self, per_metre: f64) {
+        let Bounds { low, high } = self.area.bounds;
+        self.strip = ((low.y + high.y) * 0.5 * per_metre).floor() as i32;
+    }
+
     fn is_before(&self, other: &Self) -> bool {
         (self.strip, self.area.bounds.low.x) < (other.strip, other.area.bounds.low.x)
     }
@@ -106,8 +112,8 @@ pub struct Search {
     places: Vec<Place>,
     in_strips: usize,
     strip_height: Metre,
-    /// Length along x of the longest box that has a strip.
-    longest: Metre,
+    /// Length along x of the longest box that has a strip, and the largest height.
+    largest: Vector,
     large: Vec<Place>,
 }
 
@@ -129,12 +135,18 @@ impl Search {
             self.places.retain(|place| (place.item as usize) < count);
         }
         // Nearly in order: as it was in the last step.
-        for place in &mut self.places {
-            place.area = areas[place.item as usize];
-        }
+        let mut sum = 0.0;
         let further = (0..).zip(areas).skip(known);
         self.places.extend(further.map(|(item, area)| Place { strip: 0, item, area: *area }));
-        self.part_large();
+        for place in &mut self.places {
+            place.area = areas[place.item as usize];
+            sum += place.area.size().max().clamp(0.0, 1e3);
+        }
+        let mut limit = LARGE * (sum / count.max(1) as f64).max(LOWEST_STRIP);
+        while self.part_large(limit) > count / SHARE_OF_LARGE + 1 && limit < FAR {
+            limit *= 2.0;
+            self.places.append(&mut self.large);
+        }
         self.sort();
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
@@ -150,43 +162,41 @@ impl Search {
         &self.places[place as usize].area
     }
 
-    /// Sets aside what is too large for a strip.
-    fn part_large(&mut self) {
-        let limit = limit(&self.places);
-        let is_large = |place: &Place| {
-            let (size, Bounds { low, high }) = (place.area.size(), place.area.bounds);
-            !(size.x.max(size.y) <= limit && low.x.min(low.y) > -FAR && high.x.max(high.y) < FAR)
-        };
+    /// Sets aside what is larger than this, and what is too far away for a strip; all others are in the strips of the last
+    /// step, and the largest of them is known. Returns how many are too large.
+    fn part_large(&mut self, limit: Metre) -> usize {
+        let (per_metre, mut too_large, mut largest) = (1.0 / self.strip_height, 0, Vector::zeros());
         let Self { places, large, .. } = self;
-        places.retain(|place| {
-            let is_large = is_large(place);
-            if is_large {
-                large.push(*place);
+        places.retain_mut(|place| {
+            let (size, Bounds { low, high }) = (place.area.size(), place.area.bounds);
+            let fits = size.x.max(size.y) <= limit;
+            too_large += usize::from(!fits);
+            if fits && low.x.min(low.y) > -FAR && high.x.max(high.y) < FAR {
+                largest = size.sup(&largest);
+                place.lay(per_metre);
+                return true;
             }
-            !is_large
+            large.push(*place);
+            false
         });
+        self.largest = largest;
+        too_large
     }
 
     /// Sorts the boxes into strips by their middle, and within each along x. Two that meet are then in the same strip
     /// or in neighbouring ones.
     fn sort(&mut self) {
-        let places = &mut self.places[..];
-        let largest = places.iter().fold(Vector::zeros(), |largest, place| place.area.size().sup(&largest));
-        self.longest = largest.x;
-        let least = largest.y.max(LOWEST_STRIP);
+        let least = self.largest.y.max(LOWEST_STRIP);
         let same_strips = (least..=SPARE_HEIGHT * least).contains(&self.strip_height);
         if !same_strips {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
+            let per_metre = 1.0 / self.strip_height;
+            self.places.iter_mut().for_each(|place| place.lay(per_metre));
         }
-        let per_metre = 1.0 / self.strip_height;
-        for place in &mut *places {
-            let Bounds { low, high } = place.area.bounds;
-            place.strip = ((low.y + high.y) * 0.5 * per_metre).floor() as i32;
-        }
-        let moves = if same_strips { MOVES * places.len() } else { 0 };
-        if !sort_nearly_sorted(places, moves) {
+        let moves = if same_strips { MOVES * self.places.len() } else { 0 };
+        if !sort_nearly_sorted(&mut self.places, moves) {
             let x = |place: &Place| place.area.bounds.low.x;
-            places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
+            self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
         }
     }
 
@@ -209,7 +219,7 @@ impl Search {
             compare(place, a, place + 1, &in_strips[place + 1..], &|b| {
                 b.strip == a.strip && b.area.bounds.low.x <= end
             });
-            let begin = a.area.bounds.low.x - self.longest;
+            let begin = a.area.bounds.low.x - self.largest.x;
             next += in_strips[next..]
                 .iter()
                 .take_while(|b| b.strip < above || (b.strip == above && b.area.bounds.low.x < begin))
@@ -239,18 +249,6 @@ fn sort_nearly_sorted(places: &mut [Place], mut moves: usize) -> bool {
         places[to] = place;
     }
     true
-}
-
-/// The largest size of a box that gets a strip: a few times the mean, more where too many are larger than that.
-fn limit(places: &[Place]) -> Metre {
-    let sizes = || places.iter().map(|place| place.area.size().max());
-    let mean = sizes().map(|size| size.clamp(0.0, 1e3)).sum::<f64>() / places.len().max(1) as f64;
-    let mut limit = LARGE * mean.max(LOWEST_STRIP);
-    let allowed = places.len() / SHARE_OF_LARGE + 1;
-    while limit < FAR && sizes().filter(|size| *size > limit).count() > allowed {
-        limit *= 2.0;
-    }
-    limit
 }
 
 #[cfg(test)]
