@@ -151,6 +151,12 @@ pub fn make_room<T>(table: &mut Vec<T>, further: usize) {
     }
 }
 
+/// Gives a table so many rows, new ones with this value.
+pub(crate) fn fill<T: Clone>(table: &mut Vec<T>, rows: usize, value: T) {
+    make_room(table, rows.saturating_sub(table.len()));
+    table.resize(rows, value);
+}
+
 /// A road user's changing part, as it goes into a [`Frame`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct State {

@@ -84,11 +84,14 @@ const SPARE_HEIGHT: f64 = 2.0;
 const MOVES: usize = 8;
 
 /// An area in its strip.
-#[derive(Clone, Copy)]
-struct Place {
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    /// Which of the caller's areas that is.
+    pub item: u32,
+    /// The area.
+    pub area: Area,
+    slot: u32,
     strip: i32,
-    item: u32,
-    area: Area,
 }
 
 impl Place {
@@ -104,8 +107,6 @@ impl Place {
 }
 
 /// Finds the pairs of areas that meet; keeps its memory, and the order that it found, from step to step.
-///
-/// Every area of a step has a place in that order: those that meet are near each other.
 #[derive(Default)]
 pub struct Search {
     /// Those in strips, sorted; then the large ones.
@@ -121,25 +122,36 @@ impl Search {
     /// Puts the index pairs (smaller first) of all areas that meet into `pairs`, in no particular order.
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
-        self.prepare(areas);
+        let mut items = Vec::with_capacity(areas.len());
+        for place in self.begin(areas.len()) {
+            place.area = areas[place.item as usize];
+            items.push(place.item);
+        }
+        self.sort();
         self.sweep(0..areas.len(), |a, b| {
-            let (a, b) = (self.item(a), self.item(b));
+            let (a, b) = (items[a as usize], items[b as usize]);
             pairs.push((a.min(b), a.max(b)));
         });
     }
 
-    /// Takes the areas of a step and gives each a place, as many as there are areas.
-    pub fn prepare(&mut self, areas: &[Area]) {
-        let (known, count) = (self.places.len(), areas.len());
+    /// A place for each of so many areas, in the order in which the last step ended: those that met are near each
+    /// other. The caller fills in the areas of now. Where a place is among these, its slot, is what [`Self::sweep`] says
+    /// of those that meet: so what belongs to them is best kept in the same order.
+    pub fn begin(&mut self, count: usize) -> &mut [Place] {
+        let known = self.places.len();
         if count < known {
             self.places.retain(|place| (place.item as usize) < count);
         }
-        // Nearly in order: as it was in the last step.
-        let mut sum = 0.0;
-        let further = (0..).zip(areas).skip(known);
-        self.places.extend(further.map(|(item, area)| Place { strip: 0, item, area: *area }));
-        for place in &mut self.places {
-            place.area = areas[place.item as usize];
+        let further = known as u32..count as u32;
+        self.places.extend(further.map(|item| Place { item, area: Area::NOWHERE, slot: 0, strip: 0 }));
+        &mut self.places
+    }
+
+    /// Sorts the areas of now.
+    pub fn sort(&mut self) {
+        let (mut sum, count) = (0.0, self.places.len());
+        for (slot, place) in (0..).zip(&mut self.places) {
+            place.slot = slot;
             sum += place.area.size().max().clamp(0.0, 1e3);
         }
         let mut limit = LARGE * (sum / count.max(1) as f64).max(LOWEST_STRIP);
@@ -147,19 +159,9 @@ impl Search {
             limit *= 2.0;
             self.places.append(&mut self.large);
         }
-        self.sort();
+        self.sort_in_strips();
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
-    }
-
-    /// Which area has this place.
-    pub fn item(&self, place: u32) -> u32 {
-        self.places[place as usize].item
-    }
-
-    /// The area that has this place.
-    pub fn area(&self, place: u32) -> &Area {
-        &self.places[place as usize].area
     }
 
     /// Sets aside what is larger than this, and what is too far away for a strip; all others are in the strips of the last
@@ -185,7 +187,7 @@ impl Search {
 
     /// Sorts the boxes into strips by their middle, and within each along x. Two that meet are then in the same strip
     /// or in neighbouring ones.
-    fn sort(&mut self) {
+    fn sort_in_strips(&mut self) {
         let least = self.largest.y.max(LOWEST_STRIP);
         let same_strips = (least..=SPARE_HEIGHT * least).contains(&self.strip_height);
         if !same_strips {
@@ -200,34 +202,32 @@ impl Search {
         }
     }
 
-    /// From each of these places ahead in its own strip, and to both sides in the next; from a large one at everybody
-    /// before it. `found` gets two places.
+    /// From each of these of the sorted places ahead in its own strip, and to both sides in the next; from a large one
+    /// at everybody before it. `found` gets the slots of two that meet.
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
-        let mut compare =
-            |place: usize, a: &Place, first: usize, others: &[Place], is_near: &dyn Fn(&Place) -> bool| {
-                for (other, b) in (first..).zip(others.iter().take_while(|b| is_near(b))) {
-                    if a.area.meets(&b.area) {
-                        found(place as u32, other as u32);
-                    }
-                }
-            };
+        let mut compare = |a: &Place, b: &Place| {
+            if a.area.meets(&b.area) {
+                found(a.slot, b.slot);
+            }
+        };
         let mut next = from.start;
         for place in from.start..from.end.min(in_strips.len()) {
             let a = &in_strips[place];
             let (above, end) = (a.strip + 1, a.area.bounds.high.x);
-            compare(place, a, place + 1, &in_strips[place + 1..], &|b| {
-                b.strip == a.strip && b.area.bounds.low.x <= end
-            });
+            let ahead = in_strips[place + 1..].iter();
+            ahead.take_while(|b| b.strip == a.strip && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
             let begin = a.area.bounds.low.x - self.largest.x;
             next += in_strips[next..]
                 .iter()
                 .take_while(|b| b.strip < above || (b.strip == above && b.area.bounds.low.x < begin))
                 .count();
-            compare(place, a, next, &in_strips[next..], &|b| b.strip == above && b.area.bounds.low.x <= end);
+            let aside = in_strips[next..].iter();
+            aside.take_while(|b| b.strip == above && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
         }
         for place in from.start.max(in_strips.len())..from.end {
-            compare(place, &large[place - in_strips.len()], 0, &self.places[..place], &|_| true);
+            let a = &large[place - in_strips.len()];
+            self.places[..place].iter().for_each(|b| compare(a, b));
         }
     }
 }
@@ -270,12 +270,16 @@ mod tests {
 
     /// What the search finds, swept in this many parts, in order.
     fn found(search: &mut Search, areas: &[Area], parts: usize) -> Vec<(u32, u32)> {
-        search.prepare(areas);
-        let (count, mut pairs) = (areas.len(), Vec::new());
+        let (count, mut items, mut pairs) = (areas.len(), Vec::new(), Vec::new());
+        for place in search.begin(count) {
+            place.area = areas[place.item as usize];
+            items.push(place.item);
+        }
+        search.sort();
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
-                let (a, b) = (search.item(a), search.item(b));
+                let (a, b) = (items[a as usize], items[b as usize]);
                 pairs.push((a.min(b), a.max(b)));
             });
         }

@@ -200,7 +200,7 @@ impl Run {
 
     /// Phase 1.
     pub fn approach(&mut self) {
-        self.detector.approach();
+        self.detector.approach(&self.roster);
     }
 
     /// Phase 2.

@@ -41,7 +41,7 @@ fn encounters(y: f64, drift: f64) -> usize {
         };
         detector.place(&roster, row, &placement);
     }
-    detector.approach();
+    detector.approach(&roster);
     detector.detect(&roster).len()
 }
 

@@ -3,16 +3,18 @@
 use std::ops::Range;
 
 use super::parts::{each, share};
-use super::{Detector, LEVEL, User, Work};
+use super::{Detector, LEVEL, Turning, User, Work};
 use crate::braking::stopping_distance;
-use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, UserIndex, fill};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
-use crate::options::{Mode, PathModel};
+use crate::options::{Mode, Options, PathModel};
+use crate::path::lanes::LanePath;
 use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle};
-use crate::profile::{Category, Profile};
+use crate::profile::Category;
+use crate::scene::Exclusions;
 use crate::units::Metre;
 
 /// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
@@ -25,11 +27,14 @@ impl Detector {
     /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
     /// followed, in a pair or not, and what phase 1 leaves out changes no path.
     pub fn follow(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
-        if self.memory.len() < roster.len() {
-            self.memory.resize(roster.len(), Default::default());
+        if self.paths.len() < roster.len() {
+            fill(&mut self.paths, roster.len(), LanePath::default());
         }
         self.look(frame, roster);
-        self.turns();
+        if self.options.path == PathModel::Arc {
+            fill(&mut self.turnings, self.paths.len(), Turning::default());
+            self.turn();
+        }
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
         if self.options.path == PathModel::Lanes {
@@ -43,11 +48,9 @@ impl Detector {
     }
 
     /// Phase 1: which pairs may meet.
-    pub fn approach(&mut self) {
-        self.search.prepare(&self.areas);
-        self.users.clear();
-        let (search, rows) = (&self.search, &self.rows);
-        self.users.extend((0..rows.len() as u32).map(|place| rows[search.item(place) as usize]));
+    pub fn approach(&mut self, roster: &Roster) {
+        self.bring_together(roster);
+        self.search.sort();
         self.find_pairs();
         for worker in &mut self.workers {
             self.work += std::mem::take(&mut worker.work);
@@ -59,15 +62,12 @@ impl Detector {
         let straight_only = self.options.mode == Mode::Paper || self.options.path == PathModel::Straight;
         let by_lanes = !straight_only && self.options.path == PathModel::Lanes && self.net.is_some();
         let by_arcs = !straight_only && self.options.path == PathModel::Arc;
-        let (leaves_out, epsilon) = (self.leaves_out, self.options.epsilon);
-        self.rows.resize(frame.len(), User::NOBODY);
-        self.areas.resize(frame.len(), Area::NOWHERE);
+        fill(&mut self.rows, frame.len(), User::NOBODY);
         let share = share(frame.len(), self.workers.len());
-        let rows = self.rows.chunks_mut(share).zip(self.areas.chunks_mut(share));
-        let parts = (0..).step_by(share).zip(rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share))));
-        each(&mut self.workers, parts, |_, (first, ((rows, areas), (users, states)))| {
-            let frame_rows = (first..).zip(users).zip(states);
-            for ((now, area), ((row, &index), state)) in rows.iter_mut().zip(areas).zip(frame_rows) {
+        let rows = (0..).step_by(share).zip(self.rows.chunks_mut(share));
+        let parts = rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share)));
+        each(&mut self.workers, parts, |_, ((first, rows), (users, states))| {
+            for ((now, row), (&index, state)) in rows.iter_mut().zip(first..).zip(users.iter().zip(states)) {
                 let profile_index = roster.user(index).profile;
                 let profile = roster.profile_at(profile_index);
                 let moves = state.speed > STANDS;
@@ -85,31 +85,32 @@ impl Detector {
                     ahead: !(by_arcs || by_lanes && moves && profile.category == Category::Vehicle),
                     on_lanes: false,
                 };
-                let reach = now.stop + epsilon;
-                *area = if now.category == Category::Obstacle {
-                    let mut bounds = Bounds::EMPTY;
-                    roster.user(index).shape.iter().for_each(|part| bounds.join(&part.bounds));
-                    bounds.into()
-                } else if now.ahead && leaves_out.ways_apart {
-                    straight_ahead(profile, now.front, now.axis, reach).into()
-                } else {
-                    circle(profile, now.front, now.axis, reach).into()
-                };
+            }
+        });
+    }
+
+    /// Copies everybody to where those are that it met in the last step, with the area of now.
+    fn bring_together(&mut self, roster: &Roster) {
+        let (rows, reach) = (&self.rows, Reach::new(roster, &self.options, self.leaves_out));
+        fill(&mut self.users, rows.len(), User::NOBODY);
+        let share = share(rows.len(), self.workers.len());
+        let parts = self.search.begin(rows.len()).chunks_mut(share).zip(self.users.chunks_mut(share));
+        each(&mut self.workers, parts, |_, (places, users)| {
+            for (place, user) in places.iter_mut().zip(users) {
+                *user = rows[place.item as usize];
+                place.area = reach.area(user);
             }
         });
     }
 
     /// How the paths of now turn, where they are arcs.
-    fn turns(&mut self) {
-        if self.options.path != PathModel::Arc {
-            return;
-        }
+    fn turn(&mut self) {
         for user in &self.rows {
-            let memory = &mut self.memory[user.index.0 as usize];
-            if let Some((last, last_axis)) = memory.last {
-                memory.curvature = arc::curvature(turn(&last_axis, &user.axis), (user.front - last).norm());
+            let turning = &mut self.turnings[user.index.0 as usize];
+            if let Some((last, last_axis)) = turning.last {
+                turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (user.front - last).norm());
             }
-            memory.last = Some((user.front, user.axis));
+            turning.last = Some((user.front, user.axis));
         }
     }
 
@@ -138,7 +139,7 @@ impl Detector {
     /// Follows a row's path along the lanes, or asks for its lane.
     fn keep_on_path(&mut self, row: usize) {
         let user = &mut self.rows[row];
-        user.on_lanes = self.memory[user.index.0 as usize].path.follow(user.front);
+        user.on_lanes = self.paths[user.index.0 as usize].follow(user.front);
         if self.leaves_out.known_paths && !self.routes_may_change && user.on_lanes {
             self.work.known_paths += 1;
         } else {
@@ -165,10 +166,10 @@ impl User {
     };
 }
 
-/// Each of these places with all before it.
-fn every_pair(places: Range<usize>, mut found: impl FnMut(u32, u32)) {
-    for place in places {
-        (0..place).for_each(|other| found(other as u32, place as u32));
+/// Each of these slots with all before it.
+fn every_pair(slots: Range<usize>, mut found: impl FnMut(u32, u32)) {
+    for slot in slots {
+        (0..slot).for_each(|other| found(other as u32, slot as u32));
     }
 }
 
@@ -196,15 +197,34 @@ fn all_pairs(count: usize) -> u64 {
     count * count.saturating_sub(1) / 2
 }
 
-/// The circle that holds all that a road user may cover within `reach` m of way.
-fn circle(profile: &Profile, front: Point, axis: Vector, reach: Metre) -> Circle {
-    let centre = front - axis * (profile.length / 2.0);
-    let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
-    Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }
+/// How far road users reach until they stand.
+#[derive(Clone, Copy)]
+pub(super) struct Reach<'a> {
+    roster: &'a Roster,
+    epsilon: Metre,
+    /// Whether who can only go straight on has a box around that.
+    has_boxes: bool,
 }
 
-/// The box that holds all that it covers within `reach` m straight ahead.
-fn straight_ahead(profile: &Profile, front: Point, axis: Vector, reach: Metre) -> Bounds {
-    let covered = Rectangle::behind(front + axis * reach, axis, profile.length + reach, profile.width);
-    covered.bounds().grown(TOLERANCE)
+impl<'a> Reach<'a> {
+    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions) -> Self {
+        Self { roster, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart }
+    }
+
+    /// What somebody may cover until it stands, and ε further.
+    pub(super) fn area(&self, user: &User) -> Area {
+        let (profile, reach) = (self.roster.profile_at(user.profile), user.stop + self.epsilon);
+        if user.category == Category::Obstacle {
+            let mut bounds = Bounds::EMPTY;
+            self.roster.user(user.index).shape.iter().for_each(|part| bounds.join(&part.bounds));
+            return bounds.into();
+        }
+        if user.ahead && self.has_boxes {
+            let (front, length) = (user.front + user.axis * reach, profile.length + reach);
+            return Rectangle::behind(front, user.axis, length, profile.width).bounds().grown(TOLERANCE).into();
+        }
+        let centre = user.front - user.axis * (profile.length / 2.0);
+        let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
+        Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }.into()
+    }
 }

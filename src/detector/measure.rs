@@ -21,7 +21,7 @@ impl Scene<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Found { encounters, unmeasured, courses, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let (ego, foe) = (worker.ways.mover(self, met.places[0]), worker.ways.mover(self, met.places[1]));
+            let (ego, foe) = (worker.ways.mover(self, met.slots[0]), worker.ways.mover(self, met.slots[1]));
             self.measure(courses, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
@@ -49,7 +49,7 @@ impl Scene<'_> {
 
     /// The foe's way until it has left the ego's meeting place.
     fn way_out(&self, courses: &mut Courses, foe: &Mover, met: &Met) -> Metre {
-        let (poses, user) = (&mut courses[1], self.user(met.places[1]));
+        let (poses, user) = (&mut courses[1], self.user(met.slots[1]));
         poses.clear();
         self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
         side::departure(poses, foe, &met.meeting.ego, met.meeting.foe_way)
@@ -89,7 +89,7 @@ impl Scene<'_> {
         if encounter.collision {
             return Some(0.0);
         }
-        let users = met.places.map(|place| self.user(place));
+        let users = met.slots.map(|slot| self.user(slot));
         for (user, poses) in users.into_iter().zip(courses.iter_mut()) {
             poses.clear();
             self.course(user, &[user.speed * approach::HORIZON], true, poses);
@@ -99,7 +99,7 @@ impl Scene<'_> {
             Course { poses, speed: user.speed, length: profile.length, width: profile.width }
         };
         let (ego, foe) = (course(users[0], &courses[0][..]), course(users[1], &courses[1][..]));
-        if self.is_obstacle(met.places[1]) {
+        if self.is_obstacle(met.slots[1]) {
             let shape = &self.roster.user(encounter.foe).shape;
             let outlines = shape.iter().map(|part| part.outline).collect::<Vec<Outline>>();
             approach::time_to_fixed(&ego, &outlines)

@@ -11,8 +11,8 @@ use crate::units::{Metre, Radian};
 
 /// Who of a pair meets whom.
 struct Roles<'a> {
-    /// The ego's place and the foe's.
-    places: [u32; 2],
+    /// The ego's slot and the foe's.
+    slots: [u32; 2],
     ego: &'a Mover<'a>,
     foe: &'a Mover<'a>,
 }
@@ -20,8 +20,8 @@ struct Roles<'a> {
 impl<'a> Roles<'a> {
     fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Mover<'a>; 2]) -> Self {
         match ego_is_first {
-            true => Self { places: [first, second], ego: a, foe: b },
-            false => Self { places: [second, first], ego: b, foe: a },
+            true => Self { slots: [first, second], ego: a, foe: b },
+            false => Self { slots: [second, first], ego: b, foe: a },
         }
     }
 }
@@ -48,20 +48,22 @@ impl Scene<'_> {
         }
     }
 
-    fn meet(&self, ways: &mut Ways, work: &mut Work, places: [u32; 2], found: &mut Found) {
-        places.iter().for_each(|place| ways.see(self, *place));
-        let [a, b] = places;
-        if self.leaves_out.ways_apart && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
+    fn meet(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+        slots.iter().for_each(|slot| ways.see(self, *slot));
+        let [a, b] = slots;
+        // Of two that can only go straight on phase 1 has compared the boxes.
+        let is_known = self.leaves_out.circles_apart && self.user(a).ahead && self.user(b).ahead;
+        if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
             work.ways_apart += 1;
             return;
         }
         // An obstacle is nobody's ego.
-        let places = if self.is_obstacle(a) { [b, a] } else { places };
-        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
-        let id = |place: u32| &self.roster.user(self.user(place).index).id;
-        let a_is_smaller = || id(places[0]) <= id(places[1]);
+        let slots = if self.is_obstacle(a) { [b, a] } else { slots };
+        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let id = |slot: u32| &self.roster.user(self.user(slot).index).id;
+        let a_is_smaller = || id(slots[0]) <= id(slots[1]);
         if side::touch_now(&first, &second) {
-            let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), places, [&first, &second]);
+            let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), slots, [&first, &second]);
             let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
             let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
             return self.met(found, &roles, &meeting, true);
@@ -70,29 +72,29 @@ impl Scene<'_> {
         if in_line && self.leaves_out.in_line {
             work.in_line += 1;
             if let Some((ego_is_first, meeting)) = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller) {
-                self.met(found, &Roles::new(ego_is_first, places, [&first, &second]), &meeting, false);
+                self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
             }
             return;
         }
-        places.iter().for_each(|place| ways.cover(self, *place));
-        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
+        slots.iter().for_each(|slot| ways.cover(self, *slot));
+        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
         if !first.cover.meets(second.cover) {
             work.ways_apart += 1;
             return;
         }
         work.swept += 1;
         if let Some((ego_is_first, meeting)) = accurate::meet_swept(&first, &second, in_line, &a_is_smaller) {
-            self.met(found, &Roles::new(ego_is_first, places, [&first, &second]), &meeting, false);
+            self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
         }
     }
 
-    fn meet_on_paper(&self, ways: &Ways, places: [u32; 2], found: &mut Found) {
-        if places.iter().any(|place| self.is_obstacle(*place)) {
+    fn meet_on_paper(&self, ways: &Ways, slots: [u32; 2], found: &mut Found) {
+        if slots.iter().any(|slot| self.is_obstacle(*slot)) {
             return;
         }
-        let (first, second) = (ways.mover(self, places[0]), ways.mover(self, places[1]));
+        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
         let measured = accurate::paper::measure(&first, &second, self.options);
-        let roles = Roles::new(measured.ego_is_a, places, [&first, &second]);
+        let roles = Roles::new(measured.ego_is_a, slots, [&first, &second]);
         let (ego, foe) = (roles.ego, roles.foe);
         let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
         let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
@@ -119,8 +121,8 @@ impl Scene<'_> {
         let How { kind, angle, sigma, gap, collision } = how;
         let mu = accurate::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
         let at = meeting.place();
-        let [ego, foe] = roles.places.map(|place| self.user(place));
-        let path = ego.on_lanes.then(|| &self.memory[ego.index.0 as usize].path);
+        let [ego, foe] = roles.slots.map(|slot| self.user(slot));
+        let path = ego.on_lanes.then(|| &self.paths[ego.index.0 as usize]);
         let mut encounter = Encounter {
             ego: ego.index,
             foe: foe.index,
@@ -141,7 +143,7 @@ impl Scene<'_> {
         };
         let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
         if leaves || encounter.in_conflict() {
-            let met = Met { places: roles.places, meeting: *meeting, sigma, leaves };
+            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
             if ego.on_lanes || foe.on_lanes {
                 found.unmeasured.push((found.encounters.len() as u32, met));
             } else {

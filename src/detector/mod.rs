@@ -21,10 +21,11 @@ use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
 use crate::path::Pose;
 use crate::path::lanes::{LanePath, Start};
-use crate::precollision::{Area, Search};
+use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::units::{Metre, MetrePerSecond};
+use look::Reach;
 use order::Order;
 use parts::each;
 use ways::Ways;
@@ -80,22 +81,23 @@ pub struct Detector {
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
-    memory: Vec<Memory>,
+    /// By [`UserIndex`], as long as the road user is in the scene.
+    paths: Vec<LanePath>,
+    /// The same; empty where paths are no arcs.
+    turnings: Vec<Turning>,
     /// Everybody in the step, in the order of the frame's rows.
     rows: Vec<User>,
-    areas: Vec<Area>,
     search: Search,
-    /// The same in the search's places: who meets is near in memory too.
+    /// The same in the search's slots: who meets is near in memory too.
     users: Vec<User>,
     order: Order,
     unplaced: Vec<u32>,
     workers: Vec<Worker>,
 }
 
-/// What is remembered of a road user from step to step.
+/// How a road user turns, as far as the last two steps tell.
 #[derive(Clone, Debug, Default)]
-struct Memory {
-    path: LanePath,
+struct Turning {
     last: Option<(Point, Vector)>,
     curvature: f64,
 }
@@ -124,7 +126,7 @@ struct User {
 #[derive(Default)]
 struct Worker {
     work: Work,
-    /// Places of two, the smaller row first.
+    /// Slots of two, the smaller row first.
     pairs: Vec<(u32, u32)>,
     ways: Ways,
     found: Found,
@@ -147,8 +149,8 @@ type Courses = [Vec<Pose>; 2];
 /// What measuring a pair that would meet starts from.
 #[derive(Clone, Copy)]
 struct Met {
-    /// The ego's place and the foe's.
-    places: [u32; 2],
+    /// The ego's slot and the foe's.
+    slots: [u32; 2],
     meeting: Meeting,
     /// cos α.
     sigma: f64,
@@ -170,18 +172,19 @@ struct Scene<'a> {
     options: &'a Options,
     leaves_out: Exclusions,
     roster: &'a Roster,
-    memory: &'a [Memory],
-    search: &'a Search,
+    paths: &'a [LanePath],
+    turnings: &'a [Turning],
+    reach: Reach<'a>,
     users: &'a [User],
 }
 
 impl Scene<'_> {
-    fn user(&self, place: u32) -> &User {
-        &self.users[place as usize]
+    fn user(&self, slot: u32) -> &User {
+        &self.users[slot as usize]
     }
 
-    fn is_obstacle(&self, place: u32) -> bool {
-        self.user(place).category == Category::Obstacle
+    fn is_obstacle(&self, slot: u32) -> bool {
+        self.user(slot).category == Category::Obstacle
     }
 
     fn profile(&self, user: &User) -> &Profile {
@@ -199,9 +202,9 @@ impl Detector {
             net,
             routes_may_change: true,
             sublane: false,
-            memory: Vec::new(),
+            paths: Vec::new(),
+            turnings: Vec::new(),
             rows: Vec::new(),
-            areas: Vec::new(),
             search: Search::default(),
             users: Vec::new(),
             order: Order::default(),
@@ -243,17 +246,18 @@ impl Detector {
 
     /// Forgets a road user that has left the scene: its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
-        if let Some(memory) = self.memory.get_mut(user.0 as usize) {
-            memory.path.clear();
-            memory.last = None;
-            memory.curvature = 0.0;
+        if let Some(path) = self.paths.get_mut(user.0 as usize) {
+            path.clear();
+        }
+        if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
+            *turning = Turning::default();
         }
     }
 
     /// Whether the road user of a row is still on the path that was laid for this route.
     pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
         let user = &self.rows[row as usize];
-        user.on_lanes && self.memory[user.index.0 as usize].path.is_for(route)
+        user.on_lanes && self.paths[user.index.0 as usize].is_for(route)
     }
 
     /// Where the road user of a row is on the net.
@@ -263,7 +267,7 @@ impl Detector {
             return;
         }
         let user = &mut self.rows[row as usize];
-        let (path, profile) = (&mut self.memory[user.index.0 as usize].path, roster.profile_at(user.profile));
+        let (path, profile) = (&mut self.paths[user.index.0 as usize], roster.profile_at(user.profile));
         let start = Start {
             front: user.front,
             axis: user.axis,
@@ -278,13 +282,7 @@ impl Detector {
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
     pub fn detect(&mut self, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
-        // In a pair or not: who came to the end of its path would be given another one.
-        for row in 0..self.rows.len() {
-            let user = self.rows[row];
-            if user.on_lanes {
-                self.lengthen(roster, &user, user.stop + self.options.epsilon);
-            }
-        }
+        self.lengthen_all(roster);
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
             worker.found.clear();
@@ -294,8 +292,8 @@ impl Detector {
         let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
         each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
-            for place in met.places {
-                let user = self.users[place as usize];
+            for slot in met.slots {
+                let user = self.users[slot as usize];
                 if user.on_lanes {
                     let way = self.scene(roster).way_to_measure(&user, &met.meeting);
                     self.lengthen(roster, &user, way);
@@ -313,10 +311,24 @@ impl Detector {
         self.order.sorted(&self.workers)
     }
 
+    /// Sees to it that all paths reach as far as phase 2 looks, in a pair or not: who came to the end of its path would
+    /// be given another one.
+    fn lengthen_all(&mut self, roster: &Roster) {
+        if self.net.is_none() {
+            return;
+        }
+        for row in 0..self.rows.len() {
+            let user = self.rows[row];
+            if user.on_lanes {
+                self.lengthen(roster, &user, user.stop + self.options.epsilon);
+            }
+        }
+    }
+
     /// Sees to it that somebody's path reaches so far ahead, if the route does.
     fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
         if let Some(net) = &self.net {
-            self.memory[user.index.0 as usize].path.reach(net, roster.profile_at(user.profile).chord, way);
+            self.paths[user.index.0 as usize].reach(net, roster.profile_at(user.profile).chord, way);
         }
     }
 
@@ -325,8 +337,9 @@ impl Detector {
             options: &self.options,
             leaves_out: self.leaves_out,
             roster,
-            memory: &self.memory,
-            search: &self.search,
+            paths: &self.paths,
+            turnings: &self.turnings,
+            reach: Reach::new(roster, &self.options, self.leaves_out),
             users: &self.users,
         }
     }

@@ -3,6 +3,7 @@
 
 use super::{Scene, User};
 use crate::accurate::{Cover, Mover};
+use crate::frame::{fill, make_room};
 use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
@@ -11,7 +12,10 @@ use crate::path::{Pose, arc, straight};
 use crate::profile::Category;
 use crate::units::Metre;
 
-/// The ways of a step that were asked for, by place.
+/// Hardly a way has more poses; the table of all grows by doubling where one has.
+const MOST_POSES: usize = 32;
+
+/// The ways of a step that were asked for, by slot.
 #[derive(Default)]
 pub(super) struct Ways {
     step: u32,
@@ -20,7 +24,7 @@ pub(super) struct Ways {
     covers: Vec<Cover>,
 }
 
-/// The way of who is in a place.
+/// The way of who is in a slot.
 #[derive(Clone, Copy)]
 struct Laid {
     /// The step it was laid in.
@@ -38,10 +42,10 @@ impl Laid {
 }
 
 impl Ways {
-    /// Forgets those of the last step; places below `places` may be asked for.
-    pub(super) fn begin(&mut self, places: usize) {
-        if self.laid.len() < places {
-            self.laid.resize(places, Laid::NOTHING);
+    /// Forgets those of the last step; slots below `slots` may be asked for.
+    pub(super) fn begin(&mut self, slots: usize) {
+        if self.laid.len() < slots {
+            fill(&mut self.laid, slots, Laid::NOTHING);
         }
         self.step = self.step.wrapping_add(1).max(1);
         self.poses.clear();
@@ -50,26 +54,27 @@ impl Ways {
 
     /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
     /// will be.
-    pub(super) fn see(&mut self, scene: &Scene, place: u32) {
-        if !scene.user(place).ahead {
-            self.lay(scene, place);
+    pub(super) fn see(&mut self, scene: &Scene, slot: u32) {
+        if !scene.user(slot).ahead {
+            self.lay(scene, slot);
         }
     }
 
-    fn lay(&mut self, scene: &Scene, place: u32) {
-        let laid = &mut self.laid[place as usize];
+    fn lay(&mut self, scene: &Scene, slot: u32) {
+        let laid = &mut self.laid[slot as usize];
         if laid.step == self.step {
             return;
         }
-        let user = scene.user(place);
+        let user = scene.user(slot);
         let (profile, start) = (scene.profile(user), self.poses.len());
+        make_room(&mut self.poses, MOST_POSES);
         scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, &mut self.poses);
         let poses = &self.poses[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
         let bounds = if !scene.leaves_out.ways_apart {
             Bounds::EVERYTHING
         } else if user.ahead {
-            scene.search.area(place).bounds
+            scene.reach.area(user).bounds
         } else {
             let mut bounds = Bounds::EMPTY;
             for pose in poses {
@@ -87,20 +92,21 @@ impl Ways {
     }
 
     /// Lays the poses and the boxes around them.
-    pub(super) fn cover(&mut self, scene: &Scene, place: u32) {
-        self.lay(scene, place);
-        let laid = &mut self.laid[place as usize];
+    pub(super) fn cover(&mut self, scene: &Scene, slot: u32) {
+        self.lay(scene, slot);
+        let laid = &mut self.laid[slot as usize];
         if laid.covers.is_some() {
             return;
         }
         laid.covers = Some(self.covers.len() as u32);
-        let profile = scene.profile(scene.user(place));
+        let profile = scene.profile(scene.user(slot));
         let poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.leaves_out.ways_apart {
             true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
             false => Cover::EVERYWHERE,
         };
         let whole = of(poses);
+        make_room(&mut self.covers, poses.len().max(1));
         self.covers.push(whole);
         if laid.straight {
             // A part of it is hardly smaller, and there are two at most.
@@ -111,16 +117,16 @@ impl Ways {
     }
 
     /// The box around all that it covers on its way.
-    pub(super) fn bounds(&self, scene: &Scene, place: u32) -> Bounds {
-        match self.laid(place) {
+    pub(super) fn bounds(&self, scene: &Scene, slot: u32) -> Bounds {
+        match self.laid(slot) {
             Some(laid) => laid.bounds,
-            None => scene.search.area(place).bounds,
+            None => scene.reach.area(scene.user(slot)).bounds,
         }
     }
 
-    /// Who is in a place, with as much of its way as was asked for.
-    pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, place: u32) -> Mover<'a> {
-        let user = scene.user(place);
+    /// Who is in a slot, with as much of its way as was asked for.
+    pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
+        let user = scene.user(slot);
         let profile = scene.roster.profile_at(user.profile);
         let mut mover = Mover {
             rectangle: Rectangle::behind(user.front, user.axis, profile.length, profile.width),
@@ -138,7 +144,7 @@ impl Ways {
             mover.shape = &scene.roster.user(user.index).shape;
             mover.reach = 0.0;
         }
-        if let Some(laid) = self.laid(place) {
+        if let Some(laid) = self.laid(slot) {
             mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
             mover.straight = laid.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
@@ -151,8 +157,8 @@ impl Ways {
         mover
     }
 
-    fn laid(&self, place: u32) -> Option<&Laid> {
-        self.laid.get(place as usize).filter(|laid| laid.step == self.step)
+    fn laid(&self, slot: u32) -> Option<&Laid> {
+        self.laid.get(slot as usize).filter(|laid| laid.step == self.step)
     }
 }
 
@@ -165,13 +171,13 @@ impl Scene<'_> {
         }
         let chord = || self.profile(user).chord;
         if on_lanes {
-            self.memory[user.index.0 as usize].path.track.poses(axis, chord(), ways, beyond, poses);
+            self.paths[user.index.0 as usize].track.poses(axis, chord(), ways, beyond, poses);
             return;
         }
         poses.push(Pose { way: 0.0, front, axis });
         let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, self.memory[user.index.0 as usize].curvature, chord(), ways, poses);
+            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, chord(), ways, poses);
         } else {
             straight::poses(front, axis, ways, poses);
         }

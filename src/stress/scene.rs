@@ -47,7 +47,7 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     }
     let mut detector = Detector::new(&Options::default(), None);
     detector.follow(&frame, &roster);
-    detector.approach();
+    detector.approach(&roster);
     detector.detect(&roster).next().copied()
 }
 
