@@ -165,6 +165,8 @@ impl Libsumo {
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
+        // A route that stays is asked for once.
+        let stays = run.has_fixed_routes() && run.leaves_out().known_paths;
         for &row in rows {
             let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
             let Some(&live) = self.vehicles.rows.get(place as usize) else { continue };
@@ -174,14 +176,14 @@ impl Libsumo {
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1((id,));
             let keeps_route = live.route.as_ref().is_some_and(|route| match &route.id {
                 Some(known) => self.vehicles.getters.has_route(id, known),
-                None => run.has_fixed_routes(),
+                None => stays,
             });
             if !keeps_route {
                 let route_id = ask(&self.get.route_id)?;
                 let route_id = route_id.extract::<&str>()?;
                 if live.route.as_ref().is_none_or(|route| route.id.as_deref() != Some(route_id)) {
                     let edges = sumo::route(net, &ask(&self.get.route)?)?;
-                    live.route = Some(Route { id: (!run.has_fixed_routes()).then(|| route_id.into()), edges });
+                    live.route = Some(Route { id: (!stays).then(|| route_id.into()), edges });
                 }
             }
             let Some(Route { edges, .. }) = &live.route else { continue };
