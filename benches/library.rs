@@ -1,5 +1,5 @@
-//! What parry2d does for one pair beside what closecall does itself: contact and distance of two rectangles, first contact of two
-//! moving ones. `cargo bench --bench library`. Who is near whom: benches/detector.rs and `closecall study`.
+//! What parry2d does for one pair beside what closecall does itself: contact and distance of two rectangles, first
+//! contact of two moving ones. `cargo bench --bench library`. Who is near whom: benches/detector.rs and `closecall study`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 

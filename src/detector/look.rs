@@ -57,7 +57,7 @@ impl Detector {
         }
     }
 
-    /// Everybody's area and what else follows from its state alone.
+    /// What follows from everybody's state alone.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
         let straight_only = self.options.mode == Mode::Paper || self.options.path == PathModel::Straight;
         let by_lanes = !straight_only && self.options.path == PathModel::Lanes && self.net.is_some();
