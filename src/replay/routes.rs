@@ -21,7 +21,7 @@ use crate::{Error, Result};
 /// further on.
 const ABSENCE: Second = 600.0;
 /// Routes up to this size are not written to the disk, in bytes.
-const IN_MEMORY: usize = 1 << 20;
+const IN_MEMORY: usize = 1 << 16;
 /// An entry in the list of places, in bytes: where the route is and how many edges it has.
 const ENTRY: u64 = 16;
 
@@ -148,8 +148,8 @@ pub(super) struct Vehicles<T> {
     count: u64,
     /// The vehicle's number by the recording's number of the user.
     present: Vec<Option<u64>>,
-    absent: FxHashMap<Box<str>, Absent<T>>,
-    by_time: VecDeque<(Second, Box<str>)>,
+    absent: FxHashMap<Arc<str>, Absent<T>>,
+    by_time: VecDeque<(Second, Arc<str>)>,
 }
 
 #[derive(Debug)]
@@ -191,8 +191,9 @@ impl<T> Vehicles<T> {
     /// Lets a vehicle leave; what is known of it waits for its return.
     pub fn leave(&mut self, user: u32, id: &str, time: Second, known: T) {
         let Some(number) = self.present.get_mut(user as usize).and_then(Option::take) else { return };
-        self.absent.insert(id.into(), Absent { number, since: time, known });
-        self.by_time.push_back((time, id.into()));
+        let id: Arc<str> = id.into();
+        self.absent.insert(id.clone(), Absent { number, since: time, known });
+        self.by_time.push_back((time, id));
     }
 
     /// Forgets those who have been away for too long.
