@@ -1,6 +1,6 @@
 //! Time to collision: when two rectangles touch if both keep their speed along their paths.
 
-use crate::geometry::halves;
+use crate::geometry::halves::Halves;
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{TOLERANCE, translation};
@@ -68,12 +68,13 @@ pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
 }
 
 /// Time until a moving road user touches something that stands.
-pub fn time_to_fixed(a: &Course, fixed: &[Outline]) -> Option<Second> {
+pub fn time_to_fixed(halves: &mut Halves, a: &Course, fixed: &[Outline]) -> Option<Second> {
+    halves.clear();
     let mut first: Option<Second> = None;
     for (pose, next) in a.poses.windows(2).map(|pair| (pair[0], pair[1])) {
         let step = pose.step_to(&next, a.length, a.width);
         for outline in fixed {
-            if let Some(enter) = halves::scratch(|halves| halves.enter(step, outline)) {
+            if let Some(enter) = halves.enter(step, outline) {
                 let time = (pose.way + (next.way - pose.way) * enter) / a.speed;
                 first = Some(first.map_or(time, |earliest| earliest.min(time)));
             }

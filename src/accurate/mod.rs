@@ -11,6 +11,7 @@ pub mod side;
 
 use crate::braking::{self, Brakes, Braking, MuModel};
 use crate::encounter::Kind;
+use crate::geometry::halves::Halves;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::{Rectangle, touches};
 use crate::geometry::sweep::TOLERANCE;
@@ -158,12 +159,22 @@ impl Meeting {
 /// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
 /// of equal ones the first if `a_is_smaller` says that its id is.
 pub fn meet(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
-    if drive_in_line(a, b) { meet_in_one_dimension(a, b, a_is_smaller) } else { meet_swept(a, b, false, a_is_smaller) }
+    if drive_in_line(a, b) {
+        meet_in_one_dimension(a, b, a_is_smaller)
+    } else {
+        meet_swept(&mut Halves::default(), a, b, false, a_is_smaller)
+    }
 }
 
 /// The same by sweeping both rectangles: two that drive in line meet in the same place then.
-pub fn meet_swept(a: &Mover, b: &Mover, in_line: bool, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
-    match side::meet_both(a, b, in_line) {
+pub fn meet_swept(
+    halves: &mut Halves,
+    a: &Mover,
+    b: &Mover,
+    in_line: bool,
+    a_is_smaller: &impl Fn() -> bool,
+) -> Option<(bool, Meeting)> {
+    match side::meet(halves, a, b, in_line) {
         [None, None] => None,
         [Some(as_a), Some(as_b)] => {
             let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());

@@ -1,7 +1,7 @@
 //! Phase 2, second half: the gap of a pair whose foe has to come and go first; of a pair in conflict clearance, TTC, DRAC,
 //! severity.
 
-use super::{Courses, Found, Met, Scene, User, Worker};
+use super::{Found, Met, Scene, Scratch, User, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::approach::{self, Course};
 use crate::encounter::{Encounter, Kind, Nearness};
@@ -19,24 +19,24 @@ impl Scene<'_> {
 
     /// Measures what a worker could not measure at once.
     pub(super) fn measure_all(&self, worker: &mut Worker) {
-        let Found { encounters, unmeasured, courses, .. } = &mut worker.found;
+        let Found { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
             let (ego, foe) = (worker.ways.mover(self, met.slots[0]), worker.ways.mover(self, met.slots[1]));
-            self.measure(courses, [&ego, &foe], met, &mut encounters[*index as usize]);
+            self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
 
     /// Completes what is known of a pair that would meet: the ego and its foe.
-    pub(super) fn measure(&self, courses: &mut Courses, pair: [&Mover; 2], met: &Met, encounter: &mut Encounter) {
+    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &mut Encounter) {
         if met.leaves {
-            encounter.foe_way = self.way_out(courses, pair[1], met);
+            encounter.foe_way = self.way_out(scratch, pair[1], met);
             if self.options.mode == Mode::Closecall {
                 encounter.gap = accurate::gap(encounter.ego_way, encounter.foe_way, met.sigma);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
         if encounter.in_conflict() {
-            encounter.nearness = Some(self.nearness(courses, pair, met, encounter));
+            encounter.nearness = Some(self.nearness(scratch, pair, met, encounter));
         }
     }
 
@@ -48,16 +48,16 @@ impl Scene<'_> {
     }
 
     /// The foe's way until it has left the ego's meeting place.
-    fn way_out(&self, courses: &mut Courses, foe: &Mover, met: &Met) -> Metre {
-        let (poses, user) = (&mut courses[1], self.user(met.slots[1]));
+    fn way_out(&self, scratch: &mut Scratch, foe: &Mover, met: &Met) -> Metre {
+        let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
         poses.clear();
         self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
-        side::departure(poses, foe, &met.meeting.ego, met.meeting.foe_way)
+        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego, met.meeting.foe_way)
     }
 
-    fn nearness(&self, courses: &mut Courses, pair: [&Mover; 2], met: &Met, encounter: &Encounter) -> Nearness {
+    fn nearness(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &Encounter) -> Nearness {
         let [ego, foe] = pair;
-        let ttc = self.time_to_collision(courses, encounter, met);
+        let ttc = self.time_to_collision(scratch, encounter, met);
         let clearance = if encounter.collision {
             0.0
         } else if foe.shape.is_empty() {
@@ -65,14 +65,14 @@ impl Scene<'_> {
         } else {
             polygon::distance(foe.shape, &ego.rectangle)
         };
-        let drac = ttc.and_then(|_| self.drac(courses, pair, met, encounter));
+        let drac = ttc.and_then(|_| self.drac(scratch, pair, met, encounter));
         let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, self.options);
         Nearness { clearance, ttc, drac, severity }
     }
 
     fn drac(
         &self,
-        courses: &mut Courses,
+        scratch: &mut Scratch,
         [ego, foe]: [&Mover; 2],
         met: &Met,
         encounter: &Encounter,
@@ -81,16 +81,16 @@ impl Scene<'_> {
             return measures::drac_in_line(ego.speed - met.sigma * foe.speed, encounter.gap);
         }
         let knows_way_out = met.sigma > 0.0 || met.meeting.foe_axis.is_none();
-        let out = if knows_way_out { encounter.foe_way } else { self.way_out(courses, foe, met) };
+        let out = if knows_way_out { encounter.foe_way } else { self.way_out(scratch, foe, met) };
         measures::drac_across(ego.speed, encounter.ego_way, foe.speed, out)
     }
 
-    fn time_to_collision(&self, courses: &mut Courses, encounter: &Encounter, met: &Met) -> Option<Second> {
+    fn time_to_collision(&self, scratch: &mut Scratch, encounter: &Encounter, met: &Met) -> Option<Second> {
         if encounter.collision {
             return Some(0.0);
         }
         let users = met.slots.map(|slot| self.user(slot));
-        for (user, poses) in users.into_iter().zip(courses.iter_mut()) {
+        for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
             poses.clear();
             self.course(user, &[user.speed * approach::HORIZON], true, poses);
         }
@@ -98,11 +98,11 @@ impl Scene<'_> {
             let profile = self.profile(user);
             Course { poses, speed: user.speed, length: profile.length, width: profile.width }
         };
-        let (ego, foe) = (course(users[0], &courses[0][..]), course(users[1], &courses[1][..]));
+        let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
         if self.is_obstacle(met.slots[1]) {
             let shape = &self.roster.user(encounter.foe).shape;
             let outlines = shape.iter().map(|part| part.outline).collect::<Vec<Outline>>();
-            approach::time_to_fixed(&ego, &outlines)
+            approach::time_to_fixed(&mut scratch.halves, &ego, &outlines)
         } else {
             approach::time_to_collision(&ego, &foe)
         }

@@ -83,7 +83,8 @@ impl Scene<'_> {
             return;
         }
         work.swept += 1;
-        if let Some((ego_is_first, meeting)) = accurate::meet_swept(&first, &second, in_line, &a_is_smaller) {
+        let halves = &mut found.scratch.halves;
+        if let Some((ego_is_first, meeting)) = accurate::meet_swept(halves, &first, &second, in_line, &a_is_smaller) {
             self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
         }
     }
@@ -147,7 +148,7 @@ impl Scene<'_> {
             if ego.on_lanes || foe.on_lanes {
                 found.unmeasured.push((found.encounters.len() as u32, met));
             } else {
-                self.measure(&mut found.courses, [roles.ego, roles.foe], &met, &mut encounter);
+                self.measure(&mut found.scratch, [roles.ego, roles.foe], &met, &mut encounter);
             }
         }
         found.pairs.push((ego.row.min(foe.row), ego.row.max(foe.row)));

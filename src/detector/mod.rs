@@ -16,6 +16,7 @@ use std::sync::Arc;
 use crate::accurate::Meeting;
 use crate::encounter::{Encounter, Placement};
 use crate::frame::{ProfileIndex, Roster, UserIndex};
+use crate::geometry::halves::Halves;
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
@@ -140,11 +141,16 @@ struct Found {
     pairs: Vec<(u32, u32)>,
     /// Which of them are not measured yet.
     unmeasured: Vec<(u32, Met)>,
-    courses: Courses,
+    scratch: Scratch,
 }
 
-/// Poses further ahead than the ways of the step: the ego's and the foe's.
-type Courses = [Vec<Pose>; 2];
+/// Memory for what is forgotten with the pair.
+#[derive(Default)]
+struct Scratch {
+    /// Poses further ahead than the ways of the step: the ego's and the foe's.
+    courses: [Vec<Pose>; 2],
+    halves: Halves,
+}
 
 /// What measuring a pair that would meet starts from.
 #[derive(Clone, Copy)]

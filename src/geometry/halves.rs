@@ -7,8 +7,6 @@
 //! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. So what has been found leaves out
 //! only what stays clear of it by more than that, and the result is that of trying all parts, to the last bit.
 
-use std::cell::RefCell;
-
 use super::outline::Outline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
@@ -84,25 +82,13 @@ impl From<Outline> for Area {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part(u32);
 
-/// Steps, and the halves that they were cut in so far.
+/// Steps, and the halves that they were cut in so far. Whoever has it keeps its memory; who asks forgets the steps of
+/// whoever asked before.
 #[derive(Clone, Debug, Default)]
 pub struct Halves {
     parts: Vec<Swept>,
     /// Where the steps stand whose number is known.
     numbered: Vec<Option<Part>>,
-}
-
-thread_local! {
-    /// Memory that a warm thread has already.
-    static SCRATCH: RefCell<Halves> = RefCell::default();
-}
-
-/// Does some work on steps that are forgotten afterwards.
-pub fn scratch<R>(work: impl FnOnce(&mut Halves) -> R) -> R {
-    SCRATCH.with_borrow_mut(|halves| {
-        halves.clear();
-        work(halves)
-    })
 }
 
 /// A step or a part of it, and what was computed of it.

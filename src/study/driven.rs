@@ -12,6 +12,7 @@ use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
 use crate::frame::{Frame, Roster, State, UserIndex};
+use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;
@@ -194,5 +195,9 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
 
 /// The foe's way until it has left the meeting place; a leader is there now.
 fn way_out(foe: &Way, meeting: &Meeting) -> Metre {
-    if meeting.foe_way <= 0.0 { 0.0 } else { side::departure(foe.all, &foe.mover(), &meeting.ego, meeting.foe_way) }
+    if meeting.foe_way <= 0.0 {
+        0.0
+    } else {
+        side::departure(&mut Halves::default(), foe.all, &foe.mover(), &meeting.ego, meeting.foe_way)
+    }
 }
