@@ -99,7 +99,7 @@ fn measure(scene: &str, start: Vec<State>) {
         advance(&mut frame, &mut cars, time);
         first.add(|| {
             detector.follow(&frame, &roster);
-            detector.approach(&roster);
+            detector.approach(&frame, &roster);
         });
         second.add(|| detector.detect(&roster).len());
         both.0.push(first.0[first.0.len() - 1] + second.0[second.0.len() - 1]);
@@ -110,7 +110,7 @@ fn measure(scene: &str, start: Vec<State>) {
             advance(&mut frame, &mut cars, time);
             times.add(|| {
                 detector.follow(&frame, &roster);
-                detector.approach(&roster);
+                detector.approach(&frame, &roster);
                 detector.detect(&roster).len()
             });
         }

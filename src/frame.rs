@@ -1,4 +1,4 @@
-//! The road users of one step, as columns, and the roster that says who they are.
+//! The road users of one step, a row each, and the roster that says who they are.
 //!
 //! A [`Roster`] holds what does not change while a road user is in the scene (id, type, size, brakes); a [`Frame`]
 //! holds what changes in every step. Both are filled by whoever has the data (the bridge from libsumo, replay
@@ -17,7 +17,7 @@ use crate::{Error, Result};
 pub const SUMO_INVALID: f64 = -1_073_741_824.0;
 
 /// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct UserIndex(pub u32);
 
 /// Which [`Profile`] of a [`Roster`].
@@ -29,8 +29,6 @@ pub struct ProfileIndex(pub u32);
 pub struct RoadUser {
     /// SUMO's id.
     pub id: Arc<str>,
-    /// Its type.
-    pub profile: ProfileIndex,
     /// The shape of an obstacle, in convex parts; empty for all others.
     pub shape: Arc<[Polygon]>,
 }
@@ -39,6 +37,8 @@ pub struct RoadUser {
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
     users: Vec<RoadUser>,
+    /// Their types, apart from them: these are looked at in every step.
+    types: Vec<ProfileIndex>,
     profiles: Vec<Profile>,
     free: Vec<u32>,
     by_name: FxHashMap<String, ProfileIndex>,
@@ -98,15 +98,18 @@ impl Roster {
 
     /// Takes an obstacle with a polygon for a shape into the scene.
     pub fn enter_shaped(&mut self, id: &str, profile: ProfileIndex, shape: Arc<[Polygon]>) -> UserIndex {
-        let user = RoadUser { id: id.into(), profile, shape };
+        let user = RoadUser { id: id.into(), shape };
         match self.free.pop() {
             Some(index) => {
                 self.users[index as usize] = user;
+                self.types[index as usize] = profile;
                 UserIndex(index)
             }
             None => {
                 make_room(&mut self.users, 1);
+                make_room(&mut self.types, 1);
                 self.users.push(user);
+                self.types.push(profile);
                 UserIndex(self.users.len() as u32 - 1)
             }
         }
@@ -122,9 +125,14 @@ impl Roster {
         &self.users[user.0 as usize]
     }
 
+    /// Which type this road user has.
+    pub fn type_of(&self, user: UserIndex) -> ProfileIndex {
+        self.types[user.0 as usize]
+    }
+
     /// The type of this road user.
     pub fn profile_of(&self, user: UserIndex) -> &Profile {
-        &self.profiles[self.users[user.0 as usize].profile.0 as usize]
+        self.profile_at(self.type_of(user))
     }
 
     /// The type of this index.
@@ -158,7 +166,7 @@ pub(crate) fn fill<T: Clone>(table: &mut Vec<T>, rows: usize, value: T) {
 }
 
 /// A road user's changing part, as it goes into a [`Frame`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct State {
     /// Front-bumper centre (SUMO's reference point), x in m; an obstacle's is not used.
     pub x: Metre,
@@ -172,21 +180,28 @@ pub struct State {
     pub speed: MetrePerSecond,
 }
 
-/// The road users of one step: one row each, one column per quantity.
+/// A road user in a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// Who it is.
+    pub user: UserIndex,
+    /// Where it is.
+    pub state: State,
+}
+
+/// The road users of one step.
 #[derive(Clone, Debug, Default)]
 pub struct Frame {
     /// Simulated time in s.
     pub time: Second,
-    users: Vec<UserIndex>,
-    states: Vec<State>,
+    rows: Vec<Row>,
 }
 
 impl Frame {
     /// Empties the frame for the step at `time`; its memory is kept.
     pub fn begin(&mut self, time: Second) {
         self.time = time;
-        self.users.clear();
-        self.states.clear();
+        self.rows.clear();
     }
 
     /// Adds a road user's row. What has no valid position (SUMO's invalid value, NaN, infinities) or no valid
@@ -195,31 +210,34 @@ impl Frame {
         let State { x, y, z, heading, speed } = state;
         let valid = (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0;
         if valid {
-            make_room(&mut self.users, 1);
-            make_room(&mut self.states, 1);
-            self.users.push(user);
-            self.states.push(state);
+            make_room(&mut self.rows, 1);
+            self.rows.push(Row { user, state });
         }
         valid
     }
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.users.len()
+        self.rows.len()
     }
 
     /// Whether nobody is in the scene.
     pub fn is_empty(&self) -> bool {
-        self.users.is_empty()
+        self.rows.is_empty()
     }
 
-    /// Who stands in each row.
-    pub fn users(&self) -> &[UserIndex] {
-        &self.users
+    /// Everybody, in the order in which they were added.
+    pub fn rows(&self) -> &[Row] {
+        &self.rows
     }
 
-    /// The state in each row.
-    pub fn states(&self) -> &[State] {
-        &self.states
+    /// Who stands in a row.
+    pub fn user(&self, row: u32) -> UserIndex {
+        self.rows[row as usize].user
+    }
+
+    /// The state in a row.
+    pub fn state(&self, row: u32) -> &State {
+        &self.rows[row as usize].state
     }
 }

@@ -23,6 +23,7 @@ pub mod measures;
 pub mod net;
 pub mod options;
 pub mod outputs;
+mod parts;
 pub mod path;
 pub mod plot;
 pub mod precollision;

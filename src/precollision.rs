@@ -12,7 +12,9 @@
 
 use std::ops::Range;
 
+use crate::frame::fill;
 use crate::geometry::{Bounds, Point, Vector};
+use crate::parts::{each, share};
 use crate::units::Metre;
 
 /// What a road user may cover until it stands, whichever way it turns.
@@ -83,13 +85,16 @@ const SPARE_HEIGHT: f64 = 2.0;
 /// many moves per road user.
 const MOVES: usize = 8;
 
+/// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
+const BLOCK: usize = 64;
+
 /// An area in its strip.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
-    /// Which of the caller's areas that is.
-    pub item: u32,
-    /// The area.
-    pub area: Area,
+struct Place {
+    /// Which of the caller's items that is.
+    item: u32,
+    area: Area,
+    /// Where it stood before the places were sorted.
     slot: u32,
     strip: i32,
 }
@@ -98,12 +103,51 @@ impl Place {
     /// Puts it into its strip.
     fn lay(&mut self, per_metre: f64) {
         let Bounds { low, high } = self.area.bounds;
-        self.strip = ((low.y + high.y) * 0.5 * per_metre).floor() as i32;
+        let strips = (low.y + high.y) * 0.5 * per_metre;
+        // What `floor` says, without a call where the processor has no instruction for it.
+        let towards_0 = strips as i32;
+        self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
     }
 
     fn is_before(&self, other: &Self) -> bool {
         (self.strip, self.area.bounds.low.x) < (other.strip, other.area.bounds.low.x)
     }
+}
+
+/// What one thread knows of its part of the places.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    /// Sum of the sizes.
+    sum: Metre,
+    /// Largest length along x, and largest height.
+    largest: Vector,
+    /// Whether one is too far away for a strip.
+    far: bool,
+    sorted: bool,
+}
+
+impl Part {
+    const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, sorted: true };
+
+    fn include(&mut self, area: &Area) {
+        let size = area.size();
+        self.sum += size.max().clamp(0.0, 1e3);
+        self.largest = self.largest.sup(&size);
+        self.far |= is_far(&area.bounds);
+    }
+
+    fn join(self, other: &Self) -> Self {
+        Self {
+            sum: self.sum + other.sum,
+            largest: self.largest.sup(&other.largest),
+            far: self.far || other.far,
+            sorted: self.sorted && other.sorted,
+        }
+    }
+}
+
+fn is_far(Bounds { low, high }: &Bounds) -> bool {
+    low.x.min(low.y) <= -FAR || high.x.max(high.y) >= FAR
 }
 
 /// Finds the pairs of areas that meet; keeps its memory, and the order that it found, from step to step.
@@ -116,66 +160,95 @@ pub struct Search {
     /// Length along x of the longest box that has a strip, and the largest height.
     largest: Vector,
     large: Vec<Place>,
+    parts: Vec<Part>,
 }
 
 impl Search {
     /// Puts the index pairs (smaller first) of all areas that meet into `pairs`, in no particular order.
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
-        let mut items = Vec::with_capacity(areas.len());
-        for place in self.begin(areas.len()) {
-            place.area = areas[place.item as usize];
-            items.push(place.item);
-        }
-        self.sort();
+        let mut items = vec![0; areas.len()];
+        let area = |item: u32, (): &(), known: &mut u32| {
+            *known = item;
+            areas[item as usize]
+        };
+        self.lay(&mut items, 1, |_| (), area);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (items[a as usize], items[b as usize]);
             pairs.push((a.min(b), a.max(b)));
         });
     }
 
-    /// A place for each of so many areas, in the order in which the last step ended: those that met are near each
-    /// other. The caller fills in the areas of now. Where a place is among these, its slot, is what [`Self::sweep`] says
-    /// of those that meet: so what belongs to them is best kept in the same order.
-    pub fn begin(&mut self, count: usize) -> &mut [Place] {
-        let known = self.places.len();
-        if count < known {
+    /// Gives each of so many items, numbered from 0, its place, on so many threads, at least one. `see` fetches what is
+    /// said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots are in the order
+    /// in which the last step ended: those that met are near each other.
+    pub fn lay<Seen: Copy + Default, Known: Send>(
+        &mut self,
+        slots: &mut [Known],
+        threads: usize,
+        see: impl Fn(u32) -> Seen + Sync,
+        area: impl Fn(u32, &Seen, &mut Known) -> Area + Sync,
+    ) {
+        self.hold(slots.len());
+        self.parts.clear();
+        self.parts.resize(threads.max(1), Part::EMPTY);
+        let (per_metre, share) = (1.0 / self.strip_height, share(slots.len(), threads));
+        let parts = self.places.chunks_mut(share).zip(slots.chunks_mut(share)).zip((0..).step_by(share));
+        each(&mut self.parts, parts, |part, ((places, slots), first)| {
+            let mut all = Part::EMPTY;
+            let mut block = [Seen::default(); BLOCK];
+            let blocks = places.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)).zip((first..).step_by(BLOCK));
+            for ((places, slots), first) in blocks {
+                block.iter_mut().zip(&*places).for_each(|(seen, place)| *seen = see(place.item));
+                for (((place, known), slot), seen) in places.iter_mut().zip(slots).zip(first..).zip(&block) {
+                    place.area = area(place.item, seen, known);
+                    place.slot = slot;
+                    place.lay(per_metre);
+                    all.include(&place.area);
+                }
+            }
+            *part = all;
+        });
+        self.sort(threads);
+    }
+
+    /// Has a place for each of so many items, in the order in which the last step ended.
+    fn hold(&mut self, count: usize) {
+        if count < self.places.len() {
             self.places.retain(|place| (place.item as usize) < count);
         }
-        let further = known as u32..count as u32;
-        self.places.extend(further.map(|item| Place { item, area: Area::NOWHERE, slot: 0, strip: 0 }));
-        &mut self.places
+        let nowhere = Place { item: 0, area: Area::NOWHERE, slot: 0, strip: 0 };
+        let known = self.places.len();
+        fill(&mut self.places, count, nowhere);
+        self.places[known..].iter_mut().zip(known as u32..).for_each(|(place, item)| place.item = item);
     }
 
     /// Sorts the areas of now.
-    pub fn sort(&mut self) {
-        let (mut sum, count) = (0.0, self.places.len());
-        for (slot, place) in (0..).zip(&mut self.places) {
-            place.slot = slot;
-            sum += place.area.size().max().clamp(0.0, 1e3);
+    fn sort(&mut self, threads: usize) {
+        let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
+        self.largest = all.largest;
+        let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
+        if all.far || all.largest.max() > limit {
+            while self.part_large(limit) > count / SHARE_OF_LARGE + 1 && limit < FAR {
+                limit *= 2.0;
+                self.places.append(&mut self.large);
+            }
         }
-        let mut limit = LARGE * (sum / count.max(1) as f64).max(LOWEST_STRIP);
-        while self.part_large(limit) > count / SHARE_OF_LARGE + 1 && limit < FAR {
-            limit *= 2.0;
-            self.places.append(&mut self.large);
-        }
-        self.sort_in_strips();
+        self.sort_in_strips(threads);
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
     }
 
-    /// Sets aside what is larger than this, and what is too far away for a strip; all others are in the strips of the last
-    /// step, and the largest of them is known. Returns how many are too large.
+    /// Sets aside what is larger than this, and what is too far away for a strip. Returns how many are too large.
     fn part_large(&mut self, limit: Metre) -> usize {
-        let (per_metre, mut too_large, mut largest) = (1.0 / self.strip_height, 0, Vector::zeros());
+        let (mut too_large, mut largest) = (0, Vector::zeros());
         let Self { places, large, .. } = self;
         places.retain_mut(|place| {
-            let (size, Bounds { low, high }) = (place.area.size(), place.area.bounds);
-            let fits = size.x.max(size.y) <= limit;
+            let size = place.area.size();
+            let fits = size.max() <= limit;
             too_large += usize::from(!fits);
-            if fits && low.x.min(low.y) > -FAR && high.x.max(high.y) < FAR {
+            if fits && !is_far(&place.area.bounds) {
                 largest = size.sup(&largest);
-                place.lay(per_metre);
                 return true;
             }
             large.push(*place);
@@ -185,21 +258,45 @@ impl Search {
         too_large
     }
 
-    /// Sorts the boxes into strips by their middle, and within each along x. Two that meet are then in the same strip
-    /// or in neighbouring ones.
-    fn sort_in_strips(&mut self) {
+    /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
+    /// ones.
+    fn sort_in_strips(&mut self, threads: usize) {
         let least = self.largest.y.max(LOWEST_STRIP);
-        let same_strips = (least..=SPARE_HEIGHT * least).contains(&self.strip_height);
-        if !same_strips {
+        if (least..=SPARE_HEIGHT * least).contains(&self.strip_height) {
+            if self.is_nearly_sorted(threads) {
+                return;
+            }
+        } else {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
             let per_metre = 1.0 / self.strip_height;
             self.places.iter_mut().for_each(|place| place.lay(per_metre));
         }
-        let moves = if same_strips { MOVES * self.places.len() } else { 0 };
-        if !sort_nearly_sorted(&mut self.places, moves) {
-            let x = |place: &Place| place.area.bounds.low.x;
-            self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
+        let x = |place: &Place| place.area.bounds.low.x;
+        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
+    }
+
+    /// Sorts by insertion, each thread its part, where that takes few moves; whether it did.
+    fn is_nearly_sorted(&mut self, threads: usize) -> bool {
+        let share = share(self.places.len(), threads);
+        each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
+            let mut moves = MOVES * places.len();
+            part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
+        });
+        if self.parts.iter().any(|part| !part.sorted) {
+            return false;
         }
+        let mut moves = MOVES * share;
+        for bound in (share..self.places.len()).step_by(share) {
+            // Of a sorted part only its beginning may belong before it.
+            let mut place = bound;
+            while place < self.places.len() && self.places[place].is_before(&self.places[place - 1]) {
+                if !insert(&mut self.places, place, &mut moves) {
+                    return false;
+                }
+                place += 1;
+            }
+        }
+        true
     }
 
     /// From each of these of the sorted places ahead in its own strip, and to both sides in the next; from a large one
@@ -232,23 +329,20 @@ impl Search {
     }
 }
 
-/// Sorts by insertion; gives up after so many moves, with all places still there.
-fn sort_nearly_sorted(places: &mut [Place], mut moves: usize) -> bool {
-    for start in 1..places.len() {
-        let place = places[start];
-        let mut to = start;
-        while to > 0 && place.is_before(&places[to - 1]) {
-            if moves == 0 {
-                places[to] = place;
-                return false;
-            }
-            moves -= 1;
-            places[to] = places[to - 1];
-            to -= 1;
-        }
-        places[to] = place;
+/// Moves a place to where it belongs among the sorted ones before it; `false` where that takes more moves than are left:
+/// then all are still there.
+fn insert(places: &mut [Place], from: usize, moves: &mut usize) -> bool {
+    if !places[from].is_before(&places[from - 1]) {
+        return true;
     }
-    true
+    let (place, mut to) = (places[from], from);
+    while to > 0 && place.is_before(&places[to - 1]) && *moves > 0 {
+        *moves -= 1;
+        places[to] = places[to - 1];
+        to -= 1;
+    }
+    places[to] = place;
+    to == 0 || !place.is_before(&places[to - 1])
 }
 
 #[cfg(test)]
@@ -270,12 +364,12 @@ mod tests {
 
     /// What the search finds, swept in this many parts, in order.
     fn found(search: &mut Search, areas: &[Area], parts: usize) -> Vec<(u32, u32)> {
-        let (count, mut items, mut pairs) = (areas.len(), Vec::new(), Vec::new());
-        for place in search.begin(count) {
-            place.area = areas[place.item as usize];
-            items.push(place.item);
-        }
-        search.sort();
+        let (count, mut items, mut pairs) = (areas.len(), vec![0; areas.len()], Vec::new());
+        let area = |item: u32, (): &(), known: &mut u32| {
+            *known = item;
+            areas[item as usize]
+        };
+        search.lay(&mut items, parts, |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {

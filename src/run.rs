@@ -11,7 +11,7 @@ use crate::conflict::{Alarm, Conflict, Tracker};
 use crate::detector::Detector;
 use crate::encounter::{Encounter, Placement};
 use crate::filter::Filter;
-use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
@@ -161,7 +161,7 @@ impl Run {
     /// Counts the traffic of the step before, which lasted this long.
     fn expose(&mut self, lasted: Second) {
         let exposure = &mut self.summary.exposure;
-        for (user, state) in self.frame.users().iter().zip(self.frame.states()) {
+        for Row { user, state } in self.frame.rows() {
             if self.roster.profile_of(*user).category == Category::Vehicle {
                 exposure.vehicle_kilometres += state.speed * lasted / 1e3;
                 exposure.vehicle_hours += lasted / 3600.0;
@@ -177,12 +177,12 @@ impl Run {
     /// Whether the road user of a row, if it still has this route, is on the path laid before: nobody needs to know
     /// where it is on the net.
     pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        !self.outputs.want_lanes() && self.detector.keeps_path(row, route)
+        !self.outputs.want_lanes() && self.detector.keeps_path(&self.frame, row, route)
     }
 
     /// Says where the road user of a row is on the net.
     pub fn place(&mut self, row: u32, placement: &Placement) {
-        self.detector.place(&self.roster, row, placement);
+        self.detector.place(&self.frame, &self.roster, row, placement);
         self.outputs.place(row, placement);
     }
 
@@ -200,7 +200,7 @@ impl Run {
 
     /// Phase 1.
     pub fn approach(&mut self) {
-        self.detector.approach(&self.roster);
+        self.detector.approach(&self.frame, &self.roster);
     }
 
     /// Phase 2.
@@ -220,7 +220,7 @@ impl Run {
     /// The events.
     pub fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
-        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(roster, row));
+        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(frame, roster, row));
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
     }
 

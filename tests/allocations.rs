@@ -36,7 +36,7 @@ fn a_warm_detector_allocates_nothing() {
         }
         step(&mut frame, &users, number);
         detector.follow(&frame, &roster);
-        detector.approach(&roster);
+        detector.approach(&frame, &roster);
         found += detector.detect(&roster).len();
     }
     assert!(found > 1000, "{found}");

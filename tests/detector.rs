@@ -48,7 +48,7 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     }
     let mut detector = Detector::new(&options, None);
     detector.follow(&frame, &roster);
-    detector.approach(&roster);
+    detector.approach(&frame, &roster);
     let found = detector.detect(&roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
 }
@@ -133,12 +133,12 @@ fn any_number_of_threads_finds_the_same() {
         }
         let [alone, others @ ..] = &mut detectors;
         alone.follow(&frame, &roster);
-        alone.approach(&roster);
+        alone.approach(&frame, &roster);
         let found = alone.detect(&roster).copied().collect::<Vec<_>>();
         assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
         for detector in others {
             detector.follow(&frame, &roster);
-            detector.approach(&roster);
+            detector.approach(&frame, &roster);
             assert!(detector.detect(&roster).eq(&found));
             assert_eq!(detector.work(), alone.work());
         }

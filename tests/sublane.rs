@@ -39,9 +39,9 @@ fn encounters(y: f64, drift: f64) -> usize {
             route_position: 0,
             lateral_speed: if row == 0 { drift } else { 0.0 },
         };
-        detector.place(&roster, row, &placement);
+        detector.place(&frame, &roster, row, &placement);
     }
-    detector.approach(&roster);
+    detector.approach(&frame, &roster);
     detector.detect(&roster).len()
 }
 

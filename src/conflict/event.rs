@@ -97,14 +97,14 @@ pub struct Moment {
 
 /// One step of a pair as a conflict of its own.
 pub(super) fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
-    let part = |user: UserIndex, row: u32| (frame.states()[row as usize].speed, roster.profile_of(user).mass);
+    let part = |user: UserIndex, row: u32| (frame.state(row).speed, roster.profile_of(user).mass);
     let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
     let near = found.nearness.as_ref();
     Conflict {
         ego: roster.user(found.ego).id.clone(),
         foe: roster.user(found.foe).id.clone(),
-        ego_profile: roster.user(found.ego).profile,
-        foe_profile: roster.user(found.foe).profile,
+        ego_profile: roster.type_of(found.ego),
+        foe_profile: roster.type_of(found.foe),
         kind: found.kind,
         severity: near.map_or(Severity::Caution, |near| near.severity),
         begin: frame.time,

@@ -79,8 +79,8 @@ impl Tracker {
         }
         self.rows.clear();
         self.rows.resize(roster.len(), ABSENT);
-        for (row, user) in (0..).zip(frame.users()) {
-            self.rows[user.0 as usize] = row;
+        for (number, row) in (0..).zip(frame.rows()) {
+            self.rows[row.user.0 as usize] = number;
         }
         for found in encounters.iter().filter(|found| found.in_conflict()) {
             self.take(frame, roster, found, &path);
@@ -155,7 +155,7 @@ impl Tracker {
                 if profile.category == Category::Obstacle {
                     continue;
                 }
-                let state = &frame.states()[row as usize];
+                let state = frame.state(row);
                 let front = Point::new(state.x, state.y);
                 let rectangle = Rectangle::behind(front, direction(state.heading), profile.length, profile.width);
                 course.push(frame.time, rectangle);

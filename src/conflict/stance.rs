@@ -28,8 +28,8 @@ pub struct Stance {
 impl Stance {
     /// A row of the frame, without its path.
     pub(super) fn of(frame: &Frame, roster: &Roster, row: u32) -> Self {
-        let state = &frame.states()[row as usize];
-        let profile = roster.profile_of(frame.users()[row as usize]);
+        let state = frame.state(row);
+        let profile = roster.profile_of(frame.user(row));
         Self {
             front: Point::new(state.x, state.y),
             heading: state.heading,

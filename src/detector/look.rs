@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use super::parts::{each, share};
 use super::{Detector, LEVEL, Turning, User, Work};
 use crate::braking::stopping_distance;
-use crate::frame::{Frame, ProfileIndex, Roster, UserIndex, fill};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex, fill};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::options::{Mode, Options, PathModel};
+use crate::parts::{each, share};
 use crate::path::lanes::LanePath;
 use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle};
@@ -21,7 +21,7 @@ use crate::units::Metre;
 const STANDS: f64 = 0.0;
 
 impl Detector {
-    /// Where everybody is now. Returns the frame's rows whose lane the detector has to know for both phases; the caller
+    /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller
     /// says it with [`Detector::place`], and leaves out whom it cannot place.
     ///
     /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
@@ -30,17 +30,14 @@ impl Detector {
         if self.paths.len() < roster.len() {
             fill(&mut self.paths, roster.len(), LanePath::default());
         }
-        self.look(frame, roster);
-        if self.options.path == PathModel::Arc {
-            fill(&mut self.turnings, self.paths.len(), Turning::default());
-            self.turn();
-        }
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
-        if self.options.path == PathModel::Lanes {
-            for row in 0..self.rows.len() {
-                if !self.rows[row].ahead {
-                    self.keep_on_path(row);
+        self.on_lanes.clear();
+        fill(&mut self.on_lanes, frame.len(), false);
+        if self.turns() == Turns::ByLanes {
+            for (row, Row { user, state }) in frame.rows().iter().enumerate() {
+                if state.speed > STANDS && roster.profile_of(*user).category == Category::Vehicle {
+                    self.keep_on_path(row, *user, Point::new(state.x, state.y));
                 }
             }
         }
@@ -48,64 +45,43 @@ impl Detector {
     }
 
     /// Phase 1: which pairs may meet.
-    pub fn approach(&mut self, roster: &Roster) {
-        self.bring_together(roster);
-        self.search.sort();
+    pub fn approach(&mut self, frame: &Frame, roster: &Roster) {
+        self.look(frame, roster);
+        if self.turns() == Turns::ByArcs {
+            fill(&mut self.turnings, self.paths.len(), Turning::default());
+            self.turn();
+        }
         self.find_pairs();
         for worker in &mut self.workers {
             self.work += std::mem::take(&mut worker.work);
         }
     }
 
-    /// What follows from everybody's state alone.
-    fn look(&mut self, frame: &Frame, roster: &Roster) {
-        let straight_only = self.options.mode == Mode::Paper || self.options.path == PathModel::Straight;
-        let by_lanes = !straight_only && self.options.path == PathModel::Lanes && self.net.is_some();
-        let by_arcs = !straight_only && self.options.path == PathModel::Arc;
-        fill(&mut self.rows, frame.len(), User::NOBODY);
-        let share = share(frame.len(), self.workers.len());
-        let rows = (0..).step_by(share).zip(self.rows.chunks_mut(share));
-        let parts = rows.zip(frame.users().chunks(share).zip(frame.states().chunks(share)));
-        each(&mut self.workers, parts, |_, ((first, rows), (users, states))| {
-            for ((now, row), (&index, state)) in rows.iter_mut().zip(first..).zip(users.iter().zip(states)) {
-                let profile_index = roster.user(index).profile;
-                let profile = roster.profile_at(profile_index);
-                let moves = state.speed > STANDS;
-                *now = User {
-                    front: Point::new(state.x, state.y),
-                    axis: direction(state.heading),
-                    z: state.z,
-                    speed: state.speed,
-                    stop: if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 },
-                    row,
-                    index,
-                    profile: profile_index,
-                    category: profile.category,
-                    moves,
-                    ahead: !(by_arcs || by_lanes && moves && profile.category == Category::Vehicle),
-                    on_lanes: false,
-                };
-            }
-        });
+    /// What makes road users turn.
+    pub(super) fn turns(&self) -> Turns {
+        match self.options.path {
+            _ if self.options.mode == Mode::Paper => Turns::Not,
+            PathModel::Arc => Turns::ByArcs,
+            PathModel::Lanes if self.net.is_some() => Turns::ByLanes,
+            PathModel::Lanes | PathModel::Straight => Turns::Not,
+        }
     }
 
-    /// Copies everybody to where those are that it met in the last step, with the area of now.
-    fn bring_together(&mut self, roster: &Roster) {
-        let (rows, reach) = (&self.rows, Reach::new(roster, &self.options, self.leaves_out));
-        fill(&mut self.users, rows.len(), User::NOBODY);
-        let share = share(rows.len(), self.workers.len());
-        let parts = self.search.begin(rows.len()).chunks_mut(share).zip(self.users.chunks_mut(share));
-        each(&mut self.workers, parts, |_, (places, users)| {
-            for (place, user) in places.iter_mut().zip(users) {
-                *user = rows[place.item as usize];
-                place.area = reach.area(user);
-            }
+    /// Everybody in its slot, with the area of now.
+    fn look(&mut self, frame: &Frame, roster: &Roster) {
+        let sight = Sight { roster, turns: self.turns(), on_lanes: &self.on_lanes };
+        let reach = Reach::new(roster, &self.options, self.leaves_out);
+        fill(&mut self.users, frame.len(), User::NOBODY);
+        let see = |row: u32| frame.rows()[row as usize];
+        self.search.lay(&mut self.users, self.workers.len(), see, |row, seen, user| {
+            *user = sight.user(row, seen);
+            reach.area(user)
         });
     }
 
     /// How the paths of now turn, where they are arcs.
     fn turn(&mut self) {
-        for user in &self.rows {
+        for user in &self.users {
             let turning = &mut self.turnings[user.index.0 as usize];
             if let Some((last, last_axis)) = turning.last {
                 turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (user.front - last).norm());
@@ -137,13 +113,55 @@ impl Detector {
     }
 
     /// Follows a row's path along the lanes, or asks for its lane.
-    fn keep_on_path(&mut self, row: usize) {
-        let user = &mut self.rows[row];
-        user.on_lanes = self.paths[user.index.0 as usize].follow(user.front);
-        if self.leaves_out.known_paths && !self.routes_may_change && user.on_lanes {
+    fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
+        self.on_lanes[row] = self.paths[user.0 as usize].follow(front);
+        if self.leaves_out.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
         } else {
             self.unplaced.push(row as u32);
+        }
+    }
+}
+
+/// What makes road users turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Turns {
+    Not,
+    ByArcs,
+    ByLanes,
+}
+
+/// What the step under way says of everybody.
+#[derive(Clone, Copy)]
+pub(super) struct Sight<'a> {
+    pub roster: &'a Roster,
+    pub turns: Turns,
+    pub on_lanes: &'a [bool],
+}
+
+impl Sight<'_> {
+    /// Who stands in a row.
+    #[inline(always)]
+    pub fn user(&self, row: u32, &Row { user: index, ref state }: &Row) -> User {
+        let type_index = self.roster.type_of(index);
+        let (profile, moves) = (self.roster.profile_at(type_index), state.speed > STANDS);
+        User {
+            front: Point::new(state.x, state.y),
+            axis: direction(state.heading),
+            z: state.z,
+            speed: state.speed,
+            stop: if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 },
+            row,
+            index,
+            profile: type_index,
+            category: profile.category,
+            moves,
+            ahead: match self.turns {
+                Turns::Not => true,
+                Turns::ByArcs => false,
+                Turns::ByLanes => !moves || profile.category != Category::Vehicle,
+            },
+            on_lanes: self.turns == Turns::ByLanes && self.on_lanes[row as usize],
         }
     }
 }
@@ -212,6 +230,7 @@ impl<'a> Reach<'a> {
     }
 
     /// What somebody may cover until it stands, and ε further.
+    #[inline(always)]
     pub(super) fn area(&self, user: &User) -> Area {
         let (profile, reach) = (self.roster.profile_at(user.profile), user.stop + self.epsilon);
         if user.category == Category::Obstacle {

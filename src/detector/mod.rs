@@ -8,27 +8,27 @@ mod look;
 mod measure;
 mod meet;
 mod order;
-mod parts;
 mod ways;
 
 use std::sync::Arc;
 
 use crate::accurate::Meeting;
 use crate::encounter::{Encounter, Placement};
-use crate::frame::{ProfileIndex, Roster, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
 use crate::geometry::halves::Halves;
+use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
+use crate::parts::each;
 use crate::path::Pose;
 use crate::path::lanes::{LanePath, Start};
 use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::units::{Metre, MetrePerSecond};
-use look::Reach;
+use look::{Reach, Sight};
 use order::Order;
-use parts::each;
 use ways::Ways;
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
@@ -86,10 +86,10 @@ pub struct Detector {
     paths: Vec<LanePath>,
     /// The same; empty where paths are no arcs.
     turnings: Vec<Turning>,
-    /// Everybody in the step, in the order of the frame's rows.
-    rows: Vec<User>,
+    /// Who is on its path along lanes, by row of the frame.
+    on_lanes: Vec<bool>,
     search: Search,
-    /// The same in the search's slots: who meets is near in memory too.
+    /// Everybody in the step, in the search's slots: who meets is near in memory too.
     users: Vec<User>,
     order: Order,
     unplaced: Vec<u32>,
@@ -210,7 +210,7 @@ impl Detector {
             sublane: false,
             paths: Vec::new(),
             turnings: Vec::new(),
-            rows: Vec::new(),
+            on_lanes: Vec::new(),
             search: Search::default(),
             users: Vec::new(),
             order: Order::default(),
@@ -261,29 +261,28 @@ impl Detector {
     }
 
     /// Whether the road user of a row is still on the path that was laid for this route.
-    pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        let user = &self.rows[row as usize];
-        user.on_lanes && self.paths[user.index.0 as usize].is_for(route)
+    pub fn keeps_path(&self, frame: &Frame, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
+        self.on_lanes[row as usize] && self.paths[frame.user(row).0 as usize].is_for(route)
     }
 
     /// Where the road user of a row is on the net.
-    pub fn place(&mut self, roster: &Roster, row: u32, placement: &Placement) {
+    pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
-        if self.keeps_path(row, &placement.route) {
+        if self.keeps_path(frame, row, &placement.route) {
             return;
         }
-        let user = &mut self.rows[row as usize];
-        let (path, profile) = (&mut self.paths[user.index.0 as usize], roster.profile_at(user.profile));
+        let Row { user, state } = frame.rows()[row as usize];
+        let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let start = Start {
-            front: user.front,
-            axis: user.axis,
+            front: Point::new(state.x, state.y),
+            axis: direction(state.heading),
             length: profile.chord,
             width: profile.width,
-            speed: user.speed,
+            speed: state.speed,
             sublane: self.sublane,
         };
         path.lay(net, &start, placement);
-        user.on_lanes = path.track.is_laid();
+        self.on_lanes[row as usize] = path.track.is_laid();
     }
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
@@ -323,8 +322,8 @@ impl Detector {
         if self.net.is_none() {
             return;
         }
-        for row in 0..self.rows.len() {
-            let user = self.rows[row];
+        for slot in 0..self.users.len() {
+            let user = self.users[slot];
             if user.on_lanes {
                 self.lengthen(roster, &user, user.stop + self.options.epsilon);
             }
@@ -336,6 +335,10 @@ impl Detector {
         if let Some(net) = &self.net {
             self.paths[user.index.0 as usize].reach(net, roster.profile_at(user.profile).chord, way);
         }
+    }
+
+    fn sight<'a>(&'a self, roster: &'a Roster) -> Sight<'a> {
+        Sight { roster, turns: self.turns(), on_lanes: &self.on_lanes }
     }
 
     fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {
@@ -351,9 +354,9 @@ impl Detector {
     }
 
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
-    pub fn path(&self, roster: &Roster, row: u32) -> Vec<Point> {
-        let (user, mut poses) = (&self.rows[row as usize], Vec::new());
-        self.scene(roster).course(user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
+    pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
+        let (user, mut poses) = (self.sight(roster).user(row, &frame.rows()[row as usize]), Vec::new());
+        self.scene(roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
 }

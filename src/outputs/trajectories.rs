@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 
 use super::OutputFile;
 use crate::Result;
-use crate::frame::{Frame, Roster};
+use crate::frame::{Frame, Roster, Row};
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::net::{LaneIndex, Net};
@@ -80,7 +80,7 @@ impl Trajectories {
         self.record.push(TIMESTEP);
         self.record.extend((frame.time as f32).to_le_bytes());
         self.known.resize_with(roster.len(), || None);
-        for ((row, user), state) in (0..).zip(frame.users()).zip(frame.states()) {
+        for (row, Row { user, state }) in (0..).zip(frame.rows()) {
             let profile = roster.profile_of(*user);
             if profile.category != Category::Vehicle {
                 continue;

@@ -47,7 +47,7 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     }
     let mut detector = Detector::new(&Options::default(), None);
     detector.follow(&frame, &roster);
-    detector.approach(&roster);
+    detector.approach(&frame, &roster);
     detector.detect(&roster).next().copied()
 }
 

@@ -11,7 +11,7 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
-use crate::frame::{Frame, Roster, State, UserIndex};
+use crate::frame::{Frame, Roster, Row, State, UserIndex};
 use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
@@ -74,26 +74,26 @@ impl Driven {
 
     /// What really was of all pairs of a step that are near each other.
     pub fn truth(&self, frame: &Frame, roster: &Roster, options: &Options) -> FxHashMap<Pair, Truth> {
-        let stops = frame.users().iter().zip(frame.states()).map(|(user, state)| {
+        let stops = frame.rows().iter().map(|Row { user, state }| {
             if state.speed > 0.0 { stopping_distance(state.speed, &roster.profile_of(*user).brakes) } else { 0.0 }
         });
         let stops = stops.collect::<Vec<_>>();
-        let circles = frame.users().iter().zip(frame.states()).zip(&stops).map(|((user, state), stop)| {
+        let circles = frame.rows().iter().zip(&stops).map(|(Row { user, state }, stop)| {
             let profile = roster.profile_of(*user);
             Circle { x: state.x, y: state.y, radius: stop + profile.length + profile.width + options.epsilon }
         });
         let mut pairs = Vec::new();
         Search::default().pairs(&circles.map(Area::from).collect::<Vec<_>>(), &mut pairs);
         pairs.sort_unstable();
-        let ways = (0..frame.len()).map(|row| {
-            let profile = roster.profile_of(frame.users()[row]);
+        let ways = frame.rows().iter().zip(&stops).map(|(row, stop)| {
+            let profile = roster.profile_of(row.user);
             let beyond = profile.length + profile.width + 30.0;
-            let reach = [stops[row], stops[row] + options.epsilon, stops[row] + options.epsilon + beyond];
-            self.ahead(&roster.user(frame.users()[row]).id, frame.time, &reach)
+            let reach = [*stop, stop + options.epsilon, stop + options.epsilon + beyond];
+            self.ahead(&roster.user(row.user).id, frame.time, &reach)
         });
         let ways = ways.collect::<Vec<_>>();
         let judged = pairs.into_iter().filter(|(a, b)| {
-            let speed = |row: &u32| frame.states()[*row as usize].speed;
+            let speed = |row: &u32| frame.state(*row).speed;
             speed(a) > 0.0 || speed(b) > 0.0
         });
         let judge = |(a, b): (u32, u32)| {
@@ -105,7 +105,7 @@ impl Driven {
                 }
                 _ => Truth::Aside,
             };
-            (pair(roster, frame.users()[a], frame.users()[b]), truth)
+            (pair(roster, frame.rows()[a].user, frame.rows()[b].user), truth)
         };
         judged.map(judge).collect()
     }
@@ -157,8 +157,8 @@ struct Way<'a> {
 
 impl<'a> Way<'a> {
     fn of(frame: &Frame, roster: &'a Roster, row: usize, stop: Metre, epsilon: Metre, all: &'a [Pose]) -> Self {
-        let profile = roster.profile_of(frame.users()[row]);
-        let State { x, y, heading, speed, .. } = frame.states()[row];
+        let Row { user, state: State { x, y, heading, speed, .. } } = frame.rows()[row];
+        let profile = roster.profile_of(user);
         let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
         let end = all.partition_point(|pose| pose.way <= stop + epsilon);
         let poses = &all[..end.max(1)];
