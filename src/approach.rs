@@ -3,7 +3,7 @@
 use crate::geometry::halves::Halves;
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::{TOLERANCE, translation};
+use crate::geometry::sweep::{TOLERANCE, slide};
 use crate::geometry::{Point, Vector};
 use crate::path::Pose;
 use crate::units::{Metre, MetrePerSecond, Second};
@@ -40,6 +40,19 @@ impl Course<'_> {
         Rectangle::behind(front, axis, self.length, self.width)
     }
 
+    /// Where it is now, and how far it moves until [`HORIZON`], if it goes straight on so long.
+    fn straight(&self) -> Option<(Rectangle, Vector)> {
+        let way = self.speed * HORIZON;
+        let (first, by) = match self.poses {
+            [only] => (only, only.axis * way),
+            [first, last] if first.axis == last.axis && last.way >= way => {
+                (first, if way > 0.0 { (last.front - first.front) * (way / last.way) } else { Vector::zeros() })
+            }
+            _ => return None,
+        };
+        Some((Rectangle::behind(first.front, first.axis, self.length, self.width), by))
+    }
+
     /// The next time at which it reaches a pose.
     fn next_pose(&self, time: Second) -> Second {
         let way = self.speed * time;
@@ -53,6 +66,9 @@ impl Course<'_> {
 
 /// Time until a moving road user touches another, in s; none where it does not within [`HORIZON`].
 pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
+    if let (Some((a, by)), Some((b, foe_by))) = (a.straight(), b.straight()) {
+        return slide(&a, &(by - foe_by), &b).map(|contact| contact.enter * HORIZON);
+    }
     let both_at = |time| (time, [a.at(time), b.at(time)]);
     let mut start = both_at(0.0);
     while start.0 < HORIZON {
@@ -105,7 +121,7 @@ fn contact_between(at: &impl Fn(Second) -> Moment, start: Moment, end: Moment, d
         return contact_between(at, start, middle, depth + 1).or_else(|| contact_between(at, middle, end, depth + 1));
     }
     let by = (a_end.centre - a_start.centre) - (b_end.centre - b_start.centre);
-    let contact = translation(&Outline::rectangle(a_start), &by, &Outline::rectangle(b_start))?;
+    let contact = slide(a_start, &by, b_start)?;
     Some(start.0 + (end.0 - start.0) * contact.enter)
 }
 

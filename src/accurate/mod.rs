@@ -49,6 +49,18 @@ impl Cover {
         Some(Self { bounds: bounds.grown(TOLERANCE), around })
     }
 
+    /// The same around one that goes straight on from one pose to another, with the box that is known.
+    pub fn straight(first: &Pose, last: &Pose, length: Metre, width: Metre, bounds: Bounds) -> Self {
+        let (now, by) = (Rectangle::behind(first.front, first.axis, length, width), last.front - first.front);
+        let around = Rectangle {
+            centre: now.centre + by / 2.0,
+            half_length: now.half_length + by.dot(&now.axis).abs() / 2.0 + TOLERANCE,
+            half_width: now.half_width + cross(&now.axis, &by).abs() / 2.0 + TOLERANCE,
+            ..now
+        };
+        Self { bounds, around }
+    }
+
     /// Whether the boxes of two meet.
     pub fn meets(&self, other: &Self) -> bool {
         self.bounds.meet(&other.bounds) && touches(&self.around, &other.around)

@@ -2,7 +2,7 @@
 
 use super::{Cover, Meeting, Mover};
 use crate::geometry::Vector;
-use crate::geometry::halves::{Area, Halves, Touch};
+use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{Step, TOLERANCE, translation};
@@ -58,13 +58,18 @@ fn first_touch(
             continue;
         }
         let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
-        let part = halves.numbered(of_ego + index, || step);
         let mut enter = Touch::First.none();
         for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
+            let part = halves.numbered(of_ego + index, || step);
             enter = halves.meet(part, &shape.into(), Touch::First).map_or(enter, |found| found.min(enter));
         }
-        for (index, step) in area(foe, cover) {
-            let other = halves.numbered(of_foe + index, || step);
+        for (of_other, other) in area(foe, cover) {
+            if let (true, Some(covered)) = (step.slides(), other.covered()) {
+                enter = step.slide_to(&covered).map_or(enter, |contact| contact.enter.min(enter));
+                continue;
+            }
+            let part = halves.numbered(of_ego + index, || step);
+            let other = halves.numbered(of_foe + of_other, || other);
             enter = halves.touch(part, other, Touch::First, enter);
         }
         if enter <= 1.0 {
@@ -93,10 +98,15 @@ fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = (usize, Ste
 ///
 /// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
 fn arrival(halves: &mut Halves, numbers: usize, foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
-    let ego = Area::from(Outline::rectangle(&grown(ego, inexact)));
+    let ego = grown(ego, inexact);
     for (index, (pair, step)) in foe.poses.windows(2).zip(steps(foe)).enumerate() {
-        let part = halves.numbered(numbers + index, || step);
-        if let Some(enter) = halves.meet(part, &ego, Touch::First) {
+        let enter = if step.slides() {
+            step.slide_to(&ego).map(|contact| contact.enter)
+        } else {
+            let part = halves.numbered(numbers + index, || step);
+            halves.meet(part, &Outline::rectangle(&ego).into(), Touch::First)
+        };
+        if let Some(enter) = enter {
             return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
         }
         if pair[0].way >= foe.stop {
@@ -110,7 +120,7 @@ fn arrival(halves: &mut Halves, numbers: usize, foe: &Mover, ego: &Rectangle, in
 /// until it is there.
 pub fn departure(halves: &mut Halves, poses: &[Pose], foe: &Mover, ego: &Rectangle, arrival: Metre) -> Metre {
     halves.clear();
-    let ego = Area::from(Outline::rectangle(&grown(ego, INEXACT)));
+    let ego = grown(ego, INEXACT);
     let mut left = arrival;
     for pair in poses.windows(2) {
         let (pose, next) = (pair[0], pair[1]);
@@ -118,8 +128,13 @@ pub fn departure(halves: &mut Halves, poses: &[Pose], foe: &Mover, ego: &Rectang
             continue;
         }
         let step = pose.step_to(&next, foe.length(), foe.width());
-        let part = halves.add(step);
-        let Some(leave) = halves.meet(part, &ego, Touch::Last) else {
+        let leave = if step.slides() {
+            step.slide_to(&ego).map(|contact| contact.leave)
+        } else {
+            let part = halves.add(step);
+            halves.meet(part, &Outline::rectangle(&ego).into(), Touch::Last)
+        };
+        let Some(leave) = leave else {
             if pose.way > arrival {
                 return left;
             }

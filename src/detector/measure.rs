@@ -61,7 +61,7 @@ impl Scene<'_> {
         let clearance = if encounter.collision {
             0.0
         } else if foe.shape.is_empty() {
-            rectangle::distance(&ego.rectangle, &foe.rectangle)
+            rectangle::room(&ego.rectangle, &foe.rectangle)
         } else {
             polygon::distance(foe.shape, &ego.rectangle)
         };

@@ -59,7 +59,8 @@ impl Scene<'_> {
         }
         // An obstacle is nobody's ego.
         let slots = if self.is_obstacle(a) { [b, a] } else { slots };
-        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let first = ways.mover(self, slots[0]);
+        let second = ways.mover(self, slots[1]);
         let id = |slot: u32| &self.roster.user(self.user(slot).index).id;
         let a_is_smaller = || id(slots[0]) <= id(slots[1]);
         if side::touch_now(&first, &second) {
@@ -77,7 +78,8 @@ impl Scene<'_> {
             return;
         }
         slots.iter().for_each(|slot| ways.cover(self, *slot));
-        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let first = ways.covered(self, slots[0]);
+        let second = ways.covered(self, slots[1]);
         if !first.cover.meets(second.cover) {
             work.ways_apart += 1;
             return;
@@ -124,7 +126,8 @@ impl Scene<'_> {
         let at = meeting.place();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
         let path = ego.on_lanes.then(|| &self.paths[ego.index.0 as usize]);
-        let mut encounter = Encounter {
+        found.pairs.push((ego.row.min(foe.row), ego.row.max(foe.row)));
+        found.encounters.push(Encounter {
             ego: ego.index,
             foe: foe.index,
             ego_row: ego.row,
@@ -141,18 +144,18 @@ impl Scene<'_> {
             lane: path.and_then(|path| path.lane_at(meeting.ego_way)),
             collision,
             nearness: None,
-        };
+        });
+        let Found { encounters, unmeasured, scratch, .. } = found;
+        let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
         if leaves || encounter.in_conflict() {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
             if ego.on_lanes || foe.on_lanes {
-                found.unmeasured.push((found.encounters.len() as u32, met));
+                unmeasured.push((number, met));
             } else {
-                self.measure(&mut found.scratch, [roles.ego, roles.foe], &met, &mut encounter);
+                self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
             }
         }
-        found.pairs.push((ego.row.min(foe.row), ego.row.max(foe.row)));
-        found.encounters.push(encounter);
     }
 
     fn mu_model(&self) -> MuModel {

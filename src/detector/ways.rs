@@ -15,6 +15,9 @@ use crate::units::Metre;
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
 const MOST_POSES: usize = 32;
 
+/// A straight way has poses where it begins, where it stands and ε further.
+const MOST_STRAIGHT: usize = 3;
+
 /// The ways of a step that were asked for, by slot.
 #[derive(Default)]
 pub(super) struct Ways {
@@ -105,7 +108,12 @@ impl Ways {
             true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
             false => Cover::EVERYWHERE,
         };
-        let whole = of(poses);
+        let whole = match poses {
+            [first, .., last] if laid.straight && poses.len() <= MOST_STRAIGHT && scene.leaves_out.ways_apart => {
+                Cover::straight(first, last, profile.length, profile.width, laid.bounds)
+            }
+            _ => of(poses),
+        };
         make_room(&mut self.covers, poses.len().max(1));
         self.covers.push(whole);
         if laid.straight {
@@ -124,8 +132,18 @@ impl Ways {
         }
     }
 
-    /// Who is in a slot, with as much of its way as was asked for.
+    /// Who is in a slot, with its way if that is not simply ahead.
     pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
+        let laid = if scene.user(slot).ahead { None } else { self.laid(slot) };
+        self.on(laid, scene, slot)
+    }
+
+    /// Who is in a slot whose way was covered.
+    pub(super) fn covered<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
+        self.on(self.laid(slot), scene, slot)
+    }
+
+    fn on<'a>(&'a self, laid: Option<&Laid>, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
         let user = scene.user(slot);
         let profile = scene.roster.profile_at(user.profile);
         let mut mover = Mover {
@@ -144,7 +162,7 @@ impl Ways {
             mover.shape = &scene.roster.user(user.index).shape;
             mover.reach = 0.0;
         }
-        if let Some(laid) = self.laid(slot) {
+        if let Some(laid) = laid {
             mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
             mover.straight = laid.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);

