@@ -1,6 +1,6 @@
 //! The detector alone, both phases, on one core and on two, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
 //! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
-//! per pair, and all pairs with the cheapest test there is. `cargo bench --bench detector`.
+//! per pair, and all pairs, by that test and by the cheapest there is. `cargo bench --bench detector`.
 //!
 //! Straight paths: without SUMO nobody has a route. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road
 //! users, for benches/commonroad.py.
@@ -21,7 +21,7 @@ use closecall::frame::{Frame, Roster, State};
 use closecall::options::Options;
 use closecall::reference::chance::Chance;
 use closecall::scene::Exclusion;
-use rivals::{AllPairs, Boxes, Tree};
+use rivals::{AllPairs, AllTested, Boxes, Tree};
 
 /// With more road users than this parry2d and all pairs are not asked; with as many, all pairs only once.
 const LARGE: usize = 100_000;
@@ -94,6 +94,7 @@ fn measure(scene: &str, start: Vec<State>) {
     let mut trees = [("parry2d", Boxes::Circles), ("parry2d (straight)", Boxes::StraightWays)]
         .map(|(name, boxes)| (name, Tree::new(boxes), Times::default(), 0));
     let (mut all_pairs, mut with_all) = (AllPairs::default(), Times::default());
+    let (mut all_tested, mut with_tests) = (AllTested::default(), Times::default());
     let steps = TIMES.repeat((500_000 / count).clamp(1, 16));
     for &time in &steps {
         advance(&mut frame, &mut cars, time);
@@ -125,6 +126,7 @@ fn measure(scene: &str, start: Vec<State>) {
         assert_eq!(trees[0].3, trees[1].3);
         for _ in 0..if count < LARGE { 5 } else { 1 } {
             with_all.add(|| all_pairs.contacts(&cars, car, options.epsilon));
+            with_tests.add(|| all_tested.contacts(&cars, car, options.epsilon));
         }
     }
     first.print(scene, "phase 1", count);
@@ -137,4 +139,6 @@ fn measure(scene: &str, start: Vec<State>) {
         times.print(scene, name, count);
     }
     with_all.print(scene, "all pairs", count);
+    with_tests.0.iter_mut().for_each(|time| *time *= AllTested::share(count));
+    with_tests.print(scene, "all tested", count);
 }

@@ -54,10 +54,12 @@ impl Run {
             (Some(path), None) => return Err(crate::Error::content(path, "a filter needs a net")),
             (None, _) => None,
         };
+        let mut detector = Detector::new(options, net.clone());
+        detector.set_conflicts_only(true);
         Ok(Self {
             roster: Roster::default(),
             frame: Frame::default(),
-            detector: Detector::new(options, net.clone()),
+            detector,
             net,
             filter,
             tracker: Tracker::default(),

@@ -37,6 +37,11 @@ fn options() -> Options {
 
 /// Encounters of cars given as (x, y, heading, speed) of their front bumpers, named a, b, c, ….
 fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
+    encounters_by(cars, |_| {})
+}
+
+/// The same by a detector that is set up so.
+fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) -> Vec<(Encounter, String)> {
     let options = options();
     let mut roster = Roster::default();
     let profile = roster.profile(car(&options)).unwrap();
@@ -47,6 +52,7 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
         frame.push(user, State { x, y, z: 0.0, heading, speed });
     }
     let mut detector = Detector::new(&options, None);
+    set_up(&mut detector);
     detector.follow(&frame, &roster);
     detector.approach(&frame, &roster);
     let found = detector.detect(&roster).copied().collect::<Vec<_>>();
@@ -110,6 +116,17 @@ fn in_a_merge_the_foe_first_has_to_come_and_go() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (20.0, -4.0, 0.3, 15.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
     assert!(found.foe_way > 5.0 && found.foe_way < 15.0, "{}", found.foe_way);
+}
+
+#[test]
+fn who_asks_for_conflicts_only_gets_all_of_them() {
+    let cars = [(0.0, 0.0, 0.0, 20.0), (40.0, 0.0, 0.0, 20.0), (0.0, 99.0, 0.0, 20.0), (12.0, 99.0, 0.0, 15.0)];
+    let conflicts = |found: Vec<(Encounter, String)>| found.into_iter().filter(|(found, _)| found.in_conflict());
+    let all = encounters(&cars);
+    let only = encounters_by(&cars, |detector| detector.set_conflicts_only(true));
+    assert!(only.len() < all.len(), "{} {}", only.len(), all.len());
+    assert!(!only.is_empty());
+    assert!(conflicts(only).eq(conflicts(all)));
 }
 
 #[test]

@@ -37,10 +37,8 @@ impl Tree {
     pub fn contacts(&mut self, cars: &[State], car: &Profile, epsilon: f64) -> usize {
         self.covered.clear();
         for (index, state) in (0..).zip(cars) {
-            let ahead = stopping_distance(state.speed, &car.brakes) + epsilon;
-            let axis = direction(state.heading);
-            let half = Vector::new((car.length + ahead) / 2.0, car.width / 2.0);
-            let centre = Vector::new(state.x, state.y) + Vector::new(axis.x, axis.y) * (ahead - half.x);
+            let covered = Covered::of(state, car, epsilon);
+            let Covered { axis, ahead, half, centre, .. } = covered;
             let around = match self.boxes {
                 Boxes::Circles => {
                     let radius = ahead + car.length.hypot(car.width) / 2.0;
@@ -51,8 +49,7 @@ impl Tree {
                     (centre, Vector::new(along * half.x + across * half.y, across * half.x + along * half.y))
                 }
             };
-            let pose = Pose { rotation: Rotation { re: axis.x, im: axis.y }, translation: centre };
-            self.covered.push((pose, Cuboid::new(half)));
+            self.covered.push(covered.shape());
             let aabb = Aabb::new(around.0 - around.1, around.0 + around.1);
             self.tree.insert_or_update_partially(aabb, index, 0.0);
         }
@@ -60,11 +57,60 @@ impl Tree {
         self.tree.optimize_incremental(&mut self.workspace);
         let (covered, mut found) = (&self.covered, 0);
         self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |i, j| {
-            let ((a, a_shape), (b, b_shape)) = (&covered[i as usize], &covered[j as usize]);
-            let test = query::intersection_test(a, a_shape, b, b_shape);
-            found += usize::from(test.is_ok_and(|test| test.intersecting));
+            found += usize::from(meet(&covered[i as usize], &covered[j as usize]));
         });
         found
+    }
+}
+
+/// The rectangle that a car covers until it stands, if its road is straight.
+struct Covered {
+    axis: closecall::geometry::Vector,
+    ahead: f64,
+    half: Vector,
+    centre: Vector,
+}
+
+impl Covered {
+    fn of(state: &State, car: &Profile, epsilon: f64) -> Self {
+        let ahead = stopping_distance(state.speed, &car.brakes) + epsilon;
+        let axis = direction(state.heading);
+        let half = Vector::new((car.length + ahead) / 2.0, car.width / 2.0);
+        let centre = Vector::new(state.x, state.y) + Vector::new(axis.x, axis.y) * (ahead - half.x);
+        Self { axis, ahead, half, centre }
+    }
+
+    fn shape(&self) -> (Pose, Cuboid) {
+        let rotation = Rotation { re: self.axis.x, im: self.axis.y };
+        (Pose { rotation, translation: self.centre }, Cuboid::new(self.half))
+    }
+}
+
+fn meet((a, a_shape): &(Pose, Cuboid), (b, b_shape): &(Pose, Cuboid)) -> bool {
+    query::intersection_test(a, a_shape, b, b_shape).is_ok_and(|test| test.intersecting)
+}
+
+/// The tree's test without the tree: of every pair.
+#[derive(Default)]
+pub struct AllTested {
+    covered: Vec<(Pose, Cuboid)>,
+}
+
+impl AllTested {
+    /// So many road users, spread over all, are tested with all others.
+    pub const SAMPLE: usize = 100;
+
+    /// The number of pairs of the sample whose rectangles meet.
+    pub fn contacts(&mut self, cars: &[State], car: &Profile, epsilon: f64) -> usize {
+        self.covered.clear();
+        self.covered.extend(cars.iter().map(|state| Covered::of(state, car, epsilon).shape()));
+        let sample = self.covered.iter().step_by(cars.len() / Self::SAMPLE).take(Self::SAMPLE);
+        sample.map(|a| self.covered.iter().filter(|b| meet(a, b)).count()).sum()
+    }
+
+    /// How many times as many pairs there are as the sample has.
+    pub fn share(count: usize) -> f64 {
+        (count - 1) as f64 / 2.0 / Self::SAMPLE as f64
     }
 }
 

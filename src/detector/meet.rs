@@ -1,5 +1,7 @@
 //! Phase 2, first half: where a pair would meet, what gap and μ are there.
 
+use std::hint::black_box;
+
 use super::ways::Ways;
 use super::{Found, Met, Scene, Work, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
@@ -8,6 +10,9 @@ use crate::encounter::{Encounter, Kind};
 use crate::geometry::rectangle;
 use crate::options::Mode;
 use crate::units::{Metre, Radian};
+
+/// So many pairs are fetched before the first of them is looked at: the processor waits for memory once.
+const BLOCK: usize = 32;
 
 /// Who of a pair meets whom.
 struct Roles<'a> {
@@ -40,11 +45,21 @@ impl Scene<'_> {
     /// The pairs of a worker that would meet.
     pub(super) fn meet_all(&self, worker: &mut Worker) {
         let Worker { pairs, work, ways, found } = worker;
-        for &(a, b) in pairs.iter() {
-            match self.options.mode {
-                Mode::Closecall => self.meet(ways, work, [a, b], found),
-                Mode::Paper => self.meet_on_paper(ways, [a, b], found),
+        for block in pairs.chunks(BLOCK) {
+            block.iter().for_each(|&(a, b)| self.fetch([a, b]));
+            for &(a, b) in block {
+                match self.options.mode {
+                    Mode::Closecall => self.meet(ways, work, [a, b], found),
+                    Mode::Paper => self.meet_on_paper(ways, [a, b], found),
+                }
             }
+        }
+    }
+
+    /// Reads what is far apart in memory, and does nothing with it.
+    fn fetch(&self, slots: [u32; 2]) {
+        for user in slots.map(|slot| self.user(slot)) {
+            black_box((user.front.x, user.row));
         }
     }
 
@@ -123,6 +138,12 @@ impl Scene<'_> {
     fn add(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, how: How) {
         let How { kind, angle, sigma, gap, collision } = how;
         let mu = accurate::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
+        let margin = gap - mu;
+        // Of a foe that has to come and go first the gap is not known yet.
+        let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
+        if self.conflicts_only && !leaves && margin >= 0.0 {
+            return;
+        }
         let at = meeting.place();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
         let path = ego.on_lanes.then(|| &self.paths[ego.index.0 as usize]);
@@ -136,7 +157,7 @@ impl Scene<'_> {
             angle,
             gap,
             mu,
-            margin: gap - mu,
+            margin,
             ego_way: meeting.ego_way,
             foe_way: meeting.foe_way,
             x: at.x,
@@ -147,7 +168,6 @@ impl Scene<'_> {
         });
         let Found { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
-        let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
         if leaves || encounter.in_conflict() {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
             if ego.on_lanes || foe.on_lanes {

@@ -82,6 +82,7 @@ pub struct Detector {
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
+    conflicts_only: bool,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: Vec<LanePath>,
     /// The same; empty where paths are no arcs.
@@ -177,6 +178,7 @@ impl Found {
 struct Scene<'a> {
     options: &'a Options,
     leaves_out: Exclusions,
+    conflicts_only: bool,
     roster: &'a Roster,
     paths: &'a [LanePath],
     turnings: &'a [Turning],
@@ -208,6 +210,7 @@ impl Detector {
             net,
             routes_may_change: true,
             sublane: false,
+            conflicts_only: false,
             paths: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
@@ -238,6 +241,11 @@ impl Detector {
     /// Says whether road users move to the side without changing lanes (SUMO's sublane model).
     pub fn set_sublane(&mut self, sublane: bool) {
         self.sublane = sublane;
+    }
+
+    /// Says that encounters which are no conflict may be left out of what [`Detector::detect`] finds.
+    pub fn set_conflicts_only(&mut self, only: bool) {
+        self.conflicts_only = only;
     }
 
     /// What is left out.
@@ -345,6 +353,7 @@ impl Detector {
         Scene {
             options: &self.options,
             leaves_out: self.leaves_out,
+            conflicts_only: self.conflicts_only,
             roster,
             paths: &self.paths,
             turnings: &self.turnings,

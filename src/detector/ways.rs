@@ -74,24 +74,21 @@ impl Ways {
         scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, &mut self.poses);
         let poses = &self.poses[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
+        let straight = poses.iter().all(|pose| pose.axis == axis);
         let bounds = if !scene.leaves_out.ways_apart {
             Bounds::EVERYTHING
         } else if user.ahead {
             scene.reach.area(user).bounds
         } else {
             let mut bounds = Bounds::EMPTY;
-            for pose in poses {
+            // What lies between the first and the last of a straight way their boxes hold.
+            for pose in poses.iter().step_by(if straight { (poses.len() - 1).max(1) } else { 1 }) {
                 bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
             }
             bounds.grown(TOLERANCE)
         };
-        *laid = Laid {
-            step: self.step,
-            poses: (start as u32, self.poses.len() as u32),
-            covers: None,
-            straight: poses.iter().all(|pose| pose.axis == axis),
-            bounds,
-        };
+        *laid =
+            Laid { step: self.step, poses: (start as u32, self.poses.len() as u32), covers: None, straight, bounds };
     }
 
     /// Lays the poses and the boxes around them.

@@ -164,7 +164,11 @@ impl Track {
         let limit = if beyond { f64::INFINITY } else { self.end() - self.front };
         let mut front = Cursor { track: self, segment: self.segment, under: self.under, way: self.front };
         let rear_way = self.front - length;
-        let mut rear = Cursor::at(self, self.corner_before(rear_way).min(self.segment), rear_way);
+        let mut rear = if rear_way >= self.under.way {
+            Cursor { way: rear_way, ..front }
+        } else {
+            Cursor::at(self, self.corner_before(rear_way).min(self.segment), rear_way)
+        };
         let chord_now = chord(&front, &rear, axis);
         let skew = if turns_less(&chord_now, &axis, SAME_HEADING) { 0.0 } else { turn(&chord_now, &axis) };
         let skew = if skew.abs() < SAME_HEADING { 0.0 } else { skew };
@@ -173,6 +177,10 @@ impl Track {
         let first = if skew == 0.0 { chord_now } else { axis };
         poses.push(Pose { way: 0.0, front: front.point(), axis: first });
         let mut way = 0.0;
+        let furthest = ways.last().map_or(0.0, |last| last.min(limit));
+        if skew == 0.0 && rear.segment == front.segment && furthest <= front.room() {
+            return front.straight_on(ways, limit, first, poses);
+        }
         for &target in ways {
             let target = target.min(limit);
             while way < target {
@@ -275,6 +283,19 @@ impl<'a> Cursor<'a> {
         match self.track.corners.get(self.segment + 1) {
             Some(next) if self.segment + 2 < self.track.corners.len() => next.way - self.way,
             _ => f64::INFINITY,
+        }
+    }
+
+    /// Adds the poses at these ways from here, all on this part of the line, as [`Track::poses`] has them.
+    fn straight_on(mut self, ways: &[Metre], limit: Metre, axis: Vector, poses: &mut Vec<Pose>) {
+        let mut way = 0.0;
+        for target in ways.iter().map(|target| target.min(limit)) {
+            if way < target {
+                let step = target - way;
+                self.way += step;
+                way += step;
+                poses.push(Pose { way, front: self.point(), axis });
+            }
         }
     }
 
