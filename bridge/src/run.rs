@@ -27,7 +27,7 @@ use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
-/// With fewer road users than this both phases are done sooner than a thread has started (some 20 µs).
+/// With fewer road users than this both phases are done about as soon as a thread is awake (some 20 µs).
 const WORTH_A_THREAD: usize = 100;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
@@ -315,16 +315,17 @@ impl Session<'_, '_> {
         let (run, spent) = (&mut self.run, &mut self.spent);
         let unfinished = std::mem::take(&mut self.is_unfinished);
         let mut since = Instant::now();
-        let (stepped, finished) = std::thread::scope(|scope| {
-            let worker = unfinished.then(|| scope.spawn(|| finish(run)));
+        let mut finished = None;
+        let stepped = rayon::in_place_scope(|scope| {
+            if unfinished {
+                scope.spawn(|_| finished = Some(finish(run)));
+            }
             let stepped = simulation.step.call0().map(|_| ());
             spent.add(SUMO, &mut since);
-            (stepped, worker.map(std::thread::ScopedJoinHandle::join))
+            stepped
         });
-        match finished {
-            Some(Ok(done)) => self.spent.add_finished(done?),
-            Some(Err(panic)) => std::panic::resume_unwind(panic),
-            None => {}
+        if let Some(finished) = finished {
+            self.spent.add_finished(finished?);
         }
         Ok(stepped?)
     }
