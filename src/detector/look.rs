@@ -141,6 +141,7 @@ pub(super) struct Sight<'a> {
 
 impl Sight<'_> {
     /// Who stands in a row.
+    // Always: by a call it would be written twice, and the second time wait for the first, 15 ns per road user.
     #[inline(always)]
     pub fn user(&self, row: u32, &Row { user: index, ref state }: &Row) -> User {
         let type_index = self.roster.type_of(index);
@@ -230,6 +231,7 @@ impl<'a> Reach<'a> {
     }
 
     /// What somebody may cover until it stands, and ε further.
+    // For the same reason.
     #[inline(always)]
     pub(super) fn area(&self, user: &User) -> Area {
         let (profile, reach) = (self.roster.profile_at(user.profile), user.stop + self.epsilon);
