@@ -27,7 +27,7 @@ use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
-/// With fewer road users than this both phases are done about as soon as a thread is awake (some 20 µs).
+/// With fewer road users than this both phases are done about as soon as a thread is awake.
 const WORTH_A_THREAD: usize = 100;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);

@@ -1,6 +1,6 @@
 //! Rectangles, convex outlines, and where moving ones touch.
 //!
-//! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`rectangle::distance`],
+//! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`polygon::distance`],
 //! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
 pub mod exact;
