@@ -64,13 +64,7 @@ fn first_touch(
             enter = halves.meet(part, &shape.into(), Touch::First).map_or(enter, |found| found.min(enter));
         }
         for (of_other, other) in area(foe, cover) {
-            if let (true, Some(covered)) = (step.slides(), other.covered()) {
-                enter = step.slide_to(&covered).map_or(enter, |contact| contact.enter.min(enter));
-                continue;
-            }
-            let part = halves.numbered(of_ego + index, || step);
-            let other = halves.numbered(of_foe + of_other, || other);
-            enter = halves.touch(part, other, Touch::First, enter);
+            enter = halves.touch_numbered((of_ego + index, &step), (of_foe + of_other, &other), Touch::First, enter);
         }
         if enter <= 1.0 {
             return Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)));
@@ -100,13 +94,7 @@ fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = (usize, Ste
 fn arrival(halves: &mut Halves, numbers: usize, foe: &Mover, ego: &Rectangle, inexact: Metre) -> (Metre, Vector) {
     let ego = grown(ego, inexact);
     for (index, (pair, step)) in foe.poses.windows(2).zip(steps(foe)).enumerate() {
-        let enter = if step.slides() {
-            step.slide_to(&ego).map(|contact| contact.enter)
-        } else {
-            let part = halves.numbered(numbers + index, || step);
-            halves.meet(part, &Outline::rectangle(&ego).into(), Touch::First)
-        };
-        if let Some(enter) = enter {
+        if let Some(enter) = halves.meet_rectangle((numbers + index, &step), &ego, Touch::First) {
             return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
         }
         if pair[0].way >= foe.stop {
@@ -122,19 +110,13 @@ pub fn departure(halves: &mut Halves, poses: &[Pose], foe: &Mover, ego: &Rectang
     halves.clear();
     let ego = grown(ego, INEXACT);
     let mut left = arrival;
-    for pair in poses.windows(2) {
+    for (index, pair) in poses.windows(2).enumerate() {
         let (pose, next) = (pair[0], pair[1]);
         if next.way < arrival {
             continue;
         }
         let step = pose.step_to(&next, foe.length(), foe.width());
-        let leave = if step.slides() {
-            step.slide_to(&ego).map(|contact| contact.leave)
-        } else {
-            let part = halves.add(step);
-            halves.meet(part, &Outline::rectangle(&ego).into(), Touch::Last)
-        };
-        let Some(leave) = leave else {
+        let Some(leave) = halves.meet_rectangle((index, &step), &ego, Touch::Last) else {
             if pose.way > arrival {
                 return left;
             }

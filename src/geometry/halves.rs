@@ -35,6 +35,14 @@ impl Touch {
         }
     }
 
+    /// Where that is in a contact.
+    fn of(self, contact: Contact) -> f64 {
+        match self {
+            Self::First => contact.enter,
+            Self::Last => contact.leave,
+        }
+    }
+
     /// Whether no part of a step can be better than this.
     fn is_best(self, part: f64) -> bool {
         match self {
@@ -207,10 +215,35 @@ impl Halves {
         self.search(of.0, fixed, which, which.none())
     }
 
+    /// The same of the step with this number and a rectangle; one that never turns needs no halves.
+    pub fn meet_rectangle(&mut self, (number, step): (usize, &Step), fixed: &Rectangle, which: Touch) -> Option<f64> {
+        if step.slides() {
+            return step.slide_to(fixed).map(|contact| which.of(contact));
+        }
+        let part = self.numbered(number, || *step);
+        self.meet(part, &Outline::rectangle(fixed).into(), which)
+    }
+
     /// The part of a step at which its rectangle touches the area that another step covers, or `known` if that is
     /// better.
     pub fn touch(&mut self, of: Part, other: Part, which: Touch, known: f64) -> f64 {
         self.search_swept(of.0, other.0, which, known)
+    }
+
+    /// The same of the steps with these numbers; two that never turn need no halves.
+    pub fn touch_numbered(
+        &mut self,
+        (number, step): (usize, &Step),
+        (of_other, other): (usize, &Step),
+        which: Touch,
+        known: f64,
+    ) -> f64 {
+        if let (true, Some(covered)) = (step.slides(), other.covered()) {
+            return step.slide_to(&covered).map_or(known, |contact| which.better(known, which.of(contact)));
+        }
+        let part = self.numbered(number, || *step);
+        let other = self.numbered(of_other, || *other);
+        self.touch(part, other, which, known)
     }
 
     /// The other's hull decides quickly where they do not touch; where they do, it is cut in halves until it fits.
@@ -247,10 +280,7 @@ impl Halves {
             if !near.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
                 return None;
             }
-            return part.slide_to(&fixed.outline).map(|contact| match which {
-                Touch::First => contact.enter,
-                Touch::Last => contact.leave,
-            });
+            return part.slide_to(&fixed.outline).map(|contact| which.of(contact));
         }
         if !part.bounds.meet(&fixed.bounds) || !part.hull().outline.overlaps(&fixed.outline) {
             return None;
