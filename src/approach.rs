@@ -1,7 +1,7 @@
 //! Time to collision: when two rectangles touch if both keep their speed along their paths.
 
-use crate::geometry::halves::Halves;
-use crate::geometry::outline::Outline;
+use crate::geometry::halves::{Halves, Touch};
+use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::{TOLERANCE, slide};
 use crate::geometry::{Point, Vector};
@@ -84,22 +84,18 @@ pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
 }
 
 /// Time until a moving road user touches something that stands.
-pub fn time_to_fixed(halves: &mut Halves, a: &Course, fixed: &[Outline]) -> Option<Second> {
-    halves.clear();
-    let mut first: Option<Second> = None;
-    for (pose, next) in a.poses.windows(2).map(|pair| (pair[0], pair[1])) {
-        let step = pose.step_to(&next, a.length, a.width);
-        for outline in fixed {
-            if let Some(enter) = halves.enter(step, outline) {
-                let time = (pose.way + (next.way - pose.way) * enter) / a.speed;
-                first = Some(first.map_or(time, |earliest| earliest.min(time)));
-            }
-        }
-        if first.is_some() {
-            break;
-        }
-    }
-    first.filter(|time| *time <= HORIZON)
+pub fn time_to_fixed(halves: &mut Halves, a: &Course, fixed: &[Polygon]) -> Option<Second> {
+    a.poses
+        .windows(2)
+        .find_map(|pair| {
+            halves.clear();
+            let (pose, next) = (&pair[0], &pair[1]);
+            let step = halves.add(pose.step_to(next, a.length, a.width));
+            let touched = fixed.iter().filter_map(|shape| halves.meet(step, shape, Touch::First));
+            let time = |enter| (pose.way + (next.way - pose.way) * enter) / a.speed;
+            touched.map(time).reduce(f64::min)
+        })
+        .filter(|time| *time <= HORIZON)
 }
 
 /// A time, and both rectangles at it.

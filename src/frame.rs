@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile};
+use crate::table::make_room;
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 use crate::{Error, Result};
 
@@ -149,20 +150,6 @@ impl Roster {
     pub fn is_empty(&self) -> bool {
         self.users.is_empty()
     }
-}
-
-/// Makes room for further rows in a table that has one per road user: where there is none, for an eighth more than that;
-/// doubling, as [`Vec`] does, would leave up to half of it empty.
-pub fn make_room<T>(table: &mut Vec<T>, further: usize) {
-    if table.capacity() - table.len() < further {
-        table.reserve_exact(further + (table.len() + further) / 8);
-    }
-}
-
-/// Gives a table so many rows, new ones with this value.
-pub(crate) fn fill<T: Clone>(table: &mut Vec<T>, rows: usize, value: T) {
-    make_room(table, rows.saturating_sub(table.len()));
-    table.resize(rows, value);
 }
 
 /// A road user's changing part, as it goes into a [`Frame`].

@@ -44,6 +44,7 @@ pub mod stress;
 pub mod study;
 pub mod summary;
 pub mod sweep;
+pub mod table;
 pub mod units;
 
 pub use error::{Error, Result};

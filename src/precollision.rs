@@ -12,9 +12,9 @@
 
 use std::ops::Range;
 
-use crate::frame::fill;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::parts::{each, share};
+use crate::table::fill;
 use crate::units::Metre;
 
 /// What a road user may cover until it stands, whichever way it turns.

@@ -1,7 +1,8 @@
 //! Where steps touch, against trying all parts of both: the same to the last bit.
 
-use closecall::geometry::halves::{Area, Halves, Touch};
+use closecall::geometry::halves::{Halves, Touch};
 use closecall::geometry::outline::Outline;
+use closecall::geometry::polygon::Polygon;
 use closecall::geometry::rectangle::{Rectangle, direction};
 use closecall::geometry::sweep::{Step, TOLERANCE, translation};
 use closecall::geometry::{Bounds, Point, Vector};
@@ -99,7 +100,7 @@ proptest! {
         let (mut halves, outline) = (Halves::default(), Outline::rectangle(&fixed.rectangle(0.0)));
         let part = halves.add(step);
         for which in [Touch::First, Touch::Last] {
-            let found = halves.meet(part, &Area::from(outline), which);
+            let found = halves.meet(part, &Polygon::from(outline), which);
             prop_assert_eq!(found, meet(&step, &outline, &outline.bounds(), which));
         }
     }

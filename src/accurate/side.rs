@@ -61,7 +61,7 @@ fn first_touch(
         let mut enter = Touch::First.none();
         for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
             let part = halves.numbered(of_ego + index, || step);
-            enter = halves.meet(part, &shape.into(), Touch::First).map_or(enter, |found| found.min(enter));
+            enter = halves.meet(part, shape, Touch::First).map_or(enter, |found| found.min(enter));
         }
         for (of_other, other) in area(foe, cover) {
             enter = halves.touch_numbered((of_ego + index, &step), (of_foe + of_other, &other), Touch::First, enter);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Detector, LEVEL, Turning, User, Work};
 use crate::braking::stopping_distance;
-use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex, fill};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
@@ -15,6 +15,7 @@ use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle};
 use crate::profile::Category;
 use crate::scene::Exclusions;
+use crate::table::{add, fill};
 use crate::units::Metre;
 
 /// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
@@ -103,7 +104,7 @@ impl Detector {
             let found = |a: u32, b: u32| {
                 let (first, second) = (&users[a as usize], &users[b as usize]);
                 if is_pair(first, second, work) {
-                    pairs.push(if first.row < second.row { (a, b) } else { (b, a) });
+                    add(pairs, if first.row < second.row { (a, b) } else { (b, a) });
                 }
             };
             if all { every_pair(part, found) } else { search.sweep(part, found) }

@@ -5,7 +5,6 @@ use super::{Found, Met, Scene, Scratch, User, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::approach::{self, Course};
 use crate::encounter::{Encounter, Kind, Nearness};
-use crate::geometry::outline::Outline;
 use crate::geometry::{polygon, rectangle};
 use crate::measures;
 use crate::options::Mode;
@@ -21,7 +20,7 @@ impl Scene<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Found { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let (ego, foe) = (worker.ways.mover(self, met.slots[0]), worker.ways.mover(self, met.slots[1]));
+            let (ego, foe) = (self.mover(met.slots[0]), self.mover(met.slots[1]));
             self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
@@ -101,8 +100,7 @@ impl Scene<'_> {
         let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
         if self.is_obstacle(met.slots[1]) {
             let shape = &self.roster.user(encounter.foe).shape;
-            let outlines = shape.iter().map(|part| part.outline).collect::<Vec<Outline>>();
-            approach::time_to_fixed(&mut scratch.halves, &ego, &outlines)
+            approach::time_to_fixed(&mut scratch.halves, &ego, shape)
         } else {
             approach::time_to_collision(&ego, &foe)
         }

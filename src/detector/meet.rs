@@ -9,6 +9,7 @@ use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
 use crate::geometry::rectangle;
 use crate::options::Mode;
+use crate::table::add;
 use crate::units::{Metre, Radian};
 
 /// So many pairs are fetched before the first of them is looked at: the processor waits for memory once.
@@ -50,7 +51,7 @@ impl Scene<'_> {
             for &(a, b) in block {
                 match self.options.mode {
                     Mode::Closecall => self.meet(ways, work, [a, b], found),
-                    Mode::Paper => self.meet_on_paper(ways, [a, b], found),
+                    Mode::Paper => self.meet_on_paper([a, b], found),
                 }
             }
         }
@@ -64,6 +65,7 @@ impl Scene<'_> {
     }
 
     fn meet(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+        ways.begin_pair();
         slots.iter().for_each(|slot| ways.see(self, *slot));
         let [a, b] = slots;
         // Of two that can only go straight on phase 1 has compared the boxes.
@@ -106,11 +108,11 @@ impl Scene<'_> {
         }
     }
 
-    fn meet_on_paper(&self, ways: &Ways, slots: [u32; 2], found: &mut Found) {
+    fn meet_on_paper(&self, slots: [u32; 2], found: &mut Found) {
         if slots.iter().any(|slot| self.is_obstacle(*slot)) {
             return;
         }
-        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let (first, second) = (self.mover(slots[0]), self.mover(slots[1]));
         let measured = accurate::paper::measure(&first, &second, self.options);
         let roles = Roles::new(measured.ego_is_a, slots, [&first, &second]);
         let (ego, foe) = (roles.ego, roles.foe);
@@ -147,8 +149,8 @@ impl Scene<'_> {
         let at = meeting.place();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
         let path = ego.on_lanes.then(|| &self.paths[ego.index.0 as usize]);
-        found.pairs.push((ego.row.min(foe.row), ego.row.max(foe.row)));
-        found.encounters.push(Encounter {
+        add(&mut found.pairs, (ego.row.min(foe.row), ego.row.max(foe.row)));
+        let encounter = Encounter {
             ego: ego.index,
             foe: foe.index,
             ego_row: ego.row,
@@ -165,13 +167,14 @@ impl Scene<'_> {
             lane: path.and_then(|path| path.lane_at(meeting.ego_way)),
             collision,
             nearness: None,
-        });
+        };
+        add(&mut found.encounters, encounter);
         let Found { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || encounter.in_conflict() {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
             if ego.on_lanes || foe.on_lanes {
-                unmeasured.push((number, met));
+                add(unmeasured, (number, met));
             } else {
                 self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
             }

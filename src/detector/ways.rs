@@ -3,13 +3,13 @@
 
 use super::{Scene, User};
 use crate::accurate::{Cover, Mover};
-use crate::frame::{fill, make_room};
 use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
 use crate::path::{Pose, arc, straight};
 use crate::profile::Category;
+use crate::table::{add, fill, make_room};
 use crate::units::Metre;
 
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
@@ -18,10 +18,28 @@ const MOST_POSES: usize = 32;
 /// A straight way has poses where it begins, where it stands and ε further.
 const MOST_STRAIGHT: usize = 3;
 
-/// The ways of a step that were asked for, by slot.
+/// How many ways are kept: this many times the square root of the road users in the step. The search comes back to
+/// somebody after about one of its strips, and about the root of all stand in a strip.
+const KEPT: f64 = 2.0;
+
+/// No fewer are kept.
+const KEPT_AT_LEAST: usize = 32;
+
+/// The ways of a step that were asked for last. Memory for those of everybody would be most of what the detector has;
+/// whose way is asked for after it was forgotten has it laid again, and it is the same.
 #[derive(Default)]
 pub(super) struct Ways {
-    step: u32,
+    /// By slot, where its way is, if it is kept: among the newer or the older ones.
+    places: Vec<u32>,
+    /// So many newer ones make the older ones be forgotten.
+    most: usize,
+    /// The generations, the newer first.
+    kept: [Kept; 2],
+}
+
+/// Ways that were laid one after the other.
+#[derive(Default)]
+struct Kept {
     laid: Vec<Laid>,
     poses: Vec<Pose>,
     covers: Vec<Cover>,
@@ -30,8 +48,7 @@ pub(super) struct Ways {
 /// The way of who is in a slot.
 #[derive(Clone, Copy)]
 struct Laid {
-    /// The step it was laid in.
-    step: u32,
+    slot: u32,
     poses: (u32, u32),
     /// Where its covers begin, that of the whole way and those from pose to pose; none as long as nobody asked.
     covers: Option<u32>,
@@ -40,19 +57,34 @@ struct Laid {
     bounds: Bounds,
 }
 
-impl Laid {
-    const NOTHING: Self = Self { step: 0, poses: (0, 0), covers: None, straight: false, bounds: Bounds::EMPTY };
+impl Kept {
+    fn clear(&mut self) {
+        self.laid.clear();
+        self.poses.clear();
+        self.covers.clear();
+    }
+
+    fn find(&self, slot: u32, place: u32) -> Option<&Laid> {
+        self.laid.get(place as usize).filter(|laid| laid.slot == slot)
+    }
 }
 
 impl Ways {
     /// Forgets those of the last step; slots below `slots` may be asked for.
     pub(super) fn begin(&mut self, slots: usize) {
-        if self.laid.len() < slots {
-            fill(&mut self.laid, slots, Laid::NOTHING);
+        fill(&mut self.places, slots, 0);
+        self.most = ((slots as f64).sqrt() * KEPT) as usize + KEPT_AT_LEAST;
+        self.kept.iter_mut().for_each(Kept::clear);
+    }
+
+    /// Forgets the older ones if there are enough newer ones. The ways of a pair are laid and looked at between two
+    /// calls.
+    pub(super) fn begin_pair(&mut self) {
+        let [newer, older] = &mut self.kept;
+        if newer.laid.len() >= self.most {
+            std::mem::swap(newer, older);
+            newer.clear();
         }
-        self.step = self.step.wrapping_add(1).max(1);
-        self.poses.clear();
-        self.covers.clear();
     }
 
     /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
@@ -64,15 +96,15 @@ impl Ways {
     }
 
     fn lay(&mut self, scene: &Scene, slot: u32) {
-        let laid = &mut self.laid[slot as usize];
-        if laid.step == self.step {
+        if self.find(slot).is_some() {
             return;
         }
         let user = scene.user(slot);
-        let (profile, start) = (scene.profile(user), self.poses.len());
-        make_room(&mut self.poses, MOST_POSES);
-        scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, &mut self.poses);
-        let poses = &self.poses[start..];
+        let Kept { laid, poses: all, .. } = &mut self.kept[0];
+        let (profile, start) = (scene.profile(user), all.len());
+        make_room(all, MOST_POSES);
+        scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, all);
+        let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
         let straight = poses.iter().all(|pose| pose.axis == axis);
         let bounds = if !scene.leaves_out.ways_apart {
@@ -87,20 +119,26 @@ impl Ways {
             }
             bounds.grown(TOLERANCE)
         };
-        *laid =
-            Laid { step: self.step, poses: (start as u32, self.poses.len() as u32), covers: None, straight, bounds };
+        self.places[slot as usize] = laid.len() as u32;
+        let way = Laid { slot, poses: (start as u32, all.len() as u32), covers: None, straight, bounds };
+        add(laid, way);
     }
 
     /// Lays the poses and the boxes around them.
     pub(super) fn cover(&mut self, scene: &Scene, slot: u32) {
         self.lay(scene, slot);
-        let laid = &mut self.laid[slot as usize];
+        let place = self.places[slot as usize];
+        let Some(Kept { laid, poses, covers }) = self.kept.iter_mut().find(|kept| kept.find(slot, place).is_some())
+        else {
+            return;
+        };
+        let laid = &mut laid[place as usize];
         if laid.covers.is_some() {
             return;
         }
-        laid.covers = Some(self.covers.len() as u32);
+        laid.covers = Some(covers.len() as u32);
         let profile = scene.profile(scene.user(slot));
-        let poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
+        let poses = &poses[laid.poses.0 as usize..laid.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.leaves_out.ways_apart {
             true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
             false => Cover::EVERYWHERE,
@@ -111,44 +149,62 @@ impl Ways {
             }
             _ => of(poses),
         };
-        make_room(&mut self.covers, poses.len().max(1));
-        self.covers.push(whole);
+        make_room(covers, poses.len().max(1));
+        covers.push(whole);
         if laid.straight {
             // A part of it is hardly smaller, and there are two at most.
-            self.covers.extend(poses.windows(2).map(|_| whole));
+            covers.extend(poses.windows(2).map(|_| whole));
         } else {
-            self.covers.extend(poses.windows(2).map(of));
+            covers.extend(poses.windows(2).map(of));
         }
     }
 
     /// The box around all that it covers on its way.
     pub(super) fn bounds(&self, scene: &Scene, slot: u32) -> Bounds {
-        match self.laid(slot) {
-            Some(laid) => laid.bounds,
+        match self.find(slot) {
+            Some((_, laid)) => laid.bounds,
             None => scene.reach.area(scene.user(slot)).bounds,
         }
     }
 
     /// Who is in a slot, with its way if that is not simply ahead.
     pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
-        let laid = if scene.user(slot).ahead { None } else { self.laid(slot) };
-        self.on(laid, scene, slot)
+        if scene.user(slot).ahead { scene.mover(slot) } else { self.covered(scene, slot) }
     }
 
     /// Who is in a slot whose way was covered.
     pub(super) fn covered<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
-        self.on(self.laid(slot), scene, slot)
+        let mut mover = scene.mover(slot);
+        if let Some((kept, laid)) = self.find(slot) {
+            mover.poses = &kept.poses[laid.poses.0 as usize..laid.poses.1 as usize];
+            mover.straight = laid.straight;
+            mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
+            if let Some(start) = laid.covers {
+                let steps = mover.poses.len().saturating_sub(1);
+                mover.cover = &kept.covers[start as usize];
+                mover.covers = &kept.covers[start as usize + 1..][..steps];
+            }
+        }
+        mover
     }
 
-    fn on<'a>(&'a self, laid: Option<&Laid>, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
-        let user = scene.user(slot);
-        let profile = scene.roster.profile_at(user.profile);
+    fn find(&self, slot: u32) -> Option<(&Kept, &Laid)> {
+        let place = self.places[slot as usize];
+        self.kept.iter().find_map(|kept| kept.find(slot, place).map(|laid| (kept, laid)))
+    }
+}
+
+impl<'a> Scene<'a> {
+    /// Who is in a slot, without its way.
+    pub(super) fn mover(&self, slot: u32) -> Mover<'a> {
+        let user = self.user(slot);
+        let profile = self.roster.profile_at(user.profile);
         let mut mover = Mover {
             rectangle: Rectangle::behind(user.front, user.axis, profile.length, profile.width),
             shape: &[],
             poses: &[],
             straight: true,
-            reach: user.stop + scene.options.epsilon,
+            reach: user.stop + self.options.epsilon,
             cover: &Cover::NOWHERE,
             covers: &[],
             speed: user.speed,
@@ -156,28 +212,12 @@ impl Ways {
             stop: user.stop,
         };
         if user.category == Category::Obstacle {
-            mover.shape = &scene.roster.user(user.index).shape;
+            mover.shape = &self.roster.user(user.index).shape;
             mover.reach = 0.0;
-        }
-        if let Some(laid) = laid {
-            mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
-            mover.straight = laid.straight;
-            mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
-            if let Some(start) = laid.covers {
-                let steps = mover.poses.len().saturating_sub(1);
-                mover.cover = &self.covers[start as usize];
-                mover.covers = &self.covers[start as usize + 1..][..steps];
-            }
         }
         mover
     }
 
-    fn laid(&self, slot: u32) -> Option<&Laid> {
-        self.laid.get(slot as usize).filter(|laid| laid.step == self.step)
-    }
-}
-
-impl Scene<'_> {
     /// Adds a road user's poses at the given ways, and between, as far as its path is known; `beyond` that straight on.
     pub(super) fn course(&self, user: &User, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
         let User { front, axis, category, on_lanes, .. } = *user;

@@ -12,6 +12,7 @@ use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::sweep::{Contact, Step, TOLERANCE, translation};
 use super::{Bounds, Vector};
+use crate::table::{add, make_room};
 use crate::units::Metre;
 
 /// More than rounding can move anything, in m.
@@ -67,25 +68,6 @@ impl Touch {
     }
 }
 
-/// A convex area that stands.
-#[derive(Clone, Copy, Debug)]
-pub struct Area {
-    outline: Outline,
-    bounds: Bounds,
-}
-
-impl From<&Polygon> for Area {
-    fn from(polygon: &Polygon) -> Self {
-        Self { outline: polygon.outline, bounds: polygon.bounds }
-    }
-}
-
-impl From<Outline> for Area {
-    fn from(outline: Outline) -> Self {
-        Self { outline, bounds: outline.bounds() }
-    }
-}
-
 /// A step among [`Halves`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part(u32);
@@ -95,6 +77,8 @@ pub struct Part(u32);
 #[derive(Clone, Debug, Default)]
 pub struct Halves {
     parts: Vec<Swept>,
+    /// Of those parts that were asked for theirs.
+    hulls: Vec<Polygon>,
     /// Where the steps stand whose number is known.
     numbered: Vec<Option<Part>>,
 }
@@ -107,7 +91,8 @@ struct Swept {
     axes: [Vector; 2],
     bounds: Bounds,
     turn: f64,
-    hull: Option<Area>,
+    /// Where its hull stands.
+    hull: Option<u32>,
     /// The axis of the rectangle in the middle.
     middle: Option<Vector>,
     /// The first half, which the second one stands behind.
@@ -123,8 +108,12 @@ impl Swept {
         Self { step, axes: [first.axis, last.axis], bounds, turn, hull: None, middle: None, halves: None }
     }
 
-    fn hull(&mut self) -> &Area {
-        self.hull.get_or_insert_with(|| self.step.hull().into())
+    fn hull<'a>(&mut self, hulls: &'a mut Vec<Polygon>) -> &'a Polygon {
+        let place = *self.hull.get_or_insert_with(|| {
+            add(hulls, self.step.hull().into());
+            hulls.len() as u32 - 1
+        });
+        &hulls[place as usize]
     }
 
     fn middle(&mut self) -> Vector {
@@ -177,12 +166,13 @@ impl Halves {
     /// Forgets all steps.
     pub fn clear(&mut self) {
         self.parts.clear();
+        self.hulls.clear();
         self.numbered.clear();
     }
 
     /// Adds a step.
     pub fn add(&mut self, step: Step) -> Part {
-        self.parts.push(Swept::new(step));
+        add(&mut self.parts, Swept::new(step));
         Part(self.parts.len() as u32 - 1)
     }
 
@@ -199,19 +189,13 @@ impl Halves {
         added
     }
 
-    /// The part of a step at which its rectangle first touches a fixed outline; none if it does not.
-    pub fn enter(&mut self, step: Step, fixed: &Outline) -> Option<f64> {
-        let part = self.add(step);
-        self.meet(part, &(*fixed).into(), Touch::First)
-    }
-
     /// The box around the area that a step covers.
     pub fn bounds(&self, part: Part) -> &Bounds {
         &self.parts[part.0 as usize].bounds
     }
 
     /// The part of a step, 0 to 1, at which its rectangle touches a convex area; none if it does not.
-    pub fn meet(&mut self, of: Part, fixed: &Area, which: Touch) -> Option<f64> {
+    pub fn meet(&mut self, of: Part, fixed: &Polygon, which: Touch) -> Option<f64> {
         self.search(of.0, fixed, which, which.none())
     }
 
@@ -252,7 +236,7 @@ impl Halves {
             return known;
         }
         let (whole, area) = (self.parts[of as usize].step, &mut self.parts[other as usize]);
-        let (fits, stray, hull) = (area.excess() <= TOLERANCE, area.stray(), *area.hull());
+        let (fits, stray, hull) = (area.excess() <= TOLERANCE, area.stray(), *area.hull(&mut self.hulls));
         if !fits && known != which.none() && self.is_clear(of, &hull, stray, which, known) {
             return known;
         }
@@ -270,7 +254,7 @@ impl Halves {
     }
 
     /// Where a part touches a convex area, if that is better than what is known.
-    fn search(&mut self, of: u32, fixed: &Area, which: Touch, known: f64) -> Option<f64> {
+    fn search(&mut self, of: u32, fixed: &Polygon, which: Touch, known: f64) -> Option<f64> {
         if which.is_best(known) {
             return None;
         }
@@ -282,7 +266,7 @@ impl Halves {
             }
             return part.slide_to(&fixed.outline).map(|contact| which.of(contact));
         }
-        if !part.bounds.meet(&fixed.bounds) || !part.hull().outline.overlaps(&fixed.outline) {
+        if !part.bounds.meet(&fixed.bounds) || !part.hull(&mut self.hulls).outline.overlaps(&fixed.outline) {
             return None;
         }
         let first = self.halve(of);
@@ -294,19 +278,21 @@ impl Halves {
 
     /// Whether all that is better than what is known stays so clear of a hull that it touches nothing which strays from
     /// that by so much.
-    fn is_clear(&mut self, of: u32, hull: &Area, stray: Metre, which: Touch, known: f64) -> bool {
+    fn is_clear(&mut self, of: u32, hull: &Polygon, stray: Metre, which: Touch, known: f64) -> bool {
         if which.is_best(known) {
             return true;
         }
         let part = &mut self.parts[of as usize];
         let room = stray + part.stray() + TOLERANCE;
-        if !part.bounds.grown(room).meet(&hull.bounds) || part.hull().outline.room_to(&hull.outline, room) > room {
+        if !part.bounds.grown(room).meet(&hull.bounds)
+            || part.hull(&mut self.hulls).outline.room_to(&hull.outline, room) > room
+        {
             return true;
         }
         if part.bend() <= TOLERANCE {
-            let mut better = part.slide_before(which, known);
+            let better = part.slide_before(which, known);
             return !better.bounds.grown(room).meet(&hull.bounds)
-                || better.hull().outline.room_to(&hull.outline, room) > room;
+                || better.step.hull().room_to(&hull.outline, room) > room;
         }
         let first = self.halve(of);
         // The half that ends at what is known is the likelier one to be near.
@@ -324,6 +310,7 @@ impl Halves {
         }
         let halves = whole.halve();
         let first = self.parts.len() as u32;
+        make_room(&mut self.parts, halves.len());
         self.parts.extend(halves);
         self.parts[part as usize].halves = Some(first);
         first

@@ -21,8 +21,13 @@ pub struct Polygon {
 
 impl Polygon {
     fn new(corners: &[Point]) -> Option<Self> {
-        let outline = Outline::try_from(corners).ok()?;
-        Some(Self { outline, bounds: outline.bounds() })
+        Outline::try_from(corners).ok().map(Self::from)
+    }
+}
+
+impl From<Outline> for Polygon {
+    fn from(outline: Outline) -> Self {
+        Self { outline, bounds: outline.bounds() }
     }
 }
 

@@ -145,7 +145,7 @@ impl Step {
 mod tests {
     use proptest::prelude::*;
 
-    use super::super::halves::Halves;
+    use super::super::halves::{Halves, Touch};
     use super::*;
 
     fn rectangle(x: f64, y: f64, heading: f64) -> Outline {
@@ -210,7 +210,9 @@ mod tests {
             width: 2.0,
         };
         let fixed = Outline::rectangle(&Rectangle::new(Point::new(-3.0, -2.5), 0.0, 1.0, 1.0));
-        let found = Halves::default().enter(step, &fixed).unwrap();
+        let mut halves = Halves::default();
+        let part = halves.add(step);
+        let found = halves.meet(part, &fixed.into(), Touch::First).unwrap();
         let touching =
             |part| translation(&Outline::rectangle(&step.rectangle(part)), &Vector::zeros(), &fixed).is_some();
         let sampled = (0..=10_000).map(|i| f64::from(i) / 10_000.0).find(|&part| touching(part)).unwrap();

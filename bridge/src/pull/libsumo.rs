@@ -8,10 +8,11 @@ use std::ops::RangeFrom;
 use std::sync::Arc;
 
 use closecall::encounter::Placement;
-use closecall::frame::{Roster, UserIndex, make_room};
+use closecall::frame::{Roster, UserIndex};
 use closecall::net::EdgeIndex;
 use closecall::options::Options;
 use closecall::run::Run;
+use closecall::table::make_room;
 use closecall::units::Second;
 use hashbrown::HashTable;
 use pyo3::prelude::*;
