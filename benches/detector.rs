@@ -17,33 +17,48 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use closecall::detector::Detector;
-use closecall::frame::{Frame, Roster, State};
+use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::Options;
+use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
 use closecall::scene::Exclusion;
 use rivals::{AllPairs, AllTested, Boxes, Tree};
 
-/// With more road users than this parry2d and all pairs are not asked; with as many, all pairs only once.
+/// With more road users than this parry2d and all pairs are not asked.
 const LARGE: usize = 100_000;
 
+/// So many turns each way to look at a step has; the least counts. What else the machine does comes and goes.
+const TURNS: usize = 3;
+
 /// The times of one way to look at a step, in s.
-#[derive(Default)]
-struct Times(Vec<f64>);
+struct Times {
+    name: String,
+    turn: Vec<f64>,
+    /// Least median of a turn.
+    least: f64,
+}
 
 impl Times {
+    fn of(name: impl Into<String>) -> Self {
+        Self { name: name.into(), turn: Vec::new(), least: f64::INFINITY }
+    }
+
     fn add<T>(&mut self, action: impl FnOnce() -> T) -> T {
         let started = Instant::now();
         let result = black_box(action());
-        self.0.push(started.elapsed().as_secs_f64());
+        self.turn.push(started.elapsed().as_secs_f64());
         result
     }
 
-    /// Prints the median per road user in ns, if there is one.
-    fn print(mut self, scene: &str, method: &str, count: usize) {
-        self.0.sort_by(f64::total_cmp);
-        if let Some(median) = self.0.get(self.0.len() / 2) {
-            println!("step,{scene},{method},{count},{:.1},ns per road user", median * 1e9 / count as f64);
-        }
+    fn end_turn(&mut self) {
+        self.turn.sort_by(f64::total_cmp);
+        self.least = self.least.min(self.turn[self.turn.len() / 2]);
+        self.turn.clear();
+    }
+
+    /// Prints the time per road user in ns.
+    fn print(&self, scene: &str, count: usize) {
+        println!("step,{scene},{},{count},{:.1},ns per road user", self.name, self.least * 1e9 / count as f64);
     }
 }
 
@@ -64,81 +79,134 @@ fn main() {
 /// To and fro: nobody yields here, and however many steps there are, they shall not drive into each other.
 const TIMES: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
 
-/// One after the other looks at all steps: in a process there is only one, with its data in the cache.
-fn measure(scene: &str, start: Vec<State>) {
-    let (count, options) = (start.len(), Options::default());
-    let mut roster = Roster::default();
-    let profile = roster.profile(scenes::car()).unwrap();
-    let users = (0..count).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
-    let (car, mut frame, mut cars) = (roster.profile_at(profile), Frame::default(), start.clone());
-    let advance = |frame: &mut Frame, cars: &mut [State], time: f64| {
-        frame.begin(frame.time + 0.1);
-        for ((car, start), user) in cars.iter_mut().zip(&start).zip(&users) {
+/// The road users of a scene, who go to and fro.
+struct Scene {
+    roster: Roster,
+    start: Vec<State>,
+    now: Vec<State>,
+    users: Vec<UserIndex>,
+    frame: Frame,
+}
+
+impl Scene {
+    fn new(start: Vec<State>) -> Self {
+        let mut roster = Roster::default();
+        let profile = roster.profile(scenes::car()).unwrap();
+        let users = (0..start.len()).map(|number| roster.enter(&number.to_string(), profile)).collect();
+        Self { roster, now: start.clone(), start, users, frame: Frame::default() }
+    }
+
+    fn car(&self) -> &Profile {
+        self.roster.profile_of(self.users[0])
+    }
+
+    fn advance(&mut self, time: f64) {
+        self.frame.begin(self.frame.time + 0.1);
+        for ((car, start), user) in self.now.iter_mut().zip(&self.start).zip(&self.users) {
             car.x = start.x + start.speed * time * start.heading.cos();
             car.y = start.y + start.speed * time * start.heading.sin();
-            frame.push(*user, *car);
+            self.frame.push(*user, *car);
         }
-    };
-    let mut detector = Detector::new(&options, None);
-    let [mut first, mut second, mut both] = [(); 3].map(|()| Times::default());
-    let mut two = Detector::new(&options, None);
-    two.set_threads(2);
-    let mut others = vec![("two threads".to_owned(), two, Times::default())];
+    }
+}
+
+/// A way to look at a step: the detector or a rival.
+trait Look {
+    /// Looks at the step.
+    fn look(&mut self, scene: &Scene);
+
+    /// Its times: of the whole, then of its parts.
+    fn times(&mut self) -> &mut [Times];
+}
+
+/// The detector: both phases, and each of them.
+struct Phases(Detector, [Times; 3]);
+
+impl Phases {
+    fn new(name: &str, options: &Options, threads: usize) -> Self {
+        let mut detector = Detector::new(options, None);
+        detector.set_threads(threads);
+        Self(detector, [name, "phase 1", "phase 2"].map(Times::of))
+    }
+}
+
+impl Look for Phases {
+    fn look(&mut self, Scene { frame, roster, .. }: &Scene) {
+        let Self(detector, [both, first, second]) = self;
+        first.add(|| {
+            detector.follow(frame, roster);
+            detector.approach(frame, roster);
+        });
+        second.add(|| detector.detect(roster).len());
+        both.turn.extend(first.turn.last().zip(second.turn.last()).map(|(first, second)| first + second));
+    }
+
+    fn times(&mut self) -> &mut [Times] {
+        &mut self.1
+    }
+}
+
+/// A rival, and how many contacts it found.
+struct Rival<Contacts>(Contacts, Times, usize);
+
+impl<Contacts: FnMut(&[State], &Profile) -> usize> Rival<Contacts> {
+    fn new(name: &str, contacts: Contacts) -> Self {
+        Self(contacts, Times::of(name), 0)
+    }
+}
+
+impl<Contacts: FnMut(&[State], &Profile) -> usize> Look for Rival<Contacts> {
+    fn look(&mut self, scene: &Scene) {
+        let Self(contacts, times, found) = self;
+        *found += times.add(|| contacts(&scene.now, scene.car()));
+    }
+
+    fn times(&mut self) -> &mut [Times] {
+        std::slice::from_mut(&mut self.1)
+    }
+}
+
+/// In each turn one after the other looks at all steps: then its data are in the cache, not another's.
+fn measure(name: &str, start: Vec<State>) {
+    let (count, options) = (start.len(), Options::default());
+    let mut scene = Scene::new(start);
+    let mut one = Phases::new("closecall", &options, 1);
+    let mut others = vec![Phases::new("two threads", &options, 2)];
     if count == LARGE {
         others.extend([Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
             let options = Options { keep: vec![kept], ..Options::default() };
-            let name = format!("keep {}", kept.to_possible_value().unwrap().get_name());
-            (name, Detector::new(&options, None), Times::default())
+            Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options, 1)
         }));
     }
-    let mut trees = [("parry2d", Boxes::Circles), ("parry2d (straight)", Boxes::StraightWays)]
-        .map(|(name, boxes)| (name, Tree::new(boxes), Times::default(), 0));
-    let (mut all_pairs, mut with_all) = (AllPairs::default(), Times::default());
-    let (mut all_tested, mut with_tests) = (AllTested::default(), Times::default());
-    let steps = TIMES.repeat((500_000 / count).clamp(1, 16));
-    for &time in &steps {
-        advance(&mut frame, &mut cars, time);
-        first.add(|| {
-            detector.follow(&frame, &roster);
-            detector.approach(&frame, &roster);
-        });
-        second.add(|| detector.detect(&roster).len());
-        both.0.push(first.0[first.0.len() - 1] + second.0[second.0.len() - 1]);
-    }
-    drop(detector);
-    for (_, detector, times) in &mut others {
-        for &time in &steps {
-            advance(&mut frame, &mut cars, time);
-            times.add(|| {
-                detector.follow(&frame, &roster);
-                detector.approach(&frame, &roster);
-                detector.detect(&roster).len()
-            });
-        }
-    }
-    if count <= LARGE {
-        for (_, tree, times, found) in &mut trees {
-            for &time in &steps {
-                advance(&mut frame, &mut cars, time);
-                *found += times.add(|| tree.contacts(&cars, car, options.epsilon));
+    let (mut tree, mut told) = (Tree::new(Boxes::Circles), Tree::new(Boxes::StraightWays));
+    let mut tree = Rival::new("parry2d", |cars: &[State], car| tree.contacts(cars, car, options.epsilon));
+    let mut told = Rival::new("parry2d (straight)", |cars: &[State], car| told.contacts(cars, car, options.epsilon));
+    let (mut circles, mut tested) = (AllPairs::default(), AllTested::default());
+    let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
+    let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
+    let steps = TIMES.repeat((500_000 / TURNS / count).clamp(1, 16));
+    for _ in 0..TURNS {
+        let mut turn = |look: &mut dyn Look, steps: &[f64]| {
+            for time in steps {
+                scene.advance(*time);
+                look.look(&scene);
             }
+            look.times().iter_mut().for_each(Times::end_turn);
+        };
+        turn(&mut one, &steps);
+        others.iter_mut().for_each(|other| turn(other, &steps));
+        if count <= LARGE {
+            turn(&mut tree, &steps);
+            turn(&mut told, &steps);
+            turn(&mut circles, &steps[..1]);
+            turn(&mut tested, &steps[..1]);
         }
-        assert_eq!(trees[0].3, trees[1].3);
-        for _ in 0..if count < LARGE { 5 } else { 1 } {
-            with_all.add(|| all_pairs.contacts(&cars, car, options.epsilon));
-            with_tests.add(|| all_tested.contacts(&cars, car, options.epsilon));
-        }
     }
-    first.print(scene, "phase 1", count);
-    second.print(scene, "phase 2", count);
-    both.print(scene, "closecall", count);
-    for (name, _, times) in others {
-        times.print(scene, &name, count);
+    assert_eq!(tree.2, told.2);
+    tested.1.least *= AllTested::share(count);
+    one.1.iter().for_each(|times| times.print(name, count));
+    others.iter().for_each(|Phases(_, times)| times[0].print(name, count));
+    if count <= LARGE {
+        [tree.1, told.1, circles.1, tested.1].iter().for_each(|times| times.print(name, count));
     }
-    for (name, _, times, _) in trees {
-        times.print(scene, name, count);
-    }
-    with_all.print(scene, "all pairs", count);
-    with_tests.0.iter_mut().for_each(|time| *time *= AllTested::share(count));
-    with_tests.print(scene, "all tested", count);
 }

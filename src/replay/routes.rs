@@ -21,7 +21,7 @@ use crate::{Error, Result};
 /// further on.
 const ABSENCE: Second = 600.0;
 /// Routes up to this size are not written to the disk, in bytes.
-const IN_MEMORY: usize = 1 << 16;
+const IN_MEMORY: usize = 1 << 14;
 /// An entry in the list of places, in bytes: where the route is and how many edges it has.
 const ENTRY: u64 = 16;
 
