@@ -345,8 +345,13 @@ fn a_vehicle_and_a_person_of_the_same_id_are_two() {
     assert_ne!(step.rows()[0].user, step.rows()[1].user);
 }
 
-/// A net of roads e0, e1, … and a recording; the routes of its vehicles, in the order of their coming.
-fn routes(vehicles: usize, rows: impl Iterator<Item = (f64, String, usize)>) -> Vec<Vec<u32>> {
+/// A net of roads e0, e1, … and a recording; the routes of so many vehicles, in the order of their coming, and which of
+/// them each of so many is that enter the scene.
+fn routes(
+    vehicles: u64,
+    entering: usize,
+    rows: impl Iterator<Item = (f64, String, usize)>,
+) -> (Vec<Vec<u32>>, Vec<u64>) {
     let edge = |n| format!(r#"<edge id="e{n}"><lane id="e{n}_0" length="9" shape="0,{n} 9,{n}"/></edge>"#);
     let net = format!("<net>{}</net>", (0..200).map(edge).collect::<String>());
     let net = Net::parse(Path::new("net"), net).unwrap();
@@ -356,7 +361,8 @@ fn routes(vehicles: usize, rows: impl Iterator<Item = (f64, String, usize)>) -> 
     std::fs::write(file.path(), text).unwrap();
     let mut routes = Routes::read(file.path(), &net).unwrap();
     let route = |number| routes.of(number).unwrap().iter().map(|EdgeIndex(edge)| *edge).collect();
-    (0..vehicles as u64).map(route).collect()
+    let routes_of_all = (0..vehicles).map(route).collect();
+    (routes_of_all, (0..entering).map(|_| routes.enter().unwrap()).collect())
 }
 
 #[test]
@@ -371,18 +377,22 @@ fn a_vehicle_that_comes_back_drives_on_and_after_long_it_is_another() {
         let row = move |id: &str| (f64::from(time), id.to_owned(), if time < 500 { 1 } else { 2 });
         ["a", "b", "c"].into_iter().filter(|id| there(id)).map(row).collect::<Vec<_>>()
     });
-    assert_eq!(routes(4, steps), [vec![1, 2], vec![1, 2], vec![1], vec![2]]);
+    let (routes, entering) = routes(4, 5, steps);
+    assert_eq!(routes, [vec![1, 2], vec![1, 2], vec![1], vec![2]]);
+    assert_eq!(entering, [0, 1, 2, 1, 3], "a, b, c, b again, another c");
 }
 
 #[test]
 fn routes_that_do_not_fit_into_memory_come_back_from_the_file() {
-    const VEHICLES: usize = 2000;
+    const VEHICLES: u64 = 2000;
     // They leave in another order than they come: the route of vehicle n has 150 − n % 50 edges, from edge n % 40 on.
     let steps = (0..150).flat_map(|step| {
-        let row = move |n: usize| (step as f64, format!("v{n}"), n % 40 + step);
+        let row = move |n: u64| (step as f64, format!("v{n}"), (n % 40 + step) as usize);
         (0..VEHICLES).filter(move |n| step < 150 - n % 50).map(row)
     });
-    for (n, route) in routes(VEHICLES, steps).into_iter().enumerate() {
+    let (routes, entering) = routes(VEHICLES, VEHICLES as usize, steps);
+    assert!(entering.into_iter().eq(0..VEHICLES));
+    for (n, route) in (0..).zip(routes) {
         let first = n as u32 % 40;
         assert_eq!(route, (first..first + 150 - n as u32 % 50).collect::<Vec<_>>(), "v{n}");
     }

@@ -25,7 +25,7 @@ use crate::units::Second;
 use crate::{Error, Result};
 use lanes::Lanes;
 use recording::{Recording, Row, Step};
-use routes::{Routes, Vehicles};
+use routes::Routes;
 use types::Types;
 
 /// A recording that is being replayed into a run.
@@ -38,7 +38,6 @@ pub struct Replay {
     lanes: Lanes,
     /// None where paths are not laid along lanes.
     routes: Option<Routes>,
-    vehicles: Vehicles<()>,
     options: Options,
     step_length: Second,
     steps: u64,
@@ -53,6 +52,8 @@ pub struct Replay {
 /// Somebody in the scene.
 struct Live {
     user: UserIndex,
+    /// Which of the recording's vehicles it is; none of a person, and where paths are not laid along lanes.
+    number: Option<u64>,
     /// Read when it is first needed.
     route: Option<Arc<[EdgeIndex]>>,
     route_position: usize,
@@ -88,7 +89,6 @@ impl Replay {
             types,
             lanes: Lanes::default(),
             routes: if by_lanes { Some(Routes::read(path, net)?) } else { None },
-            vehicles: Vehicles::default(),
             options: options.clone(),
             step_length,
             steps: 0,
@@ -144,10 +144,8 @@ impl Replay {
             }
         }
         for user in self.step.gone() {
-            self.vehicles.leave(*user, self.recording.id(*user), self.step.time, ());
             self.gone.extend(self.live.get_mut(*user as usize).and_then(Option::take).map(|live| live.user));
         }
-        self.vehicles.forget(self.step.time, |_, ()| Ok::<_, Error>(()))?;
         self.gone.sort_unstable();
         self.gone.drain(..).for_each(|user| run.leave(user));
         Ok(())
@@ -169,14 +167,15 @@ impl Replay {
             }
         };
         let user = run.enter(self.recording.id(row.user), profile);
-        if !row.person {
-            self.vehicles.enter(row, &self.recording);
-        }
+        let number = match &mut self.routes {
+            Some(routes) if !row.person => Some(routes.enter()?),
+            _ => None,
+        };
         let index = row.user as usize;
         if self.live.len() <= index {
             self.live.resize_with(index + 1, || None);
         }
-        self.live[index] = Some(Live { user, route: None, route_position: 0 });
+        self.live[index] = Some(Live { user, number, route: None, route_position: 0 });
         Ok(user)
     }
 
@@ -185,7 +184,7 @@ impl Replay {
         let (Some(recorded), Some(net)) = (self.step.rows().get(place as usize), run.net()) else { return Ok(()) };
         let Some(Some(live)) = self.live.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
-        let route = match (&live.route, &mut self.routes, self.vehicles.of(recorded.user)) {
+        let route = match (&live.route, &mut self.routes, live.number) {
             (Some(route), ..) => route.clone(),
             (None, Some(routes), Some(number)) => routes.of(number)?,
             _ => Arc::new([]),

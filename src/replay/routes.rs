@@ -1,10 +1,10 @@
 //! Routes for a replay: an fcd-output does not have them, but where everybody drove.
 //!
-//! They are read before the replay begins, and wait in a temporary file until their vehicles enter the scene: in memory
+//! They are read before the replay begins, and wait in temporary files until their vehicles enter the scene: in memory
 //! are only those of the vehicles that are there.
 
 use std::collections::VecDeque;
-use std::io::{BufWriter, Read, Seek, SeekFrom, Write};
+use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -31,6 +31,8 @@ pub struct Routes {
     edges: SpooledTempFile,
     /// For every vehicle, in the order of their coming, where its route begins there, and its number of edges.
     places: SpooledTempFile,
+    /// Which vehicle that is, for everyone who enters the scene, one after the other: who comes back does so again.
+    entering: BufReader<SpooledTempFile>,
 }
 
 impl Routes {
@@ -54,11 +56,12 @@ impl Routes {
             for row in step.rows().iter().filter(|row| !row.person) {
                 let user = row.user as usize;
                 if vehicles.of(row.user).is_none() {
-                    let route = vehicles.enter(row, &recording);
+                    let (number, route) = vehicles.enter(row, &recording);
+                    writer.enter(number).map_err(unwritable)?;
                     if driven.len() <= user {
                         driven.resize_with(user + 1, Vec::new);
                     }
-                    driven[user] = route.unwrap_or_default();
+                    driven[user] = route;
                 }
                 let Some(edge) = lanes.edge(row.lane, &recording, net) else { continue };
                 if driven[user].last() != Some(&edge) {
@@ -76,6 +79,16 @@ impl Routes {
         }
         vehicles.forget(Second::INFINITY, |number, route| writer.write(number, &route)).map_err(unwritable)?;
         writer.finish().map_err(unwritable)
+    }
+
+    /// The number of the vehicle that enters the scene next; asked once for each, in the recording's order.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the temporary file cannot be read.
+    pub fn enter(&mut self) -> Result<u64> {
+        let mut number = [0; 8];
+        self.entering.read_exact(&mut number).map_err(unwritable)?;
+        Ok(u64::from_le_bytes(number))
     }
 
     /// The route of a vehicle by its number; empty where it was never on a normal edge.
@@ -113,17 +126,22 @@ fn unwritable(error: std::io::Error) -> Error {
 struct Writer {
     edges: BufWriter<SpooledTempFile>,
     places: SpooledTempFile,
+    entering: BufWriter<SpooledTempFile>,
     length: u64,
 }
 
 impl Default for Writer {
     fn default() -> Self {
-        let edges = BufWriter::new(spooled_tempfile(IN_MEMORY));
-        Self { edges, places: spooled_tempfile(IN_MEMORY), length: 0 }
+        let [edges, entering] = [(); 2].map(|()| BufWriter::new(spooled_tempfile(IN_MEMORY)));
+        Self { edges, places: spooled_tempfile(IN_MEMORY), entering, length: 0 }
     }
 }
 
 impl Writer {
+    fn enter(&mut self, number: u64) -> std::io::Result<()> {
+        self.entering.write_all(&number.to_le_bytes())
+    }
+
     fn write(&mut self, number: u64, route: &[EdgeIndex]) -> std::io::Result<()> {
         let entry = u128::from(self.length) | (route.len() as u128) << 64;
         self.places.seek(SeekFrom::Start(number * ENTRY))?;
@@ -136,79 +154,76 @@ impl Writer {
     }
 
     fn finish(self) -> std::io::Result<Routes> {
-        let edges = self.edges.into_inner().map_err(std::io::IntoInnerError::into_error)?;
-        Ok(Routes { edges, places: self.places })
+        let written = |file: BufWriter<SpooledTempFile>| file.into_inner().map_err(std::io::IntoInnerError::into_error);
+        let (edges, mut entering) = (written(self.edges)?, written(self.entering)?);
+        entering.rewind()?;
+        Ok(Routes { edges, places: self.places, entering: BufReader::new(entering) })
     }
 }
 
-/// The vehicles of a recording, numbered in the order of their coming; the same on every reading. With each that was
-/// in the scene lately waits what is known of it.
-#[derive(Debug)]
-pub(super) struct Vehicles<T> {
+/// The vehicles of a recording, numbered in the order of their coming.
+#[derive(Debug, Default)]
+struct Vehicles {
     count: u64,
     /// The vehicle's number by the recording's number of the user.
     present: Vec<Option<u64>>,
-    absent: FxHashMap<Arc<str>, Absent<T>>,
+    /// Those that were in the scene lately.
+    absent: FxHashMap<Arc<str>, Absent>,
     by_time: VecDeque<(Second, Arc<str>)>,
 }
 
 #[derive(Debug)]
-struct Absent<T> {
+struct Absent {
     number: u64,
     since: Second,
-    known: T,
+    route: Vec<EdgeIndex>,
 }
 
-impl<T> Default for Vehicles<T> {
-    fn default() -> Self {
-        Self { count: 0, present: Vec::new(), absent: FxHashMap::default(), by_time: VecDeque::new() }
-    }
-}
-
-impl<T> Vehicles<T> {
+impl Vehicles {
     /// The number of a vehicle that is in the scene.
     #[inline]
-    pub fn of(&self, user: u32) -> Option<u64> {
+    fn of(&self, user: u32) -> Option<u64> {
         self.present.get(user as usize).copied().flatten()
     }
 
-    /// Numbers a vehicle that has come; returns what was known of it if it comes back.
-    pub fn enter(&mut self, row: &Row, recording: &Recording) -> Option<T> {
-        let before = self.absent.remove(recording.id(row.user));
-        let (number, known) = match before {
-            Some(before) => (before.number, Some(before.known)),
-            None => (self.count, None),
+    /// Numbers a vehicle that has come; its route so far has edges if it comes back.
+    fn enter(&mut self, row: &Row, recording: &Recording) -> (u64, Vec<EdgeIndex>) {
+        let (number, route) = match self.absent.remove(recording.id(row.user)) {
+            Some(before) => (before.number, before.route),
+            None => {
+                self.count += 1;
+                (self.count - 1, Vec::new())
+            }
         };
-        self.count += u64::from(known.is_none());
         let user = row.user as usize;
         if self.present.len() <= user {
             self.present.resize(user + 1, None);
         }
         self.present[user] = Some(number);
-        known
+        (number, route)
     }
 
-    /// Lets a vehicle leave; what is known of it waits for its return.
-    pub fn leave(&mut self, user: u32, id: &str, time: Second, known: T) {
+    /// Lets a vehicle leave; its route waits for its return.
+    fn leave(&mut self, user: u32, id: &str, time: Second, route: Vec<EdgeIndex>) {
         let Some(number) = self.present.get_mut(user as usize).and_then(Option::take) else { return };
         let id: Arc<str> = id.into();
-        self.absent.insert(id.clone(), Absent { number, since: time, known });
+        self.absent.insert(id.clone(), Absent { number, since: time, route });
         self.by_time.push_back((time, id));
     }
 
     /// Forgets those who have been away for too long.
-    pub fn forget<E>(
+    fn forget(
         &mut self,
         time: Second,
-        mut forgotten: impl FnMut(u64, T) -> std::result::Result<(), E>,
-    ) -> std::result::Result<(), E> {
+        mut forgotten: impl FnMut(u64, Vec<EdgeIndex>) -> std::io::Result<()>,
+    ) -> std::io::Result<()> {
         while self.by_time.front().is_some_and(|(since, _)| *since < time - ABSENCE) {
             let Some((since, id)) = self.by_time.pop_front() else { break };
             // Who came back and left again waits from then on.
             if self.absent.get(&id).is_some_and(|absent| absent.since == since)
                 && let Some(absent) = self.absent.remove(&id)
             {
-                forgotten(absent.number, absent.known)?;
+                forgotten(absent.number, absent.route)?;
             }
         }
         Ok(())
