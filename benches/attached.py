@@ -2,13 +2,15 @@
 
     python benches/attached.py [--runs N]
 
-Whole processes, start-up included, in turns, so that what slows the machine down slows all of them; each figure is the
-smallest of its runs. device.ssm, which takes minutes, has a turn in every third.
+Whole processes, start-up included, in turns. Each is compared with the plain run of its own turn, so that what slows
+the machine down for minutes slows both; the figure is the median of the turns. device.ssm, which takes minutes, has a
+turn in every third.
 """
 
 from __future__ import annotations
 
 import argparse
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -37,18 +39,20 @@ def main() -> None:
         folder = Path(name)
         for scene, config in scenarios(folder).items():
             commands = {
-                "plain": plain(config),
                 "closecall": attached(config, folder / "out"),
                 "device.ssm": ssm(config, folder / "ssm.xml"),
             }
-            least = dict.fromkeys(commands, float("inf"))
+            alone: list[float] = []
+            ratios: dict[str, list[float]] = {method: [] for method in commands}
             for run in range(runs):
+                alone.append(seconds(plain(config)))
                 for method, command in commands.items():
-                    if method == "device.ssm" and run % 3 > 0:
-                        continue
-                    least[method] = min(least[method], seconds(command))
-            for method, wall in least.items():
-                print(f"run,{scene},{method},{end(config)},{wall:.3f},s", flush=True)
+                    if method == "closecall" or run % 3 == 0:
+                        ratios[method].append(seconds(command) / alone[-1])
+            print(f"run,{scene},plain,{end(config)},{statistics.median(alone):.3f},s")
+            for method, turns in ratios.items():
+                ratio = statistics.median(turns)
+                print(f"over plain,{scene},{method},{end(config)},{ratio:.3f},times", flush=True)
 
 
 if __name__ == "__main__":
