@@ -17,7 +17,7 @@ impl Names {
     /// The number of a text, which most probably is `guess`.
     #[inline]
     fn number(&mut self, text: &[u8], guess: u32) -> Result<u32, String> {
-        // Comparing two empty texts may touch memory that is not there, which takes processors with masked loads 30 ns.
+        // Comparing two empty texts, by a masked load from where nothing is, took 60 to 80 ns on an AMD EPYC.
         let is_known = |known: &String| known.len() == text.len() && (text.is_empty() || known.as_bytes() == text);
         if self.texts.get(guess as usize).is_some_and(is_known) {
             return Ok(guess);
