@@ -25,8 +25,8 @@ const KEPT: f64 = 2.0;
 /// No fewer are kept.
 const KEPT_AT_LEAST: usize = 32;
 
-/// The ways of a step that were asked for last. Memory for those of everybody would be most of what the detector has;
-/// whose way is asked for after it was forgotten has it laid again, and it is the same.
+/// The ways of a step that were asked for last. Those of everybody took a quarter of the memory that a run holds per road
+/// user; whose way is asked for after it was forgotten has it laid again, and it is the same.
 #[derive(Default)]
 pub(super) struct Ways {
     /// By slot, where its way is, if it is kept: among the newer or the older ones.
