@@ -23,7 +23,6 @@ pub mod measures;
 pub mod net;
 pub mod options;
 pub mod outputs;
-mod parts;
 pub mod path;
 pub mod plot;
 pub mod precollision;
@@ -45,6 +44,7 @@ pub mod study;
 pub mod summary;
 pub mod sweep;
 pub mod table;
+pub mod team;
 pub mod units;
 
 pub use error::{Error, Result};

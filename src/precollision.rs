@@ -13,8 +13,8 @@
 use std::ops::Range;
 
 use crate::geometry::{Bounds, Point, Vector};
-use crate::parts::{each, share};
 use crate::table::fill;
+use crate::team::Team;
 use crate::units::Metre;
 
 /// What a road user may cover until it stands, whichever way it turns.
@@ -172,29 +172,29 @@ impl Search {
             *known = item;
             areas[item as usize]
         };
-        self.lay(&mut items, 1, |_| (), area);
+        self.lay(&mut items, &Team::default(), |_| (), area);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (items[a as usize], items[b as usize]);
             pairs.push((a.min(b), a.max(b)));
         });
     }
 
-    /// Gives each of so many items, numbered from 0, its place, on so many threads, at least one. `see` fetches what is
+    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `see` fetches what is
     /// said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots are in the order
     /// in which the last step ended: those that met are near each other.
     pub fn lay<Seen: Copy + Default, Known: Send>(
         &mut self,
         slots: &mut [Known],
-        threads: usize,
+        team: &Team,
         see: impl Fn(u32) -> Seen + Sync,
         area: impl Fn(u32, &Seen, &mut Known) -> Area + Sync,
     ) {
         self.hold(slots.len());
         self.parts.clear();
-        self.parts.resize(threads.max(1), Part::EMPTY);
-        let (per_metre, share) = (1.0 / self.strip_height, share(slots.len(), threads));
+        self.parts.resize(team.threads(), Part::EMPTY);
+        let (per_metre, share) = (1.0 / self.strip_height, team.share(slots.len()));
         let parts = self.places.chunks_mut(share).zip(slots.chunks_mut(share)).zip((0..).step_by(share));
-        each(&mut self.parts, parts, |part, ((places, slots), first)| {
+        team.each(&mut self.parts, parts, |part, ((places, slots), first)| {
             let mut all = Part::EMPTY;
             let mut block = [Seen::default(); BLOCK];
             let blocks = places.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)).zip((first..).step_by(BLOCK));
@@ -209,7 +209,7 @@ impl Search {
             }
             *part = all;
         });
-        self.sort(threads);
+        self.sort(team);
     }
 
     /// Has a place for each of so many items, in the order in which the last step ended.
@@ -224,7 +224,7 @@ impl Search {
     }
 
     /// Sorts the areas of now.
-    fn sort(&mut self, threads: usize) {
+    fn sort(&mut self, team: &Team) {
         let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
         self.largest = all.largest;
         let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
@@ -234,7 +234,7 @@ impl Search {
                 self.places.append(&mut self.large);
             }
         }
-        self.sort_in_strips(threads);
+        self.sort_in_strips(team);
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
     }
@@ -260,10 +260,10 @@ impl Search {
 
     /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
     /// ones.
-    fn sort_in_strips(&mut self, threads: usize) {
+    fn sort_in_strips(&mut self, team: &Team) {
         let least = self.largest.y.max(LOWEST_STRIP);
         if (least..=SPARE_HEIGHT * least).contains(&self.strip_height) {
-            if self.is_nearly_sorted(threads) {
+            if self.is_nearly_sorted(team) {
                 return;
             }
         } else {
@@ -276,9 +276,9 @@ impl Search {
     }
 
     /// Sorts by insertion, each thread its part, where that takes few moves; whether it did.
-    fn is_nearly_sorted(&mut self, threads: usize) -> bool {
-        let share = share(self.places.len(), threads);
-        each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
+    fn is_nearly_sorted(&mut self, team: &Team) -> bool {
+        let share = team.share(self.places.len());
+        team.each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
             let mut moves = MOVES * places.len();
             part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
         });
@@ -369,7 +369,7 @@ mod tests {
             *known = item;
             areas[item as usize]
         };
-        search.lay(&mut items, parts, |_| (), area);
+        search.lay(&mut items, &Team::new(parts), |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {

@@ -16,6 +16,7 @@ use closecall::record::{RunRecord, Versions};
 use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
+use closecall::team::Team;
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -29,6 +30,8 @@ use crate::sweep;
 const SHOWN: Duration = Duration::from_millis(50);
 /// With fewer road users than this both phases are done about as soon as a thread is awake.
 const WORTH_A_THREAD: usize = 100;
+/// SUMO's thread, and one that finishes the last step beside it; all others help that one.
+const TOGETHER: usize = 2;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
@@ -118,6 +121,7 @@ struct Session<'a, 'py> {
     spent: Spent,
     /// Whether the phases of the last step are still to be done.
     is_unfinished: bool,
+    team: Team,
 }
 
 /// The simulation's functions, looked up once: whatever name Python is asked for anew in every step stays in its cache of
@@ -231,6 +235,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         step_length,
         spent: Spent::default(),
         is_unfinished: false,
+        team: Team::new(TOGETHER.min(request.threads.into())),
     };
     let ended = session.steps();
     let ended = session.finish_step().and(ended);
@@ -311,19 +316,16 @@ impl Session<'_, '_> {
 
     /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
     fn simulate(&mut self) -> std::result::Result<(), Stop> {
-        let simulation = &self.simulation;
-        let (run, spent) = (&mut self.run, &mut self.spent);
+        let Self { simulation, run, spent, team, .. } = self;
         let unfinished = std::mem::take(&mut self.is_unfinished);
         let mut since = Instant::now();
         let mut finished = None;
-        let stepped = rayon::in_place_scope(|scope| {
-            if unfinished {
-                scope.spawn(|_| finished = Some(finish(run)));
-            }
+        let mut step = || {
             let stepped = simulation.step.call0().map(|_| ());
             spent.add(SUMO, &mut since);
             stepped
-        });
+        };
+        let stepped = if unfinished { team.beside(|| finished = Some(finish(run)), step) } else { step() };
         if let Some(finished) = finished {
             self.spent.add_finished(finished?);
         }

@@ -9,7 +9,6 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::options::{Mode, Options, PathModel};
-use crate::parts::{each, share};
 use crate::path::lanes::LanePath;
 use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle};
@@ -74,7 +73,7 @@ impl Detector {
         let reach = Reach::new(roster, &self.options, self.leaves_out);
         fill(&mut self.users, frame.len(), User::NOBODY);
         let see = |row: u32| frame.rows()[row as usize];
-        self.search.lay(&mut self.users, self.workers.len(), see, |row, seen, user| {
+        self.search.lay(&mut self.users, &self.team, see, |row, seen, user| {
             *user = sight.user(row, seen);
             reach.area(user)
         });
@@ -94,12 +93,12 @@ impl Detector {
     /// The pairs whose areas meet, but for those that are none. Each worker keeps those that it found.
     fn find_pairs(&mut self) {
         let (search, users, all) = (&self.search, &self.users[..], !self.leaves_out.circles_apart);
-        let share = share(users.len(), self.workers.len());
+        let share = self.team.share(users.len());
         for worker in &mut self.workers {
             worker.pairs.clear();
         }
         let parts = (0..users.len()).step_by(share).map(|start| start..(start + share).min(users.len()));
-        each(&mut self.workers, parts, |worker, part| {
+        self.team.each(&mut self.workers, parts, |worker, part| {
             let (pairs, work) = (&mut worker.pairs, &mut worker.work);
             let found = |a: u32, b: u32| {
                 let (first, second) = (&users[a as usize], &users[b as usize]);

@@ -20,12 +20,12 @@ use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
-use crate::parts::each;
 use crate::path::Pose;
 use crate::path::lanes::{LanePath, Start};
 use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
+use crate::team::Team;
 use crate::units::{Metre, MetrePerSecond};
 use look::{Reach, Sight};
 use order::Order;
@@ -95,6 +95,7 @@ pub struct Detector {
     order: Order,
     unplaced: Vec<u32>,
     workers: Vec<Worker>,
+    team: Team,
 }
 
 /// How a road user turns, as far as the last two steps tell.
@@ -219,12 +220,14 @@ impl Detector {
             order: Order::default(),
             unplaced: Vec::new(),
             workers: vec![Worker::default()],
+            team: Team::default(),
         }
     }
 
     /// Looks at the pairs of a step with so many threads, at least one; the results are the same.
     pub fn set_threads(&mut self, threads: usize) {
-        self.workers.resize_with(threads.max(1), Worker::default);
+        self.team = Team::new(threads);
+        self.workers.resize_with(self.team.threads(), Worker::default);
     }
 
     /// Says whether no road user's route changes while it is in the scene, so that a path once laid holds until the
@@ -303,7 +306,7 @@ impl Detector {
         }
         let scene = self.scene(roster);
         let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
-        each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
+        self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
                 let user = self.users[slot as usize];
@@ -315,7 +318,7 @@ impl Detector {
         }
         let scene = self.scene(roster);
         let busy = workers.iter_mut().filter(|worker| !worker.found.unmeasured.is_empty());
-        each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
+        self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
         self.order.sort(self.users.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);
