@@ -4,8 +4,8 @@
 
 use closecall::detector::Detector;
 use closecall::encounter::{Encounter, Kind};
-use closecall::frame::{Frame, Roster, State};
-use closecall::options::{BrakeSystem, Options, TypeOptions};
+use closecall::frame::{Frame, Roster, State, UserIndex};
+use closecall::options::{BrakeSystem, Options, PathModel, TypeOptions};
 use closecall::profile::{Profile, SumoType};
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
@@ -160,4 +160,43 @@ fn any_number_of_threads_finds_the_same() {
             assert_eq!(detector.work(), alone.work());
         }
     }
+}
+
+/// The encounters of these of the cars, given as (x, y, heading, speed), who have turned for a step; by their numbers.
+fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Roster) -> Vec<Encounter> {
+    let mut detector = Detector::new(&Options { path: PathModel::Arc, ..options() }, None);
+    let mut frame = Frame::default();
+    for time in [0.0, 0.1] {
+        frame.begin(time);
+        for &number in numbers {
+            let (x, y, heading, speed) = cars[number];
+            let (x, y) = (x + speed * time * heading.cos(), y + speed * time * heading.sin());
+            frame.push(UserIndex(number as u32), State { x, y, z: 0.0, heading: heading + time / 10.0, speed });
+        }
+        detector.follow(&frame, roster);
+        detector.approach(&frame, roster);
+        detector.detect(roster).len();
+    }
+    let by_number = |found: &Encounter| Encounter { ego_row: found.ego.0, foe_row: found.foe.0, ..*found };
+    detector.detect(roster).map(by_number).collect()
+}
+
+/// Of many the detector forgets ways, and lays them again.
+#[test]
+fn among_many_everybody_meets_whom_it_meets_alone() {
+    let mut roster = Roster::default();
+    let profile = roster.profile(car(&options())).unwrap();
+    let all = (0..200).collect::<Vec<_>>();
+    for number in &all {
+        roster.enter(&number.to_string(), profile);
+    }
+    // Prime numbers, as above.
+    let of = |number: usize, prime: usize| (number * prime % 8999) as f64 / 8999.0;
+    let car = |n: &usize| (of(*n, 1709) * 100.0, of(*n, 2903) * 100.0, of(*n, 3571) * 6.2, of(*n, 4273) * 14.0);
+    let cars = all.iter().map(car).collect::<Vec<_>>();
+    let together = encounters_of(&cars, &all, &roster);
+    let pairs = all.iter().flat_map(|a| (a + 1..cars.len()).map(|b| [*a, b]));
+    let alone = pairs.flat_map(|pair| encounters_of(&cars, &pair, &roster)).collect::<Vec<_>>();
+    assert!(alone.len() > 300, "{}", alone.len());
+    assert_eq!(together, alone);
 }

@@ -345,13 +345,8 @@ fn a_vehicle_and_a_person_of_the_same_id_are_two() {
     assert_ne!(step.rows()[0].user, step.rows()[1].user);
 }
 
-/// A net of roads e0, e1, … and a recording; the routes of so many vehicles, in the order of their coming, and which of
-/// them each of so many is that enter the scene.
-fn routes(
-    vehicles: u64,
-    entering: usize,
-    rows: impl Iterator<Item = (f64, String, usize)>,
-) -> (Vec<Vec<u32>>, Vec<u64>) {
+/// A recording on a net of roads e0, e1, …, and its routes.
+fn read_routes(rows: impl Iterator<Item = (f64, String, usize)>) -> (tempfile::NamedTempFile, Routes) {
     let edge = |n| format!(r#"<edge id="e{n}"><lane id="e{n}_0" length="9" shape="0,{n} 9,{n}"/></edge>"#);
     let net = format!("<net>{}</net>", (0..200).map(edge).collect::<String>());
     let net = Net::parse(Path::new("net"), net).unwrap();
@@ -359,7 +354,18 @@ fn routes(
     rows.for_each(|(time, id, edge)| writeln!(text, "{time};{id};0;0;0;1;e{edge}_0").unwrap());
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), text).unwrap();
-    let mut routes = Routes::read(file.path(), &net).unwrap();
+    let routes = Routes::read(file.path(), &net).unwrap();
+    (file, routes)
+}
+
+/// The routes of so many vehicles, in the order of their coming, and which of them each of so many is that enter the
+/// scene.
+fn routes(
+    vehicles: u64,
+    entering: usize,
+    rows: impl Iterator<Item = (f64, String, usize)>,
+) -> (Vec<Vec<u32>>, Vec<u64>) {
+    let (_, mut routes) = read_routes(rows);
     let route = |number| routes.of(number).unwrap().iter().map(|EdgeIndex(edge)| *edge).collect();
     let routes_of_all = (0..vehicles).map(route).collect();
     (routes_of_all, (0..entering).map(|_| routes.enter().unwrap()).collect())
@@ -380,6 +386,14 @@ fn a_vehicle_that_comes_back_drives_on_and_after_long_it_is_another() {
     let (routes, entering) = routes(4, 5, steps);
     assert_eq!(routes, [vec![1, 2], vec![1, 2], vec![1], vec![2]]);
     assert_eq!(entering, [0, 1, 2, 1, 3], "a, b, c, b again, another c");
+}
+
+#[test]
+fn a_recording_that_grows_while_it_is_read_is_named() {
+    let (file, mut routes) = read_routes([(0.0, "a".to_owned(), 1)].into_iter());
+    assert_eq!(routes.enter().unwrap(), 0);
+    let error = routes.enter().unwrap_err().to_string();
+    assert!(error.starts_with(&*file.path().to_string_lossy()) && error.contains("has grown"), "{error}");
 }
 
 #[test]

@@ -4,8 +4,8 @@
 //! are only those of the vehicles that are there.
 
 use std::collections::VecDeque;
-use std::io::{BufReader, BufWriter, Read, Seek, SeekFrom, Write};
-use std::path::Path;
+use std::io::{BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
@@ -27,6 +27,7 @@ const ENTRY: u64 = 16;
 
 /// The edges that each vehicle drove, in order.
 pub struct Routes {
+    recording: PathBuf,
     /// The edges of all routes, one after the other.
     edges: SpooledTempFile,
     /// For every vehicle, in the order of their coming, where its route begins there, and its number of edges.
@@ -78,17 +79,24 @@ impl Routes {
             writer.write(number, &driven[user]).map_err(unwritable)?;
         }
         vehicles.forget(Second::INFINITY, |number, route| writer.write(number, &route)).map_err(unwritable)?;
-        writer.finish().map_err(unwritable)
+        writer.finish(path).map_err(unwritable)
     }
 
     /// The number of the vehicle that enters the scene next; asked once for each, in the recording's order.
     ///
     /// # Errors
-    /// [`Error::File`] where the temporary file cannot be read.
+    /// [`Error::Content`] where more enter than did when the routes were read; [`Error::File`] where the temporary file
+    /// cannot be read.
     pub fn enter(&mut self) -> Result<u64> {
         let mut number = [0; 8];
-        self.entering.read_exact(&mut number).map_err(unwritable)?;
-        Ok(u64::from_le_bytes(number))
+        match self.entering.read_exact(&mut number) {
+            Ok(()) => Ok(u64::from_le_bytes(number)),
+            Err(error) if error.kind() == ErrorKind::UnexpectedEof => {
+                let message = "it has grown since its routes were read: check it when it is complete";
+                Err(Error::content(&self.recording, message))
+            }
+            Err(error) => Err(unwritable(error)),
+        }
     }
 
     /// The route of a vehicle by its number; empty where it was never on a normal edge.
@@ -153,11 +161,12 @@ impl Writer {
         Ok(())
     }
 
-    fn finish(self) -> std::io::Result<Routes> {
+    fn finish(self, recording: &Path) -> std::io::Result<Routes> {
         let written = |file: BufWriter<SpooledTempFile>| file.into_inner().map_err(std::io::IntoInnerError::into_error);
         let (edges, mut entering) = (written(self.edges)?, written(self.entering)?);
         entering.rewind()?;
-        Ok(Routes { edges, places: self.places, entering: BufReader::new(entering) })
+        let (recording, entering) = (recording.to_owned(), BufReader::new(entering));
+        Ok(Routes { recording, edges, places: self.places, entering })
     }
 }
 
