@@ -27,6 +27,9 @@ const LENGTH: f64 = 10_000.0;
 const SPEED: f64 = 13.89;
 const STEPS: usize = 200;
 
+/// So many turns each recording has; the least time counts.
+const TURNS: usize = 5;
+
 fn main() {
     let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
     let words = words.iter().map(String::as_str).collect::<Vec<_>>();
@@ -37,26 +40,31 @@ fn main() {
     match &words[..] {
         [] => all(1.0),
         ["--large", gigabytes] => all(gigabytes.parse().unwrap()),
-        ["--net", net, recordings @ ..] => {
-            recordings.iter().for_each(|path| measure(path, Path::new(path), Some(Path::new(net))));
-        }
-        recordings => recordings.iter().for_each(|path| measure(path, Path::new(path), None)),
+        ["--net", net, paths @ ..] => measure(given(paths), Some(Path::new(net))),
+        paths => measure(given(paths), None),
     }
+}
+
+fn given(paths: &[&str]) -> Vec<Measured> {
+    paths.iter().map(|path| Measured::new((*path).to_owned(), path.into())).collect()
 }
 
 fn all(large: f64) {
     // On the disk of the target folder: the system's folder for temporary files may be in memory.
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let net = write_net(folder.path());
+    let mut recordings = Vec::new();
     for (traffic, headway) in [("sparse", 100.0), ("platoons", 25.0)] {
         for ending in ["csv", "xml"] {
             for columns in ["", " with all attributes"] {
-                let path = folder.path().join(format!("fcd.{ending}"));
+                let scene = format!("{traffic}{columns}");
+                let path = folder.path().join(format!("{scene}.{ending}"));
                 write_recording(&path, headway, STEPS, !columns.is_empty());
-                measure(&format!("{traffic}{columns}"), &path, Some(&net));
+                recordings.push(Measured::new(scene, path));
             }
         }
     }
+    measure(recordings, Some(&net));
     for ending in ["csv", "xml"] {
         for megabytes in [10.0, large * 1000.0] {
             peak(&net, &folder.path().join(format!("fcd.{ending}")), megabytes);
@@ -91,49 +99,72 @@ fn name(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_uppercase()
 }
 
-fn measure(scene: &str, path: &Path, net: Option<&Path>) {
-    let mut rows = 0;
-    let reading = median(|| {
-        let (mut recording, mut step) = (Recording::open(path).unwrap(), Step::default());
-        rows = 0;
-        // What is cut short is read as far as it goes.
-        while let Ok(true) = recording.next_step(&mut step) {
-            rows += step.rows().len();
-        }
-    });
-    let replaying = net.map(|net| {
-        let net = Arc::new(Net::read(net).unwrap());
+/// A recording, and the least time that reading and replaying it took, in s.
+struct Measured {
+    scene: String,
+    path: PathBuf,
+    rows: usize,
+    reading: f64,
+    replaying: f64,
+}
+
+impl Measured {
+    fn new(scene: String, path: PathBuf) -> Self {
+        Self { scene, path, rows: 0, reading: f64::INFINITY, replaying: f64::INFINITY }
+    }
+
+    fn read(&mut self) {
+        self.rows = 0;
+        let (rows, path) = (&mut self.rows, &self.path);
+        let seconds = seconds(|| {
+            let (mut recording, mut step) = (Recording::open(path).unwrap(), Step::default());
+            // What is cut short is read as far as it goes.
+            while let Ok(true) = recording.next_step(&mut step) {
+                *rows += step.rows().len();
+            }
+        });
+        self.reading = self.reading.min(seconds);
+    }
+
+    fn replay(&mut self, net: &Arc<Net>) {
         let options = Options::default();
-        let types: &[PathBuf] = &[];
-        median(|| {
-            let mut replay = Replay::open(path, types, &net, &options).unwrap();
+        let seconds = seconds(|| {
+            let mut replay = Replay::open(&self.path, &[], net, &options).unwrap();
             let mut run = Run::new(&options, Some(net.clone())).unwrap();
             run.routes_are_fixed();
             while let Ok(Some(_)) = replay.next(&mut run) {}
-        })
-    });
-    for (what, seconds) in [("read", Some(reading)), ("replay", replaying)] {
-        if let Some(seconds) = seconds {
-            println!("{what},{scene},{},{rows},{:.3e},vehicle-steps per s", name(path), rows as f64 / seconds);
+        });
+        self.replaying = self.replaying.min(seconds);
+    }
+}
+
+/// All of them in turns, since the machine is fast or slow for seconds at a time.
+fn measure(mut recordings: Vec<Measured>, net: Option<&Path>) {
+    let net = net.map(|net| Arc::new(Net::read(net).unwrap()));
+    for _ in 0..TURNS {
+        for recording in &mut recordings {
+            recording.read();
+            net.iter().for_each(|net| recording.replay(net));
+        }
+    }
+    for Measured { scene, path, rows, reading, replaying } in &recordings {
+        for (what, seconds) in [("read", reading), ("replay", replaying)].into_iter().filter(|(_, s)| s.is_finite()) {
+            println!("{what},{scene},{},{rows},{:.3e},vehicle-steps per s", name(path), *rows as f64 / seconds);
         }
     }
 }
 
-/// The median of five, in s: of the processor's time where the system tells it, so that other programs do not count.
-fn median(mut action: impl FnMut()) -> f64 {
+/// How long that takes, in s: of the processor's time where the system tells it, so that other programs do not count.
+fn seconds(action: impl FnOnce()) -> f64 {
     let started = Instant::now();
     let now = || {
         let system = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
         let nanoseconds = system.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
         nanoseconds.map_or_else(|| started.elapsed().as_secs_f64(), |nanoseconds| nanoseconds / 1e9)
     };
-    let mut times = [0.0; 5].map(|_: f64| {
-        let before = now();
-        action();
-        now() - before
-    });
-    times.sort_by(f64::total_cmp);
-    times[2]
+    let before = now();
+    action();
+    now() - before
 }
 
 fn write_net(folder: &Path) -> PathBuf {
