@@ -72,18 +72,22 @@ fn all(large: f64) {
     }
 }
 
-/// Replays a recording of about this size in a process of its own, and prints the most that was in memory.
+/// Replays a recording of about this size in processes of their own, and prints the most that was in the memory of one:
+/// of three, the least, since one and the same differs by 0.3 MB.
 fn peak(net: &Path, path: &Path, megabytes: f64) {
     write_recording(path, 100.0, 10, false);
     let steps = megabytes * 1e6 / std::fs::metadata(path).unwrap().len() as f64 * 10.0;
     write_recording(path, 100.0, steps as usize, false);
     let out = path.with_extension("log");
-    let mut command = Command::new(std::env::current_exe().unwrap());
-    let words = ["--alone", "closecall", "replay", "--quiet", "--net"];
-    let ended = command.args(words).arg(net).arg("--out").arg(out).arg(path).output().unwrap();
-    assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
-    let kilobytes = String::from_utf8(ended.stdout).unwrap();
-    println!("peak,{megabytes} MB,{},,{:.1},MB", name(path), kilobytes.trim().parse::<f64>().unwrap() / 1e3);
+    let kilobytes = || {
+        let mut command = Command::new(std::env::current_exe().unwrap());
+        let words = ["--alone", "closecall", "replay", "--quiet", "--net"];
+        let ended = command.args(words).arg(net).arg("--out").arg(&out).arg(path).output().unwrap();
+        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
+        String::from_utf8(ended.stdout).unwrap().trim().parse::<f64>().unwrap()
+    };
+    let least = (0..3).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
+    println!("peak,{megabytes} MB,{},,{:.2},MB", name(path), least / 1e3);
     std::fs::remove_file(path).unwrap();
 }
 
