@@ -85,7 +85,9 @@ def detector(axes: Axes, lines: Lines) -> None:
     axes.axhline(150, color=LIMIT, linewidth=1, linestyle="--")
     axes.set(xscale="log", yscale="log", xlabel="road users")
     axes.set_title("Detector alone, ns per road user and step (goal: 150)", fontsize=9)
-    axes.legend(frameon=False, fontsize=7)
+    # Above what is drawn there is room for the legend.
+    axes.set_ylim(top=30 * axes.get_ylim()[1])
+    axes.legend(frameon=False, fontsize=7, loc="upper left")
 
 
 def replay(axes: Axes, lines: Lines) -> None:
