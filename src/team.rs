@@ -69,3 +69,31 @@ impl Team {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn there_are_as_many_threads_as_asked_for_and_never_none() {
+        assert_eq!([0, 1, 2, 5].map(|threads| Team::new(threads).threads()), [1, 1, 2, 5]);
+    }
+
+    #[test]
+    fn every_part_is_done_once_by_however_many() {
+        for threads in [1, 2, 5] {
+            let mut done = [0; 9];
+            Team::new(threads).each(&mut done, 1..=9, |done, part| *done += part);
+            assert_eq!(done, [1, 2, 3, 4, 5, 6, 7, 8, 9], "by {threads}");
+        }
+    }
+
+    #[test]
+    fn both_are_done_when_it_returns() {
+        for threads in [1, 2] {
+            let mut helped = false;
+            let own = Team::new(threads).beside(|| helped = true, || 7);
+            assert_eq!((helped, own), (true, 7), "by {threads}");
+        }
+    }
+}

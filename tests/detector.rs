@@ -175,7 +175,6 @@ fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Rost
         }
         detector.follow(&frame, roster);
         detector.approach(&frame, roster);
-        detector.detect(roster).len();
     }
     let by_number = |found: &Encounter| Encounter { ego_row: found.ego.0, foe_row: found.foe.0, ..*found };
     detector.detect(roster).map(by_number).collect()
