@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::names::Users;
 use super::number::number;
 use super::recording::{Attribute, Extent, Fields, Step, cut_short, in_order};
-use super::source::{Source, find};
+use super::source::{Source, find_all};
 use crate::units::Second;
 use crate::{Error, Result};
 
@@ -16,8 +16,12 @@ pub(super) struct CsvRecording {
     extent: Extent,
     separator: u8,
     time: usize,
-    /// What each column says, up to the last that says something.
-    columns: Vec<Option<Column>>,
+    /// The columns that say something.
+    columns: Vec<Column>,
+    /// So many columns are looked at.
+    looked_at: usize,
+    /// Where the values of the row under way end.
+    ends: Vec<usize>,
     /// The time of the step under way, as it is written: most rows have the same.
     time_text: Vec<u8>,
     last: Option<Second>,
@@ -25,6 +29,8 @@ pub(super) struct CsvRecording {
 
 #[derive(Clone, Copy, Debug)]
 struct Column {
+    /// Which one it is, from the left.
+    place: usize,
     attribute: Option<Attribute>,
     person: bool,
 }
@@ -54,10 +60,22 @@ impl CsvRecording {
                 return Err(Error::content(path, format!("there is no column vehicle_{needed}")));
             }
         }
-        let mut columns = names.iter().map(|name| column(name, extent)).collect::<Vec<_>>();
-        columns.truncate(columns.iter().rposition(Option::is_some).map_or(0, |last| last + 1));
+        let columns =
+            names.iter().enumerate().filter_map(|(place, name)| column(place, name, extent)).collect::<Vec<_>>();
+        let looked_at = 1 + columns.last().map_or(0, |last| last.place).max(time);
         source.consume(header);
-        Ok(Self { path: path.to_owned(), source, extent, separator, time, columns, time_text: Vec::new(), last: None })
+        Ok(Self {
+            path: path.to_owned(),
+            source,
+            extent,
+            separator,
+            time,
+            columns,
+            looked_at,
+            ends: Vec::new(),
+            time_text: Vec::new(),
+            last: None,
+        })
     }
 
     pub fn next_step(&mut self, step: &mut Step, users: &mut Users) -> Result<bool> {
@@ -77,11 +95,15 @@ impl CsvRecording {
             let wrong = |message| Error::line(&self.path, self.source.line(), message);
             let quoted = match self.source.is_marked() && line.contains(&b'"') {
                 true => Some(quoted(line, self.separator).map_err(wrong)?),
-                false => None,
+                false => {
+                    split(self.source.rest(), line.len(), self.separator, self.looked_at, &mut self.ends);
+                    None
+                }
             };
+            let plain = Values { line, ends: &self.ends };
             let time_text = match &quoted {
                 Some(values) => values.get(self.time),
-                None => Values { rest: Some(line), separator: self.separator }.nth(self.time),
+                None => plain.get(self.time),
             };
             let time_text = time_text.unwrap_or_default();
             if !begun || time_text != self.time_text {
@@ -99,11 +121,12 @@ impl CsvRecording {
                 self.time_text.clear();
                 self.time_text.extend_from_slice(time_text);
             }
-            let fields = match &quoted {
-                Some(values) => fields(values.iter(), &self.columns, self.extent),
-                None => fields(Values { rest: Some(line), separator: self.separator }, &self.columns, self.extent),
+            let mut fields = self.extent.fields();
+            let set = match &quoted {
+                Some(values) => set(&mut fields, &self.columns, |place| values.get(place)),
+                None => set(&mut fields, &self.columns, |place| plain.get(place)),
             };
-            let fields = fields.map_err(wrong)?;
+            set.map_err(wrong)?;
             // A step without anybody in it has a row of nobody.
             if !fields.is_of_nobody() {
                 step.add(&fields, users, "value in column").map_err(wrong)?;
@@ -118,7 +141,7 @@ impl CsvRecording {
     }
 }
 
-fn column(name: &str, extent: Extent) -> Option<Column> {
+fn column(place: usize, name: &str, extent: Extent) -> Option<Column> {
     let (person, attribute) = match name.split_once('_') {
         Some(("vehicle", attribute)) => (false, attribute),
         Some(("person", attribute)) => (true, attribute),
@@ -126,19 +149,18 @@ fn column(name: &str, extent: Extent) -> Option<Column> {
     };
     let attribute = extent.attribute(attribute.as_bytes());
     // A person's column says that it is a person, if nothing else.
-    (person || attribute.is_some()).then_some(Column { attribute, person })
+    (person || attribute.is_some()).then_some(Column { place, attribute, person })
 }
 
-/// What a row says.
+/// Sets what a row says, given its values by their places.
 #[inline]
-fn fields<'a>(
-    values: impl Iterator<Item = &'a [u8]>,
-    columns: &[Option<Column>],
-    extent: Extent,
-) -> std::result::Result<Fields<'a>, String> {
-    let mut fields = extent.fields();
-    for (column, value) in columns.iter().zip(values) {
-        let Some(column) = column else { continue };
+fn set<'a>(
+    fields: &mut Fields<'a>,
+    columns: &[Column],
+    value: impl Fn(usize) -> Option<&'a [u8]>,
+) -> std::result::Result<(), String> {
+    for column in columns {
+        let Some(value) = value(column.place) else { break };
         if !value.is_empty() {
             fields.person |= column.person;
             if let Some(attribute) = column.attribute {
@@ -146,49 +168,42 @@ fn fields<'a>(
             }
         }
     }
-    Ok(fields)
+    Ok(())
 }
 
 /// The values of a row without quotation marks.
 struct Values<'a> {
-    rest: Option<&'a [u8]>,
-    separator: u8,
+    line: &'a [u8],
+    ends: &'a [usize],
 }
 
-impl<'a> Iterator for Values<'a> {
-    type Item = &'a [u8];
-
+impl<'a> Values<'a> {
     #[inline]
-    fn next(&mut self) -> Option<&'a [u8]> {
-        let rest = self.rest?;
-        match find(rest, self.separator) {
-            Some(end) => {
-                self.rest = Some(&rest[end + 1..]);
-                Some(&rest[..end])
-            }
-            None => self.rest.take(),
-        }
+    fn get(&self, place: usize) -> Option<&'a [u8]> {
+        let start = if place == 0 { 0 } else { self.ends.get(place - 1)? + 1 };
+        self.line.get(start..*self.ends.get(place)?)
+    }
+}
+
+/// Where the first values of a row end, `most` of them; the row is the first `length` bytes.
+#[inline]
+fn split(rest: &[u8], length: usize, separator: u8, most: usize, ends: &mut Vec<usize>) {
+    ends.clear();
+    find_all(rest, length, separator, |end| {
+        ends.push(end);
+        ends.len() < most
+    });
+    if ends.len() < most {
+        ends.push(length);
     }
 }
 
 /// The values of a row with quotation marks.
-struct Quoted(csv::ByteRecord);
-
-impl Quoted {
-    fn get(&self, index: usize) -> Option<&[u8]> {
-        self.0.get(index)
-    }
-
-    fn iter(&self) -> impl Iterator<Item = &[u8]> {
-        self.0.iter()
-    }
-}
-
-fn quoted(line: &[u8], separator: u8) -> std::result::Result<Quoted, String> {
+fn quoted(line: &[u8], separator: u8) -> std::result::Result<csv::ByteRecord, String> {
     let mut reader = csv::ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(line);
     let mut record = csv::ByteRecord::new();
     reader.read_byte_record(&mut record).map_err(|error| error.to_string())?;
-    Ok(Quoted(record))
+    Ok(record)
 }
 
 /// How much of the rest is the next row, its line end included.

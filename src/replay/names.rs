@@ -71,6 +71,8 @@ pub(super) struct Known {
     pub user: u32,
     pub type_name: u32,
     pub lane: u32,
+    /// Whether it was on this lane in the step before.
+    pub keeps_lane: bool,
 }
 
 impl Users {
@@ -105,12 +107,13 @@ impl Users {
     pub fn know(&mut self, id: &[u8], person: bool, type_name: &[u8], lane: &[u8]) -> Result<Known, String> {
         let index = self.find(id, person)?;
         let user = &mut self.users[index as usize];
+        let lane_before = user.lane;
         user.type_name = self.types.number(type_name, user.type_name)?;
         user.lane = self.lanes.number(lane, user.lane)?;
         user.step = self.step;
         user.place = self.now.len() as u32;
         self.now.push(index);
-        Ok(Known { user: index, type_name: user.type_name, lane: user.lane })
+        Ok(Known { user: index, type_name: user.type_name, lane: user.lane, keeps_lane: user.lane == lane_before })
     }
 
     #[inline]

@@ -78,6 +78,9 @@ impl Step {
             fields.check(place)?;
         }
         let known = users.know(id, fields.person, type_name, lane)?;
+        if fields.extent == Extent::Lanes && known.keeps_lane {
+            return Ok(());
+        }
         let (user, type_name, lane) = (known.user, known.type_name, known.lane);
         let person = fields.person;
         self.rows.push(Row { user, person, type_name, lane, x, y, z, angle, speed, position, lateral_speed });
@@ -102,21 +105,24 @@ const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Extent {
     All,
-    /// Who is where on the net, without numbers: these are 0.
+    /// Of those who came into the scene or onto another lane: who, and which lane.
     Lanes,
 }
 
 impl Extent {
+    const ID: Attribute = Attribute::Text(0);
+    const LANE: Attribute = Attribute::Text(2);
+
     pub fn attribute(self, name: &[u8]) -> Option<Attribute> {
         let place = |names: &[&str]| names.iter().position(|known| known.as_bytes() == name).map(|place| place as u8);
-        let number = || place(&NUMBERS).filter(|_| self == Self::All).map(Attribute::Number);
-        place(&TEXTS).map(Attribute::Text).or_else(number)
+        let attribute = place(&TEXTS).map(Attribute::Text).or_else(|| place(&NUMBERS).map(Attribute::Number));
+        attribute.filter(|attribute| self == Self::All || [Self::ID, Self::LANE].contains(attribute))
     }
 
     #[inline]
     pub fn fields<'a>(self) -> Fields<'a> {
         let given = if self == Self::All { f64::NAN } else { 0.0 };
-        Fields { person: false, texts: [b""; 3], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
+        Fields { extent: self, person: false, texts: [b""; 3], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
     }
 }
 
@@ -134,6 +140,7 @@ impl Attribute {
 /// A row as its text is read.
 #[derive(Debug)]
 pub(super) struct Fields<'a> {
+    extent: Extent,
     pub person: bool,
     texts: [&'a [u8]; 3],
     numbers: [f64; 7],
@@ -195,7 +202,8 @@ impl Recording {
         Self::from_source(path, crate::net::open(path)?, Extent::All)
     }
 
-    /// Opens a recording for its lanes only: all numbers in its rows are 0, and not looked at.
+    /// Opens a recording for its lanes only: a step has rows of those who came into the scene or onto another lane, and
+    /// all types and numbers in them are empty.
     pub(super) fn open_for_lanes(path: &Path) -> Result<Self> {
         Self::from_source(path, crate::net::open(path)?, Extent::Lanes)
     }

@@ -98,3 +98,72 @@ pub(super) fn find(bytes: &[u8], wanted: u8) -> Option<usize> {
     }
     bytes[at..].iter().position(|byte| *byte == wanted).map(|place| at + place)
 }
+
+/// So many bytes are compared at once.
+const COMPARED: usize = 64;
+
+/// Where a byte stands in the first `length` bytes, everywhere in order, until `found` has seen enough. What lies behind
+/// them is read and not looked at.
+#[inline]
+pub(super) fn find_all(bytes: &[u8], length: usize, wanted: u8, mut found: impl FnMut(usize) -> bool) {
+    let mut at = 0;
+    while at < length {
+        let mut places = match bytes[at..].first_chunk::<COMPARED>() {
+            Some(block) => places(block, wanted),
+            None => {
+                let mut block = [!wanted; COMPARED];
+                block[..bytes.len() - at].copy_from_slice(&bytes[at..]);
+                places(&block, wanted)
+            }
+        };
+        if length - at < COMPARED {
+            places &= (1 << (length - at)) - 1;
+        }
+        while places != 0 {
+            if !found(at + places.trailing_zeros() as usize) {
+                return;
+            }
+            places &= places - 1;
+        }
+        at += COMPARED;
+    }
+}
+
+/// A bit for each byte: whether it is the wanted one.
+#[inline]
+fn places(block: &[u8; COMPARED], wanted: u8) -> u64 {
+    const ALL_BUT_HIGH: u64 = u64::from_ne_bytes([0x7f; 8]);
+    /// Brings the highest bits of eight bytes together.
+    const GATHER: u64 = 0x0002_0408_1020_4081;
+    let pattern = u64::from_ne_bytes([wanted; 8]);
+    let (eights, _) = block.as_chunks::<8>();
+    eights.iter().rev().fold(0, |places, eight| {
+        let other = u64::from_le_bytes(*eight) ^ pattern;
+        let same = !(((other & ALL_BUT_HIGH) + ALL_BUT_HIGH) | other | ALL_BUT_HIGH);
+        places << 8 | same.wrapping_mul(GATHER) >> 56
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_byte_is_found_everywhere(
+            bytes in proptest::collection::vec(prop_oneof![Just(b';'), Just(b':'), any::<u8>()], 0..200),
+            part in 0.0..1.0_f64,
+            most in 1..300_usize,
+        ) {
+            let length = (bytes.len() as f64 * part).round() as usize;
+            let mut found = Vec::new();
+            find_all(&bytes, length, b';', |place| {
+                found.push(place);
+                found.len() < most
+            });
+            let all = (0..length).filter(|place| bytes[*place] == b';');
+            prop_assert_eq!(found, all.take(most).collect::<Vec<_>>());
+        }
+    }
+}
