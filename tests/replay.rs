@@ -335,6 +335,19 @@ fn a_byte_order_mark_is_passed_over() {
     }
 }
 
+/// SUMO calls the columns after whoever came first, and has vehicles on a lane and persons on an edge.
+#[test]
+fn in_columns_that_they_share_vehicles_and_persons_are_told_apart_by_where_they_are() {
+    for kind in ["vehicle", "person"] {
+        let names = ["id", "x", "y", "angle", "speed", "lane", "edge"].map(|name| format!("{kind}_{name}")).join(";");
+        let text = format!("timestep_time;{names}\n0;car;1;2;90;3;a_0;\n0;walker;1;2;90;1;;a\n0;somebody;1;2;90;1;;\n");
+        let (steps, error) = read(&text);
+        assert_eq!(error, None);
+        let persons = steps[0].1.iter().map(|row| (&*row.id, row.person)).collect::<Vec<_>>();
+        assert_eq!(persons, [("car", false), ("walker", true), ("somebody", kind == "person")]);
+    }
+}
+
 /// A vehicle and a person may have the same id in SUMO.
 #[test]
 fn a_vehicle_and_a_person_of_the_same_id_are_two() {

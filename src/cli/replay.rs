@@ -29,6 +29,9 @@ pub struct ReplayArgs {
     /// Route and additional files with the vehicle types; others are SUMO's own.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
+    /// The recording is of SUMO's sublane model (--lateral-resolution): road users move to the side within their lane.
+    #[arg(long)]
+    sublane: bool,
     /// Folder of the log [default: closecall-out beside the recording].
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -56,6 +59,9 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
     let mut run = Run::new(&options, Some(net.clone()))?;
     run.set_threads(arguments.threads.into());
     run.routes_are_fixed();
+    if arguments.sublane {
+        run.has_sublanes();
+    }
     let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
     let mut record = RunRecord {
         versions: Versions::with_sumo(None),

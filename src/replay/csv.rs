@@ -1,4 +1,7 @@
-//! fcd-output in CSV: one row per road user and step, the time in each; vehicles and persons have columns of their own.
+//! fcd-output in CSV: one row per road user and step, the time in each.
+//!
+//! SUMO's xml2csv gives vehicles and persons columns of their own. SUMO itself gives both the same, and calls them after
+//! whoever came first.
 
 use std::path::{Path, PathBuf};
 
@@ -18,6 +21,8 @@ pub(super) struct CsvRecording {
     time: usize,
     /// The columns that say something.
     columns: Vec<Column>,
+    /// Whether vehicles and persons share them.
+    shared: bool,
     /// So many columns are looked at.
     looked_at: usize,
     /// Where the values of the row under way end.
@@ -63,6 +68,7 @@ impl CsvRecording {
         let columns =
             names.iter().enumerate().filter_map(|(place, name)| column(place, name, extent)).collect::<Vec<_>>();
         let looked_at = 1 + columns.last().map_or(0, |last| last.place).max(time);
+        let shared = ["vehicle_id", "person_id"].iter().any(|id| !names.iter().any(|name| name == id));
         source.consume(header);
         Ok(Self {
             path: path.to_owned(),
@@ -71,6 +77,7 @@ impl CsvRecording {
             separator,
             time,
             columns,
+            shared,
             looked_at,
             ends: Vec::new(),
             time_text: Vec::new(),
@@ -127,6 +134,9 @@ impl CsvRecording {
                 None => set(&mut fields, &self.columns, |place| plain.get(place)),
             };
             set.map_err(wrong)?;
+            if self.shared {
+                fields.tell_apart();
+            }
             // A step without anybody in it has a row of nobody.
             if !fields.is_of_nobody() {
                 step.add(&fields, users, "value in column").map_err(wrong)?;

@@ -15,6 +15,8 @@ mod xml;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use rustc_hash::FxHashSet;
+
 use crate::encounter::Placement;
 use crate::frame::{State, UserIndex};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
@@ -43,6 +45,8 @@ pub struct Replay {
     steps: u64,
     /// By the recording's number of the user.
     live: Vec<Option<Live>>,
+    /// Where the vehicles of the step are, if there are persons.
+    vehicles: FxHashSet<Stand>,
     /// Which of the step's rows stands in each row of the frame.
     rows: Vec<u32>,
     approaching: Vec<u32>,
@@ -93,6 +97,7 @@ impl Replay {
             step_length,
             steps: 0,
             live: Vec::new(),
+            vehicles: FxHashSet::default(),
             rows: Vec::new(),
             approaching: Vec::new(),
             gone: Vec::new(),
@@ -130,6 +135,10 @@ impl Replay {
     }
 
     fn fill(&mut self, run: &mut Run) -> Result<()> {
+        self.vehicles.clear();
+        if self.step.persons() > 0 {
+            self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(stand));
+        }
         self.rows.clear();
         self.rows.resize(run.frame.len(), u32::MAX);
         for place in 0..self.step.rows().len() {
@@ -138,6 +147,10 @@ impl Replay {
                 Some(Some(live)) => live.user,
                 _ => self.enter(&row, run)?,
             };
+            // Who rides in a vehicle has the vehicle's place in SUMO, and is no road user of its own.
+            if row.person && self.vehicles.contains(&stand(&row)) {
+                continue;
+            }
             let heading = (90.0 - row.angle).to_radians();
             if run.frame.push(user, State { x: row.x, y: row.y, z: row.z, heading, speed: row.speed }) {
                 self.rows.push(place as u32);
@@ -194,6 +207,13 @@ impl Replay {
         run.place(row, &placement);
         Ok(())
     }
+}
+
+/// Position, angle and speed, to the last bit.
+type Stand = [u64; 4];
+
+fn stand(row: &Row) -> Stand {
+    [row.x, row.y, row.angle, row.speed].map(f64::to_bits)
 }
 
 impl Live {

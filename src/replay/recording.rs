@@ -44,6 +44,7 @@ pub struct Step {
     /// Simulated time in s.
     pub time: Second,
     rows: Vec<Row>,
+    persons: usize,
     gone: Vec<u32>,
 }
 
@@ -51,6 +52,11 @@ impl Step {
     /// Who is in the scene.
     pub fn rows(&self) -> &[Row] {
         &self.rows
+    }
+
+    /// How many of them are persons.
+    pub fn persons(&self) -> usize {
+        self.persons
     }
 
     /// Who was there in the step before and is not in this one, by [`Row::user`], in ascending order.
@@ -61,6 +67,7 @@ impl Step {
     pub(super) fn begin(&mut self, time: Second, users: &mut Users) {
         self.time = time;
         self.rows.clear();
+        self.persons = 0;
         users.begin();
     }
 
@@ -72,7 +79,7 @@ impl Step {
     /// Adds a row; `place` is what its format calls a place for a value.
     #[inline]
     pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, place: &str) -> std::result::Result<(), String> {
-        let [id, type_name, lane] = fields.texts;
+        let [id, type_name, lane, _] = fields.texts;
         let [x, y, angle, speed, z, position, lateral_speed] = fields.numbers;
         if id.is_empty() || (x + y + angle + speed).is_nan() {
             fields.check(place)?;
@@ -83,6 +90,7 @@ impl Step {
         }
         let (user, type_name, lane) = (known.user, known.type_name, known.lane);
         let person = fields.person;
+        self.persons += usize::from(person);
         self.rows.push(Row { user, person, type_name, lane, x, y, z, angle, speed, position, lateral_speed });
         Ok(())
     }
@@ -97,7 +105,7 @@ pub(super) enum Attribute {
     Number(u8),
 }
 
-const TEXTS: [&str; 3] = ["id", "type", "lane"];
+const TEXTS: [&str; 4] = ["id", "type", "lane", "edge"];
 /// The first four have to be given.
 const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
 
@@ -112,17 +120,18 @@ pub(super) enum Extent {
 impl Extent {
     const ID: Attribute = Attribute::Text(0);
     const LANE: Attribute = Attribute::Text(2);
+    const EDGE: Attribute = Attribute::Text(3);
 
     pub fn attribute(self, name: &[u8]) -> Option<Attribute> {
         let place = |names: &[&str]| names.iter().position(|known| known.as_bytes() == name).map(|place| place as u8);
         let attribute = place(&TEXTS).map(Attribute::Text).or_else(|| place(&NUMBERS).map(Attribute::Number));
-        attribute.filter(|attribute| self == Self::All || [Self::ID, Self::LANE].contains(attribute))
+        attribute.filter(|attribute| self == Self::All || [Self::ID, Self::LANE, Self::EDGE].contains(attribute))
     }
 
     #[inline]
     pub fn fields<'a>(self) -> Fields<'a> {
         let given = if self == Self::All { f64::NAN } else { 0.0 };
-        Fields { extent: self, person: false, texts: [b""; 3], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
+        Fields { extent: self, person: false, texts: [b""; 4], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
     }
 }
 
@@ -142,7 +151,7 @@ impl Attribute {
 pub(super) struct Fields<'a> {
     extent: Extent,
     pub person: bool,
-    texts: [&'a [u8]; 3],
+    texts: [&'a [u8]; 4],
     numbers: [f64; 7],
 }
 
@@ -157,6 +166,15 @@ impl<'a> Fields<'a> {
             },
         }
         Ok(())
+    }
+
+    /// Says by where it is whether it is a person: SUMO has vehicles on a lane and persons on an edge.
+    #[inline]
+    pub fn tell_apart(&mut self) {
+        let [_, _, lane, edge] = self.texts;
+        if lane.is_empty() != edge.is_empty() {
+            self.person = lane.is_empty();
+        }
     }
 
     pub fn is_of_nobody(&self) -> bool {
