@@ -22,7 +22,7 @@ pub const SUMO_INVALID: f64 = -1_073_741_824.0;
 pub struct UserIndex(pub u32);
 
 /// Which [`Profile`] of a [`Roster`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ProfileIndex(pub u32);
 
 /// One road user's unchanging part.

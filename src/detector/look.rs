@@ -69,14 +69,18 @@ impl Detector {
 
     /// Everybody in its slot, with the area of now.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
-        let sight = Sight { roster, turns: self.turns(), on_lanes: &self.on_lanes };
+        let sight = Sight { frame, roster, turns: self.turns(), on_lanes: &self.on_lanes };
         let reach = Reach::new(roster, &self.options, self.leaves_out);
         fill(&mut self.users, frame.len(), User::NOBODY);
-        let see = |row: u32| frame.rows()[row as usize];
-        self.search.lay(&mut self.users, &self.team, see, |row, seen, user| {
-            *user = sight.user(row, seen);
-            reach.area(user)
-        });
+        self.search.lay(
+            &mut self.users,
+            &self.team,
+            |row| sight.see(row),
+            |row, seen, user| {
+                *user = sight.user(row, seen);
+                reach.area(user)
+            },
+        );
     }
 
     /// How the paths of now turn, where they are arcs.
@@ -134,17 +138,32 @@ pub(super) enum Turns {
 /// What the step under way says of everybody.
 #[derive(Clone, Copy)]
 pub(super) struct Sight<'a> {
+    pub frame: &'a Frame,
     pub roster: &'a Roster,
     pub turns: Turns,
     pub on_lanes: &'a [bool],
 }
 
+/// What is said of who stands in a row, fetched from where it is.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Seen {
+    row: Row,
+    profile: ProfileIndex,
+}
+
 impl Sight<'_> {
+    /// What is said of who stands in a row.
+    #[inline]
+    pub fn see(&self, row: u32) -> Seen {
+        let row = self.frame.rows()[row as usize];
+        Seen { row, profile: self.roster.type_of(row.user) }
+    }
+
     /// Who stands in a row.
     // Always: by a call it would be written twice, and the second time wait for the first, 15 ns per road user.
     #[inline(always)]
-    pub fn user(&self, row: u32, &Row { user: index, ref state }: &Row) -> User {
-        let type_index = self.roster.type_of(index);
+    pub fn user(&self, row: u32, seen: &Seen) -> User {
+        let Seen { row: Row { user: index, ref state }, profile: type_index } = *seen;
         let (profile, moves) = (self.roster.profile_at(type_index), state.speed > STANDS);
         User {
             front: Point::new(state.x, state.y),

@@ -348,8 +348,8 @@ impl Detector {
         }
     }
 
-    fn sight<'a>(&'a self, roster: &'a Roster) -> Sight<'a> {
-        Sight { roster, turns: self.turns(), on_lanes: &self.on_lanes }
+    fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Sight<'a> {
+        Sight { frame, roster, turns: self.turns(), on_lanes: &self.on_lanes }
     }
 
     fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {
@@ -367,7 +367,8 @@ impl Detector {
 
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
-        let (user, mut poses) = (self.sight(roster).user(row, &frame.rows()[row as usize]), Vec::new());
+        let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
+        let user = sight.user(row, &sight.see(row));
         self.scene(roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
