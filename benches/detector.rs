@@ -27,21 +27,25 @@ use rivals::{AllPairs, AllTested, Boxes, Tree};
 /// With more road users than this parry2d and all pairs are not asked.
 const LARGE: usize = 100_000;
 
-/// So many turns each way to look at a step has; the least counts. What else the machine does comes and goes, for seconds
-/// at a time. All pairs, and whoever looks at more road users than [`LARGE`], take long and have a third of them.
+/// So many turns each way to look at a step has. What else the machine does comes and goes, for seconds at a time: of a
+/// time the least counts, of how many times one way takes as long as the other in the same turn the median.
 const TURNS: usize = 9;
+
+/// All pairs take long: they have a turn only in the first of these.
+const TURNS_OF_ALL_PAIRS: usize = 3;
 
 /// The times of one way to look at a step, in s.
 struct Times {
     name: String,
+    /// Of the turn under way.
     turn: Vec<f64>,
-    /// Least median of a turn.
-    least: f64,
+    /// The median of each turn.
+    medians: Vec<f64>,
 }
 
 impl Times {
     fn of(name: impl Into<String>) -> Self {
-        Self { name: name.into(), turn: Vec::new(), least: f64::INFINITY }
+        Self { name: name.into(), turn: Vec::new(), medians: Vec::new() }
     }
 
     fn add<T>(&mut self, action: impl FnOnce() -> T) -> T {
@@ -52,15 +56,27 @@ impl Times {
     }
 
     fn end_turn(&mut self) {
-        self.turn.sort_by(f64::total_cmp);
-        self.least = self.least.min(self.turn[self.turn.len() / 2]);
+        self.medians.push(median(&mut self.turn));
         self.turn.clear();
     }
 
     /// Prints the time per road user in ns.
     fn print(&self, scene: &str, count: usize) {
-        println!("step,{scene},{},{count},{:.1},ns per road user", self.name, self.least * 1e9 / count as f64);
+        let least = self.medians.iter().fold(f64::INFINITY, |least, time| least.min(*time));
+        println!("step,{scene},{},{count},{:.1},ns per road user", self.name, least * 1e9 / count as f64);
     }
+
+    /// Prints it, and how many times as long as another one this takes in the same turn.
+    fn print_beside(&self, other: &Self, scene: &str, count: usize) {
+        self.print(scene, count);
+        let mut ratios = self.medians.iter().zip(&other.medians).map(|(own, other)| own / other).collect::<Vec<_>>();
+        println!("longer,{scene},{},{count},{:.4},times {}", self.name, median(&mut ratios), other.name);
+    }
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }
 
 fn main() {
@@ -186,7 +202,7 @@ fn measure(name: &str, start: Vec<State>) {
     let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
     let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
     let steps = TIMES.repeat((500_000 / TURNS / count).clamp(1, 16));
-    for number in 0..if count > LARGE { TURNS / 3 } else { TURNS } {
+    for number in 0..TURNS {
         let mut turn = |look: &mut dyn Look, steps: &[f64]| {
             for time in steps {
                 scene.advance(*time);
@@ -200,16 +216,17 @@ fn measure(name: &str, start: Vec<State>) {
             turn(&mut tree, &steps);
             turn(&mut told, &steps);
         }
-        if count <= LARGE && number % 3 == 0 {
+        if count <= LARGE && number < TURNS_OF_ALL_PAIRS {
             turn(&mut circles, &steps[..1]);
             turn(&mut tested, &steps[..1]);
         }
     }
     assert_eq!(tree.2, told.2);
-    tested.1.least *= AllTested::share(count);
+    tested.1.medians.iter_mut().for_each(|time| *time *= AllTested::share(count));
+    let closecall = &one.1[0];
     one.1.iter().for_each(|times| times.print(name, count));
-    others.iter().for_each(|Phases(_, times)| times[0].print(name, count));
+    others.iter().for_each(|Phases(_, times)| times[0].print_beside(closecall, name, count));
     if count <= LARGE {
-        [tree.1, told.1, circles.1, tested.1].iter().for_each(|times| times.print(name, count));
+        [tree.1, told.1, circles.1, tested.1].iter().for_each(|times| times.print_beside(closecall, name, count));
     }
 }
