@@ -2,7 +2,7 @@
 //!
 //! The paper (eq. 4) tests the distance to every other vehicle against the ego's detection radius. Here each road
 //! user has an area that holds everything it may cover until it stands: a circle around its centre, wherever its way
-//! turns, or, where it can only go straight on, the box around that. A pair is kept where two areas meet, so no pair
+//! turns, or, where it goes straight on, the box around that. A pair is kept where two areas meet, so no pair
 //! that is an encounter is dropped.
 //!
 //! Which areas to compare: their boxes are sorted into strips along x, each as high as the highest of them, and within

@@ -10,6 +10,7 @@ use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::options::{Mode, Options, PathModel};
 use crate::path::lanes::LanePath;
+use crate::path::track::Track;
 use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle};
 use crate::profile::Category;
@@ -69,7 +70,8 @@ impl Detector {
 
     /// Everybody in its slot, with the area of now.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
-        let sight = Sight { frame, roster, turns: self.turns(), on_lanes: &self.on_lanes };
+        let (turns, epsilon) = (self.turns(), self.options.epsilon);
+        let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths };
         let reach = Reach::new(roster, &self.options, self.leaves_out);
         fill(&mut self.users, frame.len(), User::NOBODY);
         self.search.lay(
@@ -141,7 +143,9 @@ pub(super) struct Sight<'a> {
     pub frame: &'a Frame,
     pub roster: &'a Roster,
     pub turns: Turns,
+    pub epsilon: Metre,
     pub on_lanes: &'a [bool],
+    pub paths: &'a [LanePath],
 }
 
 /// What is said of who stands in a row, fetched from where it is.
@@ -165,23 +169,26 @@ impl Sight<'_> {
     pub fn user(&self, row: u32, seen: &Seen) -> User {
         let Seen { row: Row { user: index, ref state }, profile: type_index } = *seen;
         let (profile, moves) = (self.roster.profile_at(type_index), state.speed > STANDS);
+        let (axis, on_lanes) = (direction(state.heading), self.turns == Turns::ByLanes && self.on_lanes[row as usize]);
+        let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
+        let path = || &self.paths[index.0 as usize].track;
         User {
             front: Point::new(state.x, state.y),
-            axis: direction(state.heading),
+            axis,
             z: state.z,
             speed: state.speed,
-            stop: if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 },
+            stop,
             row,
             index,
             profile: type_index,
             category: profile.category,
-            moves,
             ahead: match self.turns {
                 Turns::Not => true,
                 Turns::ByArcs => false,
+                Turns::ByLanes if on_lanes => path().goes_straight(&axis, profile.chord, stop + self.epsilon),
                 Turns::ByLanes => !moves || profile.category != Category::Vehicle,
             },
-            on_lanes: self.turns == Turns::ByLanes && self.on_lanes[row as usize],
+            on_lanes,
         }
     }
 }
@@ -198,10 +205,13 @@ impl User {
         index: UserIndex(0),
         profile: ProfileIndex(0),
         category: Category::Obstacle,
-        moves: false,
         ahead: true,
         on_lanes: false,
     };
+
+    fn moves(&self) -> bool {
+        self.speed > STANDS
+    }
 }
 
 /// Each of these slots with all before it.
@@ -214,7 +224,7 @@ fn every_pair(slots: Range<usize>, mut found: impl FnMut(u32, u32)) {
 /// Whether two road users near each other are a pair at all.
 fn is_pair(a: &User, b: &User, work: &mut Work) -> bool {
     work.pairs += 1;
-    if !a.moves && !b.moves {
+    if !a.moves() && !b.moves() {
         work.both_stand += 1;
         return false;
     }
@@ -240,7 +250,7 @@ fn all_pairs(count: usize) -> u64 {
 pub(super) struct Reach<'a> {
     roster: &'a Roster,
     epsilon: Metre,
-    /// Whether who can only go straight on has a box around that.
+    /// Whether who goes straight on has a box around that.
     has_boxes: bool,
 }
 
@@ -261,7 +271,9 @@ impl<'a> Reach<'a> {
         }
         if user.ahead && self.has_boxes {
             let (front, length) = (user.front + user.axis * reach, profile.length + reach);
-            return Rectangle::behind(front, user.axis, length, profile.width).bounds().grown(TOLERANCE).into();
+            let beside = if user.on_lanes { Track::beside_heading(length) } else { 0.0 };
+            let bounds = Rectangle::behind(front, user.axis, length, profile.width).bounds();
+            return bounds.grown(TOLERANCE + beside).into();
         }
         let centre = user.front - user.axis * (profile.length / 2.0);
         let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();

@@ -119,8 +119,7 @@ struct User {
     index: UserIndex,
     profile: ProfileIndex,
     category: Category,
-    moves: bool,
-    /// Whether it can only go straight on: no lanes, no arc.
+    /// Whether it goes straight on until it stands: it has no lanes and no arc, or its lane leads straight on.
     ahead: bool,
     on_lanes: bool,
 }
@@ -349,7 +348,8 @@ impl Detector {
     }
 
     fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Sight<'a> {
-        Sight { frame, roster, turns: self.turns(), on_lanes: &self.on_lanes }
+        let (turns, epsilon) = (self.turns(), self.options.epsilon);
+        Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths }
     }
 
     fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {

@@ -131,6 +131,19 @@ impl Track {
         false
     }
 
+    /// Whether a road user of this length and heading drives straight on for so long, along the part of the line that it
+    /// is on now; `false` also where that takes looking further ahead to know.
+    pub fn goes_straight(&self, axis: &Vector, length: Metre, way: Metre) -> bool {
+        let Segment { direction, length: whole, way: begin, .. } = &self.under;
+        self.front - length >= *begin && self.front + way <= begin + whole && turns_less(direction, axis, SAME_HEADING)
+    }
+
+    /// How far the way of who goes straight, so long as this, lies at most beside where it heads: as far as it may be off
+    /// the line now and as its heading takes it, and twice that, for rounding.
+    pub fn beside_heading(way: Metre) -> Metre {
+        2.0 * (ON_THE_LINE + SAME_HEADING * way)
+    }
+
     /// Drops the points that lie further behind the front bumper than `behind`, but the last of them; returns how many.
     /// All ways stay as they are.
     pub fn drop_behind(&mut self, behind: Metre) -> usize {
@@ -345,6 +358,15 @@ mod tests {
             assert!((pose.front - on_line(8.0 + pose.way)).norm() < 1e-9);
             assert!((pose.axis - chord.normalize()).norm() < 1e-9, "{pose:?}");
         }
+    }
+
+    #[test]
+    fn it_goes_straight_as_long_as_front_and_rear_are_on_one_part_of_the_line() {
+        let corner = |front: f64| track(&[(0.0, 0.0), (30.0, 0.0), (30.0, 20.0)], front);
+        assert!(corner(8.0).goes_straight(&Vector::x(), 5.0, 22.0));
+        assert!(!corner(8.0).goes_straight(&Vector::x(), 5.0, 22.1), "the front comes round the corner");
+        assert!(!corner(33.0).goes_straight(&Vector::y(), 5.0, 1.0), "the rear does");
+        assert!(!corner(8.0).goes_straight(&rotated(&Vector::x(), 1e-5), 5.0, 1.0), "it changes lanes");
     }
 
     #[test]
