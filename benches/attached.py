@@ -66,7 +66,7 @@ def in_turns(*commands: list[str]) -> list[float]:
 def main() -> None:
     """Print one line per scenario and way to run it."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--runs", type=int, default=9)
     runs = parser.parse_args().runs
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory() as name:
