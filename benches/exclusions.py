@@ -56,6 +56,11 @@ def main() -> None:
             for keep, least in best.items():
                 method = f"keep {keep}" if keep else "closecall"
                 print(f"kept,{scene},{method},{ends[scene]:.0f},{least:.0f},ns per road user", flush=True)
+                if keep:
+                    print(
+                        f"longer,{scene},{method},{ends[scene]:.0f},{least / best[None]:.4f},times closecall",
+                        flush=True,
+                    )
 
 
 if __name__ == "__main__":

@@ -87,11 +87,9 @@ def steps(method: str, *sizes: int) -> Callable[[Lines], dict[str, float]]:
 def saving(lines: Lines, exclusion: str) -> dict[str, float]:
     """How many times longer what closecall does in a step takes where this is not left out, the largest first."""
     kept = {
-        row["scene"]: lines.longer(row["scene"], row["method"], int(row["size"]))
-        if row["what"] == "step"
-        else float(row["value"]) / lines("kept", row["scene"], "closecall")
+        row["scene"]: float(row["value"])
         for row in lines.rows
-        if row["method"] == f"keep {exclusion}" and row["what"] in ("step", "kept")
+        if (row["what"], row["method"]) == ("longer", f"keep {exclusion}")
     }
     if not kept:
         raise LookupError(exclusion)
