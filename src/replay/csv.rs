@@ -108,11 +108,8 @@ impl CsvRecording {
                 }
             };
             let plain = Values { line, ends: &self.ends };
-            let time_text = match &quoted {
-                Some(values) => values.get(self.time),
-                None => plain.get(self.time),
-            };
-            let time_text = time_text.unwrap_or_default();
+            let value = |place: usize| quoted.as_ref().map_or_else(|| plain.get(place), |values| values.get(place));
+            let time_text = value(self.time).unwrap_or_default();
             if !begun || time_text != self.time_text {
                 let time = number(time_text);
                 let said = || format!("timestep_time is \"{}\"", String::from_utf8_lossy(time_text));
@@ -129,11 +126,7 @@ impl CsvRecording {
                 self.time_text.extend_from_slice(time_text);
             }
             let mut fields = self.extent.fields();
-            let set = match &quoted {
-                Some(values) => set(&mut fields, &self.columns, |place| values.get(place)),
-                None => set(&mut fields, &self.columns, |place| plain.get(place)),
-            };
-            set.map_err(wrong)?;
+            set(&mut fields, &self.columns, value).map_err(wrong)?;
             if self.shared {
                 fields.tell_apart();
             }
