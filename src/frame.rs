@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile};
-use crate::table::make_room;
+use crate::table::{self, make_room};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 use crate::{Error, Result};
 
@@ -167,6 +167,16 @@ pub struct State {
     pub speed: MetrePerSecond,
 }
 
+impl State {
+    /// No state: of who is no road user in this step.
+    pub const NOWHERE: Self = Self { x: f64::NAN, y: f64::NAN, z: f64::NAN, heading: f64::NAN, speed: f64::NAN };
+
+    fn is_valid(&self) -> bool {
+        let Self { x, y, z, heading, speed } = *self;
+        (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0
+    }
+}
+
 /// A road user in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
@@ -194,13 +204,41 @@ impl Frame {
     /// Adds a road user's row. What has no valid position (SUMO's invalid value, NaN, infinities) or no valid
     /// speed is no road user in this step: it is left out, and `false` returned.
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
-        let State { x, y, z, heading, speed } = state;
-        let valid = (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0;
+        let valid = state.is_valid();
         if valid {
             make_room(&mut self.rows, 1);
             self.rows.push(Row { user, state });
         }
         valid
+    }
+
+    /// Adds a row for each of so many road users. `fill` is given them all, [`State::NOWHERE`], and may fill them in any
+    /// order; who then still is no road user in this step, as [`Frame::push`] has it, is left out, and `kept` is told the
+    /// places of the others.
+    ///
+    /// # Errors
+    /// That of `fill`; nobody is added then.
+    pub fn extend<E>(
+        &mut self,
+        users: usize,
+        fill: impl FnOnce(&mut [Row]) -> std::result::Result<(), E>,
+        mut kept: impl FnMut(usize),
+    ) -> std::result::Result<(), E> {
+        let (first, nowhere) = (self.rows.len(), Row { user: UserIndex(0), state: State::NOWHERE });
+        table::fill(&mut self.rows, first + users, nowhere);
+        let filled = fill(&mut self.rows[first..]);
+        let mut end = first;
+        if filled.is_ok() {
+            for place in 0..users {
+                if self.rows[first + place].state.is_valid() {
+                    self.rows.swap(end, first + place);
+                    end += 1;
+                    kept(place);
+                }
+            }
+        }
+        self.rows.truncate(end);
+        filled
     }
 
     /// Number of rows.
@@ -226,5 +264,43 @@ impl Frame {
     /// The state in a row.
     pub fn state(&self, row: u32) -> &State {
         &self.rows[row as usize].state
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HERE: State = State { x: 1.0, y: 2.0, z: 0.0, heading: 0.5, speed: 3.0 };
+
+    fn row(user: u32) -> Row {
+        Row { user: UserIndex(user), state: HERE }
+    }
+
+    #[test]
+    fn rows_filled_in_any_order_stand_in_their_own_without_those_who_are_nowhere() {
+        let (mut frame, mut kept) = (Frame::default(), Vec::new());
+        frame.push(UserIndex(7), HERE);
+        let fill = |rows: &mut [Row]| {
+            rows[3] = row(3);
+            rows[0] = Row { state: State { speed: -1.0, ..HERE }, ..row(0) };
+            rows[1] = row(1);
+            Ok::<(), ()>(())
+        };
+        assert_eq!(frame.extend(4, fill, |place| kept.push(place)), Ok(()));
+        assert_eq!(frame.rows(), [7, 1, 3].map(row));
+        assert_eq!(kept, [1, 3]);
+    }
+
+    #[test]
+    fn nobody_is_added_where_filling_fails() {
+        let mut frame = Frame::default();
+        frame.push(UserIndex(7), HERE);
+        let fill = |rows: &mut [Row]| {
+            rows[0] = row(0);
+            Err("gone")
+        };
+        assert_eq!(frame.extend(2, fill, |place| panic!("{place} is kept")), Err("gone"));
+        assert_eq!(frame.rows(), [row(7)]);
     }
 }
