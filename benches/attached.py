@@ -34,8 +34,9 @@ class Stopped:
         self.seconds = 0.0
         self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         self.process.send_signal(signal.SIGSTOP)
+        self.descriptor = os.pidfd_open(self.process.pid)
         self.end = select.poll()
-        self.end.register(os.pidfd_open(self.process.pid))
+        self.end.register(self.descriptor)
 
     def run(self) -> bool:
         """Let it run for a slice; whether there is more to do."""
@@ -49,6 +50,12 @@ class Stopped:
             sys.exit(f"{self.process.args!r}: exit status {self.process.returncode}")
         return not has_ended
 
+    def close(self) -> None:
+        """Kill it if it has not ended."""
+        self.process.kill()
+        self.process.wait()
+        os.close(self.descriptor)
+
 
 def in_turns(*commands: list[str]) -> list[float]:
     """Wall time of each of these, slice after slice until all have ended."""
@@ -59,7 +66,7 @@ def in_turns(*commands: list[str]) -> list[float]:
             running = [each for each in running if each.run()]
     finally:
         for each in processes:
-            each.process.kill()
+            each.close()
     return [each.seconds for each in processes]
 
 
