@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile};
-use crate::table::{self, make_room};
+use crate::table::{self, add};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 use crate::{Error, Result};
 
@@ -25,21 +25,14 @@ pub struct UserIndex(pub u32);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ProfileIndex(pub u32);
 
-/// One road user's unchanging part.
-#[derive(Clone, Debug)]
-pub struct RoadUser {
-    /// SUMO's id.
-    pub id: Arc<str>,
-    /// The shape of an obstacle, in convex parts; empty for all others.
-    pub shape: Arc<[Polygon]>,
-}
-
 /// Everybody in the scene, by [`UserIndex`].
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
-    users: Vec<RoadUser>,
-    /// Their types, apart from them: these are looked at in every step.
+    /// SUMO's.
+    ids: Vec<Arc<str>>,
     types: Vec<ProfileIndex>,
+    /// Those of obstacles, in convex parts.
+    shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
     profiles: Vec<Profile>,
     free: Vec<u32>,
     by_name: FxHashMap<String, ProfileIndex>,
@@ -94,36 +87,41 @@ impl Roster {
 
     /// Takes a road user into the scene.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
-        self.enter_shaped(id, profile, Arc::default())
-    }
-
-    /// Takes an obstacle with a polygon for a shape into the scene.
-    pub fn enter_shaped(&mut self, id: &str, profile: ProfileIndex, shape: Arc<[Polygon]>) -> UserIndex {
-        let user = RoadUser { id: id.into(), shape };
         match self.free.pop() {
             Some(index) => {
-                self.users[index as usize] = user;
+                self.ids[index as usize] = id.into();
                 self.types[index as usize] = profile;
                 UserIndex(index)
             }
             None => {
-                make_room(&mut self.users, 1);
-                make_room(&mut self.types, 1);
-                self.users.push(user);
-                self.types.push(profile);
-                UserIndex(self.users.len() as u32 - 1)
+                add(&mut self.ids, id.into());
+                add(&mut self.types, profile);
+                UserIndex(self.ids.len() as u32 - 1)
             }
         }
     }
 
+    /// Takes an obstacle with a polygon for a shape into the scene.
+    pub fn enter_shaped(&mut self, id: &str, profile: ProfileIndex, shape: Arc<[Polygon]>) -> UserIndex {
+        let user = self.enter(id, profile);
+        self.shapes.insert(user, shape);
+        user
+    }
+
     /// Lets a road user leave; its index may be given to another from now on.
     pub fn leave(&mut self, user: UserIndex) {
+        self.shapes.remove(&user);
         self.free.push(user.0);
     }
 
-    /// Who this is.
-    pub fn user(&self, user: UserIndex) -> &RoadUser {
-        &self.users[user.0 as usize]
+    /// SUMO's id of this road user.
+    pub fn id(&self, user: UserIndex) -> &Arc<str> {
+        &self.ids[user.0 as usize]
+    }
+
+    /// The shape of an obstacle, in convex parts; empty for all others.
+    pub fn shape(&self, user: UserIndex) -> &[Polygon] {
+        self.shapes.get(&user).map_or(&[], |shape| &**shape)
     }
 
     /// Which type this road user has.
@@ -143,12 +141,12 @@ impl Roster {
 
     /// The number of indices in use or free: one more than the largest [`UserIndex`].
     pub fn len(&self) -> usize {
-        self.users.len()
+        self.ids.len()
     }
 
     /// Whether nobody was ever in the scene.
     pub fn is_empty(&self) -> bool {
-        self.users.is_empty()
+        self.ids.is_empty()
     }
 }
 
@@ -206,8 +204,7 @@ impl Frame {
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
         let valid = state.is_valid();
         if valid {
-            make_room(&mut self.rows, 1);
-            self.rows.push(Row { user, state });
+            add(&mut self.rows, Row { user, state });
         }
         valid
     }

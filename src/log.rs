@@ -167,8 +167,8 @@ impl Log {
             let Some(near) = &found.nearness else { continue };
             table.row(&[
                 Cell::Number(time),
-                Cell::Text(&roster.user(found.ego).id),
-                Cell::Text(&roster.user(found.foe).id),
+                Cell::Text(roster.id(found.ego)),
+                Cell::Text(roster.id(found.foe)),
                 Cell::Text(found.kind.name()),
                 Cell::Number(found.gap),
                 Cell::Number(found.mu),

@@ -56,7 +56,7 @@ fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) 
     detector.follow(&frame, &roster);
     detector.approach(&frame, &roster);
     let found = detector.detect(&roster).copied().collect::<Vec<_>>();
-    found.into_iter().map(|found| (found, roster.user(found.ego).id.to_string())).collect()
+    found.into_iter().map(|found| (found, roster.id(found.ego).to_string())).collect()
 }
 
 const WEST: f64 = std::f64::consts::PI;

@@ -80,7 +80,7 @@ impl Painter {
             Category::Person => "person",
             Category::Obstacle => return Ok(()),
         };
-        let id = roster.user(user).id.to_string();
+        let id = roster.id(user).to_string();
         let domain = self.source.bind(py).getattr(name)?;
         let known = self.painted.get(&user).map(|painted| (painted.severity, painted.kind));
         if known == Some((severity, kind)) {

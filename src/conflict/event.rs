@@ -101,8 +101,8 @@ pub(super) fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Confl
     let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
     let near = found.nearness.as_ref();
     Conflict {
-        ego: roster.user(found.ego).id.clone(),
-        foe: roster.user(found.foe).id.clone(),
+        ego: roster.id(found.ego).clone(),
+        foe: roster.id(found.foe).clone(),
         ego_profile: roster.type_of(found.ego),
         foe_profile: roster.type_of(found.foe),
         kind: found.kind,

@@ -266,7 +266,7 @@ impl<'a> Reach<'a> {
         let (profile, reach) = (self.roster.profile_at(user.profile), user.stop + self.epsilon);
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;
-            self.roster.user(user.index).shape.iter().for_each(|part| bounds.join(&part.bounds));
+            self.roster.shape(user.index).iter().for_each(|part| bounds.join(&part.bounds));
             return bounds.into();
         }
         if user.ahead && self.has_boxes {

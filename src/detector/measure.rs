@@ -99,7 +99,7 @@ impl Scene<'_> {
         };
         let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
         if self.is_obstacle(met.slots[1]) {
-            let shape = &self.roster.user(encounter.foe).shape;
+            let shape = self.roster.shape(encounter.foe);
             approach::time_to_fixed(&mut scratch.halves, &ego, shape)
         } else {
             approach::time_to_collision(&ego, &foe)

@@ -78,7 +78,7 @@ impl Scene<'_> {
         let slots = if self.is_obstacle(a) { [b, a] } else { slots };
         let first = ways.mover(self, slots[0]);
         let second = ways.mover(self, slots[1]);
-        let id = |slot: u32| &self.roster.user(self.user(slot).index).id;
+        let id = |slot: u32| self.roster.id(self.user(slot).index);
         let a_is_smaller = || id(slots[0]) <= id(slots[1]);
         if side::touch_now(&first, &second) {
             let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), slots, [&first, &second]);

@@ -85,7 +85,7 @@ impl Trajectories {
             if profile.category != Category::Vehicle {
                 continue;
             }
-            let id = &roster.user(*user).id;
+            let id = roster.id(*user);
             let slot = &mut self.known[user.0 as usize];
             // An index may have been given to another vehicle meanwhile.
             let before = slot.take().filter(|known| Arc::ptr_eq(&known.id, id));

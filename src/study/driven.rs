@@ -49,7 +49,7 @@ pub(super) type Pair = (Arc<str>, Arc<str>);
 
 /// The pair of two road users.
 pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> Pair {
-    let (a, b) = (roster.user(a).id.clone(), roster.user(b).id.clone());
+    let (a, b) = (roster.id(a).clone(), roster.id(b).clone());
     if a <= b { (a, b) } else { (b, a) }
 }
 
@@ -89,7 +89,7 @@ impl Driven {
             let profile = roster.profile_of(row.user);
             let beyond = profile.length + profile.width + 30.0;
             let reach = [*stop, stop + options.epsilon, stop + options.epsilon + beyond];
-            self.ahead(&roster.user(row.user).id, frame.time, &reach)
+            self.ahead(roster.id(row.user), frame.time, &reach)
         });
         let ways = ways.collect::<Vec<_>>();
         let judged = pairs.into_iter().filter(|(a, b)| {

@@ -121,7 +121,7 @@ impl Libsumo {
         self.last_time = Some(time);
         let entered = self.vehicles.update(py, run, jumped, |run, name| self.types.vehicle(py, run, name))?;
         for live in &self.vehicles.live[entered] {
-            let id = &run.roster.user(live.user).id;
+            let id = run.roster.id(live.user);
             if run.has_fixed_routes() && self.may_reroute(py, id)? {
                 run.routes_may_change();
             }
@@ -144,7 +144,7 @@ impl Libsumo {
         if jumped {
             let is_parked = py.import("libsumo")?.getattr("vehicle")?.getattr("isStoppedParking")?;
             for live in &mut self.vehicles.live {
-                let id = &*run.roster.user(live.user).id;
+                let id: &str = run.roster.id(live.user);
                 live.parked = is_parked.call1((id,))?.extract()?;
             }
         }
@@ -170,7 +170,7 @@ impl Libsumo {
             let Some(&live) = self.vehicles.rows.get(place as usize) else { continue };
             let live = &mut self.vehicles.live[live as usize];
             let Some(net) = run.net() else { return Ok(()) };
-            let id = &*run.roster.user(live.user).id;
+            let id: &str = run.roster.id(live.user);
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1((id,));
             let keeps_route = live.route.as_ref().is_some_and(|route| match &route.id {
                 Some(known) => self.vehicles.getters.has_route(id, known),
@@ -214,7 +214,7 @@ impl Domain {
         if jumped {
             let now = self.ids.bind(py).call0()?;
             let gone = (0..self.live.len())
-                .filter(|&place| !now.contains(&*run.roster.user(self.live[place].user).id).unwrap_or(false))
+                .filter(|&place| !now.contains(&**run.roster.id(self.live[place].user)).unwrap_or(false))
                 .collect::<Vec<_>>();
             for place in gone.into_iter().rev() {
                 self.remove(run, place);
@@ -262,7 +262,7 @@ impl Domain {
 
     fn remove(&mut self, run: &mut Run, place: usize) {
         let last = self.live.len() - 1;
-        let rank = |place: usize| self.rank(&run.roster, &run.roster.user(self.live[place].user).id);
+        let rank = |place: usize| self.rank(&run.roster, run.roster.id(self.live[place].user));
         if let (Ok(own), Ok(of_last)) = (rank(place), rank(last)) {
             self.by_id[of_last] = place as u32;
             self.by_id.remove(own);
@@ -277,7 +277,7 @@ impl Domain {
 
     /// Where an id is in the order of all; the error is where it would be.
     fn rank(&self, roster: &Roster, id: &str) -> Result<usize, usize> {
-        self.by_id.binary_search_by(|&place| (*roster.user(self.live[place as usize].user).id).cmp(id))
+        self.by_id.binary_search_by(|&place| (**roster.id(self.live[place as usize].user)).cmp(id))
     }
 
     /// Everybody's state into the run's frame.
@@ -289,7 +289,7 @@ impl Domain {
         let fill = |states: &mut [Row]| {
             for &place in &*by_id {
                 let Live { user, parked, .. } = live[place as usize];
-                if !parked && let Some(state) = getters.state(py, &roster.user(user).id)? {
+                if !parked && let Some(state) = getters.state(py, roster.id(user))? {
                     states[place as usize] = Row { user, state };
                 }
             }
