@@ -20,6 +20,8 @@ pub struct RunRecord {
     pub seed: Option<String>,
     /// Length of a step in s.
     pub step_length: Option<Second>,
+    /// Whether road users may move to the side without changing lanes (SUMO's sublane model).
+    pub sublane: bool,
     /// The options.
     pub options: Options,
     /// Words for SUMO, after the program's name.

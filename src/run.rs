@@ -110,6 +110,11 @@ impl Run {
         self.detector.set_sublane(true);
     }
 
+    /// Whether they may.
+    pub fn sublane(&self) -> bool {
+        self.detector.sublane()
+    }
+
     /// Whether no road user's route changes while it is in the scene.
     pub fn has_fixed_routes(&self) -> bool {
         self.detector.has_fixed_routes()

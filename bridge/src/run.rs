@@ -213,6 +213,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
         scenario: request.scenario.clone(),
         seed: pull::option(sumo, "seed").ok(),
         step_length: Some(step_length),
+        sublane: run.sublane(),
         options: request.options.clone(),
         sumo_words: request.sumo_words.clone(),
         inputs: files.all.iter().map(|path| Input::of(path)).collect::<Result<_>>()?,

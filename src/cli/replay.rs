@@ -68,6 +68,7 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
         scenario: recording.clone(),
         seed: None,
         step_length: None,
+        sublane: arguments.sublane,
         options,
         sumo_words: Vec::new(),
         inputs: files.map(|path| Input::of(&path)).collect::<Result<_>>()?,

@@ -245,6 +245,11 @@ impl Detector {
         self.sublane = sublane;
     }
 
+    /// Whether they may.
+    pub fn sublane(&self) -> bool {
+        self.sublane
+    }
+
     /// Says that encounters which are no conflict may be left out of what [`Detector::detect`] finds.
     pub fn set_conflicts_only(&mut self, only: bool) {
         self.conflicts_only = only;

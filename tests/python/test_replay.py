@@ -62,6 +62,8 @@ def test_a_replay_finds_what_the_live_run_finds(
     live = rows(config.parent / "live" / "conflicts.csv")
     assert len(live) > conflicts
     same(live, rows(tmp_path / "conflicts.csv"))
+    for log in (config.parent / "live", tmp_path):
+        assert json.loads((log / "run.json").read_text())["sublane"] is ("--sublane" in words)
 
 
 RIDE = """<routes>
