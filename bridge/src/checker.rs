@@ -26,7 +26,8 @@ use crate::pull::{self, Source};
 ///     **options: what the command line has as long options, with underscores: `mu="at-rest"`, `epsilon=1.0`.
 ///
 /// Raises:
-///     ValueError: an unknown option or one out of its range, a net that cannot be used; the message says which.
+///     ValueError: an unknown option or one out of its range, a net that cannot be used, a mesoscopic simulation; the
+///         message says which.
 ///     OSError: a file or folder that cannot be read or written.
 #[pyclass(subclass, module = "closecall._closecall", name = "Checker")]
 pub struct Checker {
@@ -59,9 +60,6 @@ impl Checker {
             (None, None) => None,
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
-        if let Some(folder) = out {
-            run.log_to(Log::create(&folder, options.log_encounters).map_err(exception)?, true);
-        }
         let input = match source {
             Some(source) => {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
@@ -69,6 +67,9 @@ impl Checker {
             }
             None => Input::Frames(Box::new(Frames::new(&options))),
         };
+        if let Some(folder) = out {
+            run.log_to(Log::create(&folder, options.log_encounters).map_err(exception)?, true);
+        }
         let painter = match (source, paint) {
             (Some(source), None) if has_gui(source) => Some(Painter::new(source)),
             (Some(source), Some(true)) => Some(Painter::new(source)),

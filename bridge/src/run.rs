@@ -192,7 +192,14 @@ impl Spent {
 }
 
 fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
-    let said = |error: PyErr| Error::Refused { path: request.scenario.clone(), message: message(sumo.py(), &error) };
+    let said = |error: PyErr| {
+        let (py, path) = (sumo.py(), &request.scenario);
+        match error.is_instance_of::<PyValueError>(py) {
+            // That is what the bridge itself refuses.
+            true => Error::content(path, message(py, &error)),
+            false => Error::Refused { path: path.clone(), message: message(py, &error) },
+        }
+    };
     let files = files(sumo, request).map_err(said)?;
     for path in &files.checked {
         inputs::check_xml(path)?;
@@ -348,7 +355,7 @@ impl Session<'_, '_> {
             return Error::Interrupted { time };
         }
         if error.is_instance_of::<PyValueError>(py) {
-            // The one thing that the bridge itself refuses: a type with impossible dimensions.
+            // The one thing that the bridge itself refuses in mid-run: a type with impossible dimensions.
             return Error::Value(message(py, error));
         }
         Error::Failed { time, message: message(py, error) }

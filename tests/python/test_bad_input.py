@@ -41,6 +41,10 @@ def test_a_malformed_configuration(scenario: Copy) -> None:
     refused(config, names=r"rear_end\.sumocfg")
 
 
+def test_a_mesoscopic_simulation(scenario: Copy) -> None:
+    refused(scenario("rear_end"), "--", "--mesosim", names=r"rear_end\.sumocfg: mesosim: .* needs the microscopic one")
+
+
 def test_a_missing_net(scenario: Copy) -> None:
     config = scenario("rear_end")
     (config.parent / "rear_end.net.xml").unlink()

@@ -9,6 +9,7 @@ mod traci;
 
 use closecall::options::Options;
 use closecall::run::Run;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 pub use sumo::{add_obstacles, net_of, option};
@@ -26,8 +27,13 @@ pub enum Source {
 
 impl Source {
     /// The source that a Python object is: the module libsumo, the module traci or one of traci's connections; the
-    /// run is told what the simulation says of itself.
+    /// run is told what the simulation says of itself. A mesoscopic one is refused: all of a queue are in one place there.
     pub fn new(source: &Bound<PyAny>, run: &mut Run, options: &Options) -> PyResult<Self> {
+        if option(source, "mesosim")? == "true" {
+            let message = "mesosim: the mesoscopic model says of a queue where it is, not of each road user in it; \
+                           closecall needs the microscopic one";
+            return Err(PyValueError::new_err(message));
+        }
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
             run.has_sublanes();
         }
