@@ -1,6 +1,8 @@
 """What the checker costs an attached run: plain SUMO, SUMO with the checker, SUMO with its own device.ssm.
 
-    python benches/attached.py [--runs N]
+    python benches/attached.py [--runs N] [CONFIG ...]
+
+On the bench's own simulations, or on those of these configurations, until 600 s.
 
 Whole processes, start-up included. Each is compared with a plain run beside it: in slices of 50 ms one of the two runs
 while the other is stopped, so that what slows the machine down slows both. The figure is the median of the runs;
@@ -74,11 +76,16 @@ def main() -> None:
     """Print one line per scenario and way to run it."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=9)
-    runs = parser.parse_args().runs
+    parser.add_argument(
+        "configs", metavar="CONFIG", nargs="*", type=Path, help="SUMO configurations to measure instead"
+    )
+    options = parser.parse_args()
+    runs = options.runs
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for scene, config in scenarios(folder).items():
+        own = {str(config): config for config in options.configs}
+        for scene, config in (own or scenarios(folder)).items():
             ways = {
                 "closecall": (attached(config, folder / "out"), runs),
                 "device.ssm": (ssm(config, folder / "ssm.xml"), 1),
