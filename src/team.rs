@@ -4,7 +4,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 /// A part with fewer road users than this is not worth waking a thread for: of 5,000 in a jam two threads save a tenth of
 /// the step, of 5,000 in platoons two fifths.
-const WORTH_A_THREAD: usize = 2000;
+const LEAST_SHARE: usize = 2000;
 
 /// The caller's thread and those that help it.
 ///
@@ -30,7 +30,7 @@ impl Team {
 
     /// How many items each thread gets, of so many.
     pub fn share(&self, count: usize) -> usize {
-        count.div_ceil(self.threads()).max(WORTH_A_THREAD)
+        count.div_ceil(self.threads()).max(LEAST_SHARE)
     }
 
     /// Each part of the work by a worker of its own; the first is the caller's thread's.
