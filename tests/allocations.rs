@@ -7,7 +7,7 @@ mod counting;
 
 use closecall::detector::Detector;
 use closecall::frame::{Frame, Roster, State, UserIndex};
-use closecall::options::Options;
+use closecall::options::{Options, PathModel};
 
 /// Four lanes of cars that close up and spread again; every tenth crosses.
 fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
@@ -21,12 +21,23 @@ fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
     }
 }
 
-#[test]
-fn a_warm_detector_allocates_nothing() {
+/// Rings of cars that drive round and round, each ring through its neighbours, all as fast.
+fn round_step(frame: &mut Frame, users: &[UserIndex], number: u32) {
+    const ROUND: f64 = 20.0;
+    frame.begin(f64::from(number) * 0.1);
+    for (place, &user) in users.iter().enumerate() {
+        let (ring, place) = ((place / 10) as f64, (place % 10) as f64);
+        let angle = (f64::from(number) / ROUND + place / 10.0) * std::f64::consts::TAU;
+        let (x, y) = (30.0 * ring + 20.0 * angle.cos(), 20.0 * angle.sin());
+        frame.push(user, State { x, y, z: 0.0, heading: angle + std::f64::consts::FRAC_PI_2, speed: 8.0 });
+    }
+}
+
+fn assert_warm_allocates_nothing(options: &Options, step: impl Fn(&mut Frame, &[UserIndex], u32)) {
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::stress::car()).unwrap();
     let users = (0..1000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
-    let mut detector = Detector::new(&Options::default(), None);
+    let mut detector = Detector::new(options, None);
     let mut frame = Frame::default();
     let (mut before, mut found) = (0, 0);
     // One round to get warm, then the same one again.
@@ -41,4 +52,10 @@ fn a_warm_detector_allocates_nothing() {
     }
     assert!(found > 1000, "{found}");
     assert_eq!(counting::allocations() - before, 0);
+}
+
+#[test]
+fn a_warm_detector_allocates_nothing() {
+    assert_warm_allocates_nothing(&Options::default(), step);
+    assert_warm_allocates_nothing(&Options { path: PathModel::Arc, ..Options::default() }, round_step);
 }
