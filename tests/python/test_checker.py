@@ -48,6 +48,26 @@ def test_a_listener_finds_with_libsumo_and_traci_what_the_command_finds(scenario
     assert {(row["ego"], row["foe"], row["kind"]) for row in logged} == {tuple(row[:3]) for row in with_libsumo}
 
 
+MESOSCOPIC = """
+import sys
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--mesosim", "--no-warnings"])
+try:
+    closecall.Checker(sumo, out=sys.argv[2])
+except ValueError as error:
+    print(error)
+sumo.close()
+"""
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_a_mesoscopic_simulation_is_refused_before_there_is_a_log(module: str, scenario: Copy, tmp_path: Path) -> None:
+    done = python(MESOSCOPIC.replace("{module}", module), scenario("rear_end"), tmp_path / "out")
+    assert "needs the microscopic one" in done.stdout, (done.stdout, done.stderr)
+    assert not (tmp_path / "out").exists()
+
+
 CAR = {"id": ["a", "b"], "heading": [0.0, 0.0], "speed": [20.0, 5.0], "y": [0.0, 0.0]}
 
 
