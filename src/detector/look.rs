@@ -184,7 +184,7 @@ impl Sight<'_> {
             category: profile.category,
             ahead: match self.turns {
                 Turns::Not => true,
-                Turns::ByArcs => false,
+                Turns::ByArcs => profile.category == Category::Obstacle,
                 Turns::ByLanes if on_lanes => path().goes_straight(&axis, profile.chord, stop + self.epsilon),
                 Turns::ByLanes => !moves || profile.category != Category::Vehicle,
             },

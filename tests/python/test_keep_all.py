@@ -28,10 +28,11 @@ def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dic
     return {name: (out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")}, record
 
 
+@pytest.mark.parametrize("path", ["lanes", "arc"])
 @pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
-def test_leaving_out_changes_no_result(config: Path, tmp_path: Path) -> None:
-    log, record = checked(config, tmp_path / "left_out")
-    whole_log, whole_record = checked(config, tmp_path / "kept", "--keep-all")
+def test_leaving_out_changes_no_result(config: Path, path: str, tmp_path: Path) -> None:
+    log, record = checked(config, tmp_path / "left_out", "--path", path)
+    whole_log, whole_record = checked(config, tmp_path / "kept", "--path", path, "--keep-all")
     assert log == whole_log
     left_out, kept = record.pop("left_out"), whole_record.pop("left_out")
     assert record == whole_record
