@@ -1,9 +1,9 @@
 //! Phase 1, pre-collision ("radar"): which pairs are near enough that they might meet.
 //!
 //! The paper (eq. 4) tests the distance to every other vehicle against the ego's detection radius. Here each road
-//! user has an area that holds everything it may cover until it stands: a circle around its centre, wherever its way
-//! turns, or, where it goes straight on, the box around that. A pair is kept where two areas meet, so no pair
-//! that is an encounter is dropped.
+//! user has an area that holds everything it may cover until it stands: where its way is known, straight on or along its
+//! lanes, the box around that, else a circle around its centre. A pair is kept where two areas meet, so no pair that is
+//! an encounter is dropped.
 //!
 //! Which areas to compare: their boxes are sorted into strips along x, each as high as the highest of them, and within
 //! a strip by x. From every box the sweep looks ahead in its own strip and to both sides in the next (sweep and prune,

@@ -174,26 +174,7 @@ pub fn meet(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(b
     if drive_in_line(a, b) {
         meet_in_one_dimension(a, b, a_is_smaller)
     } else {
-        meet_swept(&mut Halves::default(), a, b, false, a_is_smaller)
-    }
-}
-
-/// The same by sweeping both rectangles: two that drive in line meet in the same place then.
-pub fn meet_swept(
-    halves: &mut Halves,
-    a: &Mover,
-    b: &Mover,
-    in_line: bool,
-    a_is_smaller: &impl Fn() -> bool,
-) -> Option<(bool, Meeting)> {
-    match side::meet(halves, a, b, in_line) {
-        [None, None] => None,
-        [Some(as_a), Some(as_b)] => {
-            let a_is_ego = as_a.ego_way > as_b.ego_way || (as_a.ego_way == as_b.ego_way && a_is_smaller());
-            Some(if a_is_ego { (true, as_a) } else { (false, as_b) })
-        }
-        [Some(as_a), None] => Some((true, as_a)),
-        [None, Some(as_b)] => Some((false, as_b)),
+        side::meet(&mut Halves::default(), a, b, false, a_is_smaller)
     }
 }
 

@@ -47,6 +47,7 @@ impl Detector {
 
     /// Phase 1: which pairs may meet.
     pub fn approach(&mut self, frame: &Frame, roster: &Roster) {
+        self.lengthen_all(frame, roster);
         self.look(frame, roster);
         if self.turns() == Turns::ByArcs {
             fill(&mut self.turnings, self.paths.len(), Turning::default());
@@ -72,7 +73,7 @@ impl Detector {
     fn look(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths };
-        let reach = Reach::new(roster, &self.options, self.leaves_out);
+        let reach = Reach::new(roster, &self.options, self.leaves_out, &self.paths);
         fill(&mut self.users, frame.len(), User::NOBODY);
         self.search.lay(
             &mut self.users,
@@ -249,14 +250,15 @@ fn all_pairs(count: usize) -> u64 {
 #[derive(Clone, Copy)]
 pub(super) struct Reach<'a> {
     roster: &'a Roster,
+    paths: &'a [LanePath],
     epsilon: Metre,
-    /// Whether who goes straight on has a box around that.
+    /// Whether whose way is known has a box around that.
     has_boxes: bool,
 }
 
 impl<'a> Reach<'a> {
-    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions) -> Self {
-        Self { roster, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart }
+    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: &'a [LanePath]) -> Self {
+        Self { roster, paths, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart }
     }
 
     /// What somebody may cover until it stands, and ε further.
@@ -274,6 +276,11 @@ impl<'a> Reach<'a> {
             let beside = if user.on_lanes { Track::beside_heading(length) } else { 0.0 };
             let bounds = Rectangle::behind(front, user.axis, length, profile.width).bounds();
             return bounds.grown(TOLERANCE + beside).into();
+        }
+        if user.on_lanes && self.has_boxes {
+            // Its front is on the line ahead, the rest of it nowhere further from there than that.
+            let behind = profile.length + profile.width / 2.0;
+            return self.paths[user.index.0 as usize].track.bounds_ahead(reach).grown(TOLERANCE + behind).into();
         }
         let centre = user.front - user.axis * (profile.length / 2.0);
         let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();

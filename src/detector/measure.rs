@@ -40,7 +40,7 @@ impl Scene<'_> {
     }
 
     /// The way that holds the one at which the foe is out of the way.
-    fn furthest_way_out(&self, foe: &User, meeting: &Meeting) -> Metre {
+    pub(super) fn furthest_way_out(&self, foe: &User, meeting: &Meeting) -> Metre {
         let profile = self.profile(foe);
         // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
         meeting.foe_way + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width

@@ -8,6 +8,7 @@ use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
 use crate::geometry::rectangle;
+use crate::geometry::sweep::TOLERANCE;
 use crate::options::Mode;
 use crate::table::add;
 use crate::units::{Metre, Radian};
@@ -68,10 +69,15 @@ impl Scene<'_> {
         ways.begin_pair();
         slots.iter().for_each(|slot| ways.see(self, *slot));
         let [a, b] = slots;
+        let both_ahead = self.user(a).ahead && self.user(b).ahead;
         // Of two that can only go straight on phase 1 has compared the boxes.
-        let is_known = self.leaves_out.circles_apart && self.user(a).ahead && self.user(b).ahead;
+        let is_known = self.leaves_out.circles_apart && both_ahead;
         if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
             work.ways_apart += 1;
+            return;
+        }
+        // Which the sweep needs anyway, if not both drive in line.
+        if !both_ahead && self.are_apart(ways, work, slots) {
             return;
         }
         // An obstacle is nobody's ego.
@@ -94,18 +100,25 @@ impl Scene<'_> {
             }
             return;
         }
-        slots.iter().for_each(|slot| ways.cover(self, *slot));
-        let first = ways.covered(self, slots[0]);
-        let second = ways.covered(self, slots[1]);
-        if !first.cover.meets(second.cover) {
-            work.ways_apart += 1;
+        if both_ahead && self.are_apart(ways, work, slots) {
             return;
         }
+        let first = ways.covered(self, slots[0]);
+        let second = ways.covered(self, slots[1]);
         work.swept += 1;
         let halves = &mut found.scratch.halves;
-        if let Some((ego_is_first, meeting)) = accurate::meet_swept(halves, &first, &second, in_line, &a_is_smaller) {
+        if let Some((ego_is_first, meeting)) = side::meet(halves, &first, &second, in_line, &a_is_smaller) {
             self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
         }
+    }
+
+    /// Whether the narrow boxes around both ways do not meet.
+    fn are_apart(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2]) -> bool {
+        slots.iter().for_each(|slot| ways.cover(self, *slot));
+        let [a, b] = slots.map(|slot| ways.cover_of(slot));
+        let apart = !a.meets(b);
+        work.ways_apart += u64::from(apart);
+        apart
     }
 
     fn meet_on_paper(&self, slots: [u32; 2], found: &mut Found) {
@@ -143,7 +156,7 @@ impl Scene<'_> {
         let margin = gap - mu;
         // Of a foe that has to come and go first the gap is not known yet.
         let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
-        if self.conflicts_only && !leaves && margin >= 0.0 {
+        if self.conflicts_only && margin >= 0.0 && !(leaves && self.may_leave_late(roles, meeting, sigma, mu)) {
             return;
         }
         let at = meeting.place();
@@ -179,6 +192,12 @@ impl Scene<'_> {
                 self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
             }
         }
+    }
+
+    /// Whether a pair is in conflict if its foe leaves the meeting place as late as it can.
+    fn may_leave_late(&self, roles: &Roles, meeting: &Meeting, sigma: f64, mu: Metre) -> bool {
+        let foe_way = self.furthest_way_out(self.user(roles.slots[1]), meeting);
+        accurate::gap(meeting.ego_way, foe_way, sigma) < mu + TOLERANCE
     }
 
     fn mu_model(&self) -> MuModel {

@@ -13,6 +13,7 @@ mod ways;
 use std::sync::Arc;
 
 use crate::accurate::Meeting;
+use crate::braking::stopping_distance;
 use crate::encounter::{Encounter, Placement};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
 use crate::geometry::halves::Halves;
@@ -302,7 +303,6 @@ impl Detector {
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows.
     pub fn detect(&mut self, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
-        self.lengthen_all(roster);
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
             worker.found.clear();
@@ -331,16 +331,15 @@ impl Detector {
         self.order.sorted(&self.workers)
     }
 
-    /// Sees to it that all paths reach as far as phase 2 looks, in a pair or not: who came to the end of its path would
-    /// be given another one.
-    fn lengthen_all(&mut self, roster: &Roster) {
-        if self.net.is_none() {
-            return;
-        }
-        for slot in 0..self.users.len() {
-            let user = self.users[slot];
-            if user.on_lanes {
-                self.lengthen(roster, &user, user.stop + self.options.epsilon);
+    /// Sees to it that all paths reach as far as both phases look, in a pair or not: who came to the end of its path
+    /// would be given another one.
+    fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
+        let Some(net) = &self.net else { return };
+        for (Row { user, state }, on_lanes) in frame.rows().iter().zip(&self.on_lanes) {
+            if *on_lanes {
+                let profile = roster.profile_of(*user);
+                let way = stopping_distance(state.speed, &profile.brakes) + self.options.epsilon;
+                self.paths[user.0 as usize].reach(net, profile.chord, way);
             }
         }
     }
@@ -365,7 +364,7 @@ impl Detector {
             roster,
             paths: &self.paths,
             turnings: &self.turnings,
-            reach: Reach::new(roster, &self.options, self.leaves_out),
+            reach: Reach::new(roster, &self.options, self.leaves_out, &self.paths),
             users: &self.users,
         }
     }

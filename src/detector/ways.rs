@@ -168,6 +168,12 @@ impl Ways {
         }
     }
 
+    /// The boxes around all that it covers on its way, if that was covered.
+    pub(super) fn cover_of(&self, slot: u32) -> &Cover {
+        let found = self.find(slot).and_then(|(kept, laid)| kept.covers.get(laid.covers? as usize));
+        found.unwrap_or(&Cover::EVERYWHERE)
+    }
+
     /// Who is in a slot, with its way if that is not simply ahead.
     pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
         if scene.user(slot).ahead { scene.mover(slot) } else { self.covered(scene, slot) }

@@ -2,7 +2,7 @@
 
 use super::segment::{Corner, ON_THE_LINE, Segment};
 use super::{Pose, largest_turn, rotated, turn};
-use crate::geometry::{Point, Vector, cross};
+use crate::geometry::{Bounds, Point, Vector, cross};
 use crate::units::{Metre, Radian};
 
 /// A heading that differs by less than this from the line's chord is the chord, in rad.
@@ -142,6 +142,19 @@ impl Track {
     /// the line now and as its heading takes it, and twice that, for rounding.
     pub fn beside_heading(way: Metre) -> Metre {
         2.0 * (ON_THE_LINE + SAME_HEADING * way)
+    }
+
+    /// The box around the line from the front bumper to this way ahead of it, or to the line's end.
+    pub fn bounds_ahead(&self, way: Metre) -> Bounds {
+        let (mut bounds, mut last) = (Bounds::EMPTY, self.under);
+        bounds.include(last.at(self.front));
+        let end = (self.front + way).min(self.end());
+        for pair in self.corners[self.segment + 1..].windows(2).take_while(|pair| pair[0].way < end) {
+            bounds.include(pair[0].point);
+            last = Segment::between(&pair[0], &pair[1]);
+        }
+        bounds.include(last.at(end));
+        bounds
     }
 
     /// Drops the points that lie further behind the front bumper than `behind`, but the last of them; returns how many.
@@ -367,6 +380,16 @@ mod tests {
         assert!(!corner(8.0).goes_straight(&Vector::x(), 5.0, 22.1), "the front comes round the corner");
         assert!(!corner(33.0).goes_straight(&Vector::y(), 5.0, 1.0), "the rear does");
         assert!(!corner(8.0).goes_straight(&rotated(&Vector::x(), 1e-5), 5.0, 1.0), "it changes lanes");
+    }
+
+    #[test]
+    fn the_box_ahead_holds_every_front_and_no_more() {
+        let corner = |front: f64| track(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0), (0.0, 20.0)], front);
+        for (front, way) in [(2.0, 3.0), (8.0, 10.0), (8.0, 30.0), (12.0, 5.0), (8.0, 100.0)] {
+            let (line, mut fronts) = (corner(front), Bounds::EMPTY);
+            poses(&line, &[way]).iter().for_each(|pose| fronts.include(pose.front));
+            assert_eq!(line.bounds_ahead(way), fronts, "{way} m from {front} m on");
+        }
     }
 
     #[test]
