@@ -76,7 +76,7 @@ impl Scene<'_> {
             work.ways_apart += 1;
             return;
         }
-        // Which the sweep needs anyway, if not both drive in line.
+        // The narrow boxes of who turns: the sweep needs them anyway.
         if !both_ahead && self.are_apart(ways, work, slots) {
             return;
         }
