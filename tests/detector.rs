@@ -7,6 +7,7 @@ use closecall::encounter::{Encounter, Kind};
 use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::{BrakeSystem, Options, PathModel, TypeOptions};
 use closecall::profile::{Profile, SumoType};
+use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
 fn car(options: &Options) -> Profile {
@@ -118,15 +119,38 @@ fn in_a_merge_the_foe_first_has_to_come_and_go() {
     assert!(found.foe_way > 5.0 && found.foe_way < 15.0, "{}", found.foe_way);
 }
 
+/// All that meet, and those that are left of them where conflicts are asked for only; of each the conflicts.
+fn all_and_only(cars: &[(f64, f64, f64, f64)]) -> [(usize, Vec<(Encounter, String)>); 2] {
+    [false, true].map(|only| {
+        let found = encounters_by(cars, |detector| detector.set_conflicts_only(only));
+        (found.len(), found.into_iter().filter(|(found, _)| found.in_conflict()).collect())
+    })
+}
+
 #[test]
 fn who_asks_for_conflicts_only_gets_all_of_them() {
     let cars = [(0.0, 0.0, 0.0, 20.0), (40.0, 0.0, 0.0, 20.0), (0.0, 99.0, 0.0, 20.0), (12.0, 99.0, 0.0, 15.0)];
-    let conflicts = |found: Vec<(Encounter, String)>| found.into_iter().filter(|(found, _)| found.in_conflict());
-    let all = encounters(&cars);
-    let only = encounters_by(&cars, |detector| detector.set_conflicts_only(true));
-    assert!(only.len() < all.len(), "{} {}", only.len(), all.len());
-    assert!(!only.is_empty());
-    assert!(conflicts(only).eq(conflicts(all)));
+    let [(all, of_all), (only, of_only)] = all_and_only(&cars);
+    assert!(0 < only && only < all, "{only} {all}");
+    assert_eq!(of_only, of_all);
+}
+
+#[test]
+fn of_a_foe_that_leaves_in_time_whenever_that_is_nothing_is_asked_for_conflicts_only() {
+    let [(all, of_all), (only, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, 20.0), (44.5, -1.0, 0.1, 20.0)]);
+    assert_eq!((all, only, of_all, of_only), (1, 0, vec![], vec![]));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5000))]
+
+    #[test]
+    fn who_asks_for_conflicts_only_gets_every_merge_that_is_one(
+        x in -60.0..60.0, y in -12.0..12.0, turn in -0.5..0.5, speed in 2.0..35.0, foe_speed in 2.0..35.0,
+    ) {
+        let [(_, of_all), (_, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, speed), (x, y, turn, foe_speed)]);
+        prop_assert_eq!(of_only, of_all);
+    }
 }
 
 #[test]
