@@ -10,6 +10,7 @@ pub mod approach;
 pub mod braking;
 pub mod cli;
 pub mod conflict;
+mod decimal;
 pub mod detector;
 pub mod encounter;
 mod error;

@@ -14,7 +14,7 @@ use crate::geometry::Point;
 use crate::net::Net;
 use crate::record::RunRecord;
 use crate::units::Second;
-use crate::{Error, Result};
+use crate::{Error, Result, decimal};
 
 /// The name of the conflicts' file.
 pub const CONFLICTS: &str = "conflicts.csv";
@@ -145,13 +145,13 @@ impl Log {
                 Cell::Number(ego.heading),
                 Cell::Number(ego.length),
                 Cell::Number(ego.width),
-                Cell::Text(&path(&ego.path)),
+                Cell::Path(&ego.path),
                 Cell::Number(foe.front.x),
                 Cell::Number(foe.front.y),
                 Cell::Number(foe.heading),
                 Cell::Number(foe.length),
                 Cell::Number(foe.width),
-                Cell::Text(&path(&foe.path)),
+                Cell::Path(&foe.path),
             ])?;
         }
         self.conflicts.flush()
@@ -212,10 +212,9 @@ impl Log {
 #[derive(Debug)]
 struct Table {
     path: PathBuf,
-    file: File,
-    /// How many bytes are on disk, in whole rows.
-    written: u64,
-    rows: csv::Writer<Vec<u8>>,
+    rows: csv::Writer<WholeRows>,
+    /// Of the cell that is being written.
+    text: String,
 }
 
 /// One cell of a row.
@@ -223,6 +222,8 @@ enum Cell<'a> {
     Text(&'a str),
     Number(f64),
     Count(u64),
+    /// As x y x y …, to the centimetre; without commas, so that no cell needs quotes.
+    Path(&'a [Point]),
     Empty,
 }
 
@@ -230,50 +231,47 @@ impl Cell<'_> {
     fn maybe(value: Option<f64>) -> Self {
         value.map_or(Self::Empty, Self::Number)
     }
+
+    /// What stands in the cell; made in `text` where it is not there yet.
+    fn text<'a>(&'a self, text: &'a mut String) -> &'a str {
+        text.clear();
+        match self {
+            Self::Text(text) => return text,
+            Self::Number(value) => return decimal::shortest(*value, text),
+            Self::Count(count) => text.push_str(&count.to_string()),
+            Self::Path(points) => {
+                for (number, value) in points.iter().flat_map(|point| [point.x, point.y]).enumerate() {
+                    if number > 0 {
+                        text.push(' ');
+                    }
+                    decimal::push_fixed(text, value, 2);
+                }
+            }
+            Self::Empty => {}
+        }
+        text
+    }
 }
 
 impl Table {
     fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
         let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
-        let mut table = Self { path, file, written: 0, rows: csv::Writer::from_writer(Vec::new()) };
+        let rows = WholeRows { file, written: 0, waiting: Vec::new() };
+        let mut table = Self { path, rows: csv::Writer::from_writer(rows), text: String::new() };
         table.row(&columns.iter().map(|column| Cell::Text(column)).collect::<Vec<_>>())?;
         table.flush()?;
         Ok(table)
     }
 
     fn row(&mut self, cells: &[Cell]) -> Result<()> {
-        let mut digits = String::new();
-        for cell in cells {
-            digits.clear();
-            let text = match cell {
-                Cell::Text(text) => text,
-                Cell::Number(value) => number(*value, &mut digits),
-                Cell::Count(count) => {
-                    digits.push_str(&count.to_string());
-                    &digits
-                }
-                Cell::Empty => "",
-            };
-            self.rows.write_field(text).map_err(|error| self.unwritable(error.into()))?;
-        }
-        self.rows.write_record(None::<&[u8]>).map_err(|error| self.unwritable(error.into()))
+        let Self { rows, text, .. } = self;
+        let written = cells.iter().try_for_each(|cell| rows.write_field(cell.text(text)));
+        let written = written.and_then(|()| rows.write_record(None::<&[u8]>));
+        written.map_err(|error| self.unwritable(error.into()))
     }
 
     fn flush(&mut self) -> Result<()> {
-        let empty = csv::Writer::from_writer(Vec::new());
-        let rows = std::mem::replace(&mut self.rows, empty)
-            .into_inner()
-            .map_err(|error| self.unwritable(std::io::Error::other(error.to_string())))?;
-        if rows.is_empty() {
-            return Ok(());
-        }
-        if let Err(source) = self.file.write_all(&rows) {
-            // No row is left half where the disk is full; if not even that can be done, that is no news.
-            let _ = self.file.set_len(self.written);
-            return Err(self.unwritable(source));
-        }
-        self.written += rows.len() as u64;
-        Ok(())
+        self.rows.flush().map_err(|source| self.unwritable(source))
     }
 
     fn unwritable(&self, source: std::io::Error) -> Error {
@@ -281,33 +279,38 @@ impl Table {
     }
 }
 
-/// A path as x y x y …, to the centimetre; without commas, so that no cell needs quotes.
-fn path(points: &[Point]) -> String {
-    points.iter().map(|point| format!("{:.2} {:.2}", point.x, point.y)).collect::<Vec<_>>().join(" ")
+/// A file to which rows go when they are flushed, all in one call; what was flushed so far is whole.
+#[derive(Debug)]
+struct WholeRows {
+    file: File,
+    /// How many bytes are on disk.
+    written: u64,
+    waiting: Vec<u8>,
 }
 
-/// A number with six decimals at most: micrometres and microseconds.
-pub(crate) fn number(value: f64, text: &mut String) -> &str {
-    use std::fmt::Write;
-    // Writing to a String does not fail.
-    let _ = write!(text, "{value:.6}");
-    let kept = text.trim_end_matches('0').trim_end_matches('.').len();
-    text.truncate(kept);
-    if text == "-0" { "0" } else { text }
+impl Write for WholeRows {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.waiting.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        let done = self.file.write_all(&self.waiting);
+        match done {
+            Ok(()) => self.written += self.waiting.len() as u64,
+            // No row is left half where the disk is full; if not even that can be done, that is no news.
+            Err(_) => {
+                let _ = self.file.set_len(self.written);
+            }
+        }
+        self.waiting.clear();
+        done
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_have_six_decimals_at_most() {
-        let text = |value| number(value, &mut String::new()).to_owned();
-        assert_eq!(
-            [text(1.0), text(0.1 + 0.2), text(-1e-9), text(-12.25), text(100.0)],
-            ["1", "0.3", "0", "-12.25", "100"]
-        );
-    }
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::Stance;
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
+use crate::geometry::Point;
 use crate::measures;
 use crate::net::LaneIndex;
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
@@ -95,67 +96,89 @@ pub struct Moment {
     pub speed: MetrePerSecond,
 }
 
-/// One step of a pair as a conflict of its own.
-pub(super) fn moment(frame: &Frame, roster: &Roster, found: &Encounter) -> Conflict {
-    let part = |user: UserIndex, row: u32| (frame.state(row).speed, roster.profile_of(user).mass);
-    let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
-    let near = found.nearness.as_ref();
-    Conflict {
-        ego: roster.id(found.ego).clone(),
-        foe: roster.id(found.foe).clone(),
-        ego_profile: roster.type_of(found.ego),
-        foe_profile: roster.type_of(found.foe),
-        kind: found.kind,
-        severity: near.map_or(Severity::Caution, |near| near.severity),
-        begin: frame.time,
-        end: frame.time,
-        time: frame.time,
-        gap: found.gap,
-        mu: found.mu,
-        margin: found.margin,
-        clearance: near.map_or(f64::INFINITY, |near| near.clearance),
-        ttc: near.and_then(|near| near.ttc),
-        drac: near.and_then(|near| near.drac),
-        pet: None,
-        delta_v: measures::delta_v(ego, foe, found.angle),
-        ego_speed: ego.0,
-        foe_speed: foe.0,
-        angle: found.angle,
-        x: found.x,
-        y: found.y,
-        lane: found.lane,
-        collision: found.collision,
-        ego_stance: Stance::of(frame, roster, found.ego_row),
-        foe_stance: Stance::of(frame, roster, found.foe_row),
-        found: [near.and_then(|near| near.ttc), near.and_then(|near| near.drac), None]
-            .map(|value| value.map(|_| Moment { time: frame.time, x: found.x, y: found.y, speed: ego.0 })),
+/// What the extremes of a conflict are found from: one step of a pair.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub frame: &'a Frame,
+    pub roster: &'a Roster,
+    pub found: &'a Encounter,
+}
+
+impl Seen<'_> {
+    /// The severity of this step.
+    pub fn severity(&self) -> Severity {
+        self.found.nearness.map_or(Severity::Caution, |near| near.severity)
+    }
+
+    fn clearance(&self) -> Metre {
+        self.found.nearness.map_or(f64::INFINITY, |near| near.clearance)
+    }
+
+    fn ttc(&self) -> Option<Second> {
+        self.found.nearness.and_then(|near| near.ttc)
+    }
+
+    fn drac(&self) -> Option<MetrePerSecondSquared> {
+        self.found.nearness.and_then(|near| near.drac)
+    }
+
+    fn moment(&self) -> Moment {
+        let Encounter { x, y, ego_row, .. } = *self.found;
+        Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
     }
 }
 
 impl Conflict {
-    /// Whether the margin of a step is the smallest so far: that of equal ones the first stays, whatever rounding says.
-    pub(super) fn is_narrower_than(&self, so_far: &Self) -> bool {
-        self.margin < so_far.margin - SAME_MARGIN
+    /// One step of a pair as a conflict of its own; `path` has the path of a row's front bumper.
+    pub(super) fn of(seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+        let &Seen { frame, roster, found } = seen;
+        let part = |user: UserIndex, row: u32| (frame.state(row).speed, roster.profile_of(user).mass);
+        let (ego, foe) = (part(found.ego, found.ego_row), part(found.foe, found.foe_row));
+        Self {
+            ego: roster.id(found.ego).clone(),
+            foe: roster.id(found.foe).clone(),
+            ego_profile: roster.type_of(found.ego),
+            foe_profile: roster.type_of(found.foe),
+            kind: found.kind,
+            severity: seen.severity(),
+            begin: frame.time,
+            end: frame.time,
+            time: frame.time,
+            gap: found.gap,
+            mu: found.mu,
+            margin: found.margin,
+            clearance: seen.clearance(),
+            ttc: seen.ttc(),
+            drac: seen.drac(),
+            pet: None,
+            delta_v: measures::delta_v(ego, foe, found.angle),
+            ego_speed: ego.0,
+            foe_speed: foe.0,
+            angle: found.angle,
+            x: found.x,
+            y: found.y,
+            lane: found.lane,
+            collision: found.collision,
+            ego_stance: Stance::of(frame, roster, found.ego_row, &path(found.ego_row)),
+            foe_stance: Stance::of(frame, roster, found.foe_row, &path(found.foe_row)),
+            found: [seen.ttc(), seen.drac(), None].map(|value| value.map(|_| seen.moment())),
+        }
     }
 
     /// Adds a later step of the same event.
-    pub(super) fn take(&mut self, now: Self) {
-        let extremes = Self {
-            severity: self.severity.max(now.severity),
-            begin: self.begin,
-            end: now.end,
-            clearance: self.clearance.min(now.clearance),
-            ttc: least(self.ttc, now.ttc),
-            drac: least(self.drac.map(|drac| -drac), now.drac.map(|drac| -drac)).map(|drac| -drac),
-            collision: self.collision || now.collision,
-            found: [
-                earlier(self.ttc, now.ttc, self.found[0], now.found[0], f64::lt),
-                earlier(self.drac, now.drac, self.found[1], now.found[1], f64::gt),
-                None,
-            ],
-            ..if now.is_narrower_than(self) { now } else { self.clone() }
-        };
-        *self = extremes;
+    pub(super) fn take(&mut self, seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) {
+        // Of margins that only rounding tells apart the first stays.
+        if seen.found.margin < self.margin - SAME_MARGIN {
+            let Self { severity, begin, clearance, ttc, drac, collision, found, .. } = *self;
+            *self = Self { severity, begin, clearance, ttc, drac, collision, found, ..Self::of(seen, path) };
+        }
+        self.end = seen.frame.time;
+        self.severity = self.severity.max(seen.severity());
+        self.clearance = self.clearance.min(seen.clearance());
+        self.collision |= seen.found.collision;
+        let [ttc_found, drac_found, _] = &mut self.found;
+        take_if(&mut self.ttc, ttc_found, seen, seen.ttc(), f64::lt);
+        take_if(&mut self.drac, drac_found, seen, seen.drac(), f64::gt);
     }
 
     /// Sets the PET and the time at which the second enters.
@@ -165,35 +188,16 @@ impl Conflict {
     }
 }
 
-/// The moment of what was known, or of what is now where that is beyond it.
-fn earlier(
-    known: Option<f64>,
-    now: Option<f64>,
-    then: Option<Moment>,
-    here: Option<Moment>,
-    beyond: fn(&f64, &f64) -> bool,
-) -> Option<Moment> {
-    match (known, now) {
-        (Some(known), Some(now)) => {
-            if beyond(&now, &known) {
-                here
-            } else {
-                then
-            }
-        }
-        (known, _) => {
-            if known.is_some() {
-                then
-            } else {
-                here
-            }
-        }
-    }
-}
-
-fn least(a: Option<f64>, b: Option<f64>) -> Option<f64> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(a.min(b)),
-        (a, b) => a.or(b),
+/// Takes the value of a step, and when and where that was, where it is beyond the one known so far.
+fn take_if(
+    known: &mut Option<f64>,
+    found: &mut Option<Moment>,
+    seen: &Seen,
+    value: Option<f64>,
+    is_beyond: fn(&f64, &f64) -> bool,
+) {
+    let Some(now) = value else { return };
+    if known.is_none_or(|known| is_beyond(&now, &known)) {
+        (*known, *found) = (value, Some(seen.moment()));
     }
 }

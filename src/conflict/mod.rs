@@ -7,15 +7,18 @@ mod event;
 pub mod pet;
 mod stance;
 
+use std::collections::hash_map::Entry;
+
 use rustc_hash::FxHashMap;
 
 pub use event::{Conflict, Moment};
 
-use event::moment;
+use event::Seen;
 
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, Roster, UserIndex};
 use crate::geometry::Point;
+use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::profile::Category;
 use crate::units::Second;
@@ -48,6 +51,7 @@ pub struct Tracker {
     waiting: Vec<Event>,
     closed: Vec<Conflict>,
     rows: Vec<u32>,
+    halves: Halves,
 }
 
 /// No row of the frame.
@@ -83,7 +87,7 @@ impl Tracker {
             self.rows[row.user.0 as usize] = number;
         }
         for found in encounters.iter().filter(|found| found.in_conflict()) {
-            self.take(frame, roster, found, &path);
+            self.take(&Seen { frame, roster, found }, &path);
         }
         self.follow(frame, roster);
         self.close(frame.time);
@@ -119,23 +123,22 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, frame: &Frame, roster: &Roster, found: &Encounter, path: &impl Fn(u32) -> Vec<Point>) {
-        let pair = (found.ego.min(found.foe), found.ego.max(found.foe));
-        let mut now = moment(frame, roster, found);
-        if self.events.get(&pair).is_none_or(|event| now.is_narrower_than(&event.conflict)) {
-            now.ego_stance.lay(&path(found.ego_row));
-            now.foe_stance.lay(&path(found.foe_row));
-        }
-        let alarm = Alarm { ego: found.ego, foe: found.foe, severity: now.severity, kind: found.kind };
-        let event = self.events.entry(pair).or_insert_with(|| Event {
-            pair,
-            alarm,
-            conflict: Box::new(now.clone()),
-            courses: None,
-        });
-        event.alarm = alarm;
-        event.conflict.take(now);
-        if found.kind != Kind::RearEnd && event.courses.is_none() {
+    fn take(&mut self, seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) {
+        let Encounter { ego, foe, kind, .. } = *seen.found;
+        let (pair, alarm) = ((ego.min(foe), ego.max(foe)), Alarm { ego, foe, severity: seen.severity(), kind });
+        let event = match self.events.entry(pair) {
+            Entry::Occupied(known) => {
+                let event = known.into_mut();
+                event.alarm = alarm;
+                event.conflict.take(seen, path);
+                event
+            }
+            Entry::Vacant(place) => {
+                let conflict = Box::new(Conflict::of(seen, path));
+                place.insert(Event { pair, alarm, conflict, courses: None })
+            }
+        };
+        if kind != Kind::RearEnd && event.courses.is_none() {
             event.courses = Some(Default::default());
         }
     }
@@ -174,25 +177,21 @@ impl Tracker {
 
     /// Passes on the closed events whose PET is known, or will not be.
     fn settle(&mut self, time: Second, at_once: bool) {
-        let mut waiting = std::mem::take(&mut self.waiting);
-        waiting.retain_mut(|event| {
+        let settled = self.waiting.extract_if(.., |event| {
             if let (Some(courses), true) = (&event.courses, event.conflict.kind != Kind::RearEnd) {
                 let last_call = at_once
                     || time - event.conflict.end >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
                     || courses.iter().any(pet::Course::has_ended);
                 let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    let found = pet::post_encroachment_time(&courses[0], &courses[1]);
+                    let found = pet::post_encroachment_time(&mut self.halves, &courses[0], &courses[1]);
                     event.conflict.set_pet(found);
                 }
-                if event.conflict.pet.is_none() && !last_call {
-                    return true;
-                }
+                return event.conflict.pet.is_some() || last_call;
             }
-            self.closed.push((*event.conflict).clone());
-            false
+            true
         });
-        self.waiting = waiting;
+        self.closed.extend(settled.map(|event| *event.conflict));
     }
 }
 

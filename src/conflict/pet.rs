@@ -103,13 +103,13 @@ impl Corridor {
 }
 
 /// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or
-/// both are in the conflict area at once, as where one merges behind the other.
-pub fn post_encroachment_time(a: &Course, b: &Course) -> Option<(Second, Second)> {
+/// both are in the conflict area at once, as where one merges behind the other. Of `halves` only the memory is used.
+pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Option<(Second, Second)> {
     let near = a.bounds().shared_with(&b.bounds())?;
-    let mut halves = Halves::default();
-    let [a, b] = [a, b].map(|course| course.corridor(&near, &mut halves));
-    let (a_enters, a_leaves) = a.contact(&b, &mut halves)?;
-    let (b_enters, b_leaves) = b.contact(&a, &mut halves)?;
+    halves.clear();
+    let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
+    let (a_enters, a_leaves) = a.contact(&b, halves)?;
+    let (b_enters, b_leaves) = b.contact(&a, halves)?;
     if a_enters == b_enters {
         return None;
     }
@@ -138,8 +138,12 @@ mod tests {
     fn one_that_crosses_behind_another_leaves_the_time_between() {
         // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
         // enters the first's (1 m before the origin) at 5 − 0.1 s.
-        let (pet, enters) =
-            post_encroachment_time(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
+        let (pet, enters) = post_encroachment_time(
+            &mut Halves::default(),
+            &course(0.0, 2.0),
+            &course(std::f64::consts::FRAC_PI_2, 5.0),
+        )
+        .unwrap();
         assert!((pet - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9, "{pet} at {enters}");
     }
 
@@ -166,7 +170,7 @@ mod tests {
             for time in (0..=steps).map(|number| f64::from(number) * step) {
                 course.push(time, Rectangle::behind(Point::new(10.0 * (time - 5.0), 5.0), Vector::x(), 4.0, 2.0));
             }
-            post_encroachment_time(&turn(step), &course).unwrap()
+            post_encroachment_time(&mut Halves::default(), &turn(step), &course).unwrap()
         };
         let (long, short) = (crossing(0.2), crossing(0.01));
         assert!((long.0 - short.0).abs() < 0.02, "{long:?} {short:?}");
@@ -174,6 +178,6 @@ mod tests {
 
     #[test]
     fn who_follows_on_the_same_way_has_none() {
-        assert_eq!(post_encroachment_time(&course(0.0, 2.0), &course(0.0, 4.0)), None);
+        assert_eq!(post_encroachment_time(&mut Halves::default(), &course(0.0, 2.0), &course(0.0, 4.0)), None);
     }
 }

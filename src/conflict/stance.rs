@@ -26,27 +26,28 @@ pub struct Stance {
 }
 
 impl Stance {
-    /// A row of the frame, without its path.
-    pub(super) fn of(frame: &Frame, roster: &Roster, row: u32) -> Self {
+    /// A row of the frame, whose front bumper is about to go along these points.
+    pub(super) fn of(frame: &Frame, roster: &Roster, row: u32, points: &[Point]) -> Self {
         let state = frame.state(row);
         let profile = roster.profile_of(frame.user(row));
+        let front = Point::new(state.x, state.y);
         Self {
-            front: Point::new(state.x, state.y),
+            front,
             heading: state.heading,
             length: profile.length,
             width: profile.width,
-            path: Arc::default(),
+            path: drawn(&front, points).into(),
         }
     }
+}
 
-    /// Lays the path: what comes after the first of these points, as many of them as a drawing needs.
-    pub(super) fn lay(&mut self, points: &[Point]) {
-        let mut kept = Vec::new();
-        if points.iter().any(|point| (point - self.front).norm() > DRAWN) {
-            simplify(points, &mut kept);
-        }
-        self.path = kept.into();
+/// What comes after the first of these points, as many of them as a drawing needs; none of who stands.
+fn drawn(front: &Point, points: &[Point]) -> Vec<Point> {
+    let mut kept = Vec::new();
+    if points.iter().any(|point| (point - front).norm() > DRAWN) {
+        simplify(points, &mut kept);
     }
+    kept
 }
 
 /// Ramer, Douglas and Peucker: the points that keep a line within [`DRAWN`] of what it was, without the first.
@@ -76,9 +77,7 @@ mod tests {
 
     fn path(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
-        let mut stance = Stance { front: points[0], heading: 0.0, length: 5.0, width: 2.0, path: Arc::default() };
-        stance.lay(&points);
-        stance.path.iter().map(|point| (point.x, point.y)).collect()
+        drawn(&points[0], &points).iter().map(|point| (point.x, point.y)).collect()
     }
 
     #[test]

@@ -11,8 +11,8 @@ use quick_xml::escape::escape;
 use super::OutputFile;
 use crate::Result;
 use crate::conflict::{Conflict, Moment};
+use crate::decimal::shortest;
 use crate::encounter::Kind;
-use crate::log::number;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;
@@ -91,7 +91,7 @@ fn element(conflict: &Conflict) -> String {
 /// A number with two decimals at least, as SUMO's, and six at most.
 fn decimal(value: f64) -> String {
     let mut digits = String::new();
-    number(value, &mut digits);
+    shortest(value, &mut digits);
     let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     if decimals < 2 { format!("{value:.2}") } else { digits }
 }
