@@ -51,7 +51,6 @@ pub struct Tracker {
     waiting: Vec<Event>,
     closed: Vec<Conflict>,
     rows: Vec<u32>,
-    halves: Halves,
 }
 
 /// No row of the frame.
@@ -177,6 +176,8 @@ impl Tracker {
 
     /// Passes on the closed events whose PET is known, or will not be.
     fn settle(&mut self, time: Second, at_once: bool) {
+        // For all of the step, but no longer: what a long wait in small steps needs would be kept for the rest of the run.
+        let mut halves = Halves::default();
         let settled = self.waiting.extract_if(.., |event| {
             if let (Some(courses), true) = (&event.courses, event.conflict.kind != Kind::RearEnd) {
                 let last_call = at_once
@@ -184,7 +185,7 @@ impl Tracker {
                     || courses.iter().any(pet::Course::has_ended);
                 let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    let found = pet::post_encroachment_time(&mut self.halves, &courses[0], &courses[1]);
+                    let found = pet::post_encroachment_time(&mut halves, &courses[0], &courses[1]);
                     event.conflict.set_pet(found);
                 }
                 return event.conflict.pet.is_some() || last_call;

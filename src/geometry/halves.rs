@@ -18,6 +18,9 @@ use crate::units::Metre;
 /// More than rounding can move anything, in m.
 const ROUNDING: Metre = 1e-6;
 
+/// Memory for so many parts and hulls is kept. In `sumo_nets/town` one pair of 8,000 needs more than half of it.
+const KEPT: usize = 256;
+
 /// Which touch is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Touch {
@@ -166,7 +169,9 @@ impl Halves {
     /// Forgets all steps.
     pub fn clear(&mut self) {
         self.parts.clear();
+        self.parts.shrink_to(KEPT);
         self.hulls.clear();
+        self.hulls.shrink_to(KEPT);
         self.numbered.clear();
     }
 
