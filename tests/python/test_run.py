@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import closecall, rows
+from conftest import closecall, python, rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
@@ -183,3 +183,15 @@ def test_after_a_kill_the_rows_of_closed_conflicts_are_there_and_whole(scenario:
     whole = (tmp_path / "whole" / "conflicts.csv").read_text()
     assert killed.endswith("\n")
     assert whole.startswith(killed)
+
+
+def test_a_libsumo_that_needs_what_is_left_out_gets_it() -> None:
+    # Without traci this one cannot be imported, as another one may not be without what is left out.
+    script = """
+from closecall import _sumo
+_sumo.UNUSED = (*_sumo.UNUSED, "traci")
+print(_sumo.import_libsumo().simulation.getVersion())
+"""
+    done = python(script)
+    assert done.returncode == 0, done.stderr
+    assert "SUMO 1." in done.stdout, done.stdout

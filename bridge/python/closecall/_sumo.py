@@ -14,6 +14,10 @@ from typing import IO, Any
 
 GUI_SETTINGS = Path(__file__).with_name("gui-settings.xml")
 
+UNUSED = ("numpy", "lxml", "importlib.metadata")
+"""What libsumo and the sumolib that it imports take where it is, for nothing that is used here: 0.1 s of each run, and
+numpy's threads."""
+
 
 def start(words: list[str], gui: bool) -> Any:
     """Start SUMO with the words of its command line after the program's name; returns the module libsumo.
@@ -22,10 +26,7 @@ def start(words: list[str], gui: bool) -> Any:
         ImportError: libsumo is not installed.
         RuntimeError: SUMO refuses, with what it says.
     """
-    # It warns of any pyarrow that is installed; this process never imports one.
-    with redirect_stdout(io.StringIO()), without("numpy"):
-        import libsumo
-
+    libsumo = import_libsumo()
     command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
     with caught_stderr() as caught:
         try:
@@ -33,6 +34,22 @@ def start(words: list[str], gui: bool) -> Any:
         except (libsumo.TraCIException, libsumo.exceptions.FatalTraCIError, RuntimeError) as error:
             caught.seek(0)
             raise RuntimeError(first_error(caught.read()) or str(error)) from error
+    return libsumo
+
+
+def import_libsumo() -> Any:
+    """Import libsumo, without what it can do without, and without its warning of any pyarrow that is installed.
+
+    Raises:
+        ImportError: it is not installed.
+    """
+    with redirect_stdout(io.StringIO()):
+        try:
+            with without(*UNUSED):
+                import libsumo
+        except ImportError:
+            # Another version of it may need them.
+            import libsumo
     return libsumo
 
 
@@ -82,20 +99,15 @@ def first_error(text: str) -> str:
 
 
 @contextmanager
-def without(module: str) -> Iterator[None]:
-    """What is imported meanwhile does without a module that is not imported yet.
-
-    libsumo imports sumolib, which takes numpy where it is, for nothing that is used here: 0.08 s of each run, and
-    threads of its own.
-    """
-    if module in sys.modules:
-        yield
-        return
-    sys.modules[module] = None  # type: ignore[assignment]
+def without(*modules: str) -> Iterator[None]:
+    """What is imported meanwhile does without these modules, those that are imported already excepted."""
+    blocked = [module for module in modules if module not in sys.modules]
+    sys.modules.update(dict.fromkeys(blocked))  # type: ignore[arg-type]
     try:
         yield
     finally:
-        del sys.modules[module]
+        for module in blocked:
+            del sys.modules[module]
 
 
 @contextmanager
