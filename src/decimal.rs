@@ -1,4 +1,7 @@
 //! Numbers as text with so many decimals: the same bytes as `{:.6}`, several times as fast.
+//!
+//! The crates for this (ryu, dtoa and what builds on them) write as many digits as a number needs; rounding those once
+//! more is not rounding the number.
 
 use std::fmt::Write;
 

@@ -4,7 +4,7 @@
 //! is there and no row is half.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::conflict::Conflict;
@@ -298,19 +298,38 @@ impl Write for WholeRows {
         let done = self.file.write_all(&self.waiting);
         match done {
             Ok(()) => self.written += self.waiting.len() as u64,
-            // No row is left half where the disk is full; if not even that can be done, that is no news.
-            Err(_) => {
-                let _ = self.file.set_len(self.written);
-            }
+            Err(_) => self.take_back(),
         }
         self.waiting.clear();
         done
     }
 }
 
+impl WholeRows {
+    /// No row is left half where the disk is full, and the next one follows the last whole one.
+    fn take_back(&mut self) {
+        // If not even that can be done, that is no news.
+        let _ = self.file.set_len(self.written);
+        let _ = self.file.seek(SeekFrom::Start(self.written));
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn after_a_row_that_the_disk_took_half_of_the_next_one_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("rows.csv");
+        let mut rows = WholeRows { file: File::create(&path).unwrap(), written: 0, waiting: b"first\n".to_vec() };
+        rows.flush().unwrap();
+        rows.file.write_all(b"sec").unwrap();
+        rows.take_back();
+        rows.write_all(b"third\n").unwrap();
+        rows.flush().unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "first\nthird\n");
+    }
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {

@@ -171,6 +171,7 @@ impl Found {
         self.encounters.clear();
         self.pairs.clear();
         self.unmeasured.clear();
+        self.scratch.halves.shrink();
     }
 }
 

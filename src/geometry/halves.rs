@@ -18,7 +18,7 @@ use crate::units::Metre;
 /// More than rounding can move anything, in m.
 const ROUNDING: Metre = 1e-6;
 
-/// Memory for so many parts and hulls is kept. In `sumo_nets/town` one pair of 8,000 needs more than half of it.
+/// Memory for so many parts and hulls is kept from step to step. In `sumo_nets/town` one pair of 8,000 needs more than half of it.
 const KEPT: usize = 256;
 
 /// Which touch is looked for.
@@ -169,10 +169,15 @@ impl Halves {
     /// Forgets all steps.
     pub fn clear(&mut self) {
         self.parts.clear();
-        self.parts.shrink_to(KEPT);
         self.hulls.clear();
-        self.hulls.shrink_to(KEPT);
         self.numbered.clear();
+    }
+
+    /// Does so, and gives back the memory that hardly anybody needs.
+    pub fn shrink(&mut self) {
+        self.clear();
+        self.parts.shrink_to(KEPT);
+        self.hulls.shrink_to(KEPT);
     }
 
     /// Adds a step.
