@@ -81,6 +81,11 @@ impl fmt::Display for LeftOut {
 /// What the detector did without.
 pub fn left_out(detector: &Detector) -> Vec<LeftOut> {
     let work = detector.work();
+    let tests = [
+        ("frontal", "no opposing ways within reach", work.frontal == 0),
+        ("side", "no crossing or bending ways within reach", work.side + work.swept == 0),
+    ];
+    let unneeded = tests.into_iter().filter(|(.., unneeded)| *unneeded && detector.leaves_out().in_line);
     let counted = [
         ("pairs", "too far apart to meet before both stand", work.circles_apart),
         ("pairs", "both stand", work.both_stand),
@@ -91,5 +96,6 @@ pub fn left_out(detector: &Detector) -> Vec<LeftOut> {
         ("lanes asked for", "still on the path laid before, and nobody's route changes", work.known_paths),
     ];
     let done_without = counted.into_iter().filter(|(_, _, times)| *times > 0);
-    done_without.map(|(what, why, times)| LeftOut { what, why, times: Some(times) }).collect()
+    let done_without = done_without.map(|(what, why, times)| LeftOut { what, why, times: Some(times) });
+    unneeded.map(|(what, why, _)| LeftOut::altogether(what, why)).chain(done_without).collect()
 }

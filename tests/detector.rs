@@ -5,8 +5,9 @@
 use closecall::detector::Detector;
 use closecall::encounter::{Encounter, Kind};
 use closecall::frame::{Frame, Roster, State, UserIndex};
-use closecall::options::{BrakeSystem, Options, PathModel, TypeOptions};
+use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::profile::{Profile, SumoType};
+use closecall::scene;
 use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
@@ -43,6 +44,13 @@ fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
 
 /// The same by a detector that is set up so.
 fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) -> Vec<(Encounter, String)> {
+    let mut detector = Detector::new(&options(), None);
+    set_up(&mut detector);
+    look(&mut detector, cars)
+}
+
+/// What a detector finds in a step.
+fn look(detector: &mut Detector, cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     let options = options();
     let mut roster = Roster::default();
     let profile = roster.profile(car(&options)).unwrap();
@@ -52,8 +60,6 @@ fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) 
         let user = roster.enter(&char::from(b'a' + index as u8).to_string(), profile);
         frame.push(user, State { x, y, z: 0.0, heading, speed });
     }
-    let mut detector = Detector::new(&options, None);
-    set_up(&mut detector);
     detector.follow(&frame, &roster);
     detector.approach(&frame, &roster);
     let found = detector.detect(&roster).copied().collect::<Vec<_>>();
@@ -150,6 +156,25 @@ proptest! {
     ) {
         let [(_, of_all), (_, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, speed), (x, y, turn, foe_speed)]);
         prop_assert_eq!(of_only, of_all);
+    }
+}
+
+#[test]
+fn a_kind_of_which_no_two_come_within_reach_is_left_out_and_said() {
+    let left_out = |options: &Options, foe| {
+        let mut detector = Detector::new(options, None);
+        look(&mut detector, &[(0.0, 0.0, 0.0, 20.0), foe]);
+        let altogether = scene::left_out(&detector).into_iter().filter(|entry| entry.times.is_none());
+        altogether.map(|entry| entry.to_string()).collect::<Vec<_>>()
+    };
+    let frontal = "frontal: left out (no opposing ways within reach)";
+    let side = "side: left out (no crossing or bending ways within reach)";
+    let (ahead, towards_it, across) = ((30.0, 0.0, 0.0, 10.0), (60.0, 0.0, WEST, 10.0), (40.0, -20.0, NORTH, 15.0));
+    assert_eq!(left_out(&options(), ahead), [frontal, side]);
+    assert_eq!(left_out(&options(), towards_it), [side]);
+    assert_eq!(left_out(&options(), across), [frontal]);
+    for needs_all in [Options { keep_all: true, ..options() }, Options { mode: Mode::Paper, ..options() }] {
+        assert!(left_out(&needs_all, ahead).is_empty());
     }
 }
 

@@ -187,6 +187,11 @@ pub fn drive_in_line(a: &Mover, b: &Mover) -> bool {
     cross(&a.rectangle.axis, &b.rectangle.axis).abs() * extent <= PARALLEL
 }
 
+/// Whether two that drive in line drive towards each other, or away from each other.
+pub fn drive_opposed(a: &Mover, b: &Mover) -> bool {
+    a.rectangle.axis.dot(&b.rectangle.axis) <= 0.0
+}
+
 /// Where two that drive in line meet; `true` where the first of them is the ego.
 pub fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
     let axis = a.rectangle.axis;
@@ -196,7 +201,7 @@ pub fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> b
     }
     let along = between.dot(&axis);
     let ahead = along.abs() - a.rectangle.half_length - b.rectangle.half_length;
-    if axis.dot(&b.rectangle.axis) > 0.0 {
+    if !drive_opposed(a, b) {
         let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
         rear_end::in_line(ego, foe, ahead).map(|meeting| (ego_is_a, meeting))
     } else if along > 0.0 {

@@ -52,7 +52,7 @@ impl Scene<'_> {
             for &(a, b) in block {
                 match self.options.mode {
                     Mode::Closecall => self.meet(ways, work, [a, b], found),
-                    Mode::Paper => self.meet_on_paper([a, b], found),
+                    Mode::Paper => self.meet_on_paper(work, [a, b], found),
                 }
             }
         }
@@ -90,13 +90,14 @@ impl Scene<'_> {
             let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), slots, [&first, &second]);
             let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
             let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
-            return self.met(found, &roles, &meeting, true);
+            return self.met(work, found, &roles, &meeting, true);
         }
         let in_line = accurate::drive_in_line(&first, &second);
         if in_line && self.leaves_out.in_line {
             work.in_line += 1;
+            work.frontal += u64::from(accurate::drive_opposed(&first, &second));
             if let Some((ego_is_first, meeting)) = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller) {
-                self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
+                self.met(work, found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
             }
             return;
         }
@@ -108,7 +109,7 @@ impl Scene<'_> {
         work.swept += 1;
         let halves = &mut found.scratch.halves;
         if let Some((ego_is_first, meeting)) = side::meet(halves, &first, &second, in_line, &a_is_smaller) {
-            self.met(found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
+            self.met(work, found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
         }
     }
 
@@ -121,10 +122,13 @@ impl Scene<'_> {
         apart
     }
 
-    fn meet_on_paper(&self, slots: [u32; 2], found: &mut Found) {
+    fn meet_on_paper(&self, work: &mut Work, slots: [u32; 2], found: &mut Found) {
         if slots.iter().any(|slot| self.is_obstacle(*slot)) {
             return;
         }
+        // Its flow chart asks for the kind first: none is left out.
+        work.frontal += 1;
+        work.side += 1;
         let (first, second) = (self.mover(slots[0]), self.mover(slots[1]));
         let measured = accurate::paper::measure(&first, &second, self.options);
         let roles = Roles::new(measured.ego_is_a, slots, [&first, &second]);
@@ -141,11 +145,16 @@ impl Scene<'_> {
         self.add(found, &roles, &measured.meeting, how);
     }
 
-    fn met(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
+    fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
         let angle = meeting.angle();
         let sigma = angle.cos();
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, meeting.foe_way, sigma) };
         let how = How { kind: accurate::kind_at(angle, self.options), angle, sigma, gap, collision };
+        match how.kind {
+            Kind::Frontal => work.frontal += 1,
+            Kind::Side => work.side += 1,
+            Kind::RearEnd => {}
+        }
         self.add(found, roles, meeting, how);
     }
 

@@ -56,6 +56,10 @@ pub struct Work {
     pub in_line: u64,
     /// Swept.
     pub swept: u64,
+    /// Looked at for a frontal encounter: in one dimension and opposed, or met at such an angle.
+    pub frontal: u64,
+    /// Met at an angle of a side encounter.
+    pub side: u64,
     /// Road users in pairs that were still on the path laid before.
     pub known_paths: u64,
 }
@@ -71,6 +75,8 @@ impl std::ops::AddAssign for Work {
         self.ways_apart += other.ways_apart;
         self.in_line += other.in_line;
         self.swept += other.swept;
+        self.frontal += other.frontal;
+        self.side += other.side;
         self.known_paths += other.known_paths;
     }
 }
