@@ -1,12 +1,15 @@
-"""What the checker costs an attached run: plain SUMO, SUMO with the checker, SUMO with its own device.ssm.
+"""What the checker costs an attached run: SUMO with it, or with its own device.ssm, over plain SUMO through libsumo.
+
+How much longer than the program `sumo` it takes is told too: libsumo alone takes longer than that.
 
     python benches/attached.py [--runs N] [CONFIG ...]
 
 On the bench's own simulations, or on those of these configurations, until 600 s.
 
 Whole processes, start-up included. Each is compared with a plain run beside it: in slices of 50 ms one of the two runs
-while the other is stopped, so that what slows the machine down slows both. The figure is the median of the runs;
-device.ssm, which takes long, has one. Of twelve pairs of plain runs the two differed by 2 % (median), 13 % at worst.
+while the other is stopped, so that what slows the machine down slows both. The figure is the median of the runs,
+beside the program of half as many; device.ssm, which takes long, has one. Of twelve pairs of plain runs the two
+differed by 2 % (median), 13 % at worst.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from scenarios import attached, end, plain, scenarios, ssm
+from scenarios import attached, end, plain, program, scenarios, ssm
 
 SLICE = 0.05
 """How long one runs before the other does, in s."""
@@ -86,21 +89,19 @@ def main() -> None:
         folder = Path(name)
         own = {str(config): config for config in options.configs}
         for scene, config in (own or scenarios(folder)).items():
-            ways = {
-                "closecall": (attached(config, folder / "out"), runs),
-                "device.ssm": (ssm(config, folder / "ssm.xml"), 1),
-            }
-            alone: list[float] = []
-            ratios: dict[str, list[float]] = {method: [] for method in ways}
-            for method, (command, turns) in ways.items():
-                for _ in range(turns):
-                    plainly, seconds = in_turns(plain(config), command)
-                    alone.append(plainly)
-                    ratios[method].append(seconds / plainly)
-            print(f"run,{scene},plain,{end(config)},{statistics.median(alone):.3f},s")
-            for method, compared in ratios.items():
-                ratio = statistics.median(compared)
-                print(f"over plain,{scene},{method},{end(config)},{ratio:.3f},times", flush=True)
+            alone, checked = plain(config), attached(config, folder / "out")
+            comparisons = [
+                ("over plain", "closecall", alone, checked, runs),
+                ("over program", "closecall", program(config), checked, (runs + 1) // 2),
+                ("over plain", "device.ssm", alone, ssm(config, folder / "ssm.xml"), 1),
+            ]
+            for what, method, base, command, turns in comparisons:
+                pairs = [in_turns(base, command) for _ in range(turns)]
+                if (what, method) == ("over plain", "closecall"):
+                    seconds = statistics.median(plainly for plainly, _ in pairs)
+                    print(f"run,{scene},plain,{end(config)},{seconds:.3f},s")
+                ratio = statistics.median(longer / shorter for shorter, longer in pairs)
+                print(f"{what},{scene},{method},{end(config)},{ratio:.3f},times", flush=True)
 
 
 if __name__ == "__main__":
