@@ -12,7 +12,7 @@ fn main() {
         return;
     }
     let mut build = cc::Build::new();
-    match build.cpp(true).std("c++11").warnings_into_errors(true).file(source).try_compile("compiled_getters") {
+    match build.cpp(true).std("c++14").warnings_into_errors(true).file(source).try_compile("compiled_getters") {
         Ok(()) => println!("cargo:rustc-cfg=compiled_getters"),
         Err(error) => println!("cargo:warning=states are read through Python, which is slower: {error}"),
     }

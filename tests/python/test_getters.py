@@ -1,10 +1,12 @@
-"""States through libsumo's C++ functions: the same as through its Python getters, which are asked where those cannot be
-called or say something else."""
+"""States through libsumo's C++ functions, or through those behind them: the same as through its Python getters, which
+are asked where those cannot be called or say something else."""
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -36,6 +38,8 @@ for domain in ("vehicle", "person"):
     counted(domain, "getAngle", (lambda angle: angle + 90) if turned else (lambda angle: angle))
 if change == "nowhere":
     _libsumo.__file__ = "/nowhere/_libsumo.so"
+if change == "unknown":
+    _libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
 libsumo.start(["sumo", "-c", config, "--no-warnings"])
 checker = closecall.Checker(libsumo, out=out, log_encounters=True, epsilon=10.0)
 entered, steps = collections.Counter(), collections.Counter()
@@ -60,7 +64,8 @@ libsumo.close()
 print(json.dumps({"calls": asked, "entered": entered, "steps": steps, "said": said}))
 """
 """Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
-is not where it says. In the end the simulation begins anew, in which nobody whom the checker knows exists."""
+is not where it says; `unknown`: it is of a SUMO of which only libsumo's interface is known. In the end the simulation
+begins anew, in which nobody whom the checker knows exists."""
 
 SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 40), ("town", 20)]
 """With levels, with persons who walk, with persons and sublanes, with persons who ride in vehicles."""
@@ -72,6 +77,12 @@ def checked(scene: str, end: int, out: Path, change: str = "none") -> dict[str, 
     assert done.returncode == 0, done.stderr
     asked: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return asked
+
+
+def libsumo_file() -> str:
+    """Where libsumo's compiled module is."""
+    done = python("from libsumo import _libsumo; print(_libsumo.__file__)")
+    return done.stdout.splitlines()[-1]
 
 
 def logged(out: Path) -> list[bytes]:
@@ -93,13 +104,24 @@ needs_valgrind = pytest.mark.skipif(
 @pytest.mark.parametrize(("scene", "end"), SCENES)
 def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) -> None:
     compiled = checked(scene, end, tmp_path / "compiled")
+    of_unknown = checked(scene, end, tmp_path / "unknown", "unknown")
     through_python = checked(scene, end, tmp_path / "python", "nowhere")
-    assert logged(tmp_path / "compiled") == logged(tmp_path / "python")
+    assert logged(tmp_path / "compiled") == logged(tmp_path / "unknown") == logged(tmp_path / "python")
+    assert compiled["calls"] == of_unknown["calls"]
     assert logged(tmp_path / "compiled")[1].count(b"\n") > 1
     assert scene == "bridge" or compiled["steps"]["person"] > 0
     for domain, asked in compiled["calls"].items():
         assert asked <= compiled["entered"][domain]
         assert through_python["calls"][domain] > asked
+
+
+@needs_compiled
+def test_the_functions_that_need_one_look_up_are_in_this_libsumo() -> None:
+    source = (Path(__file__).parents[2] / "bridge/src/pull/compiled.cpp").read_text()
+    names = re.findall(r'find\(direct\.\w+, "(\w+)"\)', source)
+    module = ctypes.CDLL(libsumo_file())
+    assert len(names) == 6
+    assert [name for name in names if not hasattr(module, name)] == []
 
 
 @needs_compiled

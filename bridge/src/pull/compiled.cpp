@@ -1,4 +1,5 @@
-// One road user's state through the C++ functions that libsumo's Python module itself calls and exports.
+// One road user's state through the C++ functions that libsumo's Python module itself calls and exports; of a vehicle,
+// with a SUMO that is known, through those that these call once they have looked up its id: one look-up instead of three.
 //
 // libsumo's headers are not part of its wheel: what is needed of them is declared here, and the caller compares what
 // comes of it with what Python's getters say (getters.rs).
@@ -7,6 +8,7 @@
 
 #include <cstddef>
 #include <string>
+#include <type_traits>
 
 // GNU's std::string as GCC has it since version 5: the names below are of functions that take this one.
 #if !defined(__GLIBCXX__) || !_GLIBCXX_USE_CXX11_ABI
@@ -27,17 +29,41 @@ using PositionOf = Position (*)(const std::string& id, bool with_height);
 using NumberOf = double (*)(const std::string& id);
 using NameOf = std::string (*)(const std::string& id);
 
+// SUMO's Position: three numbers (utils/geom/Position.h), returned in the same way.
+struct Point {
+    double x, y, z;
+    double room[29];
+};
+
+// A vehicle of SUMO's: one address for MSVehicle and the classes that it is derived from, each from the next alone.
+using Vehicle = const void*;
+
+// libsumo::INVALID_DOUBLE_VALUE.
+constexpr double INVALID = -1073741824.0;
+
 }  // namespace
 
 extern "C" {
 
-// Functions of libsumo; `inside` is null where road users are inside nobody, `route` where they have none.
+// What libsumo's getters of a vehicle call.
+struct ClosecallDirect {
+    Vehicle (*find)(const std::string& id);
+    bool (*is_visible)(Vehicle vehicle);
+    Point (*position)(Vehicle vehicle, double offset);
+    double (*heading)(Vehicle vehicle);
+    double (*degrees)(double heading);
+    double (*speed)(Vehicle vehicle);
+};
+
+// Functions of libsumo; `inside` is null where road users are inside nobody, `route` where they have none, those of
+// `direct` where they are not to be called.
 struct ClosecallGetters {
     PositionOf position;
     NumberOf angle;
     NumberOf speed;
     NameOf inside;
     NameOf route;
+    ClosecallDirect direct;
 };
 
 struct ClosecallReading {
@@ -47,9 +73,49 @@ struct ClosecallReading {
     bool is_inside;
 };
 
+}  // extern "C"
+
+namespace {
+
+// All of them, or none.
+ClosecallDirect find_direct(void* module) {
+    ClosecallDirect direct{};
+    bool has_all = true;
+    const auto find = [&](auto& function, const char* name) {
+        void* const found = dlsym(module, name);
+        function = reinterpret_cast<typename std::remove_reference<decltype(function)>::type>(found);
+        has_all = has_all && found != nullptr;
+    };
+    find(direct.find, "_ZN7libsumo6Helper10getVehicleERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE");
+    find(direct.is_visible, "_ZN7libsumo7Vehicle9isVisibleEPK11SUMOVehicle");
+    find(direct.position, "_ZNK9MSVehicle11getPositionEd");
+    find(direct.heading, "_ZNK9MSVehicle8getAngleEv");
+    find(direct.degrees, "_ZN10GeomHelper10naviDegreeEd");
+    find(direct.speed, "_ZNK9MSVehicle8getSpeedEv");
+    return has_all ? direct : ClosecallDirect{};
+}
+
+// What libsumo's getters say of a vehicle, from one look-up.
+void read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
+    const Vehicle vehicle = direct.find(id);
+    if (!direct.is_visible(vehicle)) {
+        *reading = {INVALID, INVALID, INVALID, INVALID, INVALID, false};
+        return;
+    }
+    const Point position = direct.position(vehicle, 0);
+    *reading = {position.x, position.y, position.z, direct.degrees(direct.heading(vehicle)), direct.speed(vehicle),
+                false};
+}
+
+}  // namespace
+
+extern "C" {
+
 // Finds the functions of "7Vehicle" or "6Person" in the module that is loaded from this file; false if one is missing.
-// The module is held from then on: it stays loaded as long as the process lives.
-bool closecall_find(const char* file, const char* domain, bool may_be_inside, ClosecallGetters* getters) noexcept {
+// The module is held from then on: it stays loaded as long as the process lives. `is_known` says that this SUMO's
+// functions of a vehicle are what is declared here.
+bool closecall_find(const char* file, const char* domain, bool may_be_inside, bool is_known,
+                    ClosecallGetters* getters) noexcept {
     void* const module = dlopen(file, RTLD_NOW | RTLD_NOLOAD);
     if (module == nullptr) {
         return false;
@@ -64,6 +130,10 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, Cl
         getters->speed = reinterpret_cast<NumberOf>(find("8getSpeed", ""));
         getters->inside = may_be_inside ? reinterpret_cast<NameOf>(find("10getVehicle", "")) : nullptr;
         getters->route = may_be_inside ? nullptr : reinterpret_cast<NameOf>(find("10getRouteID", ""));
+        getters->direct = ClosecallDirect{};
+        if (is_known && !may_be_inside) {
+            getters->direct = find_direct(module);
+        }
     } catch (...) {
         return false;
     }
@@ -75,6 +145,10 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, Cl
 bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, ClosecallReading* reading) noexcept {
     try {
         const std::string name(id, length);
+        if (getters->direct.find != nullptr) {
+            read_directly(getters->direct, name, reading);
+            return true;
+        }
         reading->is_inside = getters->inside != nullptr && !getters->inside(name).empty();
         if (reading->is_inside) {
             return true;

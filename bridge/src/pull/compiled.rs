@@ -1,5 +1,6 @@
 //! libsumo's C++ functions, called directly: measured on SUMO 1.28, 0.25 to 0.29 µs for a vehicle's position, angle and
-//! speed, against 0.68 to 0.71 through the same module's Python getters. Most of that is SUMO looking up the id.
+//! speed, against 0.68 to 0.71 through the same module's Python getters. Half of that is SUMO looking up the id anew for
+//! each: where its own functions behind them are known, 0.15 µs with one look-up.
 
 #![allow(unsafe_code, reason = "calls compiled.cpp; halves what reading a road user costs, see above")]
 
@@ -20,7 +21,12 @@ pub struct Compiled {
     speed: Function,
     inside: Function,
     route: Function,
+    direct: [Function; 6],
 }
+
+/// How the versions begin of the SUMO whose functions behind libsumo's getters are those that compiled.cpp declares: they
+/// are not part of libsumo's interface.
+const KNOWN: &str = "SUMO 1.28.";
 
 /// `ClosecallReading` of compiled.cpp.
 #[repr(C)]
@@ -35,7 +41,13 @@ struct Read {
 }
 
 unsafe extern "C" {
-    fn closecall_find(file: *const c_char, domain: *const c_char, may_be_inside: bool, getters: *mut Compiled) -> bool;
+    fn closecall_find(
+        file: *const c_char,
+        domain: *const c_char,
+        may_be_inside: bool,
+        is_known: bool,
+        getters: *mut Compiled,
+    ) -> bool;
     fn closecall_has_route(
         getters: *const Compiled,
         id: *const c_char,
@@ -47,17 +59,20 @@ unsafe extern "C" {
 }
 
 impl Compiled {
-    /// Those of the module that Python has loaded from this file; none where it has not, or a function is missing.
-    pub fn of(file: &Path, domain: Domain) -> Option<Self> {
-        let file = CString::new(file.as_os_str().as_encoded_bytes()).ok()?;
+    /// Those of the module of this SUMO that Python has loaded from this file; none where it has not, or a function is
+    /// missing.
+    pub fn of(file: &Path, version: &str, domain: Domain) -> Option<Self> {
+        let path = CString::new(file.as_os_str().as_encoded_bytes()).ok()?;
         let (name, may_be_inside) = match domain {
             Domain::Vehicle => (c"7Vehicle", false),
             Domain::Person => (c"6Person", true),
         };
-        let mut found = Self { position: None, angle: None, speed: None, inside: None, route: None };
+        let direct = [None; 6];
+        let mut found = Self { position: None, angle: None, speed: None, inside: None, route: None, direct };
+        let (file, name, is_known) = (path.as_ptr(), name.as_ptr(), version.starts_with(KNOWN));
         // SAFETY: both strings end with a zero and live until the call returns, and `found` has the layout of what is
         // written to it, in which a null pointer is `None`.
-        let is_complete = unsafe { closecall_find(file.as_ptr(), name.as_ptr(), may_be_inside, &raw mut found) };
+        let is_complete = unsafe { closecall_find(file, name, may_be_inside, is_known, &raw mut found) };
         is_complete.then_some(found)
     }
 
@@ -65,9 +80,11 @@ impl Compiled {
     pub fn read(&self, id: &str) -> Option<Reading> {
         let mut read = Read::default();
         // SAFETY: `self` is complete, since `of` gives no other, and its functions stay where they are: the module is
-        // never unloaded. `id` is as long as said and `read` has the layout of what is written to it; neither is kept.
-        // No exception comes out: the function is `noexcept` and catches all. libsumo itself knows no threads; Python's
-        // lock is held by every caller, as for its Python getters.
+        // never unloaded. Those of `direct` are there only in a SUMO in which they are what compiled.cpp declares, and a
+        // vehicle is asked right after it was looked up: before SUMO's next step it does not go. `id` is as long as said
+        // and `read` has the layout of what is written to it; neither is kept. No exception comes out: the function is
+        // `noexcept` and catches all. libsumo itself knows no threads; Python's lock is held by every caller, as for its
+        // Python getters.
         let is_known = unsafe { closecall_read(&raw const *self, id.as_ptr().cast(), id.len(), &raw mut read) };
         let Read { x, y, z, angle, speed, is_inside } = read;
         is_known.then_some(if is_inside { Reading::Inside } else { Reading::At { x, y, z, angle, speed } })

@@ -42,7 +42,7 @@ enum Compiled {}
 
 #[cfg(not(compiled_getters))]
 impl Compiled {
-    fn of(_: &std::path::Path, _: Domain) -> Option<Self> {
+    fn of(_: &std::path::Path, _: &str, _: Domain) -> Option<Self> {
         None
     }
 
@@ -64,12 +64,13 @@ impl Getters {
         };
         let function = |getter: &str| module.getattr(format!("{name}_{getter}")).map(Bound::unbind);
         let file = module.getattr("__file__").and_then(|file| file.extract::<PathBuf>()).ok();
+        let (_, version) = module.call_method0("simulation_getVersion")?.extract::<(i64, String)>()?;
         Ok(Self {
             position: function("getPosition3D")?,
             angle: function("getAngle")?,
             speed: function("getSpeed")?,
             inside: if domain == Domain::Person { Some(function("getVehicle")?) } else { None },
-            compiled: file.and_then(|file| Compiled::of(&file, domain)),
+            compiled: file.and_then(|file| Compiled::of(&file, &version, domain)),
         })
     }
 
