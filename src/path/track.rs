@@ -20,6 +20,8 @@ const SAME_DIRECTION: f64 = 1e-10;
 pub struct Track {
     under: Segment,
     front: Metre,
+    /// The last corner's way: whether a path reaches far enough is asked of everybody in every step.
+    end: Metre,
     segment: usize,
     corners: Vec<Corner>,
 }
@@ -28,7 +30,7 @@ impl Track {
     /// Forgets the line.
     pub fn clear(&mut self) {
         self.corners.clear();
-        (self.under, self.front, self.segment) = Default::default();
+        (self.under, self.front, self.end, self.segment) = Default::default();
     }
 
     /// Appends a point; one that repeats the last is left out.
@@ -44,6 +46,7 @@ impl Track {
             None => 0.0,
         };
         self.corners.push(Corner { point, way });
+        self.end = way;
         if self.corners.len() == self.segment + 2 {
             self.enter(self.segment);
         }
@@ -71,7 +74,7 @@ impl Track {
 
     /// The way from the line's beginning to its end.
     pub fn end(&self) -> Metre {
-        self.corners.last().map_or(0.0, |last| last.way)
+        self.end
     }
 
     /// How many points there are.
@@ -175,6 +178,7 @@ impl Track {
                 corner.way -= shift;
             }
             self.front -= shift;
+            self.end -= shift;
             self.enter(self.segment);
         }
         dropped
