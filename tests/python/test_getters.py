@@ -23,7 +23,7 @@ import libsumo
 from libsumo import _libsumo
 import closecall
 
-config, out, end, change = sys.argv[1:5]
+config, out, end, change, *more = sys.argv[1:]
 calls = collections.Counter()
 
 def counted(domain, getter, changed):
@@ -40,9 +40,9 @@ if change == "nowhere":
     _libsumo.__file__ = "/nowhere/_libsumo.so"
 if change == "unknown":
     _libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
-libsumo.start(["sumo", "-c", config, "--no-warnings"])
+libsumo.start(["sumo", "-c", config, "--no-warnings", *more])
 checker = closecall.Checker(libsumo, out=out, log_encounters=True, epsilon=10.0)
-entered, steps = collections.Counter(), collections.Counter()
+entered, steps, teleports = collections.Counter(), collections.Counter(), 0
 domains = {"vehicle": libsumo.vehicle, "person": libsumo.person}
 while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < float(end):
     libsumo.simulationStep()
@@ -51,6 +51,7 @@ while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTi
         steps[name] += domain.getIDCount()
     entered["vehicle"] += libsumo.simulation.getDepartedNumber()
     entered["person"] += libsumo.simulation.getDepartedPersonNumber()
+    teleports += libsumo.simulation.getStartingTeleportNumber()
 asked, said = dict(calls), ""
 libsumo.load(["-c", config, "--no-warnings"])
 try:
@@ -61,7 +62,7 @@ except Exception as error:
     said = str(error)
 checker.close()
 libsumo.close()
-print(json.dumps({"calls": asked, "entered": entered, "steps": steps, "said": said}))
+print(json.dumps({"calls": asked, "entered": entered, "steps": steps, "said": said, "teleports": teleports}))
 """
 """Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
 is not where it says; `unknown`: it is of a SUMO of which only libsumo's interface is known. In the end the simulation
@@ -71,9 +72,9 @@ SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 40), ("town", 20)]
 """With levels, with persons who walk, with persons and sublanes, with persons who ride in vehicles."""
 
 
-def checked(scene: str, end: int, out: Path, change: str = "none") -> dict[str, Any]:
-    """Check a scene and tell who was asked."""
-    done = python(CHECK, NETS / scene / f"{scene}.sumocfg", out, str(end), change)
+def checked(scene: str, end: int, out: Path, change: str = "none", *more: str) -> dict[str, Any]:
+    """Check a scene, with more options for SUMO, and tell who was asked."""
+    done = python(CHECK, NETS / scene / f"{scene}.sumocfg", out, str(end), change, *more)
     assert done.returncode == 0, done.stderr
     asked: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return asked
@@ -113,6 +114,13 @@ def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) ->
     for domain, asked in compiled["calls"].items():
         assert asked <= compiled["entered"][domain]
         assert through_python["calls"][domain] > asked
+
+
+def test_who_teleports_is_nobody_meanwhile_however_libsumo_is_asked(tmp_path: Path) -> None:
+    for change in ("none", "unknown", "nowhere"):
+        counted = checked("signals", 120, tmp_path / change, change, "--time-to-teleport", "2")
+        assert counted["teleports"] > 0
+    assert logged(tmp_path / "none") == logged(tmp_path / "unknown") == logged(tmp_path / "nowhere")
 
 
 @needs_compiled

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use closecall::frame::State;
+use closecall::frame::{SUMO_INVALID, State};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
@@ -115,7 +115,8 @@ impl Getters {
         Ok(Reading::At {
             x: point.get_item(0)?.extract()?,
             y: point.get_item(1)?.extract()?,
-            z: point.get_item(2)?.extract()?,
+            // libsumo says nothing of the height of who is nowhere, on a teleport say.
+            z: point.get_item(2).map_or(Ok(SUMO_INVALID), |z| z.extract())?,
             angle: ask(&self.angle)?.extract()?,
             speed: ask(&self.speed)?.extract()?,
         })
