@@ -187,6 +187,11 @@ impl Run {
         !self.outputs.want_lanes() && self.detector.keeps_path(&self.frame, row, route)
     }
 
+    /// The route that a road user's path was laid for last; none as long as it has none.
+    pub fn route(&self, user: UserIndex) -> Option<&Arc<[EdgeIndex]>> {
+        self.detector.route(user)
+    }
+
     /// Says where the road user of a row is on the net.
     pub fn place(&mut self, row: u32, placement: &Placement) {
         self.detector.place(&self.frame, &self.roster, row, placement);

@@ -177,7 +177,6 @@ impl Found {
         self.encounters.clear();
         self.pairs.clear();
         self.unmeasured.clear();
-        self.scratch.halves.shrink();
     }
 }
 
@@ -288,6 +287,11 @@ impl Detector {
         self.on_lanes[row as usize] && self.paths[frame.user(row).0 as usize].is_for(route)
     }
 
+    /// The route that a road user's path was laid for last; none as long as it has none.
+    pub fn route(&self, user: UserIndex) -> Option<&Arc<[EdgeIndex]>> {
+        self.paths.get(user.0 as usize)?.route()
+    }
+
     /// Where the road user of a row is on the net.
     pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
@@ -333,6 +337,7 @@ impl Detector {
         self.order.sort(self.users.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);
+            worker.found.scratch.halves.shrink();
         }
         self.workers = workers;
         self.order.sorted(&self.workers)

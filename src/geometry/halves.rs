@@ -18,7 +18,8 @@ use crate::units::Metre;
 /// More than rounding can move anything, in m.
 const ROUNDING: Metre = 1e-6;
 
-/// Memory for so many parts and hulls is kept from step to step. In `sumo_nets/town` one pair of 8,000 needs more than half of it.
+/// Memory for so many parts and hulls is kept from step to step. In `sumo_nets/town` one pair of 8,000 needs more than
+/// half of it.
 const KEPT: usize = 256;
 
 /// Which touch is looked for.

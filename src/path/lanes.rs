@@ -75,9 +75,14 @@ impl LanePath {
         self.track.follow(front)
     }
 
+    /// The route that it was laid for.
+    pub fn route(&self) -> Option<&Arc<[EdgeIndex]>> {
+        self.plan.as_ref().map(|plan| &plan.route)
+    }
+
     /// Whether it was laid for this route.
     pub fn is_for(&self, route: &Arc<[EdgeIndex]>) -> bool {
-        self.plan.as_ref().is_some_and(|plan| Arc::ptr_eq(&plan.route, route) || plan.route == *route)
+        self.route().is_some_and(|own| Arc::ptr_eq(own, route) || own == route)
     }
 
     /// Lays the path anew; without geometry to lay it on, none.

@@ -61,12 +61,13 @@ struct Domain {
 struct Live {
     user: UserIndex,
     parked: bool,
-    route: Option<Route>,
+    /// The route of who may get another one; else the run knows it.
+    route: Option<Box<Route>>,
 }
 
-/// The route of somebody, and its id where it may get another one.
+/// A route and its id.
 struct Route {
-    id: Option<Box<str>>,
+    id: Box<str>,
     edges: Arc<[EdgeIndex]>,
 }
 
@@ -163,7 +164,7 @@ impl Libsumo {
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
-        // A route that stays is asked for once.
+        // A route that stays is asked for once: from then on the path that is laid along it knows it.
         let stays = run.has_fixed_routes() && run.leaves_out().known_paths;
         for &row in rows {
             let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
@@ -172,19 +173,24 @@ impl Libsumo {
             let Some(net) = run.net() else { return Ok(()) };
             let id: &str = run.roster.id(live.user);
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1((id,));
-            let keeps_route = live.route.as_ref().is_some_and(|route| match &route.id {
-                Some(known) => self.vehicles.getters.has_route(id, known),
-                None => stays,
-            });
-            if !keeps_route {
-                let route_id = ask(&self.get.route_id)?;
-                let route_id = route_id.extract::<&str>()?;
-                if live.route.as_ref().is_none_or(|route| route.id.as_deref() != Some(route_id)) {
-                    let edges = sumo::route(net, &ask(&self.get.route)?)?;
-                    live.route = Some(Route { id: (!stays).then(|| route_id.into()), edges });
+            let route_now = || sumo::route(net, &ask(&self.get.route)?);
+            let laid;
+            let edges = if stays {
+                laid = run.route(live.user).cloned().map_or_else(route_now, Ok)?;
+                &laid
+            } else {
+                let mut known = live.route.take();
+                if known.as_ref().is_none_or(|route| !self.vehicles.getters.has_route(id, &route.id)) {
+                    let route_id = ask(&self.get.route_id)?;
+                    let route_id = route_id.extract::<&str>()?;
+                    if known.as_ref().is_none_or(|route| *route.id != *route_id) {
+                        known = Some(Box::new(Route { id: route_id.into(), edges: route_now()? }));
+                    }
                 }
-            }
-            let Some(Route { edges, .. }) = &live.route else { continue };
+                live.route = known;
+                let Some(route) = &live.route else { continue };
+                &route.edges
+            };
             if run.keeps_path(row, edges) {
                 continue;
             }
