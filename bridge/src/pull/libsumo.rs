@@ -179,17 +179,17 @@ impl Libsumo {
                 laid = run.route(live.user).cloned().map_or_else(route_now, Ok)?;
                 &laid
             } else {
-                let mut known = live.route.take();
-                if known.as_ref().is_none_or(|route| !self.vehicles.getters.has_route(id, &route.id)) {
-                    let route_id = ask(&self.get.route_id)?;
-                    let route_id = route_id.extract::<&str>()?;
-                    if known.as_ref().is_none_or(|route| *route.id != *route_id) {
-                        known = Some(Box::new(Route { id: route_id.into(), edges: route_now()? }));
+                let has = |route: &str| -> PyResult<bool> {
+                    Ok(self.vehicles.getters.has_route(id, route)
+                        || ask(&self.get.route_id)?.extract::<&str>()? == route)
+                };
+                let route = match live.route.take() {
+                    Some(known) if has(&known.id)? => known,
+                    _ => {
+                        Box::new(Route { id: ask(&self.get.route_id)?.extract::<&str>()?.into(), edges: route_now()? })
                     }
-                }
-                live.route = known;
-                let Some(route) = &live.route else { continue };
-                &route.edges
+                };
+                &live.route.insert(route).edges
             };
             if run.keeps_path(row, edges) {
                 continue;
