@@ -1,5 +1,5 @@
-// One road user's state through the C++ functions that libsumo's Python module itself calls and exports; of a vehicle,
-// with a SUMO that is known, through those that these call once they have looked up its id: one look-up instead of three.
+// One road user's state through the C++ functions that libsumo's Python module itself calls and exports; with a SUMO
+// that is known, through those that these call once they have looked up its id: one look-up instead of three or four.
 //
 // libsumo's headers are not part of its wheel: what is needed of them is declared here, and the caller compares what
 // comes of it with what Python's getters say (getters.rs).
@@ -35,8 +35,9 @@ struct Point {
     double room[29];
 };
 
-// A vehicle of SUMO's: one address for MSVehicle and the classes that it is derived from, each from the next alone.
-using Vehicle = const void*;
+// A vehicle or person of SUMO's: one address for MSVehicle, or MSTransportable, and the classes that it is derived from,
+// each from the next alone.
+using User = const void*;
 
 // libsumo::INVALID_DOUBLE_VALUE.
 constexpr double INVALID = -1073741824.0;
@@ -45,14 +46,15 @@ constexpr double INVALID = -1073741824.0;
 
 extern "C" {
 
-// What libsumo's getters of a vehicle call.
+// What libsumo's getters call; `is_visible` is null for persons, `activity` for vehicles.
 struct ClosecallDirect {
-    Vehicle (*find)(const std::string& id);
-    bool (*is_visible)(Vehicle vehicle);
-    Point (*position)(Vehicle vehicle, double offset);
-    double (*heading)(Vehicle vehicle);
+    User (*find)(const std::string& id);
+    bool (*is_visible)(User vehicle);
+    std::string (*activity)(User person);
+    Point (*position)(User user, double offset);
+    double (*heading)(User user);
     double (*degrees)(double heading);
-    double (*speed)(Vehicle vehicle);
+    double (*speed)(User user);
 };
 
 // Functions of libsumo; `inside` is null where road users are inside nobody, `route` where they have none, those of
@@ -78,7 +80,7 @@ struct ClosecallReading {
 namespace {
 
 // All of them, or none.
-ClosecallDirect find_direct(void* module) {
+ClosecallDirect find_direct(void* module, bool of_persons) {
     ClosecallDirect direct{};
     bool has_all = true;
     const auto find = [&](auto& function, const char* name) {
@@ -86,25 +88,37 @@ ClosecallDirect find_direct(void* module) {
         function = reinterpret_cast<typename std::remove_reference<decltype(function)>::type>(found);
         has_all = has_all && found != nullptr;
     };
-    find(direct.find, "_ZN7libsumo6Helper10getVehicleERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE");
-    find(direct.is_visible, "_ZN7libsumo7Vehicle9isVisibleEPK11SUMOVehicle");
-    find(direct.position, "_ZNK9MSVehicle11getPositionEd");
-    find(direct.heading, "_ZNK9MSVehicle8getAngleEv");
     find(direct.degrees, "_ZN10GeomHelper10naviDegreeEd");
-    find(direct.speed, "_ZNK9MSVehicle8getSpeedEv");
+    if (of_persons) {
+        find(direct.find, "_ZN7libsumo6Helper9getPersonERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE");
+        find(direct.activity, "_ZNK15MSTransportable26getCurrentStageDescriptionB5cxx11Ev");
+        find(direct.position, "_ZNK15MSTransportable11getPositionEd");
+        find(direct.heading, "_ZNK15MSTransportable8getAngleEv");
+        find(direct.speed, "_ZNK15MSTransportable8getSpeedEv");
+    } else {
+        find(direct.find, "_ZN7libsumo6Helper10getVehicleERKNSt7__cxx1112basic_stringIcSt11char_traitsIcESaIcEEE");
+        find(direct.is_visible, "_ZN7libsumo7Vehicle9isVisibleEPK11SUMOVehicle");
+        find(direct.position, "_ZNK9MSVehicle11getPositionEd");
+        find(direct.heading, "_ZNK9MSVehicle8getAngleEv");
+        find(direct.speed, "_ZNK9MSVehicle8getSpeedEv");
+    }
     return has_all ? direct : ClosecallDirect{};
 }
 
-// What libsumo's getters say of a vehicle, from one look-up.
-void read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
-    const Vehicle vehicle = direct.find(id);
-    if (!direct.is_visible(vehicle)) {
-        *reading = {INVALID, INVALID, INVALID, INVALID, INVALID, false};
-        return;
+// What libsumo's getters say of a road user, from one look-up; false of a person that does not walk: it may be inside a
+// vehicle.
+bool read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
+    const User user = direct.find(id);
+    if (direct.activity != nullptr && direct.activity(user) != "walking") {
+        return false;
     }
-    const Point position = direct.position(vehicle, 0);
-    *reading = {position.x, position.y, position.z, direct.degrees(direct.heading(vehicle)), direct.speed(vehicle),
-                false};
+    if (direct.is_visible != nullptr && !direct.is_visible(user)) {
+        *reading = {INVALID, INVALID, INVALID, INVALID, INVALID, false};
+        return true;
+    }
+    const Point position = direct.position(user, 0);
+    *reading = {position.x, position.y, position.z, direct.degrees(direct.heading(user)), direct.speed(user), false};
+    return true;
 }
 
 }  // namespace
@@ -113,7 +127,7 @@ extern "C" {
 
 // Finds the functions of "7Vehicle" or "6Person" in the module that is loaded from this file; false if one is missing.
 // The module is held from then on: it stays loaded as long as the process lives. `is_known` says that this SUMO's
-// functions of a vehicle are what is declared here.
+// functions behind libsumo's are what is declared here.
 bool closecall_find(const char* file, const char* domain, bool may_be_inside, bool is_known,
                     ClosecallGetters* getters) noexcept {
     void* const module = dlopen(file, RTLD_NOW | RTLD_NOLOAD);
@@ -131,8 +145,8 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, bo
         getters->inside = may_be_inside ? reinterpret_cast<NameOf>(find("10getVehicle", "")) : nullptr;
         getters->route = may_be_inside ? nullptr : reinterpret_cast<NameOf>(find("10getRouteID", ""));
         getters->direct = ClosecallDirect{};
-        if (is_known && !may_be_inside) {
-            getters->direct = find_direct(module);
+        if (is_known) {
+            getters->direct = find_direct(module, may_be_inside);
         }
     } catch (...) {
         return false;
@@ -145,8 +159,7 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, bo
 bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, ClosecallReading* reading) noexcept {
     try {
         const std::string name(id, length);
-        if (getters->direct.find != nullptr) {
-            read_directly(getters->direct, name, reading);
+        if (getters->direct.find != nullptr && read_directly(getters->direct, name, reading)) {
             return true;
         }
         reading->is_inside = getters->inside != nullptr && !getters->inside(name).empty();
