@@ -42,7 +42,7 @@ if change == "unknown":
     _libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
 libsumo.start(["sumo", "-c", config, "--no-warnings", *more])
 checker = closecall.Checker(libsumo, out=out, log_encounters=True, epsilon=10.0)
-entered, steps, teleports = collections.Counter(), collections.Counter(), 0
+entered, steps, teleports, rides = collections.Counter(), collections.Counter(), 0, 0
 domains = {"vehicle": libsumo.vehicle, "person": libsumo.person}
 while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < float(end):
     libsumo.simulationStep()
@@ -52,6 +52,7 @@ while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTi
     entered["vehicle"] += libsumo.simulation.getDepartedNumber()
     entered["person"] += libsumo.simulation.getDepartedPersonNumber()
     teleports += libsumo.simulation.getStartingTeleportNumber()
+    rides += sum(bool(libsumo.person.getVehicle(person)) for person in libsumo.person.getIDList())
 asked, said = dict(calls), ""
 libsumo.load(["-c", config, "--no-warnings"])
 try:
@@ -62,14 +63,15 @@ except Exception as error:
     said = str(error)
 checker.close()
 libsumo.close()
-print(json.dumps({"calls": asked, "entered": entered, "steps": steps, "said": said, "teleports": teleports}))
+counted = {"steps": steps, "teleports": teleports, "rides": rides}
+print(json.dumps({"calls": asked, "entered": entered, "said": said, **counted}))
 """
 """Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
 is not where it says; `unknown`: it is of a SUMO of which only libsumo's interface is known. In the end the simulation
 begins anew, in which nobody whom the checker knows exists."""
 
-SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 40), ("town", 20)]
-"""With levels, with persons who walk, with persons and sublanes, with persons who ride in vehicles."""
+SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 20)]
+"""With levels, with persons who walk, with persons who wait for a bus and ride in it, with all kinds of vehicles."""
 
 
 def checked(scene: str, end: int, out: Path, change: str = "none", *more: str) -> dict[str, Any]:
@@ -105,6 +107,7 @@ def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) ->
     assert compiled["calls"] == of_unknown["calls"]
     assert logged(tmp_path / "compiled")[1].count(b"\n") > 1
     assert scene == "bridge" or compiled["steps"]["person"] > 0
+    assert (compiled["rides"] > 0) == (scene == "crowd")
     for domain, asked in compiled["calls"].items():
         assert asked <= compiled["entered"][domain]
         assert through_python["calls"][domain] > asked

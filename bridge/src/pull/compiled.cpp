@@ -105,20 +105,20 @@ ClosecallDirect find_direct(void* module, bool of_persons) {
     return has_all ? direct : ClosecallDirect{};
 }
 
-// What libsumo's getters say of a road user, from one look-up; false of a person that does not walk: it may be inside a
-// vehicle.
-bool read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
+// What libsumo's getters say of a road user, from one look-up.
+void read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
     const User user = direct.find(id);
-    if (direct.activity != nullptr && direct.activity(user) != "walking") {
-        return false;
+    // The stage of a ride says "driving" where it has a vehicle, else "waiting for" it; no other stage has one.
+    reading->is_inside = direct.activity != nullptr && direct.activity(user) == "driving";
+    if (reading->is_inside) {
+        return;
     }
     if (direct.is_visible != nullptr && !direct.is_visible(user)) {
         *reading = {INVALID, INVALID, INVALID, INVALID, INVALID, false};
-        return true;
+        return;
     }
     const Point position = direct.position(user, 0);
     *reading = {position.x, position.y, position.z, direct.degrees(direct.heading(user)), direct.speed(user), false};
-    return true;
 }
 
 }  // namespace
@@ -159,7 +159,8 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, bo
 bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, ClosecallReading* reading) noexcept {
     try {
         const std::string name(id, length);
-        if (getters->direct.find != nullptr && read_directly(getters->direct, name, reading)) {
+        if (getters->direct.find != nullptr) {
+            read_directly(getters->direct, name, reading);
             return true;
         }
         reading->is_inside = getters->inside != nullptr && !getters->inside(name).empty();
