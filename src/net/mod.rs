@@ -191,6 +191,12 @@ mod tests {
     }
 
     #[test]
+    fn an_escaped_id_is_the_one_that_sumo_says() {
+        let net = net(&CORNER.replace("ab_0", "a&amp;b_0")).unwrap();
+        assert!(net.lane("a&b_0").is_some());
+    }
+
+    #[test]
     fn what_is_wrong_is_named_with_its_line() {
         for (from, to, said) in [
             ("0,0 100,0", "0,0", r#"line 3: lane "ab_0" has 1 shape point(s); at least two are needed"#),

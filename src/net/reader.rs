@@ -1,13 +1,15 @@
 //! Reading a SUMO net: XML as netconvert writes it, plain or gzipped.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 use quick_xml::Reader;
+use quick_xml::escape::unescape;
+use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
-use rustc_hash::FxHashMap;
 
 use super::finder::Finder;
 use super::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link, Net};
@@ -93,26 +95,26 @@ impl NetReader<'_> {
 
     fn edge(&mut self, attributes: &Attributes) -> Result<()> {
         let id = self.required(attributes, "id")?;
-        let function = match attributes.get("function").map(String::as_str) {
+        let function = match attributes.get("function") {
             Some("internal") => EdgeFunction::Internal,
             Some("crossing") => EdgeFunction::Crossing,
             Some("walkingarea") => EdgeFunction::WalkingArea,
             Some("connector") => EdgeFunction::Connector,
             _ => EdgeFunction::Normal,
         };
-        let junction = attributes.get("to").cloned().unwrap_or_else(|| junction_of_internal(id));
+        let junction = attributes.get("to").unwrap_or_else(|| junction_of_internal(id)).to_owned();
         let index = EdgeIndex(self.net.edges.len() as u32);
-        self.net.edge_ids.insert(id.clone(), index);
-        self.net.edges.push(Edge { id: id.clone(), function, lanes: Vec::new(), junction });
+        self.net.edge_ids.insert(id.to_owned(), index);
+        self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction });
         Ok(())
     }
 
     fn lane(&mut self, attributes: &Attributes) -> Result<()> {
-        let id = self.required(attributes, "id")?.clone();
+        let id = self.required(attributes, "id")?;
         let Some(edge) = self.net.edges.len().checked_sub(1) else {
             return Err(self.wrong(format!("lane \"{id}\" stands outside any edge")));
         };
-        let shape = self.shape(&id, self.required(attributes, "shape")?)?;
+        let shape = self.shape(id, self.required(attributes, "shape")?)?;
         if shape.len() < 2 {
             let points = shape.len();
             return Err(self.wrong(format!("lane \"{id}\" has {points} shape point(s); at least two are needed")));
@@ -126,7 +128,7 @@ impl NetReader<'_> {
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;
         edge_lanes.push(index);
-        self.net.lane_ids.insert(id.clone(), index);
+        self.net.lane_ids.insert(id.to_owned(), index);
         let mut ways = Vec::with_capacity(shape.len());
         let mut way = 0.0;
         for (point, index) in shape.iter().zip(0_usize..) {
@@ -137,17 +139,18 @@ impl NetReader<'_> {
         }
         let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
+        let id = id.to_owned();
         self.net.lanes.push(Lane { id, edge, index: place, length, width, shape, ways, links, from });
         Ok(())
     }
 
     fn junction(&mut self, attributes: &Attributes) -> Result<()> {
-        let id = self.required(attributes, "id")?.clone();
+        let id = self.required(attributes, "id")?;
         let shape = match attributes.get("shape") {
-            Some(shape) => self.shape(&id, shape)?,
+            Some(shape) => self.shape(id, shape)?,
             None => Vec::new(),
         };
-        self.net.junctions.push(Junction { id, shape });
+        self.net.junctions.push(Junction { id: id.to_owned(), shape });
         Ok(())
     }
 
@@ -155,13 +158,13 @@ impl NetReader<'_> {
         let end = |edge: &str, lane: &str| -> Result<(String, u32)> {
             let index = self.required(attributes, lane)?;
             let index = index.parse().map_err(|_| self.wrong(format!("connection: {lane} is \"{index}\"")))?;
-            Ok((self.required(attributes, edge)?.clone(), index))
+            Ok((self.required(attributes, edge)?.to_owned(), index))
         };
         let connection = Connection {
             line: self.line,
             from: end("from", "fromLane")?,
             to: end("to", "toLane")?,
-            via: attributes.get("via").cloned(),
+            via: attributes.get("via").map(str::to_owned),
         };
         self.connections.push(connection);
         Ok(())
@@ -224,20 +227,20 @@ impl NetReader<'_> {
         Ok(points)
     }
 
-    fn attributes(&self, tag: &BytesStart) -> Result<Attributes> {
+    fn attributes<'a>(&self, tag: &'a BytesStart) -> Result<Attributes<'a>> {
         let mut attributes = Attributes::default();
         for attribute in tag.attributes() {
-            let attribute = attribute.map_err(|error| self.wrong(error.to_string()))?;
-            let name = attribute.key.as_ref().to_owned();
-            let value = quick_xml::escape::unescape(&attribute.value)
-                .map_err(|error| self.wrong(error.to_string()))?
-                .into_owned();
-            attributes.insert(name, value);
+            let Attribute { key, value } = attribute.map_err(|error| self.wrong(error.to_string()))?;
+            let value = match value {
+                Cow::Borrowed(value) => unescape(value),
+                Cow::Owned(value) => unescape(&value).map(|value| value.into_owned().into()),
+            };
+            attributes.0.push((key.into_inner(), value.map_err(|error| self.wrong(error.to_string()))?));
         }
         Ok(attributes)
     }
 
-    fn required<'a>(&self, attributes: &'a Attributes, name: &str) -> Result<&'a String> {
+    fn required<'a>(&self, attributes: &'a Attributes, name: &str) -> Result<&'a str> {
         attributes.get(name).ok_or_else(|| match attributes.get("id") {
             Some(id) => self.wrong(format!("\"{id}\" has no attribute \"{name}\"")),
             None => self.wrong(format!("attribute \"{name}\" is missing")),
@@ -256,12 +259,20 @@ impl NetReader<'_> {
     }
 }
 
-type Attributes = FxHashMap<String, String>;
+/// An element's few attributes, as they stand in the file where nothing is escaped: large nets have millions.
+#[derive(Default)]
+struct Attributes<'a>(Vec<(&'a str, Cow<'a, str>)>);
+
+impl Attributes<'_> {
+    fn get(&self, name: &str) -> Option<&str> {
+        self.0.iter().find(|(own, _)| *own == name).map(|(_, value)| &**value)
+    }
+}
 
 /// `:J_0` lies in junction J.
-fn junction_of_internal(edge: &str) -> String {
+fn junction_of_internal(edge: &str) -> &str {
     let name = edge.strip_prefix(':').unwrap_or(edge);
-    name.rsplit_once('_').map_or(name, |(junction, _)| junction).to_owned()
+    name.rsplit_once('_').map_or(name, |(junction, _)| junction)
 }
 
 /// What quick-xml says, in one line.
