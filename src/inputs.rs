@@ -90,6 +90,12 @@ pub fn fault(configuration: &Path) -> Option<Error> {
     })
 }
 
+/// The net that a SUMO configuration names, if that can be told.
+pub fn net_of(configuration: &Path) -> Option<PathBuf> {
+    let named = files_of(configuration).ok()?;
+    named.into_iter().find(|(option, _)| *option == "net-file").map(|(_, path)| path)
+}
+
 /// The files that a configuration names, each with the option that names it.
 fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
     const OPTIONS: [(&str, &str); 6] = [

@@ -10,6 +10,7 @@ mod functions;
 mod paint;
 mod pull;
 mod run;
+mod start;
 mod sweep;
 
 use pyo3::prelude::*;

@@ -3,13 +3,11 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use closecall::cli::{self, RunRequest, Sumo};
 use closecall::inputs::{self, Input};
 use closecall::log::Log;
-use closecall::net::Net;
 use closecall::outputs::Outputs;
 use closecall::progress::Progress;
 use closecall::record::{RunRecord, Versions};
@@ -18,12 +16,13 @@ use closecall::scene::LeftOut;
 use closecall::summary::Summary;
 use closecall::team::Team;
 use closecall::{Error, Result};
-use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 use crate::paint::Painter;
 use crate::pull::{self, Source};
+use crate::start::{self, NetAhead};
 use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
@@ -32,8 +31,6 @@ const SHOWN: Duration = Duration::from_millis(50);
 const WORTH_A_THREAD: usize = 100;
 /// SUMO's thread, and one that finishes the last step beside it; all others help that one.
 const TOGETHER: usize = 2;
-/// sumo-gui that does not close within this time never will.
-const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
@@ -69,45 +66,11 @@ fn closecall(py: Python) -> PyResult<Vec<OsString>> {
 
 /// Runs the scenario to its end.
 fn simulate(py: Python, request: &RunRequest) -> Result<Summary> {
-    let sumo = start(py, request)?;
-    let result = attach(&sumo, request);
-    close(py, request.gui);
+    let ahead = NetAhead::begin(request);
+    let sumo = start::start(py, request)?;
+    let result = attach(&sumo, request, ahead);
+    start::close(py, request.gui);
     result
-}
-
-/// Closes SUMO; whatever went wrong is told already.
-fn close(py: Python, gui: bool) {
-    let (closed, waits) = std::sync::mpsc::channel::<()>();
-    let watch = gui.then(|| {
-        std::thread::spawn(move || {
-            if waits.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
-                eprintln!("closecall: sumo-gui does not close; the log is complete");
-                std::process::exit(1);
-            }
-        })
-    });
-    let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method1("close", (gui,)));
-    drop(closed);
-    if let Some(watch) = watch {
-        let _ = watch.join();
-    }
-}
-
-fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
-    let refused = |error: PyErr| {
-        if error.is_instance_of::<PyImportError>(py) {
-            Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
-        } else {
-            let refusal = Error::Refused { path: request.scenario.clone(), message: message(py, &error) };
-            inputs::fault(&request.scenario).unwrap_or(refusal)
-        }
-    };
-    let starter = py.import("closecall._sumo").map_err(refused)?;
-    if request.gui && starter.call_method0("has_display").is_ok_and(|has| !has.is_truthy().unwrap_or(true)) {
-        let message = "sumo-gui needs a display: set DISPLAY, or run closecall under xvfb-run";
-        return Err(Error::Value(message.to_owned()));
-    }
-    starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
 }
 
 /// One run of a simulation that has been started.
@@ -191,7 +154,7 @@ impl Spent {
     }
 }
 
-fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
+fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) -> Result<Summary> {
     let said = |error: PyErr| {
         let (py, path) = (sumo.py(), &request.scenario);
         match error.is_instance_of::<PyValueError>(py) {
@@ -204,7 +167,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest) -> Result<Summary> {
     for path in &files.checked {
         inputs::check_xml(path)?;
     }
-    let net = files.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
+    let net = files.net.as_deref().map(|path| NetAhead::finish(ahead, path)).transpose()?.map(Arc::new);
     let mut run = Run::new(&request.options, net)?;
     run.set_threads(usize::from(request.threads).saturating_sub(1));
     pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;

@@ -109,6 +109,18 @@ def test_a_filter_keeps_only_what_happens_there(scenario: Copy, tmp_path: Path) 
     assert "no_such_edge" in refused.stderr
 
 
+def test_the_net_is_the_one_that_sumo_runs_on_whichever_the_configuration_names(scenario: Copy, tmp_path: Path) -> None:
+    config, other = scenario("side"), scenario("frontal")
+    net = config.with_name("side.net.xml")
+    assert closecall("run", config, "--out", tmp_path / "named").returncode == 0
+    config.write_text(config.read_text().replace('"side.net.xml"', f'"{other.with_name("frontal.net.xml")}"'))
+    done = closecall("run", config, "--out", tmp_path / "told", "--", "--net-file", net)
+    assert done.returncode == 0, done.stderr
+    named, told = [(tmp_path / out / "conflicts.csv").read_bytes() for out in ("named", "told")]
+    assert named == told
+    assert rows(tmp_path / "told" / "conflicts.csv")[0]["lane"]
+
+
 def test_paper_mode_runs_the_flow_chart_as_printed(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     assert closecall("run", config, "--mode", "paper", "--out", tmp_path / "paper").returncode == 0

@@ -1,0 +1,77 @@
+//! SUMO started and closed, and its net read meanwhile.
+
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::RecvTimeoutError;
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use closecall::cli::RunRequest;
+use closecall::inputs;
+use closecall::net::Net;
+use closecall::{Error, Result};
+use pyo3::exceptions::PyImportError;
+use pyo3::prelude::*;
+
+use crate::error::message;
+
+/// sumo-gui that does not close within this time never will.
+const CLOSES_WITHIN: Duration = Duration::from_secs(10);
+
+/// The net that the configuration names, read by another thread while SUMO starts.
+pub struct NetAhead {
+    path: PathBuf,
+    net: JoinHandle<Result<Net>>,
+}
+
+impl NetAhead {
+    /// Begins to read it, where there is a thread for that and the configuration says which.
+    pub fn begin(request: &RunRequest) -> Option<Self> {
+        let path = (usize::from(request.threads) > 1).then(|| inputs::net_of(&request.scenario))??;
+        let named = path.clone();
+        Some(Self { path, net: std::thread::spawn(move || Net::read(&named)) })
+    }
+
+    /// The net at this path, that one or another: SUMO's options may name another than the configuration.
+    pub fn finish(ahead: Option<Self>, path: &Path) -> Result<Net> {
+        match ahead.filter(|ahead| ahead.path == path).map(|ahead| ahead.net.join()) {
+            Some(Ok(net)) => net,
+            _ => Net::read(path),
+        }
+    }
+}
+
+/// SUMO with the request's scenario, ready for its first step.
+pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
+    let refused = |error: PyErr| {
+        if error.is_instance_of::<PyImportError>(py) {
+            Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
+        } else {
+            let refusal = Error::Refused { path: request.scenario.clone(), message: message(py, &error) };
+            inputs::fault(&request.scenario).unwrap_or(refusal)
+        }
+    };
+    let starter = py.import("closecall._sumo").map_err(refused)?;
+    if request.gui && starter.call_method0("has_display").is_ok_and(|has| !has.is_truthy().unwrap_or(true)) {
+        let message = "sumo-gui needs a display: set DISPLAY, or run closecall under xvfb-run";
+        return Err(Error::Value(message.to_owned()));
+    }
+    starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
+}
+
+/// Closes SUMO; whatever went wrong is told already.
+pub fn close(py: Python, gui: bool) {
+    let (closed, waits) = std::sync::mpsc::channel::<()>();
+    let watch = gui.then(|| {
+        std::thread::spawn(move || {
+            if waits.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
+                eprintln!("closecall: sumo-gui does not close; the log is complete");
+                std::process::exit(1);
+            }
+        })
+    });
+    let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method1("close", (gui,)));
+    drop(closed);
+    if let Some(watch) = watch {
+        let _ = watch.join();
+    }
+}
