@@ -17,24 +17,21 @@ use crate::error::message;
 /// sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
-/// The net that the configuration names, read by another thread while SUMO starts.
-pub struct NetAhead {
-    path: PathBuf,
-    net: JoinHandle<Result<Net>>,
-}
+/// The net that the configuration names, if it does, and its path: read by another thread while SUMO starts.
+pub struct NetAhead(JoinHandle<Option<(PathBuf, Result<Net>)>>);
 
 impl NetAhead {
-    /// Begins to read it, where there is a thread for that and the configuration says which.
+    /// Begins to read it, where there is a thread for that.
     pub fn begin(request: &RunRequest) -> Option<Self> {
-        let path = (usize::from(request.threads) > 1).then(|| inputs::net_of(&request.scenario))??;
-        let named = path.clone();
-        Some(Self { path, net: std::thread::spawn(move || Net::read(&named)) })
+        let configuration = request.scenario.clone();
+        let read = move || inputs::net_of(&configuration).map(|path| (path.clone(), Net::read(&path)));
+        (usize::from(request.threads) > 1).then(|| Self(std::thread::spawn(read)))
     }
 
     /// The net at this path, that one or another: SUMO's options may name another than the configuration.
     pub fn finish(ahead: Option<Self>, path: &Path) -> Result<Net> {
-        match ahead.filter(|ahead| ahead.path == path).map(|ahead| ahead.net.join()) {
-            Some(Ok(net)) => net,
+        match ahead.map(|Self(net)| net.join()) {
+            Some(Ok(Some((read, net)))) if read == path => net,
             _ => Net::read(path),
         }
     }
