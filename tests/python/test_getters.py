@@ -63,8 +63,8 @@ except Exception as error:
     said = str(error)
 checker.close()
 libsumo.close()
-counted = {"steps": steps, "teleports": teleports, "rides": rides}
-print(json.dumps({"calls": asked, "entered": entered, "said": said, **counted}))
+seen = {"steps": steps, "teleports": teleports, "rides": rides}
+print(json.dumps({"calls": asked, "entered": entered, "said": said, **seen}))
 """
 """Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
 is not where it says; `unknown`: it is of a SUMO of which only libsumo's interface is known. In the end the simulation
