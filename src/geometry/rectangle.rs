@@ -90,16 +90,16 @@ impl From<Bounds> for Rectangle {
     }
 }
 
+/// The directions of no, one, two and three quarters of a turn.
+const ALONG_AXES: [Vector; 4] =
+    [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)];
+
 /// The unit vector of a heading; exact for the four directions along the axes.
 pub fn direction(heading: Radian) -> Vector {
     let quarters = heading / FRAC_PI_2;
-    if quarters == quarters.round() {
-        return match quarters.rem_euclid(4.0) {
-            0.0 => Vector::new(1.0, 0.0),
-            1.0 => Vector::new(0.0, 1.0),
-            2.0 => Vector::new(-1.0, 0.0),
-            _ => Vector::new(0.0, -1.0),
-        };
+    let whole = quarters as i64;
+    if whole as f64 == quarters {
+        return ALONG_AXES[whole.rem_euclid(4) as usize];
     }
     let (sine, cosine) = heading.sin_cos();
     Vector::new(cosine, sine)
@@ -175,6 +175,18 @@ mod tests {
         let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
         let b = Rectangle::new(Point::new(9.0, 0.0), 0.0, 4.0, 2.0);
         assert!((distance(&a, &b) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_directions_along_the_axes_are_exact_and_no_others_are_taken_for_them() {
+        for turns in -1..=1 {
+            for (quarters, (x, y)) in [(0, (1.0, 0.0)), (1, (0.0, 1.0)), (2, (-1.0, 0.0)), (3, (0.0, -1.0))] {
+                let (heading, axis) = (f64::from(4 * turns + quarters) * FRAC_PI_2, Vector::new(x, y));
+                assert_eq!(direction(heading), axis, "{turns} turns and {quarters} quarters");
+                let beside = direction(heading + 1e-9);
+                assert!(beside != axis && (beside - axis).norm() < 2e-9, "beside {heading}: {beside}");
+            }
+        }
     }
 
     proptest! {
