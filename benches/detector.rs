@@ -22,6 +22,7 @@ use closecall::options::Options;
 use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
 use closecall::scene::Exclusion;
+use closecall::team::Team;
 use rivals::{AllPairs, AllTested, Boxes, Tree};
 
 /// With more road users than this parry2d and all pairs are not asked.
@@ -163,6 +164,33 @@ impl Look for Phases {
     }
 }
 
+/// Two detectors at the same time, each with the whole step on a thread of its own: what two threads gain on this machine
+/// where neither waits for the other.
+struct AtOnce(Team, [Detector; 2], Times);
+
+impl AtOnce {
+    fn new(options: &Options) -> Self {
+        Self(Team::new(2), [(); 2].map(|()| Detector::new(options, None)), Times::of("two at once"))
+    }
+}
+
+impl Look for AtOnce {
+    fn look(&mut self, Scene { frame, roster, .. }: &Scene) {
+        let Self(team, detectors, times) = self;
+        times.add(|| {
+            team.each(detectors, [(), ()], |detector, ()| {
+                detector.follow(frame, roster);
+                detector.approach(frame, roster);
+                black_box(detector.detect(roster).len());
+            });
+        });
+    }
+
+    fn times(&mut self) -> &mut [Times] {
+        std::slice::from_mut(&mut self.2)
+    }
+}
+
 /// A rival, and how many contacts it found.
 struct Rival<Contacts>(Contacts, Times, usize);
 
@@ -189,6 +217,7 @@ fn measure(name: &str, start: Vec<State>) {
     let mut scene = Scene::new(start);
     let mut one = Phases::new("closecall", &options, 1);
     let mut others = vec![Phases::new("two threads", &options, 2)];
+    let mut at_once = AtOnce::new(&options);
     if count == LARGE {
         others.extend([Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
             let options = Options { keep: vec![kept], ..Options::default() };
@@ -213,6 +242,9 @@ fn measure(name: &str, start: Vec<State>) {
         turn(&mut one, &steps);
         others.iter_mut().for_each(|other| turn(other, &steps));
         if count <= LARGE {
+            turn(&mut at_once, &steps);
+        }
+        if count <= LARGE {
             turn(&mut tree, &steps);
             turn(&mut told, &steps);
         }
@@ -227,6 +259,8 @@ fn measure(name: &str, start: Vec<State>) {
     one.1.iter().for_each(|times| times.print(name, count));
     others.iter().for_each(|Phases(_, times)| times[0].print_beside(closecall, name, count));
     if count <= LARGE {
-        [tree.1, told.1, circles.1, tested.1].iter().for_each(|times| times.print_beside(closecall, name, count));
+        [at_once.2, tree.1, told.1, circles.1, tested.1]
+            .iter()
+            .for_each(|times| times.print_beside(closecall, name, count));
     }
 }
