@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::csv::CsvRows;
 use super::parquet::{PARQUET, ParquetRows};
+use super::run::LoggedRun;
 use crate::Result;
 use crate::encounter::{Kind, Severity};
 use crate::log::CONFLICTS;
@@ -123,7 +124,8 @@ enum Rows {
 }
 
 impl ConflictReader {
-    /// Opens the `conflicts.csv` of a log folder, or its `conflicts.parquet` where there is no other.
+    /// Opens the `conflicts.csv` of a log folder, or its `conflicts.parquet` where there is no other. Of a run that was
+    /// killed, or goes on, a last row that is half is left out.
     ///
     /// # Errors
     /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Content`] where it is empty or cut short;
@@ -132,7 +134,8 @@ impl ConflictReader {
         let (csv, parquet) = (folder.join(CONFLICTS), folder.join(PARQUET));
         let is_csv = csv.exists() || !parquet.exists();
         let rows = if is_csv {
-            Rows::Csv(Box::new(CsvRows::open(&csv)?))
+            let has_no_result = || LoggedRun::read(folder).is_ok_and(|run| run.summary.steps == 0);
+            Rows::Csv(Box::new(CsvRows::open(&csv, has_no_result)?))
         } else {
             Rows::Parquet(Box::new(ParquetRows::open(&parquet)?))
         };

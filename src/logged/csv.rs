@@ -1,7 +1,7 @@
 //! `conflicts.csv`, row by row.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
 use super::conflicts::{LoggedConflict, LoggedStance};
@@ -11,7 +11,7 @@ use crate::{Error, Result};
 #[derive(Debug)]
 pub struct CsvRows {
     path: PathBuf,
-    reader: csv::Reader<File>,
+    reader: csv::Reader<Take<File>>,
     header: csv::StringRecord,
     row: csv::StringRecord,
     /// Where in a row ego's and foe's stances are, if they are wanted and there.
@@ -22,11 +22,21 @@ pub struct CsvRows {
 type StancePlaces = [usize; 6];
 
 impl CsvRows {
-    /// Opens the file and checks its columns and its end.
-    pub fn open(path: &Path) -> Result<Self> {
-        let mut file = File::open(path).map_err(|source| Error::file(path, source))?;
-        check_end(&mut file, path)?;
-        let mut reader = csv::Reader::from_reader(file);
+    /// Opens the file and checks its columns and its end. What follows the last whole row is left out where the run
+    /// was killed while it wrote that, or is about to write more: where it `has_no_result`.
+    pub fn open(path: &Path, has_no_result: impl FnOnce() -> bool) -> Result<Self> {
+        let fault = |source| Error::file(path, source);
+        let mut file = File::open(path).map_err(fault)?;
+        let length = file.metadata().map_err(fault)?.len();
+        let whole = whole_rows(&mut file, length).map_err(fault)?;
+        if length == 0 {
+            return Err(Error::content(path, "it is empty: not even the line of columns is there"));
+        }
+        if whole < length && !has_no_result() {
+            return Err(Error::content(path, "its last row is cut short"));
+        }
+        file.seek(SeekFrom::Start(0)).map_err(fault)?;
+        let mut reader = csv::Reader::from_reader(file.take(whole));
         let header = reader.headers().map_err(|error| unreadable(path, &error))?.clone();
         for column in REQUIRED {
             if !header.iter().any(|known| known == column) {
@@ -105,18 +115,20 @@ const REQUIRED: [&str; 23] = {
     required
 };
 
-/// Whole rows end with a line end: what does not was cut short.
-fn check_end(file: &mut File, path: &Path) -> Result<()> {
-    let fault = |source| Error::file(path, source);
-    let length = file.metadata().map_err(fault)?.len();
-    if length == 0 {
-        return Err(Error::content(path, "it is empty: not even the line of columns is there"));
+/// How many of a file's bytes whole rows take: those that end with a line end.
+fn whole_rows(file: &mut File, length: u64) -> std::io::Result<u64> {
+    let (mut end, mut block) = (length, [0; 4096]);
+    while end > 0 {
+        let begin = end.saturating_sub(block.len() as u64);
+        let part = &mut block[..(end - begin) as usize];
+        file.seek(SeekFrom::Start(begin))?;
+        file.read_exact(part)?;
+        if let Some(last) = part.iter().rposition(|byte| *byte == b'\n') {
+            return Ok(begin + last as u64 + 1);
+        }
+        end = begin;
     }
-    let mut last = [0];
-    file.seek(SeekFrom::End(-1)).map_err(fault)?;
-    file.read_exact(&mut last).map_err(fault)?;
-    file.seek(SeekFrom::Start(0)).map_err(fault)?;
-    if last == *b"\n" { Ok(()) } else { Err(Error::content(path, "its last row is cut short")) }
+    Ok(0)
 }
 
 fn unreadable(path: &Path, error: &csv::Error) -> Error {
@@ -174,6 +186,18 @@ mod tests {
     #[test]
     fn a_log_without_conflicts_is_a_log() {
         assert_eq!(read("none", &header()).unwrap(), []);
+    }
+
+    #[test]
+    fn of_a_run_that_was_killed_as_it_wrote_a_row_the_whole_ones_are_read() {
+        let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
+        // The half row is longer than what is looked through at once.
+        let half = ROW.replace("truck", &"truck".repeat(2000));
+        fs::write(&path, header() + ROW + &half[..half.len() - 1]).unwrap();
+        let mut rows = CsvRows::open(&path, || true).unwrap();
+        assert_eq!(rows.read().unwrap().map(|conflict| conflict.id), Some(1));
+        assert_eq!(rows.read().unwrap(), None);
+        assert!(CsvRows::open(&path, || false).is_err());
     }
 
     #[test]
