@@ -2,6 +2,7 @@
 
 use super::{Cover, Meeting, Mover};
 use crate::geometry::Vector;
+use crate::geometry::exact;
 use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
@@ -151,7 +152,7 @@ fn steps<'a>(of: &'a Mover) -> impl Iterator<Item = Step> + 'a {
 pub fn touch_now(a: &Mover, b: &Mover) -> bool {
     let outline = Outline::rectangle(&a.rectangle);
     if b.shape.is_empty() {
-        return crate::geometry::rectangle::touches(&a.rectangle, &b.rectangle);
+        return !exact::are_far_apart(&a.rectangle, &b.rectangle) && exact::touches(&a.rectangle, &b.rectangle);
     }
     b.shape.iter().any(|part| translation(&outline, &Vector::zeros(), &part.outline).is_some())
 }

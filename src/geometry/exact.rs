@@ -21,12 +21,8 @@ const TERMS: usize = 40;
 /// as far as along it, with sine and cosine exchanged.
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     let between = b.centre - a.centre;
-    let sizes = a.half_length + a.half_width + b.half_length + b.half_width;
-    let (square_a, square_b) = (a.axis.norm_squared(), b.axis.norm_squared());
-    if between.norm_squared() > sizes * sizes * square_a.max(square_b) * SURELY_MORE {
-        return false;
-    }
     let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
+    let (square_a, square_b) = (a.axis.norm_squared(), b.axis.norm_squared());
     let (along_a, across_a) = (between.dot(&a.axis).abs(), cross(&a.axis, &between).abs());
     let (along_b, across_b) = (between.dot(&b.axis).abs(), cross(&b.axis, &between).abs());
     let room = [
@@ -35,6 +31,7 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
         along_b - (b.half_length * square_b + a.half_length * cosine + a.half_width * sine),
         across_b - (b.half_width * square_b + a.half_length * sine + a.half_width * cosine),
     ];
+    let sizes = sizes(a, b);
     // The difference of the centres rounds as well, relative to itself.
     let bound = ROUNDING * (between.x.abs() + between.y.abs() + 2.0 * sizes) * square_a.max(square_b).max(1.0);
     let widest = room[0].max(room[1]).max(room[2].max(room[3]));
@@ -43,6 +40,18 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     }
     let axes = [a.axis, left_of(&a.axis), b.axis, left_of(&b.axis)];
     axes.iter().zip(room).all(|(axis, room)| room < -bound || meet_along_exactly(a, b, axis))
+}
+
+/// Whether two rectangles are so far from each other that they cannot touch however they are turned. Quicker than
+/// [`touches`] where most pairs are, and lost time where it does not decide.
+pub fn are_far_apart(a: &Rectangle, b: &Rectangle) -> bool {
+    let (sizes, longer_axis) = (sizes(a, b), a.axis.norm_squared().max(b.axis.norm_squared()));
+    (b.centre - a.centre).norm_squared() > sizes * sizes * longer_axis * SURELY_MORE
+}
+
+/// More than what both reach from their centres together, in lengths of the longer axis.
+fn sizes(a: &Rectangle, b: &Rectangle) -> f64 {
+    a.half_length + a.half_width + b.half_length + b.half_width
 }
 
 fn meet_along_exactly(a: &Rectangle, b: &Rectangle, axis: &Vector) -> bool {
@@ -174,11 +183,12 @@ mod tests {
 
         #[test]
         fn random_pairs_are_decided_as_in_rational_arithmetic(
-            x in -10.0..10.0, y in -10.0..10.0, heading in -4.0..4.0, turn in -4.0..4.0,
+            x in -15.0..15.0, y in -10.0..10.0, heading in -4.0..4.0, turn in -4.0..4.0,
         ) {
             let a = Rectangle::new(Point::origin(), heading, 5.0, 1.8);
             let b = Rectangle::new(Point::new(x, y), heading + turn, 12.0, 2.5);
             prop_assert_eq!(touches(&a, &b), reference(&a, &b));
+            prop_assert!(!(are_far_apart(&a, &b) && reference(&a, &b)));
         }
     }
 
