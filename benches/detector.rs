@@ -243,8 +243,6 @@ fn measure(name: &str, start: Vec<State>) {
         others.iter_mut().for_each(|other| turn(other, &steps));
         if count <= LARGE {
             turn(&mut at_once, &steps);
-        }
-        if count <= LARGE {
             turn(&mut tree, &steps);
             turn(&mut told, &steps);
         }
