@@ -51,9 +51,13 @@ fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) 
 
 /// What a detector finds in a step.
 fn look(detector: &mut Detector, cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
-    let options = options();
+    look_at(detector, &options(), cars)
+}
+
+/// The same where the cars brake as these options say.
+fn look_at(detector: &mut Detector, options: &Options, cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     let mut roster = Roster::default();
-    let profile = roster.profile(car(&options)).unwrap();
+    let profile = roster.profile(car(options)).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     for (index, &(x, y, heading, speed)) in cars.iter().enumerate() {
@@ -156,6 +160,21 @@ proptest! {
     ) {
         let [(_, of_all), (_, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, speed), (x, y, turn, foe_speed)]);
         prop_assert_eq!(of_only, of_all);
+    }
+}
+
+proptest! {
+    #[test]
+    fn on_paper_nobody_is_too_far_apart_whom_its_flow_chart_warns_of(
+        cars in prop::collection::vec((-40.0..40.0, -40.0..40.0, -4.0..4.0, 0.0..35.0), 2..6), build_up in 0.0..3.0,
+    ) {
+        let mut options = Options { mode: Mode::Paper, ..options() };
+        options.types.values_mut().for_each(|settings| settings.build_up = Some(build_up));
+        let [left_out, kept] = [false, true].map(|keep_all| {
+            let options = Options { keep_all, ..options.clone() };
+            look_at(&mut Detector::new(&options, None), &options, &cars)
+        });
+        prop_assert_eq!(left_out, kept);
     }
 }
 

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{Detector, LEVEL, Turning, User, Work};
-use crate::braking::stopping_distance;
+use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
@@ -254,18 +254,23 @@ pub(super) struct Reach<'a> {
     epsilon: Metre,
     /// Whether whose way is known has a box around that.
     has_boxes: bool,
+    /// Whether the distance counts, whichever way that is, and the stopping distance is that of the paper.
+    on_paper: bool,
 }
 
 impl<'a> Reach<'a> {
     pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: &'a [LanePath]) -> Self {
-        Self { roster, paths, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart }
+        let on_paper = options.mode == Mode::Paper;
+        Self { roster, paths, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart && !on_paper, on_paper }
     }
 
     /// What somebody may cover until it stands, and ε further.
     // For the same reason.
     #[inline(always)]
     pub(super) fn area(&self, user: &User) -> Area {
-        let (profile, reach) = (self.roster.profile_at(user.profile), user.stop + self.epsilon);
+        let profile = self.roster.profile_at(user.profile);
+        let stop = if self.on_paper { stopping_distance_paper(user.speed, &profile.brakes) } else { user.stop };
+        let reach = stop + self.epsilon;
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;
             self.roster.shape(user.index).iter().for_each(|part| bounds.join(&part.bounds));

@@ -28,15 +28,16 @@ def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dic
     return {name: (out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")}, record
 
 
-@pytest.mark.parametrize("path", ["lanes", "arc"])
+@pytest.mark.parametrize("way", ["--path lanes", "--path arc", "--mode paper"])
 @pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
-def test_leaving_out_changes_no_result(config: Path, path: str, tmp_path: Path) -> None:
-    log, record = checked(config, tmp_path / "left_out", "--path", path)
-    whole_log, whole_record = checked(config, tmp_path / "kept", "--path", path, "--keep-all")
+def test_leaving_out_changes_no_result(config: Path, way: str, tmp_path: Path) -> None:
+    log, record = checked(config, tmp_path / "left_out", *way.split())
+    whole_log, whole_record = checked(config, tmp_path / "kept", *way.split(), "--keep-all")
     assert log == whole_log
     left_out, kept = record.pop("left_out"), whole_record.pop("left_out")
     assert record == whole_record
     by_definition = {"both stand", "both are persons", "more than 2.5 m apart in height"}
     of_the_scene = {"no sumo-gui", "none enters the scene"}
     assert {entry["why"] for entry in kept} <= by_definition | of_the_scene
-    assert len(left_out) > len(kept)
+    # On paper that is only who is too far apart, and in a small scene nobody is.
+    assert way == "--mode paper" or len(left_out) > len(kept)
