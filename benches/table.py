@@ -114,6 +114,12 @@ def growth(lines: Lines, scene: str) -> float:
     return math.log10(many / few) / 3
 
 
+def cheaper(lines: Lines, scenario: str) -> float:
+    """What device.ssm adds to SUMO's run over what closecall adds; infinite where that cannot be told from nothing."""
+    ssm, closecall = (lines("over plain", scenario, method) - 1 for method in ("device.ssm", "closecall"))
+    return ssm / closecall if closecall > 0 else math.inf
+
+
 def peaks(lines: Lines) -> dict[str, float]:
     """Memory of the largest recording over that of the smallest."""
     sizes = sorted(
@@ -133,6 +139,12 @@ GOALS = [
             + "; closecall over the program `sumo`, which is quicker than libsumo: "
             + ", ".join(f"{lines('over program', scene, 'closecall'):.2f}" for scene in SCENARIOS)
         ),
+    ),
+    Goal(
+        "what device.ssm adds to the run over what closecall adds",
+        lambda lines: {scenario: cheaper(lines, scenario) for scenario in SCENARIOS},
+        at_least=20,
+        form=".0f",
     ),
     Goal(
         "detector, ns per road user and step, 10⁵ road users",

@@ -178,7 +178,7 @@ fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
 fn usage(error: &clap::Error) -> Error {
     let text = error.to_string();
     let said = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
-    let line = said.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ");
+    let line = said.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ").replace(" tip: ", "; tip: ");
     value(line.trim_start_matches("error: "))
 }
 

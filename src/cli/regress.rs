@@ -31,7 +31,7 @@ pub struct RegressArgs {
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     seeds: Vec<u32>,
     /// Keep the logs of all runs in this folder.
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Show every difference, not only the first ten of a sort.
     #[arg(long)]

@@ -33,7 +33,7 @@ pub struct ReplayArgs {
     #[arg(long)]
     sublane: bool,
     /// Folder of the log [default: closecall-out beside the recording].
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// TOML file of options.
     #[arg(long, value_name = "FILE")]

@@ -24,7 +24,7 @@ pub struct RunArgs {
     #[arg(long)]
     gui: bool,
     /// Folder of the log [default: closecall-out beside the scenario].
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// First simulated second.
     #[arg(short = 'b', long, value_name = "S", value_parser = not_negative)]

@@ -16,7 +16,7 @@ use crate::units::Second;
 #[derive(Args)]
 pub struct StudyArgs {
     /// Folder for study.csv, study.md and the charts.
-    #[arg(long, value_name = "DIR", default_value = "closecall-study")]
+    #[arg(short, long, value_name = "DIR", default_value = "closecall-study")]
     out: PathBuf,
     /// Fewer items and repetitions: under two minutes.
     #[arg(long)]

@@ -26,7 +26,7 @@ pub struct SweepArgs {
     #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
     vary: Vec<Vary>,
     /// Folder of the results [default: closecall-sweep beside the scenario].
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Runs at once on this machine [default: one per processor].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]

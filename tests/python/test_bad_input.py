@@ -35,6 +35,10 @@ def test_a_missing_configuration(tmp_path: Path) -> None:
     refused(tmp_path / "none.sumocfg", names=r"none\.sumocfg: No such file")
 
 
+def test_a_misspelt_option_is_told_the_one_that_was_meant(scenario: Copy) -> None:
+    refused(scenario("rear_end"), "--modus", "paper", names="'--modus' found; tip: a similar .* exists: '--mode'; tip:")
+
+
 def test_a_malformed_configuration(scenario: Copy) -> None:
     config = scenario("rear_end")
     config.write_text("<configuration><input>")

@@ -112,7 +112,7 @@ def test_a_filter_keeps_only_what_happens_there(scenario: Copy, tmp_path: Path) 
 def test_the_net_is_the_one_that_sumo_runs_on_whichever_the_configuration_names(scenario: Copy, tmp_path: Path) -> None:
     config, other = scenario("side"), scenario("frontal")
     net = config.with_name("side.net.xml")
-    assert closecall("run", config, "--out", tmp_path / "named").returncode == 0
+    assert closecall("run", config, "-o", tmp_path / "named").returncode == 0
     config.write_text(config.read_text().replace('"side.net.xml"', f'"{other.with_name("frontal.net.xml")}"'))
     done = closecall("run", config, "--out", tmp_path / "told", "--", "--net-file", net)
     assert done.returncode == 0, done.stderr
