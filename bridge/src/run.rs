@@ -14,7 +14,7 @@ use closecall::record::{RunRecord, Versions};
 use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
-use closecall::team::Team;
+use closecall::team::Helper;
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
@@ -27,10 +27,10 @@ use crate::sweep;
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
-/// With fewer road users than this both phases are done about as soon as a thread is awake.
-const WORTH_A_THREAD: usize = 100;
-/// SUMO's thread, and one that finishes the last step beside it; all others help that one.
-const TOGETHER: usize = 2;
+/// With fewer road users than this all is done about as soon as another thread has what it needs for that.
+const WORTH_A_THREAD: usize = 10;
+/// What finishing a step tells: how long its parts took.
+type Finished = Result<[Duration; PARTS.len() - PHASE_1]>;
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
@@ -77,14 +77,14 @@ fn simulate(py: Python, request: &RunRequest) -> Result<Summary> {
 struct Session<'a, 'py> {
     simulation: Simulation<'py>,
     request: &'a RunRequest,
-    run: Run,
     source: Source,
     painter: Option<Painter>,
     step_length: f64,
     spent: Spent,
     /// Whether the phases of the last step are still to be done.
     is_unfinished: bool,
-    team: Team,
+    /// Finishes the last step beside SUMO's next one.
+    helper: Option<Helper<Box<Run>, Finished>>,
 }
 
 /// The simulation's functions, looked up once: whatever name Python is asked for anew in every step stays in its cache of
@@ -200,17 +200,16 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
     let mut session = Session {
         simulation,
         request,
-        run,
         source,
         painter,
         step_length,
         spent: Spent::default(),
         is_unfinished: false,
-        team: Team::new(TOGETHER.min(request.threads.into())),
+        helper: (usize::from(request.threads) > 1).then(|| Helper::new(|run: &mut Box<Run>| finish(run))).flatten(),
     };
-    let ended = session.steps();
-    let ended = session.finish_step().and(ended);
-    let exposure = session.run.summary().exposure;
+    let (mut run, ended) = session.steps(Box::new(run));
+    let ended = session.finish_step(&mut run).and(ended);
+    let exposure = run.summary().exposure;
     let empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
     let unusable = match &ended {
         Ok(()) if empty => {
@@ -220,18 +219,18 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
         _ => None,
     };
     if let Some(error) = unusable {
-        session.run.discard_outputs();
-        if let Some(log) = session.run.take_log() {
+        run.discard_outputs();
+        if let Some(log) = run.take_log() {
             log.discard();
         }
         return Err(error);
     }
-    record.summary = session.run.finish(left_out(request, exposure.persons))?;
+    record.summary = run.finish(left_out(request, exposure.persons))?;
     let spent = PARTS.into_iter().zip(session.spent.parts.map(|part| part.as_secs_f64()));
     record.summary.spent = spent.filter(|(_, seconds)| *seconds > 0.0).collect();
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
-    if let Some(log) = session.run.take_log() {
+    if let Some(log) = run.take_log() {
         log.run(&record)?;
     }
     ended.map(|()| record.summary)
@@ -239,74 +238,75 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
 
 impl Session<'_, '_> {
     /// From step to step until the scenario ends.
-    fn steps(&mut self) -> Result<()> {
-        let begin = self.simulation.time().map_err(|error| self.failed(f64::NAN, &error))?;
+    fn steps(&mut self, mut run: Box<Run>) -> (Box<Run>, Result<()>) {
+        let begin = match self.simulation.time() {
+            Ok(begin) => begin,
+            Err(error) => return (run, Err(self.failed(f64::NAN, &error))),
+        };
         let end = self.simulation.end();
         let mut progress = Progress::new(begin, end, !self.request.quiet);
         let mut now = begin;
         loop {
-            match self.step(&mut now) {
+            let (started, simulated) = (Instant::now(), self.simulate(run));
+            run = simulated.0;
+            match simulated.1.and_then(|()| self.step(&mut run, &mut now, started)) {
                 Ok(true) => {}
-                Ok(false) => return Ok(()),
-                Err(Stop::Python(error)) => return Err(self.failed(now, &error)),
-                Err(Stop::Own(error)) => return Err(error),
+                Ok(false) => return (run, Ok(())),
+                Err(Stop::Python(error)) => return (run, Err(self.failed(now, &error))),
+                Err(Stop::Own(error)) => return (run, Err(error)),
             }
-            progress.show(now, self.run.frame.len(), self.run.conflicts_so_far());
+            progress.show(now, run.frame.len(), run.conflicts_so_far());
             if end.is_some_and(|end| now + self.step_length / 2.0 > end) {
-                return Ok(());
+                return (run, Ok(()));
             }
         }
     }
 
-    /// One step; whether there is another.
-    fn step(&mut self, now: &mut f64) -> std::result::Result<bool, Stop> {
+    /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
+    fn simulate(&mut self, run: Box<Run>) -> (Box<Run>, std::result::Result<(), Stop>) {
+        let Self { simulation, spent, .. } = self;
+        let mut since = Instant::now();
+        let mut step = || {
+            simulation.py().check_signals()?;
+            let stepped = simulation.step.call0().map(|_| ());
+            spent.add(SUMO, &mut since);
+            stepped
+        };
+        let helper = if self.is_unfinished { self.helper.take() } else { None };
+        let Some(helper) = helper else { return (run, step().map_err(Stop::from)) };
+        let (helper, run, finished, stepped) = helper.beside(run, step);
+        (self.helper, self.is_unfinished) = (Some(helper), false);
+        let finished = finished.map(|parts| self.spent.add_finished(parts));
+        (run, finished.map_err(Stop::from).and(stepped.map_err(Stop::from)))
+    }
+
+    /// Reads a step of SUMO's, and finishes it or leaves that for later; whether there is another.
+    fn step(&mut self, run: &mut Run, now: &mut f64, started: Instant) -> std::result::Result<bool, Stop> {
         let py = self.simulation.py();
-        let started = Instant::now();
-        py.check_signals()?;
-        self.simulate()?;
         let mut since = Instant::now();
         *now = self.simulation.time()?;
-        self.source.pull(py, &mut self.run)?;
+        self.source.pull(py, run)?;
         self.spent.add(PULL, &mut since);
-        let rows = py.detach(|| self.run.follow().to_vec());
-        self.source.place(py, &mut self.run, &rows)?;
+        let rows = py.detach(|| run.follow().to_vec());
+        self.source.place(py, run, &rows)?;
         self.is_unfinished = true;
         self.spent.add(PATHS, &mut since);
-        let alone = self.request.threads < 2 || self.run.frame.len() < WORTH_A_THREAD;
+        let alone = self.helper.is_none() || run.frame.len() < WORTH_A_THREAD;
         if self.painter.is_some() || alone {
-            self.finish_step()?;
+            self.finish_step(run)?;
             since = Instant::now();
         }
         if let Some(painter) = &mut self.painter {
-            painter.paint(py, &self.run)?;
+            painter.paint(py, run)?;
             py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
             self.spent.add(PAINTING, &mut since);
         }
         Ok(self.simulation.goes_on()?)
     }
 
-    /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
-    fn simulate(&mut self) -> std::result::Result<(), Stop> {
-        let Self { simulation, run, spent, team, .. } = self;
-        let unfinished = std::mem::take(&mut self.is_unfinished);
-        let mut since = Instant::now();
-        let mut finished = None;
-        let mut step = || {
-            let stepped = simulation.step.call0().map(|_| ());
-            spent.add(SUMO, &mut since);
-            stepped
-        };
-        let stepped = if unfinished { team.beside(|| finished = Some(finish(run)), step) } else { step() };
-        if let Some(finished) = finished {
-            self.spent.add_finished(finished?);
-        }
-        Ok(stepped?)
-    }
-
     /// The rest of the step under way, if that is still to be done.
-    fn finish_step(&mut self) -> Result<()> {
+    fn finish_step(&mut self, run: &mut Run) -> Result<()> {
         if std::mem::take(&mut self.is_unfinished) {
-            let run = &mut self.run;
             self.spent.add_finished(self.simulation.py().detach(|| finish(run))?);
         }
         Ok(())
@@ -326,7 +326,7 @@ impl Session<'_, '_> {
 }
 
 /// Phase 1, phase 2, events and log of a step; how long each took.
-fn finish(run: &mut Run) -> Result<[Duration; PARTS.len() - PHASE_1]> {
+fn finish(run: &mut Run) -> Finished {
     let mut ends = [Instant::now(); PARTS.len() - PHASE_1 + 1];
     run.approach();
     ends[1] = Instant::now();

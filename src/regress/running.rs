@@ -107,7 +107,8 @@ fn start(closecall: &[OsString], job: &Job, told: &Path) -> Result<Child> {
     let scenario = job.scenario;
     let mut command = Command::new(program);
     command.args(words).args(scenario.words());
-    command.args(["--quiet", "--seed", &job.seed.to_string(), "--out"]).arg(&job.log);
+    // The jobs share the processor's threads among themselves: more of them per run would only be in their way.
+    command.args(["--quiet", "--threads=1", "--seed", &job.seed.to_string(), "--out"]).arg(&job.log);
     if !scenario.settings.sumo_options.is_empty() {
         command.arg("--").args(&scenario.settings.sumo_options);
     }
