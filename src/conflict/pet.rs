@@ -81,24 +81,29 @@ struct Corridor {
 }
 
 impl Corridor {
-    /// The first and the last time at which it touches the other's corridor; the last is none where it still does at
-    /// the end.
-    fn contact(&self, other: &Self, halves: &mut Halves) -> Option<(Second, Option<Second>)> {
-        // Most of the time goes into the steps in between: they are not looked at.
-        let mut touch = |part: Part, which: Touch| {
-            let touch = other.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
-            (touch != which.none()).then_some(touch)
-        };
-        let first = self.steps.iter().find_map(|&(from, to, part)| {
-            let enters = touch(part, Touch::First)?;
+    /// The first time at which it touches the other's corridor. Most of the time goes into the steps after that: they are
+    /// not looked at.
+    fn enters(&self, other: &Self, halves: &mut Halves) -> Option<Second> {
+        self.steps.iter().find_map(|&(from, to, part)| {
+            let enters = other.touch(part, Touch::First, halves)?;
             Some(from + (to - from) * enters)
+        })
+    }
+
+    /// The last time; none where it still touches it at the end.
+    fn leaves(&self, other: &Self, halves: &mut Halves) -> Option<Second> {
+        let (from, to, leaves) = self.steps.iter().rev().find_map(|&(from, to, part)| {
+            let leaves = other.touch(part, Touch::Last, halves)?;
+            Some((from, to, leaves.min(1.0)))
         })?;
-        let last = self.steps.iter().rev().find_map(|&(from, to, part)| {
-            let leaves = touch(part, Touch::Last)?.min(1.0);
-            let still = to == self.end && leaves >= 1.0;
-            Some((!still).then_some(from + (to - from) * leaves))
-        })?;
-        Some((first, last))
+        let still = to == self.end && leaves >= 1.0;
+        (!still).then_some(from + (to - from) * leaves)
+    }
+
+    /// The part of a step of the other at which that touches this corridor.
+    fn touch(&self, part: Part, which: Touch, halves: &mut Halves) -> Option<f64> {
+        let touch = self.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
+        (touch != which.none()).then_some(touch)
     }
 }
 
@@ -108,12 +113,12 @@ pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Op
     let near = a.bounds().shared_with(&b.bounds())?;
     halves.clear();
     let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
-    let (a_enters, a_leaves) = a.contact(&b, halves)?;
-    let (b_enters, b_leaves) = b.contact(&a, halves)?;
+    let (a_enters, b_enters) = (a.enters(&b, halves)?, b.enters(&a, halves)?);
     if a_enters == b_enters {
         return None;
     }
-    let (leaves, enters) = if a_enters < b_enters { (a_leaves?, b_enters) } else { (b_leaves?, a_enters) };
+    let (leaves, enters) =
+        if a_enters < b_enters { (a.leaves(&b, halves)?, b_enters) } else { (b.leaves(&a, halves)?, a_enters) };
     (enters >= leaves).then_some((enters - leaves, enters))
 }
 
