@@ -6,7 +6,8 @@ use closecall::log::Log;
 use closecall::net::Net;
 use closecall::options::Options;
 use closecall::run::Run;
-use pyo3::exceptions::{PyRuntimeError, PyTypeError};
+use closecall::units::Second;
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -35,6 +36,8 @@ pub struct Checker {
     input: Input,
     painter: Option<Painter>,
     is_closed: bool,
+    /// Of the last step.
+    time: Second,
 }
 
 enum Input {
@@ -75,7 +78,7 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { run, input, painter, is_closed: false })
+        Ok(Self { run, input, painter, is_closed: false, time: f64::NEG_INFINITY })
     }
 
     /// Check one step; a simulation calls this itself where the checker is its step listener.
@@ -87,24 +90,38 @@ impl Checker {
     ///         `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row that is not finite is no road user.
     ///
     /// Returns:
-    ///     True: the listener wants the next step too.
+    ///     Whether the listener wants the next step too: a simulation drops one that is closed. Where its time goes
+    ///     back (another one was started or loaded, or a state of before), the checker closes itself.
     ///
     /// Raises:
-    ///     ValueError: columns of different lengths, a type with impossible dimensions.
-    ///     RuntimeError: the checker is closed.
+    ///     ValueError: columns of different lengths, a time before the last, a type with impossible dimensions.
+    ///     RuntimeError: the checker is closed, and it is not a simulation that calls.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
-        if self.is_closed {
-            return Err(PyRuntimeError::new_err("the checker is closed"));
+        if let (Input::Simulation(source), None, false) = (&self.input, states, self.is_closed) {
+            let before = std::mem::replace(&mut self.time, source.time(py)?);
+            if self.time < before {
+                // Whom it painted is not in that simulation.
+                self.painter = None;
+                self.close(py)?;
+            }
         }
         match (&mut self.input, states) {
+            (Input::Simulation(_), None) if self.is_closed => return Ok(false),
             (Input::Simulation(source), None) => {
-                source.pull(py, &mut self.run)?;
+                source.pull(py, &mut self.run, self.time)?;
                 let rows = py.detach(|| self.run.follow().to_vec());
                 source.place(py, &mut self.run, &rows)?;
             }
+            (Input::Frames(_), Some(_)) if self.is_closed => {
+                return Err(PyRuntimeError::new_err("the checker is closed"));
+            }
             (Input::Frames(frames), Some(states)) => {
+                if time < self.time {
+                    return Err(PyValueError::new_err(format!("time is {time}, after {}", self.time)));
+                }
                 frames.pull(&mut self.run, time, states)?;
+                self.time = time;
                 py.detach(|| self.run.follow().len());
             }
             (Input::Simulation(_), Some(_)) => {

@@ -285,7 +285,7 @@ impl Session<'_, '_> {
         let py = self.simulation.py();
         let mut since = Instant::now();
         *now = self.simulation.time()?;
-        self.source.pull(py, run)?;
+        self.source.pull(py, run, *now)?;
         self.spent.add(PULL, &mut since);
         let rows = py.detach(|| run.follow().to_vec());
         self.source.place(py, run, &rows)?;

@@ -68,6 +68,63 @@ def test_a_mesoscopic_simulation_is_refused_before_there_is_a_log(module: str, s
     assert not (tmp_path / "out").exists()
 
 
+AGAIN = """
+import sys
+import libsumo
+import closecall
+checkers = []
+for round in range(2):
+    libsumo.start(["sumo", "-c", sys.argv[1], "--no-warnings"])
+    checkers.append(closecall.Checker(libsumo))
+    libsumo.addStepListener(checkers[-1])
+    while libsumo.simulation.getTime() < 40:
+        libsumo.simulationStep()
+    {end}
+    libsumo.close()
+first, second = ([(conflict.ego, conflict.foe, conflict.margin) for conflict in each.conflicts] for each in checkers)
+assert first == second and len(first) > 5, (first, second)
+"""
+
+
+@pytest.mark.parametrize("end", ["checkers[-1].close()", "pass"])
+def test_simulations_one_after_the_other_have_a_checker_each(scenario: Copy, end: str) -> None:
+    done = python(AGAIN.replace("{end}", end), scenario("reckless"))
+    assert done.returncode == 0, done.stderr
+
+
+REMOVE = """
+import sys
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--no-warnings"])
+checker = closecall.Checker(sumo)
+sumo.addStepListener(checker)
+for step in range(120):
+    sumo.simulationStep()
+    if step == 60:
+        gone = sumo.vehicle.getIDList()[0]
+        sumo.vehicle.remove(gone)
+assert all(conflict.begin < 61 * 0.5 for conflict in checker.conflicts if gone in (conflict.ego, conflict.foe))
+print(gone, len(checker.conflicts), checker.summary["steps"])
+sumo.close()
+"""
+
+
+def test_a_vehicle_that_the_script_takes_away_leaves_the_scene(scenario: Copy) -> None:
+    config = scenario("left_turn")
+    with_libsumo, with_traci = (python(REMOVE.replace("{module}", module), config) for module in ("libsumo", "traci"))
+    assert (with_libsumo.returncode, with_traci.returncode) == (0, 0), with_libsumo.stderr + with_traci.stderr
+    said = [done.stdout.splitlines()[-1] for done in (with_libsumo, with_traci)]
+    assert said[0] == said[1] and said[0].endswith(" 120"), said
+
+
+def test_in_plain_frames_time_does_not_go_back() -> None:
+    checker = cc.Checker()
+    checker.step(1.0, {**CAR, "x": [0.0, 20.0]})
+    with pytest.raises(ValueError, match=r"time is 0\.5, after 1"):
+        checker.step(0.5, {**CAR, "x": [0.0, 20.0]})
+
+
 CAR = {"id": ["a", "b"], "heading": [0.0, 0.0], "speed": [20.0, 5.0], "y": [0.0, 0.0]}
 
 

@@ -114,8 +114,11 @@ impl Libsumo {
         })
     }
 
-    pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let time: Second = self.time.bind(py).call0()?.extract()?;
+    pub fn time(&self, py: Python) -> PyResult<Second> {
+        self.time.bind(py).call0()?.extract()
+    }
+
+    pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         run.begin(sumo::time_of_states(time, self.step_length));
         // Lists of who departed are those of the last step: after a jump over several, everybody is looked up.
         let jumped = self.last_time.is_none_or(|last| time - last > 1.5 * self.step_length);
@@ -286,8 +289,21 @@ impl Domain {
         self.by_id.binary_search_by(|&place| (**roster.id(self.live[place as usize].user)).cmp(id))
     }
 
-    /// Everybody's state into the run's frame.
+    /// Everybody's state into the run's frame. Whom a script has taken out of the simulation since the last step, which
+    /// SUMO's list of those who arrived does not say, leaves the scene.
     fn read(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        self.read_all(py, run).or_else(|error| {
+            let is_unknown = |live: &Live| self.type_id.bind(py).call1((&**run.roster.id(live.user),)).is_err();
+            let gone = (0..self.live.len()).filter(|&place| is_unknown(&self.live[place])).collect::<Vec<_>>();
+            if gone.is_empty() {
+                return Err(error);
+            }
+            gone.into_iter().rev().for_each(|place| self.remove(run, place));
+            self.read_all(py, run)
+        })
+    }
+
+    fn read_all(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
         let Self { live, by_id, rows, getters, .. } = self;
         rows.clear();
         self.first_row = run.frame.len() as u32;

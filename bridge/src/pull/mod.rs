@@ -9,6 +9,7 @@ mod traci;
 
 use closecall::options::Options;
 use closecall::run::Run;
+use closecall::units::Second;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -44,11 +45,19 @@ impl Source {
         })
     }
 
-    /// Begins a step of the run with every road user's state of now.
-    pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+    /// SUMO's time.
+    pub fn time(&self, py: Python) -> PyResult<Second> {
         match self {
-            Self::Libsumo(source) => source.pull(py, run),
-            Self::Traci(source) => source.pull(py, run),
+            Self::Libsumo(source) => source.time(py),
+            Self::Traci(source) => source.time(py),
+        }
+    }
+
+    /// Begins a step of the run with every road user's state of now, which is SUMO's `time`.
+    pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
+        match self {
+            Self::Libsumo(source) => source.pull(py, run, time),
+            Self::Traci(source) => source.pull(py, run, time),
         }
     }
 

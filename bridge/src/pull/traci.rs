@@ -97,9 +97,11 @@ impl Traci {
         })
     }
 
-    pub fn pull(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
-        let time: Second = simulation.call_method0(intern!(py, "getTime"))?.extract()?;
+    pub fn time(&self, py: Python) -> PyResult<Second> {
+        self.source.bind(py).getattr(intern!(py, "simulation"))?.call_method0(intern!(py, "getTime"))?.extract()
+    }
+
+    pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         run.begin(sumo::time_of_states(time, self.step_length));
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
