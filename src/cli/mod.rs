@@ -18,6 +18,8 @@ mod study;
 mod sweep;
 
 use std::ffi::OsString;
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -121,6 +123,15 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
 /// Those of [`Scenario::read`].
 pub fn scenario(path: &Path) -> Result<Scenario> {
     Scenario::at(path, &settings::known(&command()))
+}
+
+/// Prints results. A reader that has seen enough is no error.
+fn say(text: impl Display) -> Result<()> {
+    let mut output = std::io::stdout();
+    match write!(output, "{text}").and_then(|()| output.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(value(format!("standard output: {error}"))),
+        _ => Ok(()),
+    }
 }
 
 fn failed(error: &Error) -> u8 {

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
+use super::say;
 use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::encounter::Kind;
@@ -70,11 +71,11 @@ pub fn run(arguments: &MuArgs) -> Result<()> {
         object.insert("stopping_distance".to_owned(), stops[0].into());
         object.insert("foe_stopping_distance".to_owned(), stops[1].into());
         object.extend(found.map(|(name, mu)| (name.replace('-', "_"), mu.into())));
-        println!("{}", serde_json::Value::Object(object));
+        say(format_args!("{}\n", serde_json::Value::Object(object)))?;
     } else {
-        println!("sigma {sigma}, stopping distances {} m and {} m", stops[0], stops[1]);
+        say(format_args!("sigma {sigma}, stopping distances {} m and {} m\n", stops[0], stops[1]))?;
         for (name, mu) in found {
-            println!("{name:<8} {mu} m");
+            say(format_args!("{name:<8} {mu} m\n"))?;
         }
     }
     Ok(())

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::say;
 use crate::Result;
 use crate::plot::{self, Format};
 
@@ -32,7 +33,7 @@ pub fn run(arguments: &PlotArgs) -> Result<()> {
     let files = plot::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, arguments.format)?;
     if !arguments.quiet {
         for file in files {
-            println!("{}", file.display());
+            say(format_args!("{}\n", file.display()))?;
         }
     }
     Ok(())

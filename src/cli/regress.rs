@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, no_sumo, value};
+use super::{Sumo, no_sumo, say, value};
 use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
 use crate::{Error, Result};
 
@@ -78,9 +78,9 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut reports = reports.into_values().collect::<Vec<_>>();
     for report in &mut reports {
         report.shows_all = arguments.all;
-        print!("{report}");
+        say(format_args!("{report}"))?;
     }
-    println!("{}", summary(&reports));
+    say(format_args!("{}\n", summary(&reports)))?;
     if let Some(path) = &arguments.junit {
         junit::write(path, &reports)?;
     }

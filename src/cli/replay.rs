@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
+use super::say;
 use crate::inputs::Input;
 use crate::log::Log;
 use crate::net::Net;
@@ -90,8 +91,8 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
         log.run(&record)?;
     }
     if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        print!("{}", record.summary);
-        println!("log in {}", out.display());
+        say(format_args!("{}", record.summary))?;
+        say(format_args!("log in {}\n", out.display()))?;
     }
     ended
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::say;
 use crate::Result;
 use crate::report;
 
@@ -30,7 +31,7 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
     if !arguments.quiet {
         let report::Made { runs, conflicts, bytes } = made;
         let size = bytes as f64 / 1e6;
-        println!("{conflicts} conflicts of {runs} run(s) in {} ({size:.1} MB)", arguments.out.display());
+        say(format_args!("{conflicts} conflicts of {runs} run(s) in {} ({size:.1} MB)\n", arguments.out.display()))?;
     }
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, no_sumo};
+use super::{Sumo, no_sumo, say};
 use crate::options::{Options, not_negative, positive};
 use crate::outputs::OutputFiles;
 use crate::summary::Summary;
@@ -89,8 +89,8 @@ pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let request = request(arguments)?;
     let summary = (sumo.simulate)(&request)?;
     if !request.quiet {
-        print!("{summary}");
-        println!("log in {}", request.out.display());
+        say(format_args!("{summary}"))?;
+        say(format_args!("log in {}\n", request.out.display()))?;
     }
     Ok(())
 }

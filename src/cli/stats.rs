@@ -1,11 +1,10 @@
 //! `closecall stats`: near-miss statistics of one or many runs.
 
-use std::io::Write;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::value;
+use super::{say, value};
 use crate::Result;
 use crate::statistics::{By, Request, Statistics, table};
 
@@ -55,9 +54,5 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Format::Csv => table::csv(&table::tables(&statistics))?,
         Format::Html => table::html(&table::tables(&statistics)),
     };
-    match std::io::stdout().write_all(printed.as_bytes()) {
-        // A reader that has seen enough is no error.
-        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(value(error.to_string())),
-        _ => Ok(()),
-    }
+    say(printed)
 }

@@ -2,6 +2,7 @@
 
 use clap::Args;
 
+use super::say;
 use crate::stress::{self, Group};
 use crate::{Error, Result};
 
@@ -22,11 +23,11 @@ pub struct StressArgs {
 /// Prints the table of worst errors; fails where a bound is exceeded.
 pub fn run(arguments: &StressArgs) -> Result<()> {
     let rows = stress::run(arguments.cases, arguments.seed, arguments.only);
-    print!("{}", stress::table(&rows));
+    say(format_args!("{}", stress::table(&rows)))?;
     let exceeded = rows.iter().filter(|row| !row.holds()).count();
     if exceeded > 0 {
         return Err(Error::Exceeded(format!("{exceeded} of {} bounds are exceeded", rows.len())));
     }
-    println!("all {} bounds hold", rows.len());
+    say(format_args!("all {} bounds hold\n", rows.len()))?;
     Ok(())
 }

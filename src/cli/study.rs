@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Sumo;
 use super::run::RunRequest;
+use super::{Sumo, say};
 use crate::Result;
 use crate::options::Options;
 use crate::outputs::OutputFiles;
@@ -51,10 +51,10 @@ pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
         rows.extend(measured);
         study::write(&arguments.out, &rows)?;
     }
-    println!("{} rows in {}", rows.len(), arguments.out.join("study.csv").display());
+    say(format_args!("{} rows in {}\n", rows.len(), arguments.out.join("study.csv").display()))?;
     let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);
     for row in off {
-        println!("off the Pareto front: {} {} ({})", row.axis.name(), row.method, row.parameter);
+        say(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;
     }
     Ok(())
 }

@@ -9,7 +9,7 @@ use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::run::{RunArgs, request};
-use super::{Command, Stop, Sumo, no_sumo, parse, usage, value};
+use super::{Command, Stop, Sumo, no_sumo, parse, say, usage, value};
 use crate::sweep::{Seeds, Sweep, Task, Vary};
 use crate::{Error, Result};
 
@@ -148,12 +148,12 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
     };
     let failed = distribute(sumo, &workers, &missing, there, arguments.quiet, &out)?;
     if !arguments.quiet {
-        println!("{} runs in {}", plan.tasks.len() - failed, plan.data_set().display());
+        say(format_args!("{} runs in {}\n", plan.tasks.len() - failed, plan.data_set().display()))?;
         if there > 0 {
-            println!("{there} of them were there already");
+            say(format_args!("{there} of them were there already\n"))?;
         }
         if failed > 0 {
-            println!("{failed} failed; the same command tries them again");
+            say(format_args!("{failed} failed; the same command tries them again\n"))?;
         }
     }
     Ok(u8::from(failed > 0))

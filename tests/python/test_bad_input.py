@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import resource
+import subprocess
+import sys
 from pathlib import Path
 from typing import Callable
 
@@ -37,6 +39,20 @@ def test_a_missing_configuration(tmp_path: Path) -> None:
 
 def test_a_misspelt_option_is_told_the_one_that_was_meant(scenario: Copy) -> None:
     refused(scenario("rear_end"), "--modus", "paper", names="'--modus' found; tip: a similar .* exists: '--mode'; tip:")
+
+
+def test_results_that_cannot_be_printed(scenario: Copy) -> None:
+    config = scenario("rear_end")
+    for words in (("mu", "--speed", "30", "--foe-speed", "25"), ("run", config), ("stats", config.parent)):
+        command = [sys.executable, "-m", "closecall", *map(str, words)]
+        with Path("/dev/full").open("w") as full:
+            done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+        assert "standard output: No space left on device" in done.stderr
+        with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+            assert process.stdout and process.stderr
+            process.stdout.close()
+            assert (process.stderr.read(), process.wait(60)) == ("", 0)
 
 
 def test_a_malformed_configuration(scenario: Copy) -> None:

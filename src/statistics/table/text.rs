@@ -12,7 +12,8 @@ fn one(table: &Table) -> String {
     let is_word = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
-        cells.chain([table.columns[column].chars().count()]).max().unwrap_or_default()
+        // More than this `format!` cannot fill.
+        cells.chain([table.columns[column].chars().count()]).max().unwrap_or_default().min(u16::MAX.into())
     };
     let columns = (0..table.columns.len()).map(|column| (width(column), is_word(column))).collect::<Vec<_>>();
     let line = |cells: &mut dyn Iterator<Item = &str>| {
@@ -33,6 +34,13 @@ fn one(table: &Table) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_word_of_any_length_is_printed() {
+        let word = "w".repeat(1 << 17);
+        let table = Table { title: "t", columns: vec!["id"], rows: vec![vec![word.as_str().into()]], notes: vec![] };
+        assert_eq!(text(&[table]), format!("T\nid\n{word}\n"));
+    }
 
     #[test]
     fn words_stand_left_and_numbers_right() {
