@@ -67,7 +67,7 @@ impl Team {
 
 /// A thread that does the same to all that it is given, while the caller does something else.
 ///
-/// Having done that it looks for more for [`AWAKE`] before it sleeps.
+/// Having done that it looks for more for a millisecond before it sleeps.
 pub struct Helper<Item, Done> {
     give: SyncSender<Item>,
     take_back: Receiver<(Item, Done)>,
