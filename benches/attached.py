@@ -4,7 +4,7 @@ How much longer than the program `sumo` it takes is told too: libsumo alone take
 
     python benches/attached.py [--runs N] [CONFIG ...]
 
-On the bench's own simulations, or on those of these configurations, until 600 s.
+On the bench's own simulations, or on those of these configurations, 600 s of each.
 
 Whole processes, start-up included. Each is compared with a plain run beside it: in slices of 50 ms one of the two runs
 while the other is stopped, so that what slows the machine down slows both. The figure is the median of the runs,

@@ -10,9 +10,11 @@ import os
 import shutil
 import subprocess
 import sys
+import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import sumo
+from sumolib.miscutils import parseTime
 
 BIN = Path(sys.executable).parent
 GRID = ["--grid", "--grid.number", "10", "--grid.length", "200", "-L", "2", "-j", "traffic_light"]
@@ -57,8 +59,9 @@ def motorway(folder: Path) -> Path:
 
 
 def end(config: Path) -> str:
-    """When a run ends, in s."""
-    return "300" if config.stem == "town" else "600"
+    """When a run ends, in s: 600 s after its begin, the town 300."""
+    begin = ET.parse(config).getroot().find(".//begin")
+    return f"{parseTime('0' if begin is None else begin.attrib['value']) + (300 if config.stem == 'town' else 600):g}"
 
 
 def plain(config: Path) -> list[str]:

@@ -152,10 +152,9 @@ impl Run {
 
     /// Begins the step at `time`, with an empty frame.
     pub fn begin(&mut self, time: Second) {
-        if self.summary.steps == 0 {
-            self.summary.begin = time;
-        } else {
-            self.expose(time - self.frame.time);
+        match self.time() {
+            None => self.summary.begin = time,
+            Some(last) => self.expose(time - last),
         }
         self.summary.steps += 1;
         self.summary.end = time;
@@ -163,6 +162,11 @@ impl Run {
         for &(user, place) in &self.obstacles {
             self.frame.push(user, State { x: place.x, y: place.y, z: 0.0, heading: 0.0, speed: 0.0 });
         }
+    }
+
+    /// The time of the step under way; none before the first.
+    pub fn time(&self) -> Option<Second> {
+        (self.summary.steps > 0).then_some(self.frame.time)
     }
 
     /// Counts the traffic of the step before, which lasted this long.

@@ -71,15 +71,13 @@ impl Team {
 pub struct Helper<Item, Done> {
     give: SyncSender<Item>,
     take_back: Receiver<(Item, Done)>,
-    thread: JoinHandle<()>,
+    /// None when it has panicked.
+    thread: Option<JoinHandle<()>>,
 }
 
 impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
-    /// A thread for this work; none where the system gives none, or has one processor only.
+    /// A thread for this work; none where the system gives no more.
     pub fn new(work: impl Fn(&mut Item) -> Done + Send + 'static) -> Option<Self> {
-        if thread::available_parallelism().is_ok_and(|processors| processors.get() < 2) {
-            return None;
-        }
         let (give, given) = sync_channel(1);
         let (give_back, take_back) = sync_channel(1);
         let all = move || {
@@ -90,17 +88,20 @@ impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
                 }
             }
         };
-        Some(Self { give, take_back, thread: thread::Builder::new().spawn(all).ok()? })
+        Some(Self { give, take_back, thread: Some(thread::Builder::new().spawn(all).ok()?) })
     }
 
     /// Has the work done to an item while the caller's thread does its own; returns when both are done.
-    pub fn beside<T>(self, item: Item, own: impl FnOnce() -> T) -> (Self, Item, Done, T) {
+    pub fn beside<T>(&mut self, item: Item, own: impl FnOnce() -> T) -> (Item, Done, T) {
         let given = self.give.send(item);
         let own = own();
         match given.ok().and_then(|()| wait_for(&self.take_back)) {
-            Some((item, done)) => (self, item, done, own),
+            Some((item, done)) => (item, done, own),
             // It has panicked, and so does who waits for it.
-            None => resume_unwind(self.thread.join().err().unwrap_or_else(|| Box::new("the helper has gone"))),
+            None => {
+                let said = self.thread.take().and_then(|thread| thread.join().err());
+                resume_unwind(said.unwrap_or_else(|| Box::new("the helper has gone")))
+            }
         }
     }
 }
@@ -138,22 +139,31 @@ mod tests {
     }
 
     #[test]
-    fn a_helper_does_what_it_is_given_while_the_caller_does_something_else() {
-        let Some(mut helper) = Helper::new(|item: &mut u32| std::mem::replace(item, *item + 1)) else { return };
-        for round in 0..100 {
-            let (item, done, own);
-            (helper, item, done, own) = helper.beside(round, || 2 * round);
-            assert_eq!((item, done, own), (round + 1, round, 2 * round));
-            if round % 40 == 39 {
-                thread::sleep(2 * AWAKE);
-            }
+    fn a_helper_works_while_the_caller_does() {
+        const LONG: Duration = Duration::from_secs(60);
+        let [(say, heard), (answer, answered)] = [(); 2].map(|()| sync_channel(1));
+        let work = move |item: &mut u32| {
+            say.send(*item).unwrap();
+            *item += 1;
+            answered.recv_timeout(LONG).unwrap()
+        };
+        let mut helper = Helper::new(work).unwrap();
+        for round in 0..3 {
+            let own = || {
+                answer.send(10 * round).unwrap();
+                heard.recv_timeout(LONG).unwrap()
+            };
+            assert_eq!(helper.beside(round, own), (round + 1, 10 * round, round));
+            // The next round finds it asleep.
+            thread::sleep(2 * AWAKE);
         }
     }
 
     #[test]
     #[should_panic(expected = "what the helper says")]
     fn who_waits_for_a_helper_that_panics_does_so_too() {
-        let helper = Helper::new(|fails: &mut bool| assert!(!*fails, "what the helper says"));
-        helper.expect("what the helper says").beside(true, || ());
+        let mut helper = Helper::new(|fails: &mut bool| assert!(!*fails, "what the helper says")).unwrap();
+        assert_eq!(helper.beside(false, || 7), (false, (), 7));
+        helper.beside(true, || 7);
     }
 }

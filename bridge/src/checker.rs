@@ -6,7 +6,6 @@ use closecall::log::Log;
 use closecall::net::Net;
 use closecall::options::Options;
 use closecall::run::Run;
-use closecall::units::Second;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -36,8 +35,6 @@ pub struct Checker {
     input: Input,
     painter: Option<Painter>,
     is_closed: bool,
-    /// Of the last step.
-    time: Second,
 }
 
 enum Input {
@@ -78,7 +75,7 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { run, input, painter, is_closed: false, time: f64::NEG_INFINITY })
+        Ok(Self { run, input, painter, is_closed: false })
     }
 
     /// Check one step; a simulation calls this itself where the checker is its step listener.
@@ -98,18 +95,17 @@ impl Checker {
     ///     RuntimeError: the checker is closed, and it is not a simulation that calls.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
-        if let (Input::Simulation(source), None, false) = (&self.input, states, self.is_closed) {
-            let before = std::mem::replace(&mut self.time, source.time(py)?);
-            if self.time < before {
-                // Whom it painted is not in that simulation.
-                self.painter = None;
-                self.close(py)?;
-            }
-        }
         match (&mut self.input, states) {
             (Input::Simulation(_), None) if self.is_closed => return Ok(false),
             (Input::Simulation(source), None) => {
-                source.pull(py, &mut self.run, self.time)?;
+                let time = source.time(py)?;
+                if self.run.time().is_some_and(|last| time < last) {
+                    // Whom it painted is not in that simulation.
+                    self.painter = None;
+                    self.close(py)?;
+                    return Ok(false);
+                }
+                source.pull(py, &mut self.run, time)?;
                 let rows = py.detach(|| self.run.follow().to_vec());
                 source.place(py, &mut self.run, &rows)?;
             }
@@ -117,11 +113,10 @@ impl Checker {
                 return Err(PyRuntimeError::new_err("the checker is closed"));
             }
             (Input::Frames(frames), Some(states)) => {
-                if time < self.time {
-                    return Err(PyValueError::new_err(format!("time is {time}, after {}", self.time)));
+                if let Some(last) = self.run.time().filter(|last| time < *last) {
+                    return Err(PyValueError::new_err(format!("time is {time}, after {last}")));
                 }
                 frames.pull(&mut self.run, time, states)?;
-                self.time = time;
                 py.detach(|| self.run.follow().len());
             }
             (Input::Simulation(_), Some(_)) => {

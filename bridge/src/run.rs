@@ -205,7 +205,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
         step_length,
         spent: Spent::default(),
         is_unfinished: false,
-        helper: (usize::from(request.threads) > 1).then(|| Helper::new(|run: &mut Box<Run>| finish(run))).flatten(),
+        helper: if has_a_second(request.threads) { Helper::new(|run: &mut Box<Run>| finish(run)) } else { None },
     };
     let (mut run, ended) = session.steps(Box::new(run));
     let ended = session.finish_step(&mut run).and(ended);
@@ -247,9 +247,10 @@ impl Session<'_, '_> {
         let mut progress = Progress::new(begin, end, !self.request.quiet);
         let mut now = begin;
         loop {
-            let (started, simulated) = (Instant::now(), self.simulate(run));
-            run = simulated.0;
-            match simulated.1.and_then(|()| self.step(&mut run, &mut now, started)) {
+            let started = Instant::now();
+            let simulated;
+            (run, simulated) = self.simulate(run);
+            match simulated.and_then(|()| self.step(&mut run, &mut now, started)) {
                 Ok(true) => {}
                 Ok(false) => return (run, Ok(())),
                 Err(Stop::Python(error)) => return (run, Err(self.failed(now, &error))),
@@ -264,7 +265,7 @@ impl Session<'_, '_> {
 
     /// SUMO's next step, while another thread finishes the last one: that needs nothing of SUMO any more.
     fn simulate(&mut self, run: Box<Run>) -> (Box<Run>, std::result::Result<(), Stop>) {
-        let Self { simulation, spent, .. } = self;
+        let Self { simulation, spent, helper, .. } = self;
         let mut since = Instant::now();
         let mut step = || {
             simulation.py().check_signals()?;
@@ -272,10 +273,9 @@ impl Session<'_, '_> {
             spent.add(SUMO, &mut since);
             stepped
         };
-        let helper = if self.is_unfinished { self.helper.take() } else { None };
-        let Some(helper) = helper else { return (run, step().map_err(Stop::from)) };
-        let (helper, run, finished, stepped) = helper.beside(run, step);
-        (self.helper, self.is_unfinished) = (Some(helper), false);
+        let (Some(helper), true) = (helper, self.is_unfinished) else { return (run, step().map_err(Stop::from)) };
+        let (run, finished, stepped) = helper.beside(run, step);
+        self.is_unfinished = false;
         let finished = finished.map(|parts| self.spent.add_finished(parts));
         (run, finished.map_err(Stop::from).and(stepped.map_err(Stop::from)))
     }
@@ -284,8 +284,9 @@ impl Session<'_, '_> {
     fn step(&mut self, run: &mut Run, now: &mut f64, started: Instant) -> std::result::Result<bool, Stop> {
         let py = self.simulation.py();
         let mut since = Instant::now();
-        *now = self.simulation.time()?;
-        self.source.pull(py, run, *now)?;
+        let time = self.source.time(py)?;
+        *now = time + self.step_length;
+        self.source.pull(py, run, time)?;
         self.spent.add(PULL, &mut since);
         let rows = py.detach(|| run.follow().to_vec());
         self.source.place(py, run, &rows)?;
@@ -337,6 +338,11 @@ fn finish(run: &mut Run) -> Finished {
     run.write()?;
     ends[4] = Instant::now();
     Ok(std::array::from_fn(|part| ends[part + 1] - ends[part]))
+}
+
+/// Whether a step may be finished by another thread, on a processor of its own.
+fn has_a_second(threads: u8) -> bool {
+    threads > 1 && std::thread::available_parallelism().is_ok_and(|processors| processors.get() > 1)
 }
 
 /// Why a step was the last.

@@ -27,7 +27,6 @@ pub struct Libsumo {
     parking: [Py<PyAny>; 2],
     types: Types,
     step_length: Second,
-    last_time: Option<Second>,
     get: Placing,
 }
 
@@ -101,7 +100,6 @@ impl Libsumo {
             ],
             types: Types::new(module, options)?,
             step_length: module.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
-            last_time: None,
             get: Placing {
                 lane: function("vehicle_getLaneID")?,
                 lane_position: function("vehicle_getLanePosition")?,
@@ -115,14 +113,13 @@ impl Libsumo {
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {
-        self.time.bind(py).call0()?.extract()
+        Ok(sumo::time_of_states(self.time.bind(py).call0()?.extract()?, self.step_length))
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
-        run.begin(sumo::time_of_states(time, self.step_length));
         // Lists of who departed are those of the last step: after a jump over several, everybody is looked up.
-        let jumped = self.last_time.is_none_or(|last| time - last > 1.5 * self.step_length);
-        self.last_time = Some(time);
+        let jumped = run.time().is_none_or(|last| time - last > 1.5 * self.step_length);
+        run.begin(time);
         let entered = self.vehicles.update(py, run, jumped, |run, name| self.types.vehicle(py, run, name))?;
         for live in &self.vehicles.live[entered] {
             let id = run.roster.id(live.user);

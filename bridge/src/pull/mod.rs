@@ -45,7 +45,7 @@ impl Source {
         })
     }
 
-    /// SUMO's time.
+    /// The time of the states of now, as SUMO's own outputs have it.
     pub fn time(&self, py: Python) -> PyResult<Second> {
         match self {
             Self::Libsumo(source) => source.time(py),
@@ -53,7 +53,7 @@ impl Source {
         }
     }
 
-    /// Begins a step of the run with every road user's state of now, which is SUMO's `time`.
+    /// Begins a step of the run with every road user's state of now, whose time this is.
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         match self {
             Self::Libsumo(source) => source.pull(py, run, time),

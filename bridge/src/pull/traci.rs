@@ -98,11 +98,13 @@ impl Traci {
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {
-        self.source.bind(py).getattr(intern!(py, "simulation"))?.call_method0(intern!(py, "getTime"))?.extract()
+        let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
+        let time = simulation.call_method0(intern!(py, "getTime"))?.extract()?;
+        Ok(sumo::time_of_states(time, self.step_length))
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
-        run.begin(sumo::time_of_states(time, self.step_length));
+        run.begin(time);
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;
