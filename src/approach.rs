@@ -3,7 +3,7 @@
 use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::{TOLERANCE, slide};
+use crate::geometry::sweep::{Step, TOLERANCE, slide};
 use crate::geometry::{Point, Vector};
 use crate::path::Pose;
 use crate::units::{Metre, MetrePerSecond, Second};
@@ -25,7 +25,8 @@ pub struct Course<'a> {
 }
 
 impl Course<'_> {
-    fn at(&self, time: Second) -> Rectangle {
+    /// Where it is after a time.
+    pub(crate) fn at(&self, time: Second) -> Rectangle {
         let way = self.speed * time;
         let next = self.poses.partition_point(|pose| pose.way <= way);
         let (front, axis): (Point, Vector) = match (self.poses.get(next.wrapping_sub(1)), self.poses.get(next)) {
@@ -40,8 +41,18 @@ impl Course<'_> {
         Rectangle::behind(front, axis, self.length, self.width)
     }
 
+    /// Its steps from pose to pose, and the ways at which they begin and end, until it is as far as that.
+    pub(crate) fn steps(&self, furthest: Metre) -> impl Iterator<Item = (Metre, Metre, Step)> {
+        let beyond = self.poses.last().filter(|last| last.way < furthest).map(|last| {
+            [*last, Pose { way: furthest, front: last.front + last.axis * (furthest - last.way), ..*last }]
+        });
+        let step = |from: &Pose, to: &Pose| (from.way, to.way, from.step_to(to, self.length, self.width));
+        let laid = self.poses.windows(2).take_while(move |pair| pair[0].way < furthest);
+        laid.map(move |pair| step(&pair[0], &pair[1])).chain(beyond.map(move |[from, to]| step(&from, &to)))
+    }
+
     /// Where it is now, and how far it moves until [`HORIZON`], if it goes straight on so long.
-    fn straight(&self) -> Option<(Rectangle, Vector)> {
+    pub(crate) fn straight(&self) -> Option<(Rectangle, Vector)> {
         let way = self.speed * HORIZON;
         let (first, by) = match self.poses {
             [only] => (only, only.axis * way),

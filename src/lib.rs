@@ -7,6 +7,7 @@
 
 pub mod accurate;
 pub mod approach;
+pub mod avoidance;
 pub mod braking;
 pub mod cli;
 pub mod conflict;

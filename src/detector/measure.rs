@@ -4,6 +4,7 @@
 use super::{Found, Met, Scene, Scratch, User, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::approach::{self, Course};
+use crate::avoidance;
 use crate::encounter::{Encounter, Kind, Nearness};
 use crate::geometry::{polygon, rectangle};
 use crate::measures;
@@ -56,7 +57,6 @@ impl Scene<'_> {
 
     fn nearness(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &Encounter) -> Nearness {
         let [ego, foe] = pair;
-        let ttc = self.time_to_collision(scratch, encounter, met);
         let clearance = if encounter.collision {
             0.0
         } else if foe.shape.is_empty() {
@@ -64,30 +64,19 @@ impl Scene<'_> {
         } else {
             polygon::distance(foe.shape, &ego.rectangle)
         };
-        let drac = ttc.and_then(|_| self.drac(scratch, pair, met, encounter));
+        let (ttc, drac) =
+            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, met, encounter) };
         let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, self.options);
         Nearness { clearance, ttc, drac, severity }
     }
 
-    fn drac(
+    /// The time to collision; where there is one, the deceleration that avoids it.
+    fn ttc_and_drac(
         &self,
         scratch: &mut Scratch,
-        [ego, foe]: [&Mover; 2],
         met: &Met,
         encounter: &Encounter,
-    ) -> Option<MetrePerSecondSquared> {
-        if met.meeting.leads || encounter.kind == Kind::Frontal {
-            return measures::drac_in_line(ego.speed - met.sigma * foe.speed, encounter.gap);
-        }
-        let knows_way_out = met.sigma > 0.0 || met.meeting.foe_axis.is_none();
-        let out = if knows_way_out { encounter.foe_way } else { self.way_out(scratch, foe, met) };
-        measures::drac_across(ego.speed, encounter.ego_way, foe.speed, out)
-    }
-
-    fn time_to_collision(&self, scratch: &mut Scratch, encounter: &Encounter, met: &Met) -> Option<Second> {
-        if encounter.collision {
-            return Some(0.0);
-        }
+    ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
         let users = met.slots.map(|slot| self.user(slot));
         for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
             poses.clear();
@@ -98,11 +87,18 @@ impl Scene<'_> {
             Course { poses, speed: user.speed, length: profile.length, width: profile.width }
         };
         let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
-        if self.is_obstacle(met.slots[1]) {
-            let shape = self.roster.shape(encounter.foe);
-            approach::time_to_fixed(&mut scratch.halves, &ego, shape)
+        let is_obstacle = self.is_obstacle(met.slots[1]);
+        let ttc = if is_obstacle {
+            approach::time_to_fixed(&mut scratch.halves, &ego, self.roster.shape(encounter.foe))
         } else {
             approach::time_to_collision(&ego, &foe)
+        };
+        let Some(time) = ttc else { return (None, None) };
+        let in_line = avoidance::drac_in_line(ego.speed - met.sigma * foe.speed, time);
+        if met.meeting.leads || is_obstacle || encounter.kind == Kind::Frontal {
+            return (ttc, in_line);
         }
+        let drac = avoidance::drac(&mut scratch.halves, &ego, &foe, time);
+        (ttc, if drac.is_finite() { Some(drac).filter(|drac| *drac > 0.0) } else { in_line })
     }
 }
