@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use super::Stance;
+use super::pet::Pet;
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, ProfileIndex, Roster, UserIndex};
 use crate::geometry::Point;
@@ -182,9 +183,9 @@ impl Conflict {
     }
 
     /// Sets the PET and the time at which the second enters.
-    pub(super) fn set_pet(&mut self, found: Option<(Second, Second)>) {
-        self.pet = found.map(|(pet, _)| pet);
-        self.found[2] = found.map(|(_, time)| Moment { time, x: self.x, y: self.y, speed: self.ego_speed });
+    pub(super) fn set_pet(&mut self, found: Option<Pet>) {
+        self.pet = found.map(|pet| pet.lasts);
+        self.found[2] = found.map(|pet| Moment { time: pet.enters, x: self.x, y: self.y, speed: self.ego_speed });
     }
 }
 

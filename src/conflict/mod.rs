@@ -187,8 +187,9 @@ impl Tracker {
                 if last_call || just_closed {
                     let found = pet::post_encroachment_time(&mut halves, &courses[0], &courses[1]);
                     event.conflict.set_pet(found);
+                    return last_call || found.is_some_and(|pet| pet.is_final);
                 }
-                return event.conflict.pet.is_some() || last_call;
+                return false;
             }
             true
         });

@@ -2,7 +2,8 @@
 //!
 //! Measured on what both really drove. The conflict area is where the two corridors, the areas that their rectangles
 //! covered, overlap: the first leaves it when its rectangle touches the other's corridor for the last time, the
-//! second enters it when its rectangle touches the first's corridor for the first time.
+//! second enters it when its rectangle touches the first's corridor for the first time. As long as the second is in that
+//! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
 use crate::geometry::Bounds;
 use crate::geometry::halves::{Halves, Part, Touch};
@@ -107,9 +108,20 @@ impl Corridor {
     }
 }
 
-/// The PET of two courses and the time at which the second enters, in s; none where the corridors do not overlap, or
-/// both are in the conflict area at once, as where one merges behind the other. Of `halves` only the memory is used.
-pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Option<(Second, Second)> {
+/// What two courses say of the PET.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pet {
+    /// From when the first has left the conflict area until the second enters it, in s.
+    pub lasts: Second,
+    /// When the second enters it, in s.
+    pub enters: Second,
+    /// Whether the second has left the first's corridor, so that no further step changes this.
+    pub is_final: bool,
+}
+
+/// The PET of two courses; none where the corridors do not overlap, or both are in the conflict area at once, as where one
+/// merges behind the other. Of `halves` only the memory is used.
+pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Option<Pet> {
     let near = a.bounds().shared_with(&b.bounds())?;
     halves.clear();
     let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
@@ -117,9 +129,9 @@ pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Op
     if a_enters == b_enters {
         return None;
     }
-    let (leaves, enters) =
-        if a_enters < b_enters { (a.leaves(&b, halves)?, b_enters) } else { (b.leaves(&a, halves)?, a_enters) };
-    (enters >= leaves).then_some((enters - leaves, enters))
+    let (first, second, enters) = if a_enters < b_enters { (a, b, b_enters) } else { (b, a, a_enters) };
+    let lasts = enters - first.leaves(&second, halves)?;
+    (lasts >= 0.0).then(|| Pet { lasts, enters, is_final: second.leaves(&first, halves).is_some() })
 }
 
 #[cfg(test)]
@@ -143,13 +155,13 @@ mod tests {
     fn one_that_crosses_behind_another_leaves_the_time_between() {
         // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
         // enters the first's (1 m before the origin) at 5 − 0.1 s.
-        let (pet, enters) = post_encroachment_time(
+        let Pet { lasts, enters, is_final } = post_encroachment_time(
             &mut Halves::default(),
             &course(0.0, 2.0),
             &course(std::f64::consts::FRAC_PI_2, 5.0),
         )
         .unwrap();
-        assert!((pet - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9, "{pet} at {enters}");
+        assert!((lasts - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9 && is_final, "{lasts} at {enters}");
     }
 
     /// A car that turns left from the south to the west on a radius of 9 m, with 8 m/s, in steps of this length.
@@ -178,7 +190,27 @@ mod tests {
             post_encroachment_time(&mut Halves::default(), &turn(step), &course).unwrap()
         };
         let (long, short) = (crossing(0.2), crossing(0.01));
-        assert!((long.0 - short.0).abs() < 0.02, "{long:?} {short:?}");
+        assert!((long.lasts - short.lasts).abs() < 0.02, "{long:?} {short:?}");
+    }
+
+    #[test]
+    fn it_is_known_when_the_second_has_left() {
+        let first = turn(0.1);
+        // It crosses the way out of the turn at an angle.
+        let axis = crate::geometry::rectangle::direction(2.6);
+        let second = |until: f64| {
+            let mut course = Course::default();
+            for time in (0..=80).map(|number| f64::from(number) * 0.1).take_while(|time| *time < until) {
+                course
+                    .push(time, Rectangle::behind(Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), axis, 4.0, 2.0));
+            }
+            post_encroachment_time(&mut Halves::default(), &first, &course)
+        };
+        let all = second(8.1).unwrap();
+        let found = (1..=80).filter_map(|step| second(f64::from(step) * 0.1)).collect::<Vec<_>>();
+        let [early, final_ones] = [false, true].map(|is| found.iter().filter(move |pet| pet.is_final == is));
+        assert!(early.clone().count() > 3 && early.clone().any(|pet| pet.lasts > all.lasts + 0.1));
+        assert!(final_ones.clone().count() > 3 && final_ones.clone().all(|pet| *pet == all));
     }
 
     #[test]
