@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use closecall::log::Log;
 use closecall::net::Net;
 use closecall::options::Options;
+use closecall::record::RunRecord;
 use closecall::run::Run;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -13,6 +14,7 @@ use pyo3::types::{PyDict, PyList};
 use crate::error::exception;
 use crate::frames::Frames;
 use crate::paint::Painter;
+use crate::provenance;
 use crate::pull::{self, Source};
 
 /// Finds the conflicts of a simulation, or of plain frames, step by step.
@@ -21,19 +23,23 @@ use crate::pull::{self, Source};
 ///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None where
 ///         frames are given to `step`.
 ///     net: the net file; by default the simulation's own.
-///     out: a folder for the log (conflicts.csv, and encounters.csv with `log_encounters=True`); by default none.
+///     out: a folder for the log (conflicts.csv, run.json, and encounters.csv with `log_encounters=True`); by default
+///         none.
 ///     paint: whether to colour the vehicles in conflict; by default where libsumo runs sumo-gui.
 ///     **options: what the command line has as long options, with underscores: `mu="at-rest"`, `epsilon=1.0`.
 ///
 /// Raises:
 ///     ValueError: an unknown option or one out of its range, a net that cannot be used, a mesoscopic simulation; the
 ///         message says which.
+///     RuntimeError: no simulation is started.
 ///     OSError: a file or folder that cannot be read or written.
 #[pyclass(subclass, module = "closecall._closecall", name = "Checker")]
 pub struct Checker {
     run: Run,
     input: Input,
     painter: Option<Painter>,
+    /// Of the log, where there is one.
+    record: Option<Box<RunRecord>>,
     is_closed: bool,
 }
 
@@ -54,6 +60,7 @@ impl Checker {
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
+        let given = net.clone();
         let net = match (net, source) {
             (Some(path), _) => Some(std::sync::Arc::new(Net::read(&path).map_err(exception)?)),
             (None, Some(source)) => pull::net_of(source)?,
@@ -67,15 +74,20 @@ impl Checker {
             }
             None => Input::Frames(Box::new(Frames::new(&options))),
         };
+        let mut record = None;
         if let Some(folder) = out {
-            run.log_to(Log::create(&folder, options.log_encounters).map_err(exception)?, true);
+            let begun = provenance::record_of_script(source, given, &run, &options)?;
+            let log = Log::create(&folder, options.log_encounters).map_err(exception)?;
+            log.run(&begun).map_err(exception)?;
+            run.log_to(log, true);
+            record = Some(Box::new(begun));
         }
         let painter = match (source, paint) {
             (Some(source), None) if has_gui(source) => Some(Painter::new(source)),
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { run, input, painter, is_closed: false })
+        Ok(Self { run, input, painter, record, is_closed: false })
     }
 
     /// Check one step; a simulation calls this itself where the checker is its step listener.
@@ -138,8 +150,10 @@ impl Checker {
         if std::mem::replace(&mut self.is_closed, true) {
             return Ok(());
         }
-        self.run.finish(Vec::new()).map_err(exception)?;
-        self.run.take_log();
+        let summary = self.run.finish(Vec::new()).map_err(exception)?;
+        if let (Some(log), Some(record)) = (self.run.take_log(), self.record.take()) {
+            log.run(&RunRecord { summary, complete: true, ..*record }).map_err(exception)?;
+        }
         match &mut self.painter {
             Some(painter) => painter.clear(py),
             None => Ok(()),

@@ -8,6 +8,7 @@ mod error;
 mod frames;
 mod functions;
 mod paint;
+mod provenance;
 mod pull;
 mod run;
 mod start;

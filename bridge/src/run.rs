@@ -1,7 +1,7 @@
 //! `closecall run`: SUMO through libsumo, step by step, with the checker attached.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -10,7 +10,7 @@ use closecall::inputs::{self, Input};
 use closecall::log::Log;
 use closecall::outputs::Outputs;
 use closecall::progress::Progress;
-use closecall::record::{RunRecord, Versions};
+use closecall::record::RunRecord;
 use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
@@ -21,6 +21,7 @@ use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 use crate::paint::Painter;
+use crate::provenance;
 use crate::pull::{self, Source};
 use crate::start::{self, NetAhead};
 use crate::sweep;
@@ -163,7 +164,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
             false => Error::Refused { path: path.clone(), message: message(py, &error) },
         }
     };
-    let files = files(sumo, request).map_err(said)?;
+    let files = provenance::files(sumo, &request.scenario).map_err(said)?;
     for path in &files.checked {
         inputs::check_xml(path)?;
     }
@@ -174,22 +175,12 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
     if has_no_rerouters(sumo).map_err(said)? {
         run.routes_are_fixed();
     }
-    let step_length = sumo.getattr("simulation").and_then(|simulation| simulation.call_method0("getDeltaT"));
-    let step_length = step_length.and_then(|length| length.extract::<f64>()).map_err(said)?;
     let source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
-        versions: Versions::with_sumo(Some(version(sumo).map_err(said)?)),
-        scenario: request.scenario.clone(),
-        seed: pull::option(sumo, "seed").ok(),
-        step_length: Some(step_length),
-        sublane: run.sublane(),
-        options: request.options.clone(),
         sumo_words: request.sumo_words.clone(),
         inputs: files.all.iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
-        complete: false,
-        error: None,
-        summary: Summary::default(),
+        ..provenance::record(Some(sumo), request.scenario.clone(), &run, &request.options).map_err(said)?
     };
     let outputs = Outputs::create(&request.outputs, run.net())?;
     let log = Log::create(&request.out, request.options.log_encounters)?;
@@ -202,7 +193,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
         request,
         source,
         painter,
-        step_length,
+        step_length: record.step_length.unwrap_or_default(),
         spent: Spent::default(),
         is_unfinished: false,
         helper: if has_a_second(request.threads) { Helper::new(|run: &mut Box<Run>| finish(run)) } else { None },
@@ -363,36 +354,8 @@ impl From<Error> for Stop {
     }
 }
 
-/// The files that a simulation reads.
-struct Files {
-    net: Option<PathBuf>,
-    all: Vec<PathBuf>,
-    checked: Vec<PathBuf>,
-}
-
-fn files(sumo: &Bound<PyAny>, request: &RunRequest) -> PyResult<Files> {
-    let named = |option: &str| -> PyResult<Vec<PathBuf>> {
-        let names = pull::option(sumo, option)?;
-        let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
-        Ok(names.map(PathBuf::from).collect())
-    };
-    let net = named("net-file")?.into_iter().next();
-    let (routes, additional) = (named("route-files")?, named("additional-files")?);
-    let checked = routes.into_iter().chain(additional).filter(|path| is_xml(path)).collect::<Vec<_>>();
-    let all = [Some(request.scenario.clone()), net.clone()].into_iter().flatten().chain(checked.clone()).collect();
-    Ok(Files { net, all, checked })
-}
-
-fn is_xml(path: &Path) -> bool {
-    path.is_file()
-}
-
 fn has_no_rerouters(sumo: &Bound<PyAny>) -> PyResult<bool> {
     sumo.getattr("rerouter")?.call_method0("getIDList")?.is_empty()
-}
-
-fn version(sumo: &Bound<PyAny>) -> PyResult<String> {
-    sumo.call_method0("getVersion")?.get_item(1)?.extract()
 }
 
 fn left_out(request: &RunRequest, persons: u64) -> Vec<LeftOut> {

@@ -19,20 +19,27 @@ use rustc_hash::FxHashSet;
 
 use crate::encounter::Placement;
 use crate::frame::{State, UserIndex};
+use crate::geometry::{Bounds, Point};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::options::{Options, PathModel};
 use crate::profile::Profile;
 use crate::run::Run;
-use crate::units::Second;
+use crate::units::{Metre, Second};
 use crate::{Error, Result};
 use lanes::Lanes;
 use recording::{Recording, Row, Step};
 use routes::Routes;
 use types::Types;
 
+/// Who is further than this from where its lane is, in m, is on another net, or in degrees.
+const ELSEWHERE: Metre = 100.0;
+
 /// A recording that is being replayed into a run.
 pub struct Replay {
+    path: PathBuf,
     recording: Recording,
+    /// Whether anybody was found to be where its lane is.
+    is_on_net: bool,
     step: Step,
     following: Step,
     has_following: bool,
@@ -86,7 +93,9 @@ impl Replay {
         let step_length = if has_following { following.time - step.time } else { 1.0 };
         let by_lanes = options.path == PathModel::Lanes;
         Ok(Self {
+            path: path.to_path_buf(),
             recording,
+            is_on_net: false,
             step,
             following,
             has_following,
@@ -197,6 +206,21 @@ impl Replay {
         let (Some(recorded), Some(net)) = (self.step.rows().get(place as usize), run.net()) else { return Ok(()) };
         let Some(Some(live)) = self.live.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
+        if !self.is_on_net {
+            let mut reach = Bounds::EMPTY;
+            net.lanes[lane.0 as usize].shape.iter().for_each(|point| reach.include(*point));
+            let place = Point::new(recorded.x, recorded.y);
+            if !reach.grown(ELSEWHERE).meet(&Bounds { low: place, high: place }) {
+                let (id, lane) = (self.recording.id(recorded.user), self.recording.lane(recorded.lane));
+                let message = format!(
+                    "\"{id}\" is said to be on lane {lane} at ({}, {}), where the net does not have it: recorded on another \
+                     net, or in degrees (--fcd-output.geo)?",
+                    place.x, place.y
+                );
+                return Err(Error::content(&self.path, message));
+            }
+            self.is_on_net = true;
+        }
         let route = match (&live.route, &mut self.routes, live.number) {
             (Some(route), ..) => route.clone(),
             (None, Some(routes), Some(number)) => routes.of(number)?,

@@ -57,6 +57,9 @@ impl XmlRecording {
                 return Err(Error::content(path, "it is no fcd-output: there is no <fcd-export>"));
             };
             match found(&source.rest()[1..end]) {
+                Found::Start(b"fcd-export", attributes) if attributes.ends_with(b"/") => {
+                    return Err(Error::content(path, "the recording has no steps"));
+                }
                 Found::Start(b"fcd-export", _) => {
                     source.consume(end + 1);
                     let shapes = [false, true].map(|person| Shape { person, extent, expected: Vec::new() });

@@ -46,7 +46,14 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
         })?;
     }
     let records = logs.iter().map(|log| log_files::record(log)).collect::<Result<Vec<_>>>()?;
-    let ground = nets::find(net, &logs, &records)?;
+    let mut ground = nets::find(net, &logs, &records)?;
+    let without = records.iter().filter(|record| record.is_null()).count();
+    if without > 0 {
+        ground.notes.push(format!(
+            "{without} of {} logs without run.json, as where a run was killed: their conflicts count, their traffic is not known.",
+            logs.len()
+        ));
+    }
     let seen = worst.seen();
     Ok(Conflicts { logs, records, ground, rows: worst.into_rows(), seen })
 }

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::collect::{Collection, MEASURES};
-use super::permutation::{Test, holm, p_value};
+use super::permutation::{Test, holm, p_value, smallest_p};
 use super::quantiles::{cliffs_delta, quantile};
 use super::rate::{Ratio, rate_ratio};
 use crate::encounter::{Kind, Severity};
@@ -60,6 +60,9 @@ pub struct MeasureDifference {
     pub significance: Option<Significance>,
 }
 
+/// Above this corrected p-value a difference may be chance.
+const LEVEL: f64 = 0.05;
+
 /// How sure it is that two sets differ.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Significance {
@@ -86,11 +89,17 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
         .collect::<Vec<_>>();
     let mut measures = (0..MEASURES.len()).map(|measure| measure_difference(measure, first, other)).collect::<Vec<_>>();
     let found = rates.iter_mut().map(|row| &mut row.significance);
-    correct(found.chain(measures.iter_mut().map(|row| &mut row.significance)).flatten().collect());
+    let tested = found.chain(measures.iter_mut().map(|row| &mut row.significance)).flatten().collect::<Vec<_>>();
     let (runs, against_runs) = (first.runs.len(), other.runs.len());
-    let note = (runs.min(against_runs) < 4).then(|| {
-        format!("{runs} and {against_runs} runs: no permutation of so few can be significant; 6 seeds each or more can")
+    let least = smallest_p(runs + against_runs, runs) * tested.len() as f64;
+    let note = (least > LEVEL).then(|| {
+        format!(
+            "{runs} and {against_runs} runs: of so few no difference in {} tests can be significant at {LEVEL}; of 6 \
+             seeds each or more one can",
+            tested.len()
+        )
     });
+    correct(tested);
     Comparison {
         runs,
         against_runs,

@@ -131,7 +131,7 @@ pub struct Crashes {
 /// The crash frequency from the smallest values, in ascending order, of `count`.
 pub fn crashes(smallest: &[f64], count: usize, hours: f64) -> std::result::Result<Crashes, String> {
     if count < FEWEST {
-        return Err(format!("{count} conflicts have this measure; at least {FEWEST} are needed"));
+        return Err(format!("too few conflicts have this measure: {count}, and at least {FEWEST} are needed"));
     }
     if hours <= 0.0 {
         return Err("the runs last no time".to_owned());
@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn too_few_conflicts_are_refused_with_the_bound() {
         let refused = crashes(&values(Gpd { shape: 0.0, scale: 0.3 }, 59, 1), 59, 1.0).unwrap_err();
-        assert_eq!(refused, "59 conflicts have this measure; at least 60 are needed");
+        assert_eq!(refused, "too few conflicts have this measure: 59, and at least 60 are needed");
     }
 
     #[test]

@@ -52,6 +52,13 @@ pub fn p_value(runs: usize, first: usize, difference: impl Fn(&[bool]) -> Option
     Some((extremes as f64 / (DRAWS + 1) as f64, Test::SampledPermutation))
 }
 
+/// The smallest p-value that so many runs can lead to.
+pub fn smallest_p(runs: usize, first: usize) -> f64 {
+    // Where both sets have as many, a split and its mirror image differ by as much.
+    let alike = if 2 * first == runs { 2.0 } else { 1.0 };
+    (alike / ways(runs, first)).max(1.0 / (DRAWS + 1) as f64)
+}
+
 /// In how many ways `first` of `runs` can be chosen.
 fn ways(runs: usize, first: usize) -> f64 {
     (0..first).map(|i| (runs - i) as f64 / (i + 1) as f64).product()
@@ -117,6 +124,12 @@ mod tests {
         assert_eq!(p_value(8, 4, means(&values)), Some((2.0 / 70.0, Test::ExactPermutation)));
         assert_eq!(p_value(2, 1, means(&[5.0, 5.0])), Some((1.0, Test::ExactPermutation)));
         assert_eq!(p_value(2, 2, means(&[5.0, 5.0])), None);
+    }
+
+    #[test]
+    fn few_runs_on_one_side_suffice_where_the_other_has_many() {
+        assert_eq!(smallest_p(8, 4), 2.0 / 70.0);
+        assert_eq!(smallest_p(23, 3), 1.0 / 1771.0);
     }
 
     #[test]

@@ -14,6 +14,9 @@ pub const CONFIDENCE: f64 = 0.95;
 /// The probability below an interval, and above it.
 const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
 
+/// Runs whose rates spread by less than this, relatively, do not differ: sums in another order.
+const EQUAL: f64 = 1e-9;
+
 /// How an interval was made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
@@ -52,7 +55,7 @@ pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
     }
     let value = count / total;
     let rate = match relative_spread(counts, traffic) {
-        Some(spread) if spread > 0.0 => {
+        Some(spread) if spread > EQUAL => {
             let reach = t_quantile(counts.len() as f64 - 1.0)? * spread * value;
             Rate { value, low: (value - reach).max(0.0), high: value + reach, method: Method::TOverRuns }
         }
@@ -89,7 +92,7 @@ pub fn rate_ratio(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Option<R
     let value = if other > 0.0 { Some((count / total) / (other / other_total)) } else { None };
     let spreads = [relative_spread(first.0, first.1), relative_spread(second.0, second.1)];
     if let ([Some(one), Some(two)], Some(value)) = (spreads, value)
-        && one + two > 0.0
+        && one + two > EQUAL
     {
         let reach = t_quantile((first.0.len() + second.0.len() - 2) as f64)? * one.hypot(two);
         return Some(Ratio {
@@ -161,7 +164,10 @@ mod tests {
 
     #[test]
     fn one_run_or_equal_runs_take_the_count_for_poisson() {
-        for (counts, traffic) in [(&[5.0][..], &[2.0][..]), (&[0.0, 0.0], &[1.0, 1.0])] {
+        // The last two traffics are sums of the same in another order.
+        for (counts, traffic) in
+            [(&[5.0][..], &[2.0][..]), (&[0.0, 0.0], &[1.0, 1.0]), (&[3.0, 3.0], &[0.1 + 0.2 + 0.3, 0.3 + 0.2 + 0.1])]
+        {
             assert_eq!(rate(counts, traffic).unwrap().method, Method::PoissonExact);
         }
         assert_eq!(rate(&[0.0], &[0.0]), None);

@@ -137,20 +137,24 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
         zoom(run).unwrap_or(ZOOM)
     );
     let mut words = vec!["sumo-gui".to_owned()];
-    let mut skip = false;
-    for word in &run.sumo_words {
-        // SUMO takes an option once only.
-        let is_end = ["--end", "-e", "--gui-settings-file", "-g", "--breakpoints"].contains(&word.as_str());
-        if !skip && !is_end {
-            words.push(quoted(word));
-        }
-        skip = is_end;
-    }
+    words.extend(kept(&run.sumo_words).map(|word| quoted(word)));
     let begin = (conflict.begin - AROUND).max(run.summary.begin);
     let around = [("--breakpoints", begin), ("--end", conflict.end + AROUND)];
     words.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
     words.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
     Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), words.join(" ")))
+}
+
+/// A run's words but for the options that are set anew: SUMO takes each once only.
+fn kept(words: &[String]) -> impl Iterator<Item = &String> {
+    let mut is_value = false;
+    words.iter().filter(move |word| {
+        let (option, has_value) = word.split_once('=').map_or((word.as_str(), false), |(option, _)| (option, true));
+        let is_anew = ["--end", "-e", "--gui-settings-file", "-g", "--breakpoints"].contains(&option);
+        let is_left_out = is_value || is_anew;
+        is_value = !is_value && is_anew && !has_value;
+        !is_left_out
+    })
 }
 
 /// A word for a POSIX shell.
@@ -178,6 +182,12 @@ fn zoom(run: &LoggedRun) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_set_anew_is_left_out_however_it_was_written() {
+        let words = "-c a.sumocfg --end 9 --seed=3 --end=9 -e 9 -W".split(' ').map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(kept(&words).collect::<Vec<_>>(), ["-c", "a.sumocfg", "--seed=3", "-W"]);
+    }
 
     #[test]
     fn a_word_with_a_space_or_a_quote_is_quoted() {

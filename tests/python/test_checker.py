@@ -48,6 +48,55 @@ def test_a_listener_finds_with_libsumo_and_traci_what_the_command_finds(scenario
     assert {(row["ego"], row["foe"], row["kind"]) for row in logged} == {tuple(row[:3]) for row in with_libsumo}
 
 
+NOT_STARTED = """
+import {module} as sumo
+import closecall
+try:
+    closecall.Checker(sumo)
+except RuntimeError as error:
+    print(error)
+"""
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_a_simulation_has_to_be_started_first(module: str) -> None:
+    done = python(NOT_STARTED.replace("{module}", module))
+    assert "is a simulation started?" in done.stdout, (done.stdout, done.stderr)
+
+
+LOGGED = """
+import sys
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--seed", "7", "--no-warnings"])
+with closecall.Checker(sumo, out=sys.argv[2]) as checker:
+    sumo.addStepListener(checker)
+    while sumo.simulation.getTime() < 60:
+        sumo.simulationStep()
+sumo.close()
+"""
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_a_checkers_log_is_as_good_as_the_commands(module: str, scenario: Copy, tmp_path: Path) -> None:
+    config, own, ran = scenario("reckless"), tmp_path / "own", tmp_path / "ran"
+    done = python(LOGGED.replace("{module}", module), config, own)
+    assert done.returncode == 0, done.stderr
+    assert closecall("run", config, "--seed", "7", "--end", "60", "--out", ran).returncode == 0
+    assert (own / "conflicts.csv").read_bytes() == (ran / "conflicts.csv").read_bytes()
+    one, other = (json.loads((log / "run.json").read_text()) for log in (own, ran))
+    for key in ("versions", "scenario", "seed", "step_length", "sublane", "options", "inputs", "complete"):
+        assert one[key] == other[key], key
+    for key in ("begin", "end", "steps", "conflicts", "collisions"):
+        assert one["summary"][key] == other["summary"][key], key
+    # A sum over road users in another order.
+    assert one["summary"]["exposure"] == pytest.approx(other["summary"]["exposure"], rel=1e-12)
+    assert one["complete"]
+    done = closecall("stats", own, "--format", "json")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert closecall("report", own, "-o", tmp_path / "report.html").returncode == 0
+
+
 MESOSCOPIC = """
 import sys
 import {module} as sumo
@@ -176,3 +225,6 @@ def test_the_log_is_written_on_request(tmp_path: Path) -> None:
         checker.step(0.0, {**CAR, "x": [0.0, 20.0]})
     assert [row["ego"] for row in rows(tmp_path / "conflicts.csv")] == ["a"]
     assert len(rows(tmp_path / "encounters.csv")) == 1
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert record["complete"] and record["summary"]["steps"] == 1
+    assert record["summary"]["conflicts"] == checker.summary["conflicts"] != []

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import re
 from pathlib import Path
 from typing import Callable
 
@@ -132,6 +133,17 @@ def test_what_is_no_recording_is_refused(text: str, said: str, scenario: Copy, t
     assert message.count("\n") == 1
     assert said in message
     assert not (tmp_path / "out").exists()
+
+
+def test_a_recording_of_another_place_is_refused(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("reckless")
+    recording = record(config, "fcd.xml", "--end", "60")
+    moved = tmp_path / "moved.xml"
+    moved.write_text(re.sub(r' x="([^"]+)"', lambda x: f' x="{float(x[1]) + 9e3}"', recording.read_text()))
+    code, said = replay(config, moved, tmp_path / "log")
+    assert code == 2
+    assert "moved.xml" in said and "on lane" in said and "--fcd-output.geo" in said
+    assert replay(config, recording, tmp_path / "log")[0] == 0
 
 
 def test_a_missing_recording_is_named(scenario: Copy, tmp_path: Path) -> None:

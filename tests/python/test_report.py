@@ -250,7 +250,13 @@ def test_several_runs_are_one_report(browser: Any, scenario: Copy, tmp_path: Pat
     opened.page.select_option("#run", index=2)
     assert opened.text("#shown") == "1 of 2 conflicts"
     assert "--seed 2" in opened.page.text_content("#runs")
+    assert "conflicts per vehicle-km" in opened.text("#figures")
     assert opened.complaints == []
+    (tmp_path / "runs" / "2" / "run.json").unlink()
+    assert closecall("report", tmp_path / "runs", "-o", tmp_path / "r.html").returncode == 0
+    opened = Opened(browser, tmp_path / "r.html")
+    assert "1 of 2 logs without run.json" in opened.text("#notes")
+    assert "conflicts per vehicle-km" not in opened.text("#figures")
 
 
 def test_without_its_net_it_says_so_and_draws_the_conflicts(browser: Any, scenario: Copy, tmp_path: Path) -> None:

@@ -266,7 +266,7 @@ def test_the_crash_frequency_is_that_of_scipys_fit(shape: float, tmp_path: Path)
 def test_too_few_conflicts_for_extremes_are_refused_with_the_bound(tmp_path: Path) -> None:
     found = stats(made(tmp_path / "log", [1.0] * 59))["extremes"]
     assert found[0]["crashes"] is None
-    assert found[0]["refused"] == "59 conflicts have this measure; at least 60 are needed"
+    assert found[0]["refused"] == "too few conflicts have this measure: 59, and at least 60 are needed"
 
 
 def test_no_conflicts_are_a_result(tmp_path: Path) -> None:

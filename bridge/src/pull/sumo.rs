@@ -10,14 +10,20 @@ use closecall::options::Options;
 use closecall::profile::{Profile, SumoType};
 use closecall::run::Run;
 use closecall::units::Second;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 
-use crate::error::exception;
+use crate::error::{exception, message};
 
-/// The value of a SUMO option; empty where it is not set.
+/// The value of a SUMO option; empty where it is not set. Without a simulation SUMO has none.
 pub fn option(source: &Bound<PyAny>, name: &str) -> PyResult<String> {
-    source.getattr("simulation")?.call_method1("getOption", (name,))?.extract()
+    let simulation = source.getattr("simulation")?;
+    let unknown = |error: PyErr| {
+        let said = message(source.py(), &error);
+        PyRuntimeError::new_err(format!("SUMO does not say its option {name}; is a simulation started? ({said})"))
+    };
+    simulation.call_method1("getOption", (name,)).map_err(unknown)?.extract()
 }
 
 /// The net that the simulation runs on.

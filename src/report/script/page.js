@@ -15,7 +15,8 @@ function showHeader() {
   figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
-    if (kilometres > 0) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
+    // A run that was killed has conflicts, and no record of its traffic.
+    if (kilometres > 0 && records.length === data.runs.length) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
   }
   byId("figures").append(...figures.map(([name, value]) =>
     make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
