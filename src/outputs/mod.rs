@@ -83,7 +83,8 @@ impl Outputs {
     /// Takes back what was written.
     pub(crate) fn discard(self) {
         let files = [self.ssm.map(|ssm| ssm.file), self.trajectories.map(|trajectories| trajectories.file)];
-        for file in files.into_iter().flatten() {
+        // /dev/null, which root could remove, is no file of ours.
+        for file in files.into_iter().flatten().filter(|file| file.path.is_file()) {
             // What cannot be removed stays: the error that led here is the one to be told.
             let _ = std::fs::remove_file(file.path);
         }
