@@ -12,15 +12,27 @@ use pyo3::prelude::*;
 use crate::error::exception;
 use crate::pull::option;
 
-/// The files that a simulation reads.
+/// The files that SUMO names itself.
 pub struct Files {
     pub net: Option<PathBuf>,
-    pub all: Vec<PathBuf>,
-    pub checked: Vec<PathBuf>,
+    /// Routes and additional files.
+    pub others: Vec<PathBuf>,
 }
 
-/// The files that SUMO names itself, and its configuration.
-pub fn files(sumo: &Bound<PyAny>, scenario: &Path) -> PyResult<Files> {
+impl Files {
+    /// All of them, beside the configuration.
+    pub fn with(&self, scenario: &Path) -> Vec<PathBuf> {
+        let mut all =
+            [Some(scenario), self.net.as_deref()].into_iter().flatten().map(Path::to_owned).collect::<Vec<_>>();
+        all.extend_from_slice(&self.others);
+        // A script may have named the net alone.
+        all.dedup();
+        all
+    }
+}
+
+/// The files that a simulation reads.
+pub fn files(sumo: &Bound<PyAny>) -> PyResult<Files> {
     let named = |name: &str| -> PyResult<Vec<PathBuf>> {
         let names = option(sumo, name)?;
         let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
@@ -28,9 +40,8 @@ pub fn files(sumo: &Bound<PyAny>, scenario: &Path) -> PyResult<Files> {
     };
     let net = named("net-file")?.into_iter().next();
     let (routes, additional) = (named("route-files")?, named("additional-files")?);
-    let checked = routes.into_iter().chain(additional).filter(|path| path.is_file()).collect::<Vec<_>>();
-    let all = [Some(scenario.to_owned()), net.clone()].into_iter().flatten().chain(checked.clone()).collect();
-    Ok(Files { net, all, checked })
+    let others = routes.into_iter().chain(additional).filter(|path| path.is_file()).collect();
+    Ok(Files { net, others })
 }
 
 /// The record of a run that begins, its inputs and SUMO's words left empty; without `sumo`, nothing is simulated.
@@ -59,15 +70,16 @@ pub fn record_of_script(
     run: &Run,
     options: &Options,
 ) -> PyResult<RunRecord> {
-    let configuration =
-        sumo.map(|sumo| option(sumo, "configuration-file")).transpose()?.filter(|name| !name.is_empty());
-    let named = sumo.map(|sumo| option(sumo, "net-file")).transpose()?.filter(|name| !name.is_empty());
-    let scenario = configuration.or(named).map(PathBuf::from).or_else(|| net.clone()).unwrap_or_default();
-    let mut paths = match sumo {
-        Some(sumo) => files(sumo, &scenario)?.all,
-        None => net.into_iter().collect(),
+    let (scenario, paths) = match sumo {
+        Some(sumo) => {
+            let files = files(sumo)?;
+            let configuration = Some(option(sumo, "configuration-file")?).filter(|name| !name.is_empty());
+            let scenario = configuration.map(PathBuf::from).or_else(|| files.net.clone()).unwrap_or_default();
+            let paths = files.with(&scenario);
+            (scenario, paths)
+        }
+        None => (net.clone().unwrap_or_default(), net.into_iter().collect()),
     };
-    paths.dedup();
     // traci's simulation may run elsewhere.
     let inputs = paths.iter().filter(|path| path.is_file()).map(|path| Input::of(path));
     let inputs = inputs.collect::<closecall::Result<_>>().map_err(exception)?;

@@ -164,8 +164,8 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
             false => Error::Refused { path: path.clone(), message: message(py, &error) },
         }
     };
-    let files = provenance::files(sumo, &request.scenario).map_err(said)?;
-    for path in &files.checked {
+    let files = provenance::files(sumo).map_err(said)?;
+    for path in &files.others {
         inputs::check_xml(path)?;
     }
     let net = files.net.as_deref().map(|path| NetAhead::finish(ahead, path)).transpose()?.map(Arc::new);
@@ -179,7 +179,7 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
         sumo_words: request.sumo_words.clone(),
-        inputs: files.all.iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
+        inputs: files.with(&request.scenario).iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
         ..provenance::record(Some(sumo), request.scenario.clone(), &run, &request.options).map_err(said)?
     };
     let outputs = Outputs::create(&request.outputs, run.net())?;

@@ -7,10 +7,12 @@
 //! 2.6). So the chance that any measure is at or below α where nothing has changed is at most α: exactly, for any
 //! distribution, any dependence between measures, and any number of runs.
 
+use crate::statistics::permutation;
+
 /// Up to this many splits are all gone through; of more, [`DRAWN`] are drawn.
 const ENUMERATED: u64 = 200_000;
 /// How many splits are drawn, the real one besides.
-const DRAWN: u64 = 99_999;
+const DRAWN: usize = 99_999;
 /// Two statistics that differ by less are equal: sums of floating-point numbers in another order.
 const EQUAL: f64 = 1e-9;
 
@@ -50,10 +52,7 @@ pub fn adjusted_p(expected: &[Vec<f64>], found: &[Vec<f64>]) -> Vec<f64> {
 
 /// The smallest adjusted p that so many runs can lead to.
 pub fn smallest_p(expected: usize, found: usize) -> f64 {
-    // Where both have as many, a split and its mirror image have the same statistic.
-    let alike = if expected == found { 2.0 } else { 1.0 };
-    let splits = (1..=found).fold(1.0, |splits, k| splits * (expected + k) as f64 / k as f64);
-    (alike / splits).max(1.0 / (DRAWN + 1) as f64)
+    permutation::smallest_p(found, expected, DRAWN)
 }
 
 /// The fewest seeds, as many on both sides, with which a difference can be found at the level `alpha`.

@@ -207,15 +207,12 @@ impl Replay {
         let Some(Some(live)) = self.live.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
         if !self.is_on_net {
-            let mut reach = Bounds::EMPTY;
-            net.lanes[lane.0 as usize].shape.iter().for_each(|point| reach.include(*point));
-            let place = Point::new(recorded.x, recorded.y);
-            if !reach.grown(ELSEWHERE).meet(&Bounds { low: place, high: place }) {
+            if !is_near(recorded, &net.lanes[lane.0 as usize].shape) {
                 let (id, lane) = (self.recording.id(recorded.user), self.recording.lane(recorded.lane));
                 let message = format!(
                     "\"{id}\" is said to be on lane {lane} at ({}, {}), where the net does not have it: recorded on another \
                      net, or in degrees (--fcd-output.geo)?",
-                    place.x, place.y
+                    recorded.x, recorded.y
                 );
                 return Err(Error::content(&self.path, message));
             }
@@ -231,6 +228,14 @@ impl Replay {
         run.place(row, &placement);
         Ok(())
     }
+}
+
+/// Whether somebody is about where a lane is.
+fn is_near(row: &Row, lane: &[Point]) -> bool {
+    let mut reach = Bounds::EMPTY;
+    lane.iter().for_each(|point| reach.include(*point));
+    let place = Point::new(row.x, row.y);
+    reach.grown(ELSEWHERE).meet(&Bounds { low: place, high: place })
 }
 
 /// Position, angle and speed, to the last bit.

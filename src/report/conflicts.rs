@@ -47,10 +47,13 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
     }
     let records = logs.iter().map(|log| log_files::record(log)).collect::<Result<Vec<_>>>()?;
     let mut ground = nets::find(net, &logs, &records)?;
-    let without = records.iter().filter(|record| record.is_null()).count();
+    // As it is written when a run begins; null where there is none at all.
+    let without = records.iter().filter(|record| record["summary"]["steps"].as_u64().is_none_or(|steps| steps == 0));
+    let without = without.count();
     if without > 0 {
         ground.notes.push(format!(
-            "{without} of {} logs without run.json, as where a run was killed: their conflicts count, their traffic is not known.",
+            "{without} of {} runs have no result, killed or not at their end yet: their conflicts count, their traffic is \
+             not known.",
             logs.len()
         ));
     }

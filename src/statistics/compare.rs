@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::collect::{Collection, MEASURES};
-use super::permutation::{Test, holm, p_value, smallest_p};
+use super::permutation::{DRAWS, Test, holm, p_value, smallest_p};
 use super::quantiles::{cliffs_delta, quantile};
 use super::rate::{Ratio, rate_ratio};
 use crate::encounter::{Kind, Severity};
@@ -91,7 +91,7 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
     let found = rates.iter_mut().map(|row| &mut row.significance);
     let tested = found.chain(measures.iter_mut().map(|row| &mut row.significance)).flatten().collect::<Vec<_>>();
     let (runs, against_runs) = (first.runs.len(), other.runs.len());
-    let least = smallest_p(runs + against_runs, runs) * tested.len() as f64;
+    let least = smallest_p(runs, against_runs, DRAWS) * tested.len() as f64;
     let note = (least > LEVEL).then(|| {
         format!(
             "{runs} and {against_runs} runs: of so few no difference in {} tests can be significant at {LEVEL}; of 6 \

@@ -9,7 +9,7 @@ mod compare;
 mod extremes;
 mod gpd;
 mod group;
-mod permutation;
+pub(crate) mod permutation;
 mod quantiles;
 mod rate;
 pub mod table;

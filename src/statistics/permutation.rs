@@ -8,7 +8,7 @@ use serde::Serialize;
 /// Up to this many ways to split the runs all are looked at.
 const MOST_SPLITS: f64 = 20_000.0;
 /// Random splits where there are more.
-const DRAWS: usize = 9_999;
+pub const DRAWS: usize = 9_999;
 /// The seed of the draws: equal input gives equal output.
 const SEED: u64 = 2008;
 /// Differences that differ by less, relatively, are equal: sums in another order.
@@ -52,11 +52,11 @@ pub fn p_value(runs: usize, first: usize, difference: impl Fn(&[bool]) -> Option
     Some((extremes as f64 / (DRAWS + 1) as f64, Test::SampledPermutation))
 }
 
-/// The smallest p-value that so many runs can lead to.
-pub fn smallest_p(runs: usize, first: usize) -> f64 {
+/// The smallest p-value of a two-sided permutation test that looks at all splits, or draws so many.
+pub fn smallest_p(first: usize, others: usize, draws: usize) -> f64 {
     // Where both sets have as many, a split and its mirror image differ by as much.
-    let alike = if 2 * first == runs { 2.0 } else { 1.0 };
-    (alike / ways(runs, first)).max(1.0 / (DRAWS + 1) as f64)
+    let alike = if first == others { 2.0 } else { 1.0 };
+    (alike / ways(first + others, first)).max(1.0 / (draws + 1) as f64)
 }
 
 /// In how many ways `first` of `runs` can be chosen.
@@ -128,8 +128,8 @@ mod tests {
 
     #[test]
     fn few_runs_on_one_side_suffice_where_the_other_has_many() {
-        assert_eq!(smallest_p(8, 4), 2.0 / 70.0);
-        assert_eq!(smallest_p(23, 3), 1.0 / 1771.0);
+        assert_eq!(smallest_p(4, 4, DRAWS), 2.0 / 70.0);
+        assert_eq!(smallest_p(3, 20, DRAWS), 1.0 / 1771.0);
     }
 
     #[test]

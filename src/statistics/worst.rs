@@ -28,7 +28,7 @@ pub struct Worst {
     /// The conflict.
     #[serde(flatten)]
     pub conflict: LoggedConflict,
-    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording.
+    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording, and where a script started SUMO.
     pub command: Option<String>,
     #[serde(skip)]
     run: usize,
@@ -129,7 +129,9 @@ impl WorstOf {
 /// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place. It takes the place
 /// from a file only: the shell makes one.
 fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
-    run.versions.sumo.as_ref()?;
+    if run.sumo_words.is_empty() {
+        return None;
+    }
     let view = format!(
         "<viewsettings><delay value=\"0\"/><viewport x=\"{:.1}\" y=\"{:.1}\" zoom=\"{:.0}\"/></viewsettings>",
         conflict.x,

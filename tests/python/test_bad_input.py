@@ -101,6 +101,12 @@ def test_an_empty_scenario(scenario: Copy) -> None:
     config = scenario("rear_end")
     (config.parent / "rear_end.rou.xml").write_text("<routes/>\n")
     refused(config, names=r"rear_end\.sumocfg: the scenario is empty")
+    file, device = config.parent / "ssm.xml", config.parent / "device"
+    device.symlink_to("/dev/null")
+    for output in (file, device):
+        assert closecall("run", config, "--ssm-output", output).returncode == 2
+    assert not file.exists()
+    assert device.is_symlink(), "an output that is no file was taken away"
 
 
 @pytest.mark.parametrize(("name", "value"), [("length", "-5"), ("width", "nan"), ("emergencyDecel", "0")])

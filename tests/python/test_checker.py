@@ -94,6 +94,8 @@ def test_a_checkers_log_is_as_good_as_the_commands(module: str, scenario: Copy, 
     assert one["complete"]
     done = closecall("stats", own, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
+    worst = json.loads(done.stdout)["worst"]
+    assert worst and all(conflict["command"] is None for conflict in worst), "nobody knows the script's words for SUMO"
     assert closecall("report", own, "-o", tmp_path / "report.html").returncode == 0
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import closecall, rows
+from conftest import closecall, python, rows
 from playwright import sync_api as playwright
 
 CHROMIUM = shutil.which("chromium")
@@ -252,10 +252,12 @@ def test_several_runs_are_one_report(browser: Any, scenario: Copy, tmp_path: Pat
     assert "--seed 2" in opened.page.text_content("#runs")
     assert "conflicts per vehicle-km" in opened.text("#figures")
     assert opened.complaints == []
-    (tmp_path / "runs" / "2" / "run.json").unlink()
+    assert opened.page.is_hidden("#notes")
+    killed = "import closecall, os, sys; checker = closecall.Checker(out=sys.argv[1]); os._exit(0)"
+    python(killed, tmp_path / "runs" / "3")
     assert closecall("report", tmp_path / "runs", "-o", tmp_path / "r.html").returncode == 0
     opened = Opened(browser, tmp_path / "r.html")
-    assert "1 of 2 logs without run.json" in opened.text("#notes")
+    assert "1 of 3 runs have no result" in opened.text("#notes")
     assert "conflicts per vehicle-km" not in opened.text("#figures")
 
 

@@ -16,7 +16,8 @@ function showHeader() {
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
     // A run that was killed has conflicts, and no record of its traffic.
-    if (kilometres > 0 && records.length === data.runs.length) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
+    const isKnown = data.runs.every((run) => run.summary?.steps > 0);
+    if (kilometres > 0 && isKnown) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
   }
   byId("figures").append(...figures.map(([name, value]) =>
     make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
