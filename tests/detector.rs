@@ -12,7 +12,11 @@ use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
 fn car(options: &Options) -> Profile {
-    let sumo = SumoType {
+    Profile::vehicle(&sumo_car(), options)
+}
+
+fn sumo_car() -> SumoType {
+    SumoType {
         name: "car".to_owned(),
         vehicle_class: "passenger".to_owned(),
         shape: "passenger".to_owned(),
@@ -21,8 +25,7 @@ fn car(options: &Options) -> Profile {
         mass: 1500.0,
         emergency_decel: 8.0,
         decel: 4.5,
-    };
-    Profile::vehicle(&sumo, options)
+    }
 }
 
 fn options() -> Options {
@@ -233,13 +236,24 @@ fn any_number_of_threads_finds_the_same() {
 /// The encounters of these of the cars, given as (x, y, heading, speed), who have turned for a step; by their numbers.
 fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Roster) -> Vec<Encounter> {
     let mut detector = Detector::new(&Options { path: PathModel::Arc, ..options() }, None);
+    turned_by(0.01, &mut detector, cars, numbers, roster)
+}
+
+/// The same by this detector of those who have turned by so much.
+fn turned_by(
+    turn: f64,
+    detector: &mut Detector,
+    cars: &[(f64, f64, f64, f64)],
+    numbers: &[usize],
+    roster: &Roster,
+) -> Vec<Encounter> {
     let mut frame = Frame::default();
     for time in [0.0, 0.1] {
         frame.begin(time);
         for &number in numbers {
             let (x, y, heading, speed) = cars[number];
             let (x, y) = (x + speed * time * heading.cos(), y + speed * time * heading.sin());
-            frame.push(UserIndex(number as u32), State { x, y, z: 0.0, heading: heading + time / 10.0, speed });
+            frame.push(UserIndex(number as u32), State { x, y, z: 0.0, heading: heading + turn * time / 0.1, speed });
         }
         detector.follow(&frame, roster);
         detector.approach(&frame, roster);
@@ -266,4 +280,29 @@ fn among_many_everybody_meets_whom_it_meets_alone() {
     let alone = pairs.flat_map(|pair| encounters_of(&cars, &pair, &roster)).collect::<Vec<_>>();
     assert!(alone.len() > 300, "{}", alone.len());
     assert_eq!(together, alone);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// The tail of a long one that turns on a small circle gets further than its front.
+    #[test]
+    fn on_arcs_nobody_is_too_far_apart_whom_a_tail_meets(
+        (x, y) in (-60.0..60.0, -60.0..60.0), heading in -3.2..3.2, speed in 0.5..15.0, foe_speed in 0.0..15.0,
+        length in 2.0..25.0, turn in -0.5..0.5, articulated: bool,
+    ) {
+        let mut sumo = SumoType { length, ..sumo_car() };
+        if articulated {
+            sumo.shape = "truck/semitrailer".to_owned();
+        }
+        let mut roster = Roster::default();
+        let profile = roster.profile(Profile::vehicle(&sumo, &options())).unwrap();
+        ["a", "b"].iter().for_each(|id| _ = roster.enter(id, profile));
+        let cars = [(0.0, 0.0, 0.0, speed), (x, y, heading, foe_speed)];
+        let [left_out, kept] = [false, true].map(|keep_all| {
+            let options = Options { path: PathModel::Arc, keep_all, ..options() };
+            turned_by(turn, &mut Detector::new(&options, None), &cars, &[0, 1], &roster)
+        });
+        prop_assert_eq!(left_out, kept);
+    }
 }

@@ -256,12 +256,16 @@ pub(super) struct Reach<'a> {
     has_boxes: bool,
     /// Whether the distance counts, whichever way that is, and the stopping distance is that of the paper.
     on_paper: bool,
+    /// Whether who has no lanes turns.
+    on_arcs: bool,
 }
 
 impl<'a> Reach<'a> {
     pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: &'a [LanePath]) -> Self {
         let on_paper = options.mode == Mode::Paper;
-        Self { roster, paths, epsilon: options.epsilon, has_boxes: leaves_out.ways_apart && !on_paper, on_paper }
+        let has_boxes = leaves_out.ways_apart && !on_paper;
+        let on_arcs = options.path == PathModel::Arc && !on_paper;
+        Self { roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
     }
 
     /// What somebody may cover until it stands, and ε further.
@@ -286,6 +290,11 @@ impl<'a> Reach<'a> {
             // Its front is on the line ahead, the rest of it nowhere further from there than that.
             let behind = profile.length + profile.width / 2.0;
             return self.paths[user.index.0 as usize].track.bounds_ahead(reach).grown(TOLERANCE + behind).into();
+        }
+        if self.on_arcs {
+            // Its tail swings out: it may get further than its front.
+            let behind = profile.length.hypot(profile.width / 2.0);
+            return Circle { x: user.front.x, y: user.front.y, radius: reach + behind + TOLERANCE }.into();
         }
         let centre = user.front - user.axis * (profile.length / 2.0);
         let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
