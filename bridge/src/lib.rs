@@ -7,6 +7,7 @@ mod checker;
 mod error;
 mod frames;
 mod functions;
+mod interrupts;
 mod paint;
 mod provenance;
 mod pull;

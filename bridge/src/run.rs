@@ -1,11 +1,11 @@
 //! `closecall run`: SUMO through libsumo, step by step, with the checker attached.
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use closecall::cli::{self, RunRequest, Sumo};
+use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
 use closecall::inputs::{self, Input};
 use closecall::log::Log;
 use closecall::outputs::Outputs;
@@ -14,12 +14,14 @@ use closecall::record::RunRecord;
 use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
+use closecall::sweep::Task;
 use closecall::team::Helper;
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{exception, message};
+use crate::interrupts::Interrupts;
 use crate::paint::Painter;
 use crate::provenance;
 use crate::pull::{self, Source};
@@ -30,21 +32,30 @@ use crate::sweep;
 const SHOWN: Duration = Duration::from_millis(50);
 /// With fewer road users than this all is done about as soon as another thread has what it needs for that.
 const WORTH_A_THREAD: usize = 10;
+/// SUMO's times are whole ones of it, in s.
+const MILLISECOND: f64 = 1e-3;
 /// What finishing a step tells: how long its parts took.
 type Finished = Result<[Duration; PARTS.len() - PHASE_1]>;
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
 pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
-    let mut simulate = |request: &RunRequest| simulate(py, request);
-    let mut interrupted = || py.check_signals().is_err();
+    let interrupts = Interrupts::new(py)?;
+    let mut simulate = |request: &RunRequest| simulate(py, request, &interrupts);
+    let mut interrupted = || interrupts.had_any();
+    let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut Ended| {
+        interrupts.tell();
+        sweep::distribute(py, workers, folder, tasks, ended)
+    };
     let sumo = Sumo {
         simulate: &mut simulate,
-        distribute: &mut |workers, folder, tasks, ended| sweep::distribute(py, workers, folder, tasks, ended),
+        distribute: &mut distribute,
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
     };
-    Ok(cli::main(words, Some(sumo)))
+    let status = cli::main(words, Some(sumo));
+    interrupts.tell();
+    Ok(status)
 }
 
 /// The scenario at a path, for the pytest plugin: its folder, the words of its command line to be run there, the options
@@ -56,20 +67,20 @@ pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>
     Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
 }
 
-/// The command line that starts closecall in a process of its own: that of this interpreter, from wherever it imports
-/// closecall, but never from the folder in which it is started.
+/// The command line that starts closecall in a process of its own, which ends when its standard input does: that of this
+/// interpreter, from wherever it imports closecall, but never from the folder in which it is started.
 fn closecall(py: Python) -> PyResult<Vec<OsString>> {
     const START: &str = "import sys; sys.path[:] = filter(None, sys.path); \
-                         from closecall.__main__ import main; sys.exit(main())";
+                         from closecall._child import main; sys.exit(main())";
     let python: OsString = py.import("sys")?.getattr("executable")?.extract()?;
     Ok(vec![python, "-c".into(), START.into()])
 }
 
 /// Runs the scenario to its end.
-fn simulate(py: Python, request: &RunRequest) -> Result<Summary> {
+fn simulate(py: Python, request: &RunRequest, interrupts: &Interrupts) -> Result<Summary> {
     let ahead = NetAhead::begin(request);
     let sumo = start::start(py, request)?;
-    let result = attach(&sumo, request, ahead);
+    let result = attach(&sumo, request, ahead, interrupts);
     start::close(py, request.gui);
     result
 }
@@ -155,7 +166,12 @@ impl Spent {
     }
 }
 
-fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) -> Result<Summary> {
+fn attach(
+    sumo: &Bound<PyAny>,
+    request: &RunRequest,
+    ahead: Option<NetAhead>,
+    interrupts: &Interrupts,
+) -> Result<Summary> {
     let said = |error: PyErr| {
         let (py, path) = (sumo.py(), &request.scenario);
         match error.is_instance_of::<PyValueError>(py) {
@@ -182,7 +198,8 @@ fn attach(sumo: &Bound<PyAny>, request: &RunRequest, ahead: Option<NetAhead>) ->
         inputs: files.with(&request.scenario).iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
         ..provenance::record(Some(sumo), request.scenario.clone(), &run, &request.options).map_err(said)?
     };
-    let outputs = Outputs::create(&request.outputs, run.net())?;
+    interrupts.tell();
+    let outputs = Outputs::create(&request.outputs, run.net(), &record.inputs)?;
     let log = Log::create(&request.out, request.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
@@ -248,7 +265,7 @@ impl Session<'_, '_> {
                 Err(Stop::Own(error)) => return (run, Err(error)),
             }
             progress.show(now, run.frame.len(), run.conflicts_so_far());
-            if end.is_some_and(|end| now + self.step_length / 2.0 > end) {
+            if end.is_some_and(|end| now + MILLISECOND / 2.0 > end) {
                 return (run, Ok(()));
             }
         }

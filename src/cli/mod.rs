@@ -74,9 +74,10 @@ pub struct Sumo<'a> {
     pub simulate: &'a mut Simulate<'a>,
     /// Has the runs of a sweep done.
     pub distribute: &'a mut Distribute<'a>,
-    /// The command line that starts closecall in a process of its own, without arguments.
+    /// The command line that starts closecall in a process of its own, without arguments; it ends when its standard input
+    /// does.
     pub closecall: Vec<OsString>,
-    /// Whether the user has asked to stop.
+    /// Whether the user has asked to stop; who never asked is ended at once.
     pub interrupted: &'a mut dyn FnMut() -> bool,
 }
 
@@ -100,7 +101,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
     let done = match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         Command::Sweep(arguments) => sweep::run(*arguments, sumo),
-        Command::Replay(arguments) => replay::run(*arguments).map(|()| 0),
+        Command::Replay(arguments) => replay::run(*arguments, sumo).map(|()| 0),
         Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
         Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),
         #[cfg(feature = "study")]

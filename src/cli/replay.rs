@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::say;
+use super::{Sumo, say};
 use crate::inputs::Input;
 use crate::log::Log;
 use crate::net::Net;
@@ -52,7 +52,7 @@ pub struct ReplayArgs {
 }
 
 /// Checks the recording and prints the summary.
-pub fn run(arguments: ReplayArgs) -> Result<()> {
+pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let options = arguments.options.clone().checked()?;
     let recording = &arguments.recording;
     let net = Arc::new(Net::read(&arguments.net)?);
@@ -77,13 +77,17 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
         error: None,
         summary: Summary::default(),
     };
+    // Only who would lose what was found asks.
+    let mut interrupted = || false;
+    let interrupted = sumo.map_or(&mut interrupted as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
     let beside = recording.parent().unwrap_or(Path::new("")).join("closecall-out");
     let out = arguments.out.unwrap_or(beside);
+    let outputs = Outputs::create(&arguments.outputs, Some(&net), &record.inputs)?;
     let log = Log::create(&out, arguments.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
-    run.write_to(Outputs::create(&arguments.outputs, Some(&net))?);
-    let ended = steps(&mut replay, &mut run, arguments.quiet);
+    run.write_to(outputs);
+    let ended = steps(&mut replay, &mut run, interrupted, arguments.quiet);
     record.summary = run.finish(Vec::new())?;
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
@@ -97,11 +101,14 @@ pub fn run(arguments: ReplayArgs) -> Result<()> {
     ended
 }
 
-fn steps(replay: &mut Replay, run: &mut Run, quiet: bool) -> Result<()> {
+fn steps(replay: &mut Replay, run: &mut Run, interrupted: &mut dyn FnMut() -> bool, quiet: bool) -> Result<()> {
     let mut progress = None;
     while let Some(time) = replay.next(run)? {
         let progress = progress.get_or_insert_with(|| Progress::new(time, None, !quiet));
         progress.show(time, replay.road_users(), run.conflicts_so_far());
+        if interrupted() {
+            return Err(Error::Interrupted { time });
+        }
     }
     Ok(())
 }

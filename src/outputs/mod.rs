@@ -14,6 +14,7 @@ use self::trajectories::Trajectories;
 use crate::conflict::Conflict;
 use crate::encounter::Placement;
 use crate::frame::{Frame, Roster};
+use crate::inputs::Input;
 use crate::net::Net;
 use crate::{Error, Result};
 
@@ -28,6 +29,32 @@ pub struct OutputFiles {
     pub trj_output: Option<PathBuf>,
 }
 
+impl OutputFiles {
+    /// Whether each may be written.
+    fn check(&self, inputs: &[Input]) -> Result<()> {
+        let [ssm, trajectories] = [&self.ssm_output, &self.trj_output];
+        let refused =
+            |option: &str, over: &Path| Err(Error::Value(format!("{option} would be written over {}", over.display())));
+        for (option, path) in [("--ssm-output", ssm), ("--trj-output", trajectories)] {
+            let over = path.iter().find_map(|path| inputs.iter().find(|input| are_same(path, &input.path)));
+            if let Some(input) = over {
+                return refused(option, &input.path);
+            }
+        }
+        match (ssm, trajectories) {
+            (Some(ssm), Some(trajectories)) if are_same(ssm, trajectories) => refused("--ssm-output", trajectories),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether two paths are of the same file; of /dev/null and its like it does not matter.
+fn are_same(a: &Path, b: &Path) -> bool {
+    let is_device = a.exists() && !a.is_file();
+    let known = |path: &Path| path.canonicalize().ok();
+    !is_device && (a == b || known(a).is_some_and(|a| known(b) == Some(a)))
+}
+
 /// The files of a run besides its log; the default has none.
 #[derive(Debug, Default)]
 pub struct Outputs {
@@ -39,8 +66,10 @@ impl Outputs {
     /// Makes the files.
     ///
     /// # Errors
-    /// [`Error::File`] that names what cannot be written; [`Error::Value`] where trajectories have no net.
-    pub fn create(files: &OutputFiles, net: Option<&Net>) -> Result<Self> {
+    /// [`Error::File`] that names what cannot be written; [`Error::Value`] where trajectories have no net, or where a file
+    /// would be written over another or over one of the run's inputs.
+    pub fn create(files: &OutputFiles, net: Option<&Net>, inputs: &[Input]) -> Result<Self> {
+        files.check(inputs)?;
         let trajectories = match (&files.trj_output, net) {
             (Some(path), Some(net)) => Some(Trajectories::create(path, net)?),
             (Some(_), None) => return Err(Error::Value("--trj-output needs a net".to_owned())),

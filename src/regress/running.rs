@@ -16,7 +16,7 @@ const ASKED_EVERY: Duration = Duration::from_millis(5);
 
 /// How scenarios are run.
 pub struct Runner<'a> {
-    /// The command line that starts closecall, without arguments.
+    /// The command line that starts closecall, without arguments; it ends when its standard input does.
     pub closecall: Vec<OsString>,
     /// How many processes at once.
     pub jobs: usize,
@@ -113,6 +113,7 @@ fn start(closecall: &[OsString], job: &Job, told: &Path) -> Result<Child> {
         command.arg("--").args(&scenario.settings.sumo_options);
     }
     // In the scenario's folder, so that what its settings name is found, and the same is logged wherever it lies.
-    command.current_dir(&scenario.folder).stdin(Stdio::null()).stdout(Stdio::null()).stderr(stderr);
+    // However this process ends, they do too.
+    command.current_dir(&scenario.folder).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(stderr);
     command.spawn().map_err(|source| Error::file(Path::new(program), source))
 }

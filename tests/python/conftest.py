@@ -8,6 +8,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any, Callable
@@ -54,6 +55,27 @@ def python(script: str, *words: str | Path, **options: Any) -> subprocess.Comple
     beside = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     environment = {**os.environ, **beside}
     return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, env=environment, **options)
+
+
+def begin(*words: str | Path) -> subprocess.Popen[str]:
+    """The command, which goes on, in a session of its own as in another terminal."""
+    command = [sys.executable, "-m", "closecall", *map(str, words)]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+
+
+def until(is_so: Callable[[], object], seconds: float = 60) -> None:
+    """Wait until something is so."""
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
+    """Until so many rows are on disk."""
+    while not log.exists() or log.read_bytes().count(b"\n") < count:
+        assert process.poll() is None
+        time.sleep(0.005)
 
 
 def rows(path: Path) -> list[Row]:

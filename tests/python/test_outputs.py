@@ -146,3 +146,23 @@ def test_a_file_that_cannot_be_written_is_named(option: str, scenario: Copy) -> 
     done = closecall("run", config, option, "/proc/closecall/file")
     assert done.returncode == 2 and "/proc/closecall/file: " in done.stderr
     assert not (config.parent / "closecall-out").exists()
+
+
+def test_an_output_is_not_written_over_what_is_read(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("curves")
+    routes = config.with_suffix(".rou.xml")
+    before = routes.read_bytes()
+    (tmp_path / "link.xml").symlink_to(routes)
+    for option in ("--ssm-output", "--trj-output"):
+        done = closecall("run", config, option, tmp_path / "link.xml", "--out", tmp_path / "out")
+        assert (done.returncode, done.stderr) == (2, f"closecall: {option} would be written over {routes}\n")
+    recording = tmp_path / "fcd.xml"
+    assert closecall("run", config, "--end", "10", "--quiet", "--", "--fcd-output", recording).returncode == 0
+    recorded = recording.read_bytes()
+    words = ("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
+    for others in (("--ssm-output", recording), ("--ssm-output", "one", "--trj-output", "one")):
+        done = closecall(*words, *others, cwd=tmp_path)
+        assert (done.returncode, done.stderr) == (2, f"closecall: --ssm-output would be written over {others[-1]}\n")
+    assert (routes.read_bytes(), recording.read_bytes()) == (before, recorded)
+    assert not (tmp_path / "out").exists()
+    assert closecall(*words, "--ssm-output", "/dev/null", "--trj-output", "/dev/null").returncode == 0

@@ -13,8 +13,9 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
 
+import psutil
 import pytest
-from conftest import NETS, closecall
+from conftest import NETS, begin, closecall, until, wait_for_rows
 
 Copy = Callable[[str], Path]
 
@@ -276,13 +277,9 @@ def test_kept_logs_are_those_of_the_runs(blessed: Copy, tmp_path: Path) -> None:
 def test_ctrl_c_ends_the_runs_too(blessed: Copy, tmp_path: Path) -> None:
     folder = blessed("town")
     settings(folder, "[regress]\nseeds = [42, 43]\n")
-    command = [sys.executable, "-m", "closecall", "regress", str(folder), "--out", str(tmp_path / "kept")]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    process = begin("regress", folder, "--out", tmp_path / "kept")
     log = tmp_path / "kept" / "town" / "seed-42" / "conflicts.csv"
-    deadline = time.monotonic() + 60
-    while not log.exists() or not log.read_bytes().count(b"\n") > 10:
-        assert process.poll() is None and time.monotonic() < deadline
-        time.sleep(0.02)
+    wait_for_rows(log, process, 10)
     process.send_signal(signal.SIGINT)
     _, said = process.communicate(timeout=30)
     assert (process.returncode, said.count("\n")) == (130, 1), said
@@ -290,3 +287,15 @@ def test_ctrl_c_ends_the_runs_too(blessed: Copy, tmp_path: Path) -> None:
     size = log.stat().st_size
     time.sleep(0.5)
     assert log.stat().st_size == size
+
+
+def test_killed_it_leaves_no_run_behind(blessed: Copy, tmp_path: Path) -> None:
+    folder = blessed("town")
+    settings(folder, "[regress]\nseeds = [42, 43]\n")
+    process = begin("regress", folder, "--out", tmp_path / "kept")
+    wait_for_rows(tmp_path / "kept" / "town" / "seed-42" / "conflicts.csv", process, 10)
+    runs = psutil.Process(process.pid).children()
+    assert runs
+    process.kill()
+    process.communicate(timeout=30)
+    until(lambda: not any(run.is_running() and run.status() != psutil.STATUS_ZOMBIE for run in runs), 5)

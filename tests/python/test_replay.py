@@ -5,11 +5,12 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import signal
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import Row, closecall, rows
+from conftest import Row, begin, closecall, rows, wait_for_rows
 
 Copy = Callable[[str], Path]
 
@@ -150,3 +151,19 @@ def test_a_missing_recording_is_named(scenario: Copy, tmp_path: Path) -> None:
     status, message = replay(scenario("rear_end"), tmp_path / "none.xml", tmp_path / "out")
     assert (status, message.count("\n")) == (2, 1)
     assert "none.xml: No such file" in message
+
+
+def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("town")
+    recording = record(config, "fcd.xml", "--end", "200")
+    process = begin("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
+    wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)
+    process.send_signal(signal.SIGINT)
+    _, said = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; what was found so far is in the log\n", said), said
+    found = json.loads((tmp_path / "out" / "run.json").read_text())
+    assert found["complete"] is False and found["summary"]["steps"] < 400
+    assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(
+        rows(tmp_path / "out" / "conflicts.csv")
+    )

@@ -5,14 +5,12 @@ from __future__ import annotations
 import json
 import os
 import signal
-import subprocess
-import sys
-import time
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import closecall, python, rows
+from conftest import begin, closecall, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
@@ -155,23 +153,9 @@ def test_who_is_parked_off_the_road_is_no_road_user(scenario: Copy, tmp_path: Pa
         assert bool(pairs) == bool(expected), (parking, pairs)
 
 
-def start(config: Path, *words: str) -> subprocess.Popen[str]:
-    """A run in the background."""
-    command = [sys.executable, "-m", "closecall", "run", str(config), *words]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-
-
-def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
-    """Until so many rows are on disk."""
-    deadline = time.monotonic() + 60
-    while not log.exists() or log.read_bytes().count(b"\n") < count:
-        assert process.poll() is None and time.monotonic() < deadline
-        time.sleep(0.02)
-
-
 def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
     config = scenario("town")
-    process = start(config)
+    process = begin("run", config)
     out = config.parent / "closecall-out"
     wait_for_rows(out / "conflicts.csv", process, 50)
     process.send_signal(signal.SIGINT)
@@ -184,9 +168,22 @@ def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
 
 
+@pytest.mark.parametrize("end", ["1", "1.05", "1.15", "1.2"])
+def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("curves")
+    done = closecall(
+        "run", config, "--end", end, "--quiet", "--out", tmp_path, "--", "--fcd-output", tmp_path / "fcd.xml"
+    )
+    assert done.returncode == 0, done.stderr
+    sumos = [float(step.get("time", "nan")) for step in ET.parse(tmp_path / "fcd.xml").getroot()]
+    record = json.loads((tmp_path / "run.json").read_text())["summary"]
+    assert (record["steps"], record["end"]) == (len(sumos), pytest.approx(sumos[-1]))
+    assert sumos[-1] < float(end) <= sumos[-1] + 0.2 + 1e-9
+
+
 def test_after_a_kill_the_log_begins_as_that_of_the_whole_run(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    process = start(config, "--out", str(tmp_path / "killed"))
+    process = begin("run", config, "--out", tmp_path / "killed")
     log = tmp_path / "killed" / "conflicts.csv"
     wait_for_rows(log, process, 400)
     os.kill(process.pid, signal.SIGKILL)

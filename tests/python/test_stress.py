@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
-from conftest import closecall
+import signal
+import time
+
+import psutil
+from conftest import begin, closecall, until
 
 
 def test_the_same_seed_gives_the_same_table() -> None:
@@ -21,3 +25,13 @@ def test_no_cases_are_refused() -> None:
     run = closecall("stress", "--cases", "0")
     assert run.returncode == 2
     assert len(run.stderr.splitlines()) == 1
+
+
+def test_ctrl_c_ends_what_has_nothing_to_keep_at_once() -> None:
+    process = begin("stress", "--cases", "1000000000")
+    until(lambda: psutil.Process(process.pid).cpu_times().user > 1)
+    begun = time.monotonic()
+    process.send_signal(signal.SIGINT)
+    assert process.communicate(timeout=30) == ("", "")
+    assert process.returncode == -signal.SIGINT
+    assert time.monotonic() - begun < 5

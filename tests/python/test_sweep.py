@@ -15,7 +15,7 @@ from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
-from conftest import NETS, closecall, python, rows
+from conftest import NETS, begin, closecall, python, rows, until
 
 Copy = Callable[[str], Path]
 
@@ -61,20 +61,6 @@ def children(pid: int) -> dict[psutil.Process, str]:
         except psutil.Error:
             continue
     return found
-
-
-def begin(*words: str | Path) -> subprocess.Popen[str]:
-    """A sweep that goes on."""
-    command = [sys.executable, "-m", "closecall", "sweep", *map(str, words)]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
-
-
-def until(is_so: Callable[[], object], seconds: float = 60) -> None:
-    """Wait until something is so."""
-    end = time.monotonic() + seconds
-    while not is_so():
-        assert time.monotonic() < end
-        time.sleep(0.02)
 
 
 def is_alive(process: psutil.Process) -> bool:
@@ -270,7 +256,7 @@ def simulations(of: psutil.Process) -> list[psutil.Process]:
 
 def test_a_run_that_is_killed_is_not_lost(tmp_path: Path) -> None:
     out = tmp_path / "out"
-    process = begin(LEFT_TURN, "--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
+    process = begin("sweep", LEFT_TURN, "--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
     until(lambda: len(files(out)) >= 2)
     running = simulations(psutil.Process(process.pid))
     assert len(running) in (1, 2)
@@ -285,7 +271,7 @@ def test_a_run_that_is_killed_is_not_lost(tmp_path: Path) -> None:
 def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-8", "--out", out, "--scheduler", cluster.address, "--", "--no-warnings")
-    process = begin(LEFT_TURN, *words)
+    process = begin("sweep", LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
     workers = [worker for worker, words in children(cluster.pid).items() if "spawn_main" in words]
     assert len(workers) == 2
@@ -304,7 +290,7 @@ def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) 
 def test_ctrl_c_leaves_nothing_running(group: bool, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-30", "--out", out, "--workers", "2", "--", "--no-warnings")
-    process = begin(LEFT_TURN, *words)
+    process = begin("sweep", LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
     running = children(process.pid)
     # A terminal sends it to all processes of the group.
@@ -325,7 +311,7 @@ def test_a_scheduler_by_its_address(cluster: Cluster, tmp_path: Path) -> None:
     sweep(LEFT_TURN, "--seeds", "1-4", "--out", out, "--scheduler", cluster.address, *SHORT)
     assert len(files(out)) == 4
     # A sweep that is killed lets its runs end: Dask forgets them, and they notice.
-    process = begin(LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", cluster.address)
+    process = begin("sweep", LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", cluster.address)
     until(lambda: files(tmp_path / "more"))
     process.kill()
     process.communicate()

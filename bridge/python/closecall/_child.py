@@ -1,4 +1,4 @@
-"""closecall as a child of a sweep's worker; a module of its own because each run waits for what is imported."""
+"""closecall as a child of a sweep's worker or of regress; a module of its own: each run waits for what is imported."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from . import __main__
 
 
 def main() -> int:
-    """The command; it ends when the worker does, which holds the other end of standard input."""
+    """The command; it ends when its parent does, which holds the other end of standard input."""
 
     def watch() -> None:
         os.read(0, 1)
