@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use crate::geometry::polygon::Polygon;
-use crate::profile::{Category, Profile};
+use crate::profile::{Category, Profile, origin};
 use crate::table::{self, add};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 use crate::{Error, Result};
@@ -35,7 +35,8 @@ pub struct Roster {
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
     profiles: Vec<Profile>,
     free: Vec<u32>,
-    by_name: FxHashMap<String, ProfileIndex>,
+    /// By category: a vehicle and a person may be of the same type.
+    by_name: FxHashMap<String, [Option<ProfileIndex>; Category::COUNT]>,
 }
 
 impl Roster {
@@ -44,12 +45,12 @@ impl Roster {
     /// # Errors
     /// As [`Roster::check`] has them.
     pub fn profile(&mut self, profile: Profile) -> Result<ProfileIndex> {
-        if let Some(&known) = self.by_name.get(&profile.name) {
+        if let Some(known) = self.profile_named(&profile.name, profile.category) {
             return Ok(known);
         }
         self.check(&profile)?;
         let index = ProfileIndex(self.profiles.len() as u32);
-        self.by_name.insert(profile.name.clone(), index);
+        self.by_name.entry(profile.name.clone()).or_default()[profile.category as usize] = Some(index);
         self.profiles.push(profile);
         Ok(index)
     }
@@ -81,8 +82,13 @@ impl Roster {
     }
 
     /// The type that was added under this name.
-    pub fn profile_named(&self, name: &str) -> Option<ProfileIndex> {
-        self.by_name.get(name).copied()
+    pub fn profile_named(&self, name: &str, category: Category) -> Option<ProfileIndex> {
+        self.by_name.get(name)?[category as usize]
+    }
+
+    /// Whether anybody was of a type that settings name so.
+    pub fn has_any_of(&self, name: &str) -> bool {
+        self.by_name.keys().any(|known| known == name || origin(known) == name)
     }
 
     /// Takes a road user into the scene.

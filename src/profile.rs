@@ -1,7 +1,7 @@
 //! What all road users of one type have in common, from what SUMO says of the type and what the options set.
 
 use crate::braking::Brakes;
-use crate::options::{BrakeSystem, Deceleration, Options};
+use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
 use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 
 /// What sort of road user it is, as far as the model distinguishes.
@@ -13,6 +13,11 @@ pub enum Category {
     Person,
     /// A static obstacle with a polygon for a shape and no heading of its own.
     Obstacle,
+}
+
+impl Category {
+    /// How many there are.
+    pub(crate) const COUNT: usize = 3;
 }
 
 /// What all road users of one type have in common.
@@ -71,10 +76,25 @@ fn chord(shape: &str, length: Metre) -> Metre {
     carriage.map_or(length, |(_, carriage)| carriage.min(length))
 }
 
+/// The name of a type of polygons among those of road users.
+pub(crate) fn obstacle_name(polygon_type: &str) -> String {
+    format!("polygon:{polygon_type}")
+}
+
+/// The type that a vehicle's own one was made from: once a script sets its length alone, SUMO calls it `TYPE@VEHICLE`.
+pub(crate) fn origin(name: &str) -> &str {
+    name.split_once('@').map_or(name, |(origin, _)| origin)
+}
+
+fn settings(name: &str, options: &Options) -> TypeOptions {
+    let own = options.types.get(name).or_else(|| options.types.get(origin(name)));
+    own.cloned().unwrap_or_default()
+}
+
 impl Profile {
     /// The profile of a vehicle type: `[type.NAME]` first, then the general settings, then SUMO.
     pub fn vehicle(sumo: &SumoType, options: &Options) -> Self {
-        let set = options.types.get(&sumo.name).cloned().unwrap_or_default();
+        let set = settings(&sumo.name, options);
         let system = set.brakes.unwrap_or_else(|| {
             if PNEUMATIC_CLASSES.contains(&sumo.vehicle_class.as_str()) {
                 BrakeSystem::Pneumatic
@@ -108,7 +128,7 @@ impl Profile {
 
     /// The profile of a person type: it stops within a step of `step_length` s.
     pub fn person(sumo: &SumoType, options: &Options, step_length: Second) -> Self {
-        let set = options.types.get(&sumo.name).cloned().unwrap_or_default();
+        let set = settings(&sumo.name, options);
         Self {
             name: sumo.name.clone(),
             category: Category::Person,
@@ -123,7 +143,7 @@ impl Profile {
     /// The profile of all polygons of one type: they do not move.
     pub fn obstacle(polygon_type: &str) -> Self {
         Self {
-            name: format!("polygon:{polygon_type}"),
+            name: obstacle_name(polygon_type),
             category: Category::Obstacle,
             length: 0.0,
             chord: 0.0,
@@ -131,5 +151,32 @@ impl Profile {
             mass: f64::MAX,
             brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_type_made_for_one_vehicle_has_the_settings_of_what_it_was_made_from_unless_it_has_its_own() {
+        let mut options = Options::default();
+        for (name, width) in [("car", 1.5), ("car@b", 3.0)] {
+            options.types.insert(name.to_owned(), TypeOptions { width: Some(width), ..TypeOptions::default() });
+        }
+        let width = |name: &str| {
+            let sumo = SumoType {
+                name: name.to_owned(),
+                vehicle_class: "passenger".to_owned(),
+                shape: String::new(),
+                length: 5.0,
+                width: 1.8,
+                mass: 1500.0,
+                emergency_decel: 9.0,
+                decel: 4.5,
+            };
+            Profile::vehicle(&sumo, &options).width
+        };
+        assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
     }
 }

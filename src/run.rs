@@ -18,7 +18,7 @@ use crate::log::Log;
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
 use crate::outputs::Outputs;
-use crate::profile::{Category, Profile};
+use crate::profile::{Category, Profile, obstacle_name};
 use crate::scene::{self, Exclusions, LeftOut};
 use crate::summary::Summary;
 use crate::units::Second;
@@ -40,6 +40,8 @@ pub struct Run {
     in_conflict: Vec<Encounter>,
     leaving: Vec<UserIndex>,
     obstacles: Vec<(UserIndex, Point)>,
+    /// What the options say of single types: as they name it, and as the roster does.
+    settings: Vec<(String, String)>,
     summary: Summary,
 }
 
@@ -70,6 +72,7 @@ impl Run {
             in_conflict: Vec::new(),
             leaving: Vec::new(),
             obstacles: Vec::new(),
+            settings: settings(options),
             summary: Summary::default(),
         })
     }
@@ -310,6 +313,8 @@ impl Run {
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
         self.summary.left_out = scene::left_out(&self.detector);
         self.summary.left_out.extend(left_out);
+        let unmet = self.settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
+        self.summary.unmet = unmet.map(|(setting, _)| setting.clone()).collect();
         Ok(self.summary.clone())
     }
 
@@ -322,6 +327,15 @@ impl Run {
     pub fn take_log(&mut self) -> Option<Log> {
         self.log.take()
     }
+}
+
+/// The settings of single types, in order, each with the name that somebody of the type has.
+fn settings(options: &Options) -> Vec<(String, String)> {
+    let types = options.types.keys().map(|name| (format!("[type.{name}]"), name.clone()));
+    let obstacles = options.obstacles.iter().map(|name| (format!("obstacles {name}"), obstacle_name(name)));
+    let mut settings = types.chain(obstacles).collect::<Vec<_>>();
+    settings.sort_unstable();
+    settings
 }
 
 fn settle(closed: &[Conflict], summary: &mut Summary, kept: Option<&mut Vec<Conflict>>) {

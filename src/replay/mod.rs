@@ -22,7 +22,7 @@ use crate::frame::{State, UserIndex};
 use crate::geometry::{Bounds, Point};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::options::{Options, PathModel};
-use crate::profile::Profile;
+use crate::profile::{Category, Profile};
 use crate::run::Run;
 use crate::units::{Metre, Second};
 use crate::{Error, Result};
@@ -175,8 +175,8 @@ impl Replay {
 
     fn enter(&mut self, row: &Row, run: &mut Run) -> Result<UserIndex> {
         let type_name = self.recording.type_name(row);
-        let name = if row.person { format!("person:{type_name}") } else { type_name.to_owned() };
-        let profile = match run.roster.profile_named(&name) {
+        let category = if row.person { Category::Person } else { Category::Vehicle };
+        let profile = match run.roster.profile_named(type_name, category) {
             Some(known) => known,
             None => {
                 let sumo = self.types.named(type_name, row.person);
@@ -185,7 +185,7 @@ impl Replay {
                 } else {
                     Profile::vehicle(&sumo, &self.options)
                 };
-                run.roster.profile(Profile { name, ..profile })?
+                run.roster.profile(Profile { name: type_name.to_owned(), ..profile })?
             }
         };
         let user = run.enter(self.recording.id(row.user), profile);

@@ -7,7 +7,7 @@ use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
 use crate::net::LineCounter;
-use crate::profile::SumoType;
+use crate::profile::{SumoType, origin};
 use crate::{Error, Result};
 
 /// Types by their id.
@@ -45,7 +45,7 @@ impl Types {
         }
     }
 
-    /// The type of this id: as it was read, else SUMO's default type of that name, else a car (or a pedestrian).
+    /// The type of this id: as it or the one that it was made from was read, else SUMO's default type of that name, else a car (or a pedestrian).
     pub fn named(&self, name: &str, person: bool) -> SumoType {
         let default = match name {
             "DEFAULT_BIKETYPE" => "bicycle",
@@ -55,7 +55,8 @@ impl Types {
             _ if person => "pedestrian",
             _ => "passenger",
         };
-        self.known.get(name).cloned().unwrap_or_else(|| of_class(name, default))
+        let known = self.known.get(name).or_else(|| self.known.get(origin(name)));
+        known.map_or_else(|| of_class(name, default), |known| SumoType { name: name.to_owned(), ..known.clone() })
     }
 }
 

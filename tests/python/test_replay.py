@@ -35,7 +35,7 @@ def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, 
 
 def same(live: list[Row], again: list[Row]) -> None:
     """Equal to the last digit but one of what a recording holds."""
-    texts = ("ego", "foe", "kind", "severity", "lane", "collision")
+    texts = ("ego", "foe", "ego_type", "foe_type", "kind", "severity", "lane", "collision")
     assert [[row[name] for name in texts] for row in again] == [[row[name] for name in texts] for row in live]
     for name in ("begin", "end", "time", "gap", "mu", "margin", "clearance", "ttc", "pet", "angle", "x", "y"):
         for one, other in zip(live, again):

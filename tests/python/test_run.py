@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import signal
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -166,6 +167,27 @@ def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is False
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+
+
+def test_settings_of_a_type_that_nobody_is_of_are_told(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("curves")
+    routes = config.with_suffix(".rou.xml")
+    kinds = sorted(set(re.findall(r'<vType id="(\w+)"', routes.read_text())))
+    settings = tmp_path / "settings.toml"
+    settings.write_text("".join(f"[type.'{kind}']\ndecel = 5.0\n" for kind in [*kinds, "cra", "car@one"]))
+    words = ("--config", settings, "--obstacles", "kiosk", "--out", tmp_path)
+    done = closecall("run", config, *words)
+    told = [line for line in done.stdout.splitlines() if "nobody of this type" in line]
+    assert [line.split(":")[0] for line in told] == ["[type.car@one]", "[type.cra]", "obstacles kiosk"]
+    quiet = closecall("run", config, *words, "--quiet")
+    assert (quiet.returncode, quiet.stdout) == (0, "")
+
+
+def test_a_configuration_made_for_traci_runs_alone(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("curves")
+    config.write_text(config.read_text().replace("</configuration>", '<remote-port value="18813"/></configuration>'))
+    assert closecall("run", config, "--end", "5", "--out", tmp_path).returncode == 0
+    assert json.loads((tmp_path / "run.json").read_text())["summary"]["steps"] == 25
 
 
 @pytest.mark.parametrize("end", ["1", "1.05", "1.15", "1.2"])

@@ -18,6 +18,9 @@ UNUSED = ("numpy", "lxml", "importlib.metadata")
 """What libsumo and the sumolib that it imports take where it is, for nothing that is used here: 0.1 s of each run, and
 numpy's threads."""
 
+NO_CLIENT = ("--remote-port", "0")
+"""Of a configuration made for TraCI libsumo would wait for its client, for ever."""
+
 
 def start(words: list[str], gui: bool) -> Any:
     """Start SUMO with the words of its command line after the program's name; returns the module libsumo.
@@ -30,7 +33,7 @@ def start(words: list[str], gui: bool) -> Any:
     command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
     with caught_stderr() as caught:
         try:
-            libsumo.start([*command, *words])
+            libsumo.start([*command, *words, *NO_CLIENT])
         except (libsumo.TraCIException, libsumo.exceptions.FatalTraCIError, RuntimeError) as error:
             caught.seek(0)
             raise RuntimeError(first_error(caught.read()) or str(error)) from error
