@@ -5,7 +5,9 @@ from __future__ import annotations
 import csv
 import json
 import random
+import re
 import shutil
+import statistics
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Callable
@@ -177,6 +179,17 @@ def test_hovering_a_conflict_says_its_values(browser: Any, scenario: Copy, tmp_p
     assert f"{row['ego']} → {row['foe']}" in tip
     assert f"margin {float(row['margin']):.2f} m".replace("-", "−") in tip
     assert opened.complaints == []
+
+
+@pytest.mark.parametrize("count", [1, 2, 4, 5])
+def test_its_medians_are_those_of_stats(count: int, browser: Any, tmp_path: Path) -> None:
+    log = made_up(tmp_path / "log", count)
+    assert closecall("report", log, "-o", tmp_path / "r.html").returncode == 0
+    margins = [float(row["margin"]) for row in rows(log / "conflicts.csv")]
+    told = Opened(browser, tmp_path / "r.html").text("#distributions")
+    medians = re.findall(rf"{count} of {count} have one, median (\S+) m\n", told.replace("−", "-"))
+    # The page holds centimetres.
+    assert any(float(median) == pytest.approx(statistics.median(margins), abs=0.011) for median in medians), told
 
 
 def test_zooming_keeps_metres_equally_long_on_both_axes(browser: Any, town: Path) -> None:

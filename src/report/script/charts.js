@@ -122,8 +122,11 @@ const DISTRIBUTION_BINS = 30;
 /** The share of the values that the axis covers; what is beyond counts in the last bar. */
 const COVERED = 0.99;
 
+/** The quantile of values in ascending order, as `closecall stats` has it. */
 function quantile(sorted, share) {
-  return sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
+  const place = share * (sorted.length - 1);
+  const [low, high] = [sorted[Math.floor(place)], sorted[Math.ceil(place)]];
+  return low + (high - low) * (place % 1);
 }
 
 /** A round number not below this. */
