@@ -1,4 +1,4 @@
-//! Units as types: every quantity is an `f64` in SI units, and its alias says which.
+//! Units as types: every quantity is an `f64` in SI units, and its alias says which; and how many of something there are, in words.
 
 /// A length, way or distance in m.
 pub type Metre = f64;
@@ -12,3 +12,8 @@ pub type MetrePerSecondSquared = f64;
 pub type Radian = f64;
 /// A mass in kg.
 pub type Kilogram = f64;
+
+/// So many of them, in words.
+pub(crate) fn counted(number: u64, what: &str) -> String {
+    format!("{number} {what}{}", if number == 1 { "" } else { "s" })
+}

@@ -7,6 +7,7 @@ use clap::Args;
 use super::say;
 use crate::Result;
 use crate::report;
+use crate::units::counted;
 
 /// Which logs, and where the page goes.
 #[derive(Args)]
@@ -31,7 +32,8 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
     if !arguments.quiet {
         let report::Made { runs, conflicts, bytes } = made;
         let size = bytes as f64 / 1e6;
-        say(format_args!("{conflicts} conflicts of {runs} run(s) in {} ({size:.1} MB)\n", arguments.out.display()))?;
+        let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
+        say(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
     }
     Ok(())
 }

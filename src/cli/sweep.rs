@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use super::run::{RunArgs, request};
 use super::{Command, Stop, Sumo, no_sumo, parse, say, usage, value};
 use crate::sweep::{Seeds, Sweep, Task, Vary};
+use crate::units::counted;
 use crate::{Error, Result};
 
 /// A SUMO scenario, its seeds, and what is varied.
@@ -148,7 +149,8 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
     };
     let failed = distribute(sumo, &workers, &missing, there, arguments.quiet, &out)?;
     if !arguments.quiet {
-        say(format_args!("{} runs in {}\n", plan.tasks.len() - failed, plan.data_set().display()))?;
+        let runs = counted((plan.tasks.len() - failed) as u64, "run");
+        say(format_args!("{runs} in {}\n", plan.data_set().display()))?;
         if there > 0 {
             say(format_args!("{there} of them were there already\n"))?;
         }

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::scenario::Scenario;
 use super::{Compared, Differences, Level};
+use crate::units::counted;
 use crate::{Error, Result};
 
 /// So many differences of one sort are shown.
@@ -149,5 +150,5 @@ pub fn summary(reports: &[Report]) -> String {
     let count = |word: &str| reports.iter().filter(|report| report.word() == word).count();
     let words = ["pass", "blessed", "FAIL", "ERROR"].map(|word| (count(word), word));
     let told = words.iter().filter(|(count, _)| *count > 0).map(|(count, word)| format!("{count} {word}"));
-    format!("{} scenarios: {}", reports.len(), told.collect::<Vec<_>>().join(", "))
+    format!("{}: {}", counted(reports.len() as u64, "scenario"), told.collect::<Vec<_>>().join(", "))
 }

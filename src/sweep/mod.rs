@@ -53,9 +53,13 @@ impl Task {
             return Err(Error::content(log, "the run did not come to its end"));
         }
         let encounters = log.join(ENCOUNTERS);
+        let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
+        let fault = |source| Error::file(&folder, source);
+        if folder.exists() {
+            // Those of the run that this one takes the place of.
+            fs::remove_dir_all(&folder).map_err(fault)?;
+        }
         if encounters.is_file() {
-            let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
-            let fault = |source| Error::file(&folder, source);
             fs::create_dir_all(&folder).map_err(fault)?;
             fs::rename(encounters, folder.join(ENCOUNTERS)).map_err(fault)?;
         }
@@ -132,7 +136,8 @@ impl Sweep {
     /// The runs that are still to be done: those not in the folder, or not as they are wanted now.
     ///
     /// # Errors
-    /// [`Error::Content`] where the folder holds runs of a sweep that varied something else: their columns differ.
+    /// [`Error::Content`] where the folder holds runs of a sweep that varied something else (their columns differ), or a
+    /// run's own log.
     pub fn missing(&self) -> Result<Vec<&Task>> {
         standing::missing(self)
     }

@@ -11,6 +11,7 @@ use sha2::{Digest, Sha256};
 
 use super::{RUN, Sweep, Task};
 use crate::inputs::Input;
+use crate::log;
 use crate::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
 use crate::{Error, Result};
 
@@ -31,6 +32,11 @@ pub(super) fn fingerprint(words: &[String], labels: &[Label], read: &[String]) -
 }
 
 pub(super) fn missing(sweep: &Sweep) -> Result<Vec<&Task>> {
+    let log = sweep.out.join(log::CONFLICTS);
+    if log.exists() {
+        let message = "this is a single run's, which would count as one of the sweep's: choose another --out";
+        return Err(Error::content(&log, message));
+    }
     check_columns(sweep)?;
     let mut hashes = FxHashMap::default();
     Ok(sweep.tasks.iter().filter(|task| !is_done(task, &mut hashes)).collect())

@@ -205,7 +205,7 @@ def test_stats_and_report_read_a_sweep_as_they_read_logs(tmp_path: Path) -> None
     assert of_logs == of_sweep
     assert stats(logs, "--against", out)["comparison"] is not None
     made = closecall("report", out, "-o", tmp_path / "report.html")
-    assert made.returncode == 0 and "of 2 run(s)" in made.stdout, made.stderr
+    assert made.returncode == 0 and "of 2 runs in" in made.stdout, made.stderr
     assert f"{of_sweep['groups'][0]['count']} conflicts" in made.stdout
 
 
@@ -235,6 +235,22 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
     # Runs with other columns do not belong to the same data set.
     other = sweep(config, "--seeds", "1", "--vary", "epsilon=1,2", *words, status=2)
     assert "choose another --out" in other.stderr and other.stderr.count("\n") == 1
+
+
+def test_encounters_are_those_of_the_run_beside_them(tmp_path: Path) -> None:
+    words = ("--seeds", "1", "--out", tmp_path, "--workers", "1")
+    assert sweep(LEFT_TURN, *words, "--log-encounters", *SHORT).stdout.startswith("1 run in ")
+    encounters = tmp_path / "encounters" / "run=seed-1" / "encounters.csv"
+    assert encounters.is_file()
+    sweep(LEFT_TURN, *words, *SHORT)
+    assert files(tmp_path) and not encounters.exists()
+
+
+def test_the_folder_of_a_single_log_is_none_of_a_sweep(tmp_path: Path) -> None:
+    assert closecall("run", LEFT_TURN, "--quiet", "--out", tmp_path, *SHORT).returncode == 0
+    refused = sweep(LEFT_TURN, "--seeds", "1", "--out", tmp_path, *SHORT, status=2)
+    assert refused.stderr.startswith(f"closecall: {tmp_path / 'conflicts.csv'}: ") and refused.stderr.count("\n") == 1
+    assert not files(tmp_path)
 
 
 def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path: Path) -> None:
