@@ -1,46 +1,55 @@
-//! Ctrl-C: it ends a command at once as long as that has nothing to keep, and is told to it from then on.
+//! Ctrl-C: it ends a command at once as long as that has nothing to keep, and is told to it otherwise.
 
-use std::cell::RefCell;
+use std::cell::Cell;
 
 use pyo3::prelude::*;
 
-/// Python's handler of SIGINT, and whether it is in its place. With it, Ctrl-C waits until somebody asks.
+/// Who gets SIGINT: nobody, so that it ends the process, or Python's own handler, which keeps it until somebody asks.
 pub struct Interrupts<'py> {
     signals: Bound<'py, PyModule>,
-    /// The handler that was taken away; none where it is in its place, or was not Python's own.
-    taken: RefCell<Option<Bound<'py, PyAny>>>,
+    /// None where it is another's than Python's: whoever started the process, or called, wants that so.
+    handler: Option<Bound<'py, PyAny>>,
+    is_told: Cell<bool>,
 }
 
 impl<'py> Interrupts<'py> {
-    /// Lets Ctrl-C end the process, unless whoever started it, or called, wants that otherwise.
+    /// From now on it ends the process.
     pub fn new(py: Python<'py>) -> PyResult<Self> {
         let signals = py.import("signal")?;
         let handler = signals.call_method1("getsignal", (signals.getattr("SIGINT")?,))?;
         let is_pythons = handler.is(&signals.getattr("default_int_handler")?);
-        let default = signals.getattr("SIG_DFL")?;
-        let interrupts = Self { signals, taken: RefCell::new(None) };
-        // Another thread than the first may not, and is not interrupted.
-        if is_pythons && interrupts.set(&default).is_ok() {
-            interrupts.taken.replace(Some(handler));
-        }
+        let interrupts = Self { signals, handler: is_pythons.then_some(handler), is_told: Cell::new(true) };
+        interrupts.end_the_process();
         Ok(interrupts)
     }
 
-    /// From now on Ctrl-C is told.
-    pub fn tell(&self) {
-        if let Some(handler) = self.taken.take() {
-            // Nothing better is left than that it goes on ending the process.
-            let _ = self.set(&handler);
-        }
+    /// From now on it ends the process.
+    pub fn end_the_process(&self) {
+        self.set(false);
     }
 
-    /// Whether there was one since it was asked last.
+    /// From now on it is told.
+    pub fn tell(&self) {
+        self.set(true);
+    }
+
+    /// Whether there was one since it was asked last; it is told from now on.
     pub fn had_any(&self) -> bool {
         self.tell();
         self.signals.py().check_signals().is_err()
     }
 
-    fn set(&self, handler: &Bound<PyAny>) -> PyResult<()> {
-        self.signals.call_method1("signal", (self.signals.getattr("SIGINT")?, handler)).map(|_| ())
+    fn set(&self, is_told: bool) {
+        let Some(handler) = self.handler.as_ref().filter(|_| self.is_told.get() != is_told) else { return };
+        let set = || {
+            let default = self.signals.getattr("SIG_DFL")?;
+            self.signals
+                .call_method1("signal", (self.signals.getattr("SIGINT")?, if is_told { handler } else { &default }))
+        };
+        // Another thread than the first may not set it, and does not get it.
+        let done: PyResult<_> = set();
+        if done.is_ok() {
+            self.is_told.set(is_told);
+        }
     }
 }

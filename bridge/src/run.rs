@@ -82,6 +82,7 @@ fn simulate(py: Python, request: &RunRequest, interrupts: &Interrupts) -> Result
     let sumo = start::start(py, request)?;
     let result = attach(&sumo, request, ahead, interrupts);
     start::close(py, request.gui);
+    interrupts.end_the_process();
     result
 }
 

@@ -185,7 +185,7 @@ impl Replay {
                 } else {
                     Profile::vehicle(&sumo, &self.options)
                 };
-                run.roster.profile(Profile { name: type_name.to_owned(), ..profile })?
+                run.roster.profile(profile)?
             }
         };
         let user = run.enter(self.recording.id(row.user), profile);

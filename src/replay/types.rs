@@ -45,9 +45,10 @@ impl Types {
         }
     }
 
-    /// The type of this id: as it or the one that it was made from was read, else SUMO's default type of that name, else a car (or a pedestrian).
+    /// The type of this id: as it, or the one that it was made from, was read, else SUMO's default type of that name, else
+    /// a car (or a pedestrian).
     pub fn named(&self, name: &str, person: bool) -> SumoType {
-        let default = match name {
+        let default = match origin(name) {
             "DEFAULT_BIKETYPE" => "bicycle",
             "DEFAULT_TAXITYPE" => "taxi",
             "DEFAULT_RAILTYPE" => "rail",
