@@ -1,55 +1,70 @@
-//! Ctrl-C: it ends a command at once as long as that has nothing to keep, and is told to it otherwise.
+//! Ctrl-C and SIGTERM: they end a command at once as long as that has nothing to keep, and are told to it otherwise.
 
 use std::cell::Cell;
 
 use pyo3::prelude::*;
 
-/// Who gets SIGINT: nobody, so that it ends the process, or Python's own handler, which keeps it until somebody asks.
+/// Who gets the signals: nobody, so that they end the process, or Python's handler of Ctrl-C, which keeps them until
+/// somebody asks.
 pub struct Interrupts<'py> {
     signals: Bound<'py, PyModule>,
-    /// None where it is another's than Python's: whoever started the process, or called, wants that so.
-    handler: Option<Bound<'py, PyAny>>,
+    /// The signals, each with its handler so far; not those which whoever started the process, or called, wants otherwise
+    /// than Python does.
+    handlers: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
+    end: Bound<'py, PyAny>,
+    tell: Bound<'py, PyAny>,
     is_told: Cell<bool>,
 }
 
 impl<'py> Interrupts<'py> {
-    /// From now on it ends the process.
+    /// From now on they end the process.
     pub fn new(py: Python<'py>) -> PyResult<Self> {
         let signals = py.import("signal")?;
-        let handler = signals.call_method1("getsignal", (signals.getattr("SIGINT")?,))?;
-        let is_pythons = handler.is(&signals.getattr("default_int_handler")?);
-        let interrupts = Self { signals, handler: is_pythons.then_some(handler), is_told: Cell::new(true) };
+        let (end, tell) = (signals.getattr("SIG_DFL")?, signals.getattr("default_int_handler")?);
+        let mut handlers = Vec::new();
+        for (signal, pythons) in [("SIGINT", &tell), ("SIGTERM", &end)] {
+            let signal = signals.getattr(signal)?;
+            let handler = signals.call_method1("getsignal", (&signal,))?;
+            // Those of signals are equal, not the same object.
+            if handler.eq(pythons)? {
+                handlers.push((signal, handler));
+            }
+        }
+        let interrupts = Self { signals, handlers, end, tell, is_told: Cell::new(true) };
         interrupts.end_the_process();
         Ok(interrupts)
     }
 
-    /// From now on it ends the process.
+    /// From now on they end the process.
     pub fn end_the_process(&self) {
-        self.set(false);
+        if self.is_told.replace(false) {
+            self.set(|_| &self.end);
+        }
     }
 
-    /// From now on it is told.
+    /// From now on they are told.
     pub fn tell(&self) {
-        self.set(true);
+        if !self.is_told.replace(true) {
+            self.set(|_| &self.tell);
+        }
     }
 
-    /// Whether there was one since it was asked last; it is told from now on.
+    /// Whether there was one since it was asked last; they are told from now on.
     pub fn had_any(&self) -> bool {
         self.tell();
         self.signals.py().check_signals().is_err()
     }
 
-    fn set(&self, is_told: bool) {
-        let Some(handler) = self.handler.as_ref().filter(|_| self.is_told.get() != is_told) else { return };
-        let set = || {
-            let default = self.signals.getattr("SIG_DFL")?;
-            self.signals
-                .call_method1("signal", (self.signals.getattr("SIGINT")?, if is_told { handler } else { &default }))
-        };
-        // Another thread than the first may not set it, and does not get it.
-        let done: PyResult<_> = set();
-        if done.is_ok() {
-            self.is_told.set(is_told);
+    fn set<'a>(&'a self, to: impl Fn(&'a Bound<'py, PyAny>) -> &'a Bound<'py, PyAny>) {
+        for (signal, before) in &self.handlers {
+            // Another thread than the first may not set it, and does not get it.
+            let _ = self.signals.call_method1("signal", (signal, to(before)));
         }
+    }
+}
+
+impl Drop for Interrupts<'_> {
+    fn drop(&mut self) {
+        self.set(|before| before);
     }
 }

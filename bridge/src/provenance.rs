@@ -47,11 +47,15 @@ pub fn files(sumo: &Bound<PyAny>) -> PyResult<Files> {
 /// The record of a run that begins, its inputs and SUMO's words left empty; without `sumo`, nothing is simulated.
 pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options: &Options) -> PyResult<RunRecord> {
     let version = |sumo: &Bound<PyAny>| sumo.call_method0("getVersion")?.get_item(1)?.extract::<String>();
+    let seed = |sumo: &Bound<PyAny>| match option(sumo, "random").ok()?.as_str() {
+        "true" => None,
+        _ => option(sumo, "seed").ok(),
+    };
     let step_length = |sumo: &Bound<PyAny>| sumo.getattr("simulation")?.call_method0("getDeltaT")?.extract::<f64>();
     Ok(RunRecord {
         versions: Versions::with_sumo(sumo.map(version).transpose()?),
         scenario,
-        seed: sumo.and_then(|sumo| option(sumo, "seed").ok()),
+        seed: sumo.and_then(seed),
         step_length: sumo.map(step_length).transpose()?,
         sublane: run.sublane(),
         options: options.clone(),

@@ -53,9 +53,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
     };
-    let status = cli::main(words, Some(sumo));
-    interrupts.tell();
-    Ok(status)
+    Ok(cli::main(words, Some(sumo)))
 }
 
 /// The scenario at a path, for the pytest plugin: its folder, the words of its command line to be run there, the options
@@ -199,6 +197,10 @@ fn attach(
         inputs: files.with(&request.scenario).iter().map(|path| Input::of(path)).collect::<Result<_>>()?,
         ..provenance::record(Some(sumo), request.scenario.clone(), &run, &request.options).map_err(said)?
     };
+    if record.seed.is_none() && request.sumo_words.iter().any(|word| word == "--seed") {
+        let message = "SUMO's option random is on, so that a seed decides nothing: leave one of the two out";
+        return Err(Error::content(&request.scenario, message));
+    }
     interrupts.tell();
     let outputs = Outputs::create(&request.outputs, run.net(), &record.inputs)?;
     let log = Log::create(&request.out, request.options.log_encounters)?;

@@ -18,7 +18,7 @@ pub struct LoggedRun {
     pub versions: LoggedVersions,
     /// The SUMO configuration, or the recording that was replayed.
     pub scenario: PathBuf,
-    /// SUMO's random seed; none where nothing was simulated.
+    /// SUMO's random seed; none where nothing was simulated, or SUMO chose one that it does not tell (its option random).
     pub seed: Option<String>,
     /// Length of a step in s.
     pub step_length: Option<Second>,

@@ -245,7 +245,9 @@ fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl F
 
 /// Whether two runs are the same one: they would not be independent.
 fn same_run(one: &LoggedRun, other: &LoggedRun) -> bool {
-    one.seed == other.seed
+    let is_random = one.seed.is_none() && one.versions.sumo.is_some();
+    !is_random
+        && one.seed == other.seed
         && one.sumo_words == other.sumo_words
         && one.inputs == other.inputs
         && one.options == other.options

@@ -154,12 +154,13 @@ def test_who_is_parked_off_the_road_is_no_road_user(scenario: Copy, tmp_path: Pa
         assert bool(pairs) == bool(expected), (parking, pairs)
 
 
-def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
+@pytest.mark.parametrize("asked", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_and_sigterm_end_a_run_cleanly(asked: signal.Signals, scenario: Copy) -> None:
     config = scenario("town")
     process = begin("run", config)
     out = config.parent / "closecall-out"
     wait_for_rows(out / "conflicts.csv", process, 50)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(asked)
     _, said = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "interrupted at" in said
@@ -167,6 +168,21 @@ def test_ctrl_c_ends_a_run_cleanly(scenario: Copy) -> None:
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is False
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+
+
+def test_a_run_with_a_seed_that_sumo_chooses_and_does_not_tell_has_none(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("curves")
+    outs = [tmp_path / name for name in ("a", "b")]
+    for out in outs:
+        done = closecall("run", config, "--end", "5", "--quiet", "--out", out, "--", "--random")
+        assert (done.returncode, done.stderr) == (0, "")
+        assert json.loads((out / "run.json").read_text())["seed"] is None
+    told = closecall("stats", *outs)
+    assert told.returncode == 0 and "repeats" not in told.stdout + told.stderr
+    refused = closecall("run", config, "--seed", "3", "--out", tmp_path / "c", "--", "--random")
+    assert refused.returncode == 2
+    assert "option random is on" in refused.stderr and refused.stderr.count("\n") == 1
+    assert not (tmp_path / "c").exists()
 
 
 def test_settings_of_a_type_that_nobody_is_of_are_told(scenario: Copy, tmp_path: Path) -> None:

@@ -302,15 +302,19 @@ def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) 
     assert sorted(path.name for path in out.iterdir()) == ["conflicts"]
 
 
-@pytest.mark.parametrize("group", [False, True], ids=["sweep", "terminal"])
-def test_ctrl_c_leaves_nothing_running(group: bool, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("asked", "group"),
+    [(signal.SIGINT, False), (signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGTERM, True)],
+    ids=["sweep", "terminal", "kill", "batch system"],
+)
+def test_ctrl_c_and_sigterm_leave_nothing_running(asked: signal.Signals, group: bool, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-30", "--out", out, "--workers", "2", "--", "--no-warnings")
     process = begin("sweep", LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
     running = children(process.pid)
     # A terminal sends it to all processes of the group.
-    (os.killpg if group else os.kill)(process.pid, signal.SIGINT)
+    (os.killpg if group else os.kill)(process.pid, asked)
     _, stderr = process.communicate(timeout=30)
     assert process.returncode == 130, stderr
     assert stderr.startswith("closecall: interrupted after ") and stderr.count("\n") == 1, stderr
