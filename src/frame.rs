@@ -9,7 +9,7 @@ use std::sync::Arc;
 use rustc_hash::FxHashMap;
 
 use crate::geometry::polygon::Polygon;
-use crate::profile::{Category, Profile, origin};
+use crate::profile::{Category, Profile, origins};
 use crate::table::{self, add};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 use crate::{Error, Result};
@@ -88,7 +88,7 @@ impl Roster {
 
     /// Whether anybody was of a type that settings name so.
     pub fn has_any_of(&self, name: &str) -> bool {
-        self.by_name.keys().any(|known| known == name || origin(known) == name)
+        self.by_name.keys().any(|known| origins(known).any(|origin| origin == name))
     }
 
     /// Takes a road user into the scene.

@@ -24,6 +24,11 @@ pub const ENCOUNTERS: &str = "encounters.csv";
 /// The name of the file that says how the run was made.
 pub const RUN: &str = "run.json";
 
+/// The files of the log in a folder.
+pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
+    [CONFLICTS, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
+}
+
 /// The columns of [`CONFLICTS`].
 pub const CONFLICT_COLUMNS: [&str; 37] = [
     "id",

@@ -81,14 +81,14 @@ pub(crate) fn obstacle_name(polygon_type: &str) -> String {
     format!("polygon:{polygon_type}")
 }
 
-/// The type that a vehicle's own one was made from: once a script sets its length alone, SUMO calls it `TYPE@VEHICLE`.
-pub(crate) fn origin(name: &str) -> &str {
-    name.split_once('@').map_or(name, |(origin, _)| origin)
+/// A type and those that it may have been made from: once a script sets a vehicle's length alone, SUMO calls the type
+/// `TYPE@VEHICLE`, and either may itself have an @ in its id. The likeliest come first.
+pub(crate) fn origins(name: &str) -> impl Iterator<Item = &str> {
+    std::iter::once(name).chain(name.rmatch_indices('@').map(|(end, _)| &name[..end]))
 }
 
 fn settings(name: &str, options: &Options) -> TypeOptions {
-    let own = options.types.get(name).or_else(|| options.types.get(origin(name)));
-    own.cloned().unwrap_or_default()
+    origins(name).find_map(|name| options.types.get(name)).cloned().unwrap_or_default()
 }
 
 impl Profile {
@@ -161,7 +161,7 @@ mod tests {
     #[test]
     fn a_type_made_for_one_vehicle_has_the_settings_of_what_it_was_made_from_unless_it_has_its_own() {
         let mut options = Options::default();
-        for (name, width) in [("car", 1.5), ("car@b", 3.0)] {
+        for (name, width) in [("car", 1.5), ("car@b", 3.0), ("car@wide", 2.5)] {
             options.types.insert(name.to_owned(), TypeOptions { width: Some(width), ..TypeOptions::default() });
         }
         let width = |name: &str| {
@@ -178,5 +178,7 @@ mod tests {
             Profile::vehicle(&sumo, &options).width
         };
         assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
+        // Neither the type's own id nor the vehicle's is free of @.
+        assert_eq!(["car@wide@a", "car@wide@b@1", "car@c@1"].map(width), [2.5, 2.5, 1.5]);
     }
 }

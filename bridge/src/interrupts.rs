@@ -2,6 +2,7 @@
 
 use std::cell::Cell;
 
+use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
 /// Who gets the signals: nobody, so that they end the process, or Python's handler of Ctrl-C, which keeps them until
@@ -14,6 +15,8 @@ pub struct Interrupts<'py> {
     end: Bound<'py, PyAny>,
     tell: Bound<'py, PyAny>,
     is_told: Cell<bool>,
+    /// One that came while it was said who gets them.
+    has_one: Cell<bool>,
 }
 
 impl<'py> Interrupts<'py> {
@@ -30,7 +33,7 @@ impl<'py> Interrupts<'py> {
                 handlers.push((signal, handler));
             }
         }
-        let interrupts = Self { signals, handlers, end, tell, is_told: Cell::new(true) };
+        let interrupts = Self { signals, handlers, end, tell, is_told: Cell::new(true), has_one: Cell::new(false) };
         interrupts.end_the_process();
         Ok(interrupts)
     }
@@ -39,6 +42,9 @@ impl<'py> Interrupts<'py> {
     pub fn end_the_process(&self) {
         if self.is_told.replace(false) {
             self.set(|_| &self.end);
+            if self.has_one.take() {
+                let _ = self.signals.getattr("SIGINT").and_then(|it| self.signals.call_method1("raise_signal", (it,)));
+            }
         }
     }
 
@@ -52,13 +58,19 @@ impl<'py> Interrupts<'py> {
     /// Whether there was one since it was asked last; they are told from now on.
     pub fn had_any(&self) -> bool {
         self.tell();
-        self.signals.py().check_signals().is_err()
+        let is_pending = self.signals.py().check_signals().is_err();
+        self.has_one.take() || is_pending
     }
 
     fn set<'a>(&'a self, to: impl Fn(&'a Bound<'py, PyAny>) -> &'a Bound<'py, PyAny>) {
         for (signal, before) in &self.handlers {
+            let set = || self.signals.call_method1("signal", (signal, to(before)));
             // Another thread than the first may not set it, and does not get it.
-            let _ = self.signals.call_method1("signal", (signal, to(before)));
+            if set().is_err_and(|error| error.is_instance_of::<PyKeyboardInterrupt>(signal.py())) {
+                // Python told of one that was there already, and set nothing.
+                self.has_one.set(true);
+                let _ = set();
+            }
         }
     }
 }

@@ -127,8 +127,8 @@ impl<'py> Simulation<'py> {
     }
 
     /// None where it has none.
-    fn end(&self) -> Option<f64> {
-        self.end.call0().and_then(|end| end.extract()).ok().filter(|end| *end >= 0.0)
+    fn end(&self) -> PyResult<Option<f64>> {
+        Ok(Some(self.end.call0()?.extract()?).filter(|end| *end >= 0.0))
     }
 
     /// Whether anybody is still to come or to arrive.
@@ -201,13 +201,14 @@ fn attach(
         let message = "SUMO's option random is on, so that a seed decides nothing: leave one of the two out";
         return Err(Error::content(&request.scenario, message));
     }
+    let simulation = Simulation::of(sumo).map_err(said)?;
+    let (begin, end) = (simulation.time().map_err(said)?, simulation.end().map_err(said)?);
     interrupts.tell();
     let outputs = Outputs::create(&request.outputs, run.net(), &record.inputs)?;
     let log = Log::create(&request.out, request.options.log_encounters)?;
     log.run(&record)?;
     run.log_to(log, false);
     run.write_to(outputs);
-    let simulation = Simulation::of(sumo).map_err(said)?;
     let mut session = Session {
         simulation,
         request,
@@ -218,7 +219,7 @@ fn attach(
         is_unfinished: false,
         helper: if has_a_second(request.threads) { Helper::new(|run: &mut Box<Run>| finish(run)) } else { None },
     };
-    let (mut run, ended) = session.steps(Box::new(run));
+    let (mut run, ended) = session.steps(Box::new(run), begin, end);
     let ended = session.finish_step(&mut run).and(ended);
     let exposure = run.summary().exposure;
     let empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
@@ -249,12 +250,7 @@ fn attach(
 
 impl Session<'_, '_> {
     /// From step to step until the scenario ends.
-    fn steps(&mut self, mut run: Box<Run>) -> (Box<Run>, Result<()>) {
-        let begin = match self.simulation.time() {
-            Ok(begin) => begin,
-            Err(error) => return (run, Err(self.failed(f64::NAN, &error))),
-        };
-        let end = self.simulation.end();
+    fn steps(&mut self, mut run: Box<Run>, begin: f64, end: Option<f64>) -> (Box<Run>, Result<()>) {
         let mut progress = Progress::new(begin, end, !self.request.quiet);
         let mut now = begin;
         loop {

@@ -20,13 +20,14 @@ mod sweep;
 use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 pub use run::{RunRequest, Simulate};
 pub use sweep::{Distribute, Ended, Workers};
 
+use crate::options::Options;
 use crate::regress::Scenario;
 use crate::{Error, Result};
 
@@ -116,6 +117,11 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Ok(status) => status,
         Err(error) => failed(&error),
     }
+}
+
+/// The files of a run's own that none besides its log may be written over; SUMO's are known once it has started.
+fn kept(config: Option<PathBuf>, options: &Options, out: &Path) -> Vec<PathBuf> {
+    config.into_iter().chain(options.filter.clone()).chain(crate::log::files(out)).collect()
 }
 
 /// The scenario at a path: a folder, or a SUMO configuration with the settings beside it.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::{Sumo, say};
+use super::{Sumo, kept, say};
 use crate::inputs::Input;
 use crate::log::Log;
 use crate::net::Net;
@@ -55,6 +55,9 @@ pub struct ReplayArgs {
 pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let options = arguments.options.clone().checked()?;
     let recording = &arguments.recording;
+    let beside = recording.parent().unwrap_or(Path::new("")).join("closecall-out");
+    let out = arguments.out.unwrap_or(beside);
+    arguments.outputs.check(&kept(arguments.config, &options, &out))?;
     let net = Arc::new(Net::read(&arguments.net)?);
     let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
     let mut run = Run::new(&options, Some(net.clone()))?;
@@ -80,8 +83,6 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     // Only who would lose what was found asks.
     let mut interrupted = || false;
     let interrupted = sumo.map_or(&mut interrupted as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
-    let beside = recording.parent().unwrap_or(Path::new("")).join("closecall-out");
-    let out = arguments.out.unwrap_or(beside);
     let outputs = Outputs::create(&arguments.outputs, Some(&net), &record.inputs)?;
     let log = Log::create(&out, arguments.options.log_encounters)?;
     log.run(&record)?;

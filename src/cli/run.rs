@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, no_sumo, say};
+use super::{Sumo, kept, no_sumo, say};
 use crate::options::{Options, not_negative, positive};
 use crate::outputs::OutputFiles;
 use crate::summary::Summary;
@@ -104,6 +104,9 @@ pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
     }
     let beside = scenario.parent().unwrap_or(Path::new("")).join("closecall-out");
+    let out = arguments.out.unwrap_or(beside);
+    let options = arguments.options.checked()?;
+    arguments.outputs.check(&kept(arguments.config, &options, &out))?;
     let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];
     let times = [("--begin", arguments.begin), ("--end", arguments.end), ("--step-length", arguments.step_length)];
     for (option, time) in times {
@@ -118,12 +121,12 @@ pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
     Ok(RunRequest {
         scenario,
         gui: arguments.gui,
-        out: arguments.out.unwrap_or(beside),
+        out,
         end: arguments.end,
         threads: arguments.threads,
         quiet: arguments.quiet,
         outputs: arguments.outputs,
-        options: arguments.options.checked()?,
+        options,
         sumo_words,
     })
 }

@@ -30,15 +30,18 @@ pub struct OutputFiles {
 }
 
 impl OutputFiles {
-    /// Whether each may be written.
-    fn check(&self, inputs: &[Input]) -> Result<()> {
+    /// Whether each may be written, where these files are to be kept.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where one would be written over another or over one of those.
+    pub(crate) fn check<P: AsRef<Path>>(&self, kept: &[P]) -> Result<()> {
         let [ssm, trajectories] = [&self.ssm_output, &self.trj_output];
         let refused =
             |option: &str, over: &Path| Err(Error::Value(format!("{option} would be written over {}", over.display())));
         for (option, path) in [("--ssm-output", ssm), ("--trj-output", trajectories)] {
-            let over = path.iter().find_map(|path| inputs.iter().find(|input| are_same(path, &input.path)));
-            if let Some(input) = over {
-                return refused(option, &input.path);
+            let over = path.iter().find_map(|path| kept.iter().map(P::as_ref).find(|kept| are_same(path, kept)));
+            if let Some(over) = over {
+                return refused(option, over);
             }
         }
         match (ssm, trajectories) {
@@ -51,8 +54,16 @@ impl OutputFiles {
 /// Whether two paths are of the same file; of /dev/null and its like it does not matter.
 fn are_same(a: &Path, b: &Path) -> bool {
     let is_device = a.exists() && !a.is_file();
-    let known = |path: &Path| path.canonicalize().ok();
     !is_device && (a == b || known(a).is_some_and(|a| known(b) == Some(a)))
+}
+
+/// The one name of a file, which need not be there yet in a folder that is.
+fn known(path: &Path) -> Option<PathBuf> {
+    let in_its_folder = || {
+        let folder = Path::new(".").join(path.parent()?);
+        Some(folder.canonicalize().ok()?.join(path.file_name()?))
+    };
+    path.canonicalize().ok().or_else(in_its_folder)
 }
 
 /// The files of a run besides its log; the default has none.
@@ -69,7 +80,7 @@ impl Outputs {
     /// [`Error::File`] that names what cannot be written; [`Error::Value`] where trajectories have no net, or where a file
     /// would be written over another or over one of the run's inputs.
     pub fn create(files: &OutputFiles, net: Option<&Net>, inputs: &[Input]) -> Result<Self> {
-        files.check(inputs)?;
+        files.check(&inputs.iter().map(|input| &input.path).collect::<Vec<_>>())?;
         let trajectories = match (&files.trj_output, net) {
             (Some(path), Some(net)) => Some(Trajectories::create(path, net)?),
             (Some(_), None) => return Err(Error::Value("--trj-output needs a net".to_owned())),

@@ -64,7 +64,8 @@ impl Runner<'_> {
                 std::thread::sleep(ASKED_EVERY);
             }
         });
-        if stop.into_inner() {
+        // A run that a terminal's Ctrl-C has ended too may have ended the last worker before it was asked for.
+        if stop.into_inner() || (self.interrupted)() {
             return Err(Error::Stopped);
         }
         let ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);

@@ -7,7 +7,7 @@ use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
 use crate::net::LineCounter;
-use crate::profile::{SumoType, origin};
+use crate::profile::{SumoType, origins};
 use crate::{Error, Result};
 
 /// Types by their id.
@@ -48,16 +48,17 @@ impl Types {
     /// The type of this id: as it, or the one that it was made from, was read, else SUMO's default type of that name, else
     /// a car (or a pedestrian).
     pub fn named(&self, name: &str, person: bool) -> SumoType {
-        let default = match origin(name) {
-            "DEFAULT_BIKETYPE" => "bicycle",
-            "DEFAULT_TAXITYPE" => "taxi",
-            "DEFAULT_RAILTYPE" => "rail",
-            "DEFAULT_CONTAINERTYPE" => "container",
-            _ if person => "pedestrian",
-            _ => "passenger",
+        let default = |name| match name {
+            "DEFAULT_BIKETYPE" => Some("bicycle"),
+            "DEFAULT_TAXITYPE" => Some("taxi"),
+            "DEFAULT_RAILTYPE" => Some("rail"),
+            "DEFAULT_CONTAINERTYPE" => Some("container"),
+            _ => None,
         };
-        let known = self.known.get(name).or_else(|| self.known.get(origin(name)));
-        known.map_or_else(|| of_class(name, default), |known| SumoType { name: name.to_owned(), ..known.clone() })
+        let any = if person { "pedestrian" } else { "passenger" };
+        let class = || origins(name).find_map(default).unwrap_or(any);
+        let known = origins(name).find_map(|name| self.known.get(name));
+        known.map_or_else(|| of_class(name, class()), |known| SumoType { name: name.to_owned(), ..known.clone() })
     }
 }
 

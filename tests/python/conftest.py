@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any, Callable
 
+import psutil
 import pytest
 
 NETS = Path(__file__).parents[2] / "sumo_nets"
@@ -73,9 +74,19 @@ def until(is_so: Callable[[], object], seconds: float = 60) -> None:
 
 def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
     """Until so many rows are on disk."""
+    end = time.monotonic() + 60
     while not log.exists() or log.read_bytes().count(b"\n") < count:
         assert process.poll() is None
+        assert time.monotonic() < end
         time.sleep(0.005)
+
+
+def is_alive(process: psutil.Process) -> bool:
+    """Whether a process runs."""
+    try:
+        return bool(process.status() != psutil.STATUS_ZOMBIE)
+    except psutil.NoSuchProcess:
+        return False
 
 
 def rows(path: Path) -> list[Row]:

@@ -160,7 +160,14 @@ def test_an_output_is_not_written_over_what_is_read(scenario: Copy, tmp_path: Pa
     assert closecall("run", config, "--end", "10", "--quiet", "--", "--fcd-output", recording).returncode == 0
     recorded = recording.read_bytes()
     words = ("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
-    for others in (("--ssm-output", recording), ("--ssm-output", "one", "--trj-output", "one")):
+    (tmp_path / "options.toml").touch()
+    refused: list[tuple[str | Path, ...]] = [
+        ("--ssm-output", recording),
+        ("--ssm-output", "options.toml", "--config", tmp_path / "options.toml"),
+        ("--ssm-output", tmp_path / "out" / "conflicts.csv"),
+        ("--ssm-output", tmp_path / "one", "--trj-output", "one"),
+    ]
+    for others in refused:
         done = closecall(*words, *others, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (2, f"closecall: --ssm-output would be written over {others[-1]}\n")
     assert (routes.read_bytes(), recording.read_bytes()) == (before, recorded)

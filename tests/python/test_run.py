@@ -206,6 +206,12 @@ def test_a_configuration_made_for_traci_runs_alone(scenario: Copy, tmp_path: Pat
     assert json.loads((tmp_path / "run.json").read_text())["summary"]["steps"] == 25
 
 
+def test_a_last_option_without_its_value_means_what_it_means_to_sumo(scenario: Copy, tmp_path: Path) -> None:
+    done = closecall("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
+    # SUMO takes a file of this name, whatever the option.
+    assert done.returncode == 0 and (tmp_path / "true").is_file(), done.stderr
+
+
 @pytest.mark.parametrize("end", ["1", "1.05", "1.15", "1.2"])
 def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) -> None:
     config = scenario("curves")

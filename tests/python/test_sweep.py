@@ -15,7 +15,7 @@ from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
-from conftest import NETS, begin, closecall, python, rows, until
+from conftest import NETS, begin, closecall, is_alive, python, rows, until
 
 Copy = Callable[[str], Path]
 
@@ -61,14 +61,6 @@ def children(pid: int) -> dict[psutil.Process, str]:
         except psutil.Error:
             continue
     return found
-
-
-def is_alive(process: psutil.Process) -> bool:
-    """Whether a process runs."""
-    try:
-        return bool(process.status() != psutil.STATUS_ZOMBIE)
-    except psutil.NoSuchProcess:
-        return False
 
 
 class Cluster(NamedTuple):

@@ -33,7 +33,7 @@ def start(words: list[str], gui: bool) -> Any:
     command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
     with caught_stderr() as caught:
         try:
-            libsumo.start([*command, *words, *NO_CLIENT])
+            libsumo.start([*command, *NO_CLIENT, *words])
         except (libsumo.TraCIException, libsumo.exceptions.FatalTraCIError, RuntimeError) as error:
             caught.seek(0)
             raise RuntimeError(first_error(caught.read()) or str(error)) from error
