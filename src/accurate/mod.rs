@@ -213,7 +213,9 @@ pub fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> b
 
 /// The angle between two directions, 0 to π.
 pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
-    cross(a, b).abs().atan2(a.dot(b))
+    let (across, along) = (cross(a, b).abs(), a.dot(b));
+    // What atan2 says of 0, without asking it: most who follow each other head exactly the same way.
+    if across == 0.0 && along > 0.0 { 0.0 } else { across.atan2(along) }
 }
 
 /// The kind of a conflict at this angle.

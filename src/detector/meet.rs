@@ -147,7 +147,7 @@ impl Scene<'_> {
 
     fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
         let angle = meeting.angle();
-        let sigma = angle.cos();
+        let sigma = if angle == 0.0 { 1.0 } else { angle.cos() };
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, meeting.foe_way, sigma) };
         let how = How { kind: accurate::kind_at(angle, self.options), angle, sigma, gap, collision };
         match how.kind {
