@@ -306,7 +306,8 @@ impl Write for WholeRows {
             Ok(()) => self.written += self.waiting.len() as u64,
             Err(_) => self.take_back(),
         }
-        self.waiting.clear();
+        // A step with many rows would keep its room for the rest of the run.
+        self.waiting = Vec::new();
         done
     }
 }

@@ -21,6 +21,7 @@ use crate::outputs::Outputs;
 use crate::profile::{Category, Profile, obstacle_name};
 use crate::scene::{self, Exclusions, LeftOut};
 use crate::summary::Summary;
+use crate::table::add;
 use crate::units::Second;
 
 /// One run.
@@ -231,7 +232,7 @@ impl Run {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
             }
             if self.filter.as_ref().is_none_or(|filter| filter.holds(found.lane)) {
-                self.in_conflict.push(found);
+                add(&mut self.in_conflict, found);
             }
         }
     }
@@ -257,6 +258,7 @@ impl Run {
         }
         self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.conflicts(closed)?;
+        self.tracker.forget_closed();
         // Only now may their indices be given to others: the events of this step have seen that they are gone.
         for user in self.leaving.drain(..) {
             self.roster.leave(user);

@@ -75,8 +75,7 @@ impl Tracker {
         encounters: &[Encounter],
         path: impl Fn(u32) -> Vec<Point>,
     ) -> &[Conflict] {
-        // A step in which many close would keep its room for the rest of the run.
-        self.closed = Vec::new();
+        self.forget_closed();
         if self.events.is_empty() && self.waiting.is_empty() && encounters.iter().all(|found| !found.in_conflict()) {
             return &self.closed;
         }
@@ -98,6 +97,11 @@ impl Tracker {
     /// The conflicts that the last step settled.
     pub fn closed(&self) -> &[Conflict] {
         &self.closed
+    }
+
+    /// Forgets them, and gives back their memory: a step in which many close would keep it for the rest of the run.
+    pub fn forget_closed(&mut self) {
+        self.closed = Vec::new();
     }
 
     /// Closes whatever is still open: the run has ended.

@@ -10,6 +10,7 @@ use crate::geometry::halves::{Halves, Part, Touch};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::path::Pose;
+use crate::table::add;
 use crate::units::Second;
 
 /// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
@@ -32,7 +33,7 @@ impl Course {
             *last_time = time;
             return;
         }
-        self.moments.push((time, rectangle));
+        add(&mut self.moments, (time, rectangle));
     }
 
     /// It is no road user any more.

@@ -179,6 +179,7 @@ impl Halves {
         self.clear();
         self.parts.shrink_to(KEPT);
         self.hulls.shrink_to(KEPT);
+        self.numbered.shrink_to(KEPT);
     }
 
     /// Adds a step.

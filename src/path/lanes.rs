@@ -15,7 +15,7 @@ use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::units::{Metre, MetrePerSecond};
 
 /// A path is laid this much further than it is needed, so that it is lengthened now and then, not in every step; m.
-const SPARE: Metre = 60.0;
+const SPARE: Metre = 30.0;
 /// What lies further behind the rear bumper is forgotten, in m.
 const KEPT_BEHIND: Metre = 5.0;
 /// A front bumper this far from its lane's position hint is looked for on the whole lane, in m.
