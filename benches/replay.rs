@@ -73,7 +73,7 @@ fn all(large: f64) {
 }
 
 /// Replays a recording of about this size in processes of their own, and prints the most that was in the memory of one:
-/// of three, the least, since one and the same differs by 0.3 MB.
+/// of nine, the least, since one and the same differs by 0.5 MB.
 fn peak(net: &Path, path: &Path, megabytes: f64) {
     write_recording(path, 100.0, 10, false);
     let steps = megabytes * 1e6 / std::fs::metadata(path).unwrap().len() as f64 * 10.0;
@@ -86,7 +86,7 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
         assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
         String::from_utf8(ended.stdout).unwrap().trim().parse::<f64>().unwrap()
     };
-    let least = (0..3).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
+    let least = (0..9).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
     println!("peak,{megabytes} MB,{},,{:.2},MB", name(path), least / 1e3);
     std::fs::remove_file(path).unwrap();
 }
