@@ -190,7 +190,11 @@ fn attach(
     if has_no_rerouters(sumo).map_err(said)? {
         run.routes_are_fixed();
     }
-    let source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
+    let mut source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
+    // Who looks at sumo-gui may do what they like there.
+    if !request.gui {
+        source.is_alone();
+    }
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
         sumo_words: request.sumo_words.clone(),

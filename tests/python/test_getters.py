@@ -150,19 +150,35 @@ def test_an_id_that_libsumo_does_not_know_any_more_leaves_the_scene_however_it_i
 @needs_compiled
 @needs_valgrind
 def test_valgrind_finds_no_fault_in_a_call_of_the_compiled_functions(tmp_path: Path) -> None:
-    errors = tmp_path / "errors.xml"
-    valgrind = ["valgrind", "--leak-check=full", "--xml=yes", f"--xml-file={errors}", sys.executable, "-c", CHECK]
-    words = [NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none"]
+    said = under_valgrind(tmp_path, "-c", CHECK, NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none")
+    asked = json.loads(said.splitlines()[-1])
+    assert asked["taken"]
+    assert asked["steps"]["person"] > asked["calls"]["person"]
+
+
+@needs_compiled
+@needs_valgrind
+def test_valgrind_finds_no_fault_where_vehicles_are_found_where_they_were(tmp_path: Path) -> None:
+    trips = tmp_path / "trips.xml"
+    run = ["-m", "closecall", "run", NETS / "signals" / "signals.sumocfg", "--end", "60", "--out", tmp_path / "out"]
+    under_valgrind(tmp_path, *run, "--", "--tripinfo-output", trips, "--time-to-teleport", "2", "--no-warnings")
+    assert json.loads((tmp_path / "out" / "run.json").read_text())["complete"]
+    # Who arrives is no longer anywhere.
+    assert len(ET.parse(trips).getroot()) > 5
+
+
+def under_valgrind(folder: Path, *words: object) -> str:
+    """What Python prints, run with these words, in whose calls through closecall valgrind finds no fault."""
+    errors = folder / "errors.xml"
+    valgrind = ["valgrind", "--leak-check=full", "--xml=yes", f"--xml-file={errors}", sys.executable]
     # Python's own allocator would hide from valgrind what is read beyond its end.
     environment = {**os.environ, "PYTHONMALLOC": "malloc"}
     command = [*valgrind, *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, env=environment)
     assert done.returncode == 0, done.stderr
-    asked = json.loads(done.stdout.splitlines()[-1])
-    assert asked["taken"]
-    assert asked["steps"]["person"] > asked["calls"]["person"]
     found = [error for error in ET.parse(errors).getroot().findall("error") if is_ours(error)]
     assert [ET.tostring(error, encoding="unicode") for error in found] == []
+    return done.stdout
 
 
 def is_ours(error: ET.Element) -> bool:

@@ -105,9 +105,8 @@ ClosecallDirect find_direct(void* module, bool of_persons) {
     return has_all ? direct : ClosecallDirect{};
 }
 
-// What libsumo's getters say of a road user, from one look-up.
-void read_directly(const ClosecallDirect& direct, const std::string& id, ClosecallReading* reading) {
-    const User user = direct.find(id);
+// What libsumo's getters say of a road user.
+void read_directly(const ClosecallDirect& direct, User user, ClosecallReading* reading) {
     // The stage of a ride says "driving" where it has a vehicle, else "waiting for" it; no other stage has one.
     reading->is_inside = direct.activity != nullptr && direct.activity(user) == "driving";
     if (reading->is_inside) {
@@ -155,14 +154,23 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, bo
 }
 
 // The state of the road user of this id; false if libsumo throws, as it does for an id that it does not know. Of who is
-// inside somebody else only that is read.
-bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, ClosecallReading* reading) noexcept {
+// inside somebody else only that is read. Where `kept` is not null, it says where the road user is found without its id,
+// as long as it is there, or null before it is found.
+bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, User* kept,
+                    ClosecallReading* reading) noexcept {
     try {
-        const std::string name(id, length);
         if (getters->direct.find != nullptr) {
-            read_directly(getters->direct, name, reading);
+            User user = kept != nullptr ? *kept : nullptr;
+            if (user == nullptr) {
+                user = getters->direct.find(std::string(id, length));
+            }
+            if (kept != nullptr) {
+                *kept = user;
+            }
+            read_directly(getters->direct, user, reading);
             return true;
         }
+        const std::string name(id, length);
         reading->is_inside = getters->inside != nullptr && !getters->inside(name).empty();
         if (reading->is_inside) {
             return true;

@@ -8,6 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
 #[cfg(compiled_getters)]
+pub use super::compiled::Kept;
+
+#[cfg(compiled_getters)]
 use super::compiled::Compiled;
 use super::sumo;
 
@@ -40,13 +43,18 @@ pub struct Getters {
 #[cfg(not(compiled_getters))]
 enum Compiled {}
 
+/// And nothing to keep.
+#[cfg(not(compiled_getters))]
+#[derive(Default)]
+pub struct Kept;
+
 #[cfg(not(compiled_getters))]
 impl Compiled {
     fn of(_: &std::path::Path, _: &str, _: Domain) -> Option<Self> {
         None
     }
 
-    fn read(&self, _: &str) -> Option<Reading> {
+    fn read(&self, _: &str, _: Option<&mut Kept>) -> Option<Reading> {
         match *self {}
     }
 
@@ -78,15 +86,15 @@ impl Getters {
     pub fn enters(&mut self, py: Python, id: &str) {
         if let Some(compiled) = &self.compiled
             && let Ok(said) = self.ask(py, id)
-            && compiled.read(id).is_none_or(|read| !same(read, said))
+            && compiled.read(id, None).is_none_or(|read| !same(read, said))
         {
             self.compiled = None;
         }
     }
 
     /// The state of a road user; none for one inside a vehicle.
-    pub fn state(&self, py: Python, id: &str) -> PyResult<Option<State>> {
-        let reading = match self.compiled.as_ref().and_then(|compiled| compiled.read(id)) {
+    pub fn state(&self, py: Python, id: &str, kept: Option<&mut Kept>) -> PyResult<Option<State>> {
+        let reading = match self.compiled.as_ref().and_then(|compiled| compiled.read(id, kept)) {
             Some(reading) => reading,
             // Python says of an unknown id what is wrong with it.
             None => self.ask(py, id)?,

@@ -16,7 +16,7 @@ use closecall::units::Second;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
-use super::getters::{self, Getters};
+use super::getters::{self, Getters, Kept};
 use super::sumo::{self, Types};
 
 /// libsumo's functions and who is in the scene.
@@ -48,6 +48,8 @@ struct Domain {
     ids: Py<PyAny>,
     type_id: Py<PyAny>,
     getters: Getters,
+    /// Whether those of `live` are found where they were, without their ids.
+    keeps: bool,
     live: Vec<Live>,
     /// Where in `live` everybody is, in the order of their ids, in which SUMO finds them soonest.
     by_id: Vec<u32>,
@@ -60,6 +62,7 @@ struct Domain {
 struct Live {
     user: UserIndex,
     parked: bool,
+    kept: Kept,
     /// The route of who may get another one; else the run knows it.
     route: Option<Box<Route>>,
 }
@@ -84,6 +87,7 @@ impl Libsumo {
                 ids: function(&format!("{name}_getIDList"))?,
                 type_id: function(&format!("{name}_getTypeID"))?,
                 getters: Getters::new(&compiled, domain)?,
+                keeps: false,
                 live: Vec::new(),
                 by_id: Vec::new(),
                 rows: Vec::new(),
@@ -110,6 +114,10 @@ impl Libsumo {
                 parameter: function("vehicle_getParameter")?,
             },
         })
+    }
+
+    pub fn is_alone(&mut self) {
+        self.vehicles.keeps = true;
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {
@@ -260,7 +268,7 @@ impl Domain {
         self.getters.enters(py, name);
         let user = run.enter(name, profile);
         make_room(&mut self.live, 1);
-        self.live.push(Live { user, parked: false, route: None });
+        self.live.push(Live { user, parked: false, kept: Kept::default(), route: None });
         make_room(&mut self.by_id, 1);
         self.by_id.insert(rank, self.live.len() as u32 - 1);
         Ok(())
@@ -301,20 +309,20 @@ impl Domain {
     }
 
     fn read_all(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let Self { live, by_id, rows, getters, .. } = self;
+        let Self { live, by_id, rows, getters, keeps, .. } = self;
         rows.clear();
         self.first_row = run.frame.len() as u32;
-        let (live, roster) = (&*live, &run.roster);
+        let (count, roster) = (live.len(), &run.roster);
         let fill = |states: &mut [Row]| {
             for &place in &*by_id {
-                let Live { user, parked, .. } = live[place as usize];
-                if !parked && let Some(state) = getters.state(py, roster.id(user))? {
+                let Live { user, parked, ref mut kept, .. } = live[place as usize];
+                if !parked && let Some(state) = getters.state(py, roster.id(user), keeps.then_some(kept))? {
                     states[place as usize] = Row { user, state };
                 }
             }
             Ok(())
         };
-        run.frame.extend(live.len(), fill, |place| {
+        run.frame.extend(count, fill, |place| {
             make_room(rows, 1);
             rows.push(place as u32);
         })

@@ -45,6 +45,15 @@ impl Source {
         })
     }
 
+    /// Says that nobody but the caller makes steps, none of them is missed, and nobody takes vehicles out of the simulation
+    /// but SUMO itself.
+    pub fn is_alone(&mut self) {
+        match self {
+            Self::Libsumo(source) => source.is_alone(),
+            Self::Traci(_) => {}
+        }
+    }
+
     /// The time of the states of now, as SUMO's own outputs have it.
     pub fn time(&self, py: Python) -> PyResult<Second> {
         match self {
