@@ -118,6 +118,7 @@ impl Libsumo {
 
     pub fn is_alone(&mut self) {
         self.vehicles.keeps = true;
+        self.persons.keeps = true;
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {

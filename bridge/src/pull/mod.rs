@@ -45,8 +45,8 @@ impl Source {
         })
     }
 
-    /// Says that nobody but the caller makes steps, none of them is missed, and nobody takes vehicles out of the simulation
-    /// but SUMO itself.
+    /// Says that nobody but the caller makes steps, none of them is missed, and nobody takes road users out of the
+    /// simulation but SUMO itself.
     pub fn is_alone(&mut self) {
         match self {
             Self::Libsumo(source) => source.is_alone(),
