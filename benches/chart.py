@@ -54,7 +54,9 @@ def bars(axes: Axes, groups: list[str], series: dict[str, list[float]], colours:
     for place, ((label, values), colour) in enumerate(zip(series.items(), colours)):
         left = [group + (place - (len(series) - 1) / 2) * width for group in range(len(values))]
         drawn = axes.bar(left, values, width, label=label, color=colour)
-        axes.bar_label(drawn, fmt="%.2f", padding=1, fontsize=8)
+        # A goal's line may cross a number, which stays legible.
+        ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
+        axes.bar_label(drawn, fmt="%.2f", padding=2, fontsize=8, bbox=ground, zorder=3)
     axes.set_xticks(range(len(groups)), groups)
     axes.legend(frameon=False, fontsize=8)
 
