@@ -105,6 +105,12 @@ ClosecallDirect find_direct(void* module, bool of_persons) {
     return has_all ? direct : ClosecallDirect{};
 }
 
+// Whether a vehicle has departed: one that waits for that may be deleted and never have arrived. Of a person SUMO always
+// says that it has arrived.
+bool is_there(const ClosecallDirect& direct, User user) {
+    return direct.is_visible == nullptr || direct.is_visible(user);
+}
+
 // What libsumo's getters say of a road user.
 void read_directly(const ClosecallDirect& direct, User user, ClosecallReading* reading) {
     // The stage of a ride says "driving" where it has a vehicle, else "waiting for" it; no other stage has one.
@@ -112,7 +118,7 @@ void read_directly(const ClosecallDirect& direct, User user, ClosecallReading* r
     if (reading->is_inside) {
         return;
     }
-    if (direct.is_visible != nullptr && !direct.is_visible(user)) {
+    if (!is_there(direct, user)) {
         *reading = {INVALID, INVALID, INVALID, INVALID, INVALID, false};
         return;
     }
@@ -163,9 +169,9 @@ bool closecall_read(const ClosecallGetters* getters, const char* id, size_t leng
             User user = kept != nullptr ? *kept : nullptr;
             if (user == nullptr) {
                 user = getters->direct.find(std::string(id, length));
-            }
-            if (kept != nullptr) {
-                *kept = user;
+                if (kept != nullptr && is_there(getters->direct, user)) {
+                    *kept = user;
+                }
             }
             read_directly(getters->direct, user, reading);
             return true;
