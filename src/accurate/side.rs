@@ -64,7 +64,8 @@ fn first_touch(
     foe: &Mover,
 ) -> Option<(Metre, Rectangle)> {
     for (index, (pair, cover)) in ego.poses.windows(2).zip(ego.covers).enumerate() {
-        if !cover.meets(foe.cover) {
+        // Of a straight way all parts have the box of the whole, and the boxes of both meet.
+        if !ego.straight && !cover.meets(foe.cover) {
             continue;
         }
         let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
@@ -94,7 +95,7 @@ fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = (usize, Ste
     };
     let before_it_stands = foe.poses.iter().take_while(|pose| pose.way < foe.stop);
     let moving = before_it_stands.zip(steps(foe).enumerate()).zip(foe.covers);
-    let moving = moving.filter(|(_, cover)| cover.meets(near)).map(|((_, step), _)| step);
+    let moving = moving.filter(|(_, cover)| foe.straight || cover.meets(near)).map(|((_, step), _)| step);
     stands.then(|| (foe.poses.len(), now.step_to(&now, foe.length(), foe.width()))).into_iter().chain(moving)
 }
 
@@ -150,10 +151,10 @@ fn steps<'a>(of: &'a Mover) -> impl Iterator<Item = Step> + 'a {
 
 /// Whether two rectangles-with-shapes overlap or touch now.
 pub fn touch_now(a: &Mover, b: &Mover) -> bool {
-    let outline = Outline::rectangle(&a.rectangle);
     if b.shape.is_empty() {
         return !exact::are_far_apart(&a.rectangle, &b.rectangle) && exact::touches(&a.rectangle, &b.rectangle);
     }
+    let outline = Outline::rectangle(&a.rectangle);
     b.shape.iter().any(|part| translation(&outline, &Vector::zeros(), &part.outline).is_some())
 }
 
