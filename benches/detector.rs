@@ -128,6 +128,13 @@ impl Scene {
     }
 }
 
+/// A detector without a net, asked for what a run asks it for.
+fn detector(options: &Options) -> Detector {
+    let mut detector = Detector::new(options, None);
+    detector.set_conflicts_only(true);
+    detector
+}
+
 /// A way to look at a step: the detector or a rival.
 trait Look {
     /// Looks at the step.
@@ -142,7 +149,7 @@ struct Phases(Detector, [Times; 3]);
 
 impl Phases {
     fn new(name: &str, options: &Options, threads: usize) -> Self {
-        let mut detector = Detector::new(options, None);
+        let mut detector = detector(options);
         detector.set_threads(threads);
         Self(detector, [name, "phase 1", "phase 2"].map(Times::of))
     }
@@ -170,7 +177,7 @@ struct AtOnce(Team, [Detector; 2], Times);
 
 impl AtOnce {
     fn new(options: &Options) -> Self {
-        Self(Team::new(2), [(); 2].map(|()| Detector::new(options, None)), Times::of("two at once"))
+        Self(Team::new(2), [(); 2].map(|()| detector(options)), Times::of("two at once"))
     }
 }
 
