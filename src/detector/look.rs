@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::{Detector, LEVEL, Turning, User, Work};
+use super::{Detector, Turning, User};
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
 use crate::geometry::rectangle::{Rectangle, direction};
@@ -54,9 +54,6 @@ impl Detector {
             self.turn();
         }
         self.find_pairs();
-        for worker in &mut self.workers {
-            self.work += std::mem::take(&mut worker.work);
-        }
     }
 
     /// What makes road users turn.
@@ -97,26 +94,19 @@ impl Detector {
         }
     }
 
-    /// The pairs whose areas meet, but for those that are none. Each worker keeps those that it found.
+    /// The pairs whose areas meet. Each worker keeps those that it found.
     fn find_pairs(&mut self) {
-        let (search, users, all) = (&self.search, &self.users[..], !self.leaves_out.circles_apart);
-        let share = self.team.share(users.len());
-        for worker in &mut self.workers {
-            worker.pairs.clear();
-        }
-        let parts = (0..users.len()).step_by(share).map(|start| start..(start + share).min(users.len()));
+        let (search, count, all) = (&self.search, self.users.len(), !self.leaves_out.circles_apart);
+        let share = self.team.share(count);
+        let parts = (0..count).step_by(share).map(|start| start..(start + share).min(count));
+        self.workers.iter_mut().for_each(|worker| worker.pairs.clear());
         self.team.each(&mut self.workers, parts, |worker, part| {
-            let (pairs, work) = (&mut worker.pairs, &mut worker.work);
-            let found = |a: u32, b: u32| {
-                let (first, second) = (&users[a as usize], &users[b as usize]);
-                if is_pair(first, second, work) {
-                    add(pairs, if first.row < second.row { (a, b) } else { (b, a) });
-                }
-            };
+            let found = |a: u32, b: u32| add(&mut worker.pairs, (a, b));
             if all { every_pair(part, found) } else { search.sweep(part, found) }
         });
-        self.work.circles_apart += all_pairs(users.len());
-        self.work.circles_apart -= self.workers.iter().map(|worker| worker.work.pairs).sum::<u64>();
+        let found = self.workers.iter().map(|worker| worker.pairs.len() as u64).sum::<u64>();
+        self.work.circles_apart += all_pairs(count) - found;
+        self.work.pairs += found;
     }
 
     /// Follows a row's path along the lanes, or asks for its lane.
@@ -210,7 +200,7 @@ impl User {
         on_lanes: false,
     };
 
-    fn moves(&self) -> bool {
+    pub(super) fn moves(&self) -> bool {
         self.speed > STANDS
     }
 }
@@ -220,24 +210,6 @@ fn every_pair(slots: Range<usize>, mut found: impl FnMut(u32, u32)) {
     for slot in slots {
         (0..slot).for_each(|other| found(other as u32, slot as u32));
     }
-}
-
-/// Whether two road users near each other are a pair at all.
-fn is_pair(a: &User, b: &User, work: &mut Work) -> bool {
-    work.pairs += 1;
-    if !a.moves() && !b.moves() {
-        work.both_stand += 1;
-        return false;
-    }
-    if (a.z - b.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
-        work.other_level += 1;
-        return false;
-    }
-    if a.category == Category::Person && b.category == Category::Person {
-        work.both_persons += 1;
-        return false;
-    }
-    true
 }
 
 /// How many pairs so many road users are.

@@ -3,13 +3,14 @@
 use std::hint::black_box;
 
 use super::ways::Ways;
-use super::{Found, Met, Scene, Work, Worker};
+use super::{Found, LEVEL, Met, Scene, User, Work, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
 use crate::geometry::rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::Mode;
+use crate::profile::Category;
 use crate::table::add;
 use crate::units::{Metre, Radian};
 
@@ -43,6 +44,23 @@ struct How {
     collision: bool,
 }
 
+/// Whether two road users near each other are a pair at all.
+fn is_pair(a: &User, b: &User, work: &mut Work) -> bool {
+    if !a.moves() && !b.moves() {
+        work.both_stand += 1;
+        return false;
+    }
+    if (a.z - b.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
+        work.other_level += 1;
+        return false;
+    }
+    if a.category == Category::Person && b.category == Category::Person {
+        work.both_persons += 1;
+        return false;
+    }
+    true
+}
+
 impl Scene<'_> {
     /// The pairs of a worker that would meet.
     pub(super) fn meet_all(&self, worker: &mut Worker) {
@@ -50,9 +68,13 @@ impl Scene<'_> {
         for block in pairs.chunks(BLOCK) {
             block.iter().for_each(|&(a, b)| self.fetch([a, b]));
             for &(a, b) in block {
+                if !is_pair(self.user(a), self.user(b), work) {
+                    continue;
+                }
+                let slots = if self.user(a).row < self.user(b).row { [a, b] } else { [b, a] };
                 match self.options.mode {
-                    Mode::Closecall => self.meet(ways, work, [a, b], found),
-                    Mode::Paper => self.meet_on_paper(work, [a, b], found),
+                    Mode::Closecall => self.meet(ways, work, slots, found),
+                    Mode::Paper => self.meet_on_paper(work, slots, found),
                 }
             }
         }

@@ -135,7 +135,7 @@ struct User {
 #[derive(Default)]
 struct Worker {
     work: Work,
-    /// Slots of two, the smaller row first.
+    /// Slots of two whose areas meet.
     pairs: Vec<(u32, u32)>,
     ways: Ways,
     found: Found,
