@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use crate::geometry::{Bounds, Point, Vector};
-use crate::table::fill;
+use crate::table::{fill, make_room};
 use crate::team::Team;
 use crate::units::Metre;
 
@@ -83,34 +83,33 @@ const LOWEST_STRIP: Metre = 1.0;
 const SPARE_HEIGHT: f64 = 2.0;
 /// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
 /// many moves per road user.
-const MOVES: usize = 8;
+const MOVES: usize = 32;
 
 /// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
 const BLOCK: usize = 64;
 
-/// An area in its strip.
+/// Where a box begins: what is sorted, while the areas stay in their slots.
 #[derive(Clone, Copy, Debug)]
 struct Place {
-    /// Which of the caller's items that is.
-    item: u32,
-    area: Area,
-    /// Where it stood before the places were sorted.
-    slot: u32,
+    /// Its lowest x.
+    begin: Metre,
     strip: i32,
+    slot: u32,
 }
 
 impl Place {
-    /// Puts it into its strip.
-    fn lay(&mut self, per_metre: f64) {
-        let Bounds { low, high } = self.area.bounds;
+    /// The place of an area, in its strip.
+    fn of(area: &Area, slot: u32, per_metre: f64) -> Self {
+        let Bounds { low, high } = area.bounds;
         let strips = (low.y + high.y) * 0.5 * per_metre;
         // What `floor` says, without a call where the processor has no instruction for it.
         let towards_0 = strips as i32;
-        self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
+        let strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
+        Self { begin: low.x, strip, slot }
     }
 
     fn is_before(&self, other: &Self) -> bool {
-        (self.strip, self.area.bounds.low.x) < (other.strip, other.area.bounds.low.x)
+        (self.strip, self.begin) < (other.strip, other.begin)
     }
 }
 
@@ -155,6 +154,12 @@ fn is_far(Bounds { low, high }: &Bounds) -> bool {
 pub struct Search {
     /// Those in strips, sorted; then the large ones.
     places: Vec<Place>,
+    /// By slot.
+    areas: Vec<Area>,
+    /// By slot, which of the caller's items that is.
+    items: Vec<u32>,
+    /// The same of the last step.
+    last_items: Vec<u32>,
     in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip, and the largest height.
@@ -193,18 +198,20 @@ impl Search {
         self.parts.clear();
         self.parts.resize(team.threads(), Part::EMPTY);
         let (per_metre, share) = (1.0 / self.strip_height, team.share(slots.len()));
-        let parts = self.places.chunks_mut(share).zip(slots.chunks_mut(share)).zip((0..).step_by(share));
-        team.each(&mut self.parts, parts, |part, ((places, slots), first)| {
+        let laid = self.places.chunks_mut(share).zip(self.areas.chunks_mut(share));
+        let parts = laid.zip(self.items.chunks(share)).zip(slots.chunks_mut(share)).zip((0..).step_by(share));
+        team.each(&mut self.parts, parts, |part, ((((places, areas), items), slots), first)| {
             let mut all = Part::EMPTY;
             let mut block = [Seen::default(); BLOCK];
-            let blocks = places.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)).zip((first..).step_by(BLOCK));
-            for ((places, slots), first) in blocks {
-                block.iter_mut().zip(&*places).for_each(|(seen, place)| *seen = see(place.item));
-                for (((place, known), slot), seen) in places.iter_mut().zip(slots).zip(first..).zip(&block) {
-                    place.area = area(place.item, seen, known);
-                    place.slot = slot;
-                    place.lay(per_metre);
-                    all.include(&place.area);
+            let laid = places.chunks_mut(BLOCK).zip(areas.chunks_mut(BLOCK));
+            let blocks = laid.zip(items.chunks(BLOCK)).zip(slots.chunks_mut(BLOCK)).zip((first..).step_by(BLOCK));
+            for ((((places, areas), items), slots), first) in blocks {
+                block.iter_mut().zip(items).for_each(|(seen, item)| *seen = see(*item));
+                let of = items.iter().zip(&block).zip(slots);
+                for ((((item, seen), known), (place, laid)), slot) in of.zip(places.iter_mut().zip(areas)).zip(first..) {
+                    *laid = area(*item, seen, known);
+                    *place = Place::of(laid, slot, per_metre);
+                    all.include(laid);
                 }
             }
             *part = all;
@@ -212,15 +219,16 @@ impl Search {
         self.sort(team);
     }
 
-    /// Has a place for each of so many items, in the order in which the last step ended.
+    /// Has a slot for each of so many items, in the order in which the last step ended.
     fn hold(&mut self, count: usize) {
-        if count < self.places.len() {
-            self.places.retain(|place| (place.item as usize) < count);
-        }
-        let nowhere = Place { item: 0, area: Area::NOWHERE, slot: 0, strip: 0 };
-        let known = self.places.len();
-        fill(&mut self.places, count, nowhere);
-        self.places[known..].iter_mut().zip(known as u32..).for_each(|(place, item)| place.item = item);
+        std::mem::swap(&mut self.items, &mut self.last_items);
+        self.items.clear();
+        make_room(&mut self.items, count);
+        let items = self.places.iter().map(|place| self.last_items[place.slot as usize]);
+        self.items.extend(items.filter(|item| (*item as usize) < count));
+        self.items.extend(self.places.len() as u32..count as u32);
+        fill(&mut self.areas, count, Area::NOWHERE);
+        fill(&mut self.places, count, Place { begin: 0.0, strip: 0, slot: 0 });
     }
 
     /// Sorts the areas of now.
@@ -242,12 +250,13 @@ impl Search {
     /// Sets aside what is larger than this, and what is too far away for a strip. Returns how many are too large.
     fn part_large(&mut self, limit: Metre) -> usize {
         let (mut too_large, mut largest) = (0, Vector::zeros());
-        let Self { places, large, .. } = self;
-        places.retain_mut(|place| {
-            let size = place.area.size();
+        let Self { places, areas, large, .. } = self;
+        places.retain(|place| {
+            let area = &areas[place.slot as usize];
+            let size = area.size();
             let fits = size.max() <= limit;
             too_large += usize::from(!fits);
-            if fits && !is_far(&place.area.bounds) {
+            if fits && !is_far(&area.bounds) {
                 largest = size.sup(&largest);
                 return true;
             }
@@ -269,10 +278,11 @@ impl Search {
         } else {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
             let per_metre = 1.0 / self.strip_height;
-            self.places.iter_mut().for_each(|place| place.lay(per_metre));
+            for place in &mut self.places {
+                *place = Place::of(&self.areas[place.slot as usize], place.slot, per_metre);
+            }
         }
-        let x = |place: &Place| place.area.bounds.low.x;
-        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(x(a).total_cmp(&x(b))));
+        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
     /// Sorts by insertion, each thread its part, where that takes few moves; whether it did.
@@ -303,28 +313,28 @@ impl Search {
     /// at everybody before it. `found` gets the slots of two that meet.
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
-        let mut compare = |a: &Place, b: &Place| {
-            if a.area.meets(&b.area) {
+        let area = |place: &Place| &self.areas[place.slot as usize];
+        let mut compare = |a: &Place, area_of_a: &Area, b: &Place| {
+            if area_of_a.meets(area(b)) {
                 found(a.slot, b.slot);
             }
         };
         let mut next = from.start;
         for place in from.start..from.end.min(in_strips.len()) {
             let a = &in_strips[place];
-            let (above, end) = (a.strip + 1, a.area.bounds.high.x);
+            let area_of_a = area(a);
+            let (above, end) = (a.strip + 1, area_of_a.bounds.high.x);
             let ahead = in_strips[place + 1..].iter();
-            ahead.take_while(|b| b.strip == a.strip && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
-            let begin = a.area.bounds.low.x - self.largest.x;
-            next += in_strips[next..]
-                .iter()
-                .take_while(|b| b.strip < above || (b.strip == above && b.area.bounds.low.x < begin))
-                .count();
+            ahead.take_while(|b| b.strip == a.strip && b.begin <= end).for_each(|b| compare(a, area_of_a, b));
+            let begin = a.begin - self.largest.x;
+            let is_behind = |b: &&Place| b.strip < above || (b.strip == above && b.begin < begin);
+            next += in_strips[next..].iter().take_while(is_behind).count();
             let aside = in_strips[next..].iter();
-            aside.take_while(|b| b.strip == above && b.area.bounds.low.x <= end).for_each(|b| compare(a, b));
+            aside.take_while(|b| b.strip == above && b.begin <= end).for_each(|b| compare(a, area_of_a, b));
         }
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
-            self.places[..place].iter().for_each(|b| compare(a, b));
+            self.places[..place].iter().for_each(|b| compare(a, area(a), b));
         }
     }
 }
