@@ -208,7 +208,8 @@ impl Search {
             for ((((places, areas), items), slots), first) in blocks {
                 block.iter_mut().zip(items).for_each(|(seen, item)| *seen = see(*item));
                 let of = items.iter().zip(&block).zip(slots);
-                for ((((item, seen), known), (place, laid)), slot) in of.zip(places.iter_mut().zip(areas)).zip(first..) {
+                for ((((item, seen), known), (place, laid)), slot) in of.zip(places.iter_mut().zip(areas)).zip(first..)
+                {
                     *laid = area(*item, seen, known);
                     *place = Place::of(laid, slot, per_metre);
                     all.include(laid);

@@ -218,6 +218,11 @@ pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
     if across == 0.0 && along > 0.0 { 0.0 } else { across.atan2(along) }
 }
 
+/// σ = cos α.
+pub fn sigma(angle: Radian) -> f64 {
+    if angle == 0.0 { 1.0 } else { angle.cos() }
+}
+
 /// The kind of a conflict at this angle.
 pub fn kind_at(angle: Radian, options: &Options) -> Kind {
     if angle < options.rear_end_below {

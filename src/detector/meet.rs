@@ -7,8 +7,8 @@ use super::{Found, LEVEL, Met, Scene, User, Work, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
-use crate::geometry::rectangle;
 use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::{exact, rectangle};
 use crate::options::Mode;
 use crate::profile::Category;
 use crate::table::add;
@@ -98,6 +98,10 @@ impl Scene<'_> {
             work.ways_apart += 1;
             return;
         }
+        if is_known && self.leaves_out.in_line && self.conflicts_only && self.keeps_distance(slots) {
+            work.in_line += 1;
+            return;
+        }
         // The narrow boxes of who turns: the sweep needs them anyway.
         if !both_ahead && self.are_apart(ways, work, slots) {
             return;
@@ -135,6 +139,22 @@ impl Scene<'_> {
         }
     }
 
+    /// Whether of two who go straight on one follows the other and keeps its distance, as most pairs do: they are settled
+    /// before anything is laid out that the others need.
+    #[inline(always)]
+    fn keeps_distance(&self, slots: [u32; 2]) -> bool {
+        let [a, b] = &slots.map(|slot| self.mover(slot));
+        let follows = accurate::drive_in_line(a, b) && !accurate::drive_opposed(a, b);
+        if !follows || !exact::are_far_apart(&a.rectangle, &b.rectangle) {
+            return false;
+        }
+        let Some((a_is_ego, meeting)) = accurate::meet_in_one_dimension(a, b, &|| true) else { return true };
+        let (ego, foe) = if a_is_ego { (a, b) } else { (b, a) };
+        let sigma = accurate::sigma(meeting.angle());
+        let mu = accurate::mu(self.mu_model(), ego, foe, sigma, self.options.epsilon);
+        accurate::gap(meeting.ego_way, meeting.foe_way, sigma) >= mu
+    }
+
     /// Whether the narrow boxes around both ways do not meet.
     fn are_apart(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2]) -> bool {
         slots.iter().for_each(|slot| ways.cover(self, *slot));
@@ -169,7 +189,7 @@ impl Scene<'_> {
 
     fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
         let angle = meeting.angle();
-        let sigma = if angle == 0.0 { 1.0 } else { angle.cos() };
+        let sigma = accurate::sigma(angle);
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, meeting.foe_way, sigma) };
         let how = How { kind: accurate::kind_at(angle, self.options), angle, sigma, gap, collision };
         match how.kind {
