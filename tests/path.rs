@@ -8,6 +8,8 @@ use proptest::prelude::*;
 
 /// How far from the line a front bumper may be found and still be on it, in m.
 const ON_THE_LINE: f64 = 1e-3;
+/// Who gets further back than this does not drive along the line, in m.
+const BACKWARDS: f64 = 0.02;
 
 /// A polyline and a place on it, without anything that makes following it quick.
 struct Line {
@@ -32,10 +34,11 @@ impl Line {
                     && aside <= ON_THE_LINE * ON_THE_LINE;
                 is_on.then_some((from, along))
             });
+        let before = self.front;
         if let Some((segment, along)) = found {
             (self.segment, self.front) = (segment, self.ways[segment] + along.max(0.0));
         }
-        found.is_some()
+        found.is_some() && self.front >= before - BACKWARDS
     }
 
     /// The place at a way, `aside` to the left.

@@ -90,7 +90,7 @@ impl LanePath {
         let lane = &net.lanes[placement.lane.0 as usize];
         let hint = placement.position * lane.ways.last().copied().unwrap_or(0.0) / lane.length.max(f64::MIN_POSITIVE);
         let foot = Foot::of(&lane.shape, &lane.ways, start.front, hint);
-        let against = foot.direction.dot(&start.axis) < 0.0;
+        let against = foot.direction.dot(&start.axis) < 0.0 && !leads_along(net, lane, placement);
         let mut line = Vec::new();
         if against {
             behind_against(lane, &foot, start, &mut line);
@@ -217,6 +217,16 @@ impl Plan {
             None => (link.to, route_position + u32::from(wanted == Some(edge_of(net, link.to)))),
         })
     }
+}
+
+/// Whether a lane is one of the route, where the road user is now. Who is on such a lane drives along it, whatever its
+/// heading says: after a sharp turn the rear stands across for as long as the road user.
+fn leads_along(net: &Net, lane: &crate::net::Lane, placement: &Placement) -> bool {
+    let on_route = |further: usize| placement.route.get(placement.route_position + further).copied();
+    if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
+        return on_route(0) == Some(lane.edge);
+    }
+    lane.links.first().is_some_and(|link| on_route(1) == Some(edge_of(net, link.to)))
 }
 
 /// The place on a lane's centre line next to a front bumper.

@@ -10,6 +10,8 @@ const SAME_HEADING: Radian = 1e-6;
 /// A way along the line is at most this many times as long as the straight line between its ends, where a road user
 /// drives on it for one step: a turn right back.
 const LONGEST_DETOUR: f64 = 4.0;
+/// Who gets further back than this on a line does not drive along it, in m: more than recordings round, to 1 cm.
+const BACKWARDS: Metre = 0.02;
 /// Directions that differ by less than this are one: poses in between say nothing.
 const SAME_DIRECTION: f64 = 1e-10;
 
@@ -116,8 +118,9 @@ impl Track {
             return false;
         }
         if let Some(way) = self.under.way_to(front) {
+            let goes_on = way >= self.front - BACKWARDS;
             self.front = way;
-            return true;
+            return goes_on;
         }
         let moved = (front - self.under.at(self.front)).norm();
         let furthest = self.front + LONGEST_DETOUR * moved + ON_THE_LINE;
@@ -418,6 +421,13 @@ mod tests {
         assert!(corner.follow(Point::new(10.0, 3.0)));
         assert_eq!(corner.front(), 13.0);
         assert!(!corner.follow(Point::new(11.0, 4.0)));
+    }
+
+    #[test]
+    fn who_drives_back_on_it_is_not_on_it() {
+        let mut line = track(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
+        assert!(line.follow(Point::new(49.99, 0.0)), "a rounded position");
+        assert!(!line.follow(Point::new(49.0, 0.0)));
     }
 
     #[test]
