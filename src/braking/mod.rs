@@ -97,7 +97,9 @@ pub fn mu(model: MuModel, ego: Braking, foe: Braking, sigma: f64, epsilon: Metre
         return stopping_distance(ego.speed, ego.brakes) - sigma * stopping_distance(foe.speed, foe.brakes) + epsilon;
     }
     let plain = needed::<f64>(model, ego, foe, sigma);
-    if plain.trusted() {
+    // Of the paper's model, which has no floor, ε may cancel what is left.
+    let sum = if model == MuModel::Paper { plain.distance + epsilon } else { plain.distance };
+    if plain.trusted(sum) {
         return add_epsilon(model, plain.distance, epsilon);
     }
     let twofold = needed::<DoubleDouble>(model, ego, foe, sigma).distance + DoubleDouble::from(epsilon);
@@ -116,13 +118,13 @@ struct Needed<N> {
 }
 
 impl Needed<f64> {
-    /// Whether so little cancelled that plain f64 has kept 13 digits.
+    /// Whether so little cancelled in this sum of the terms that plain f64 has kept 13 digits.
     ///
     /// A clearly negative distance is the floor ε for the models that have one, and needs no digits.
-    fn trusted(&self) -> bool {
+    fn trusted(&self, sum: Metre) -> bool {
         /// Each of some ten operations may err by half a unit in the last place of the largest term.
         const KEPT: f64 = 1.0 / 64.0;
-        self.distance.abs() > KEPT * self.scale || self.scale == 0.0
+        sum.abs() > KEPT * self.scale || self.scale == 0.0
     }
 }
 
@@ -197,7 +199,7 @@ mod tests {
             let foe = Braking { speed: vi, brakes: &foe_brakes };
             let plain = needed::<f64>(MuModel::Minimal, ego, foe, sigma);
             let twofold = needed::<DoubleDouble>(MuModel::Minimal, ego, foe, sigma).distance.value();
-            if plain.trusted() && twofold > 0.0 {
+            if plain.trusted(plain.distance) && twofold > 0.0 {
                 prop_assert!((plain.distance / twofold - 1.0).abs() < 1e-13, "{} {twofold}", plain.distance);
             }
         }
