@@ -312,7 +312,7 @@ fn what_is_wrong_is_named_with_its_line() {
         (xml(r#"x="1" y="2" angle="0" speed="0""#), r#"fcd, line 3: "" has no attribute id"#),
         (xml(r"id=a"), r#"fcd, line 3: "id=a/" is no attribute"#),
         (xml("").replace("\"1\"", "\"x\""), r#"fcd, line 2: time is "x""#),
-        (xml("").replace("\"1\"", "\"inf\""), "fcd, line 2: time is inf"),
+        (xml("").replace("\"1\"", "\"inf\""), r#"fcd, line 2: time is "inf""#),
         (xml("").replace("time=", "when="), "fcd, line 2: a timestep without time"),
         (csv("0;a;1;2;x;3"), r#"fcd, line 2: angle is "x", not a number"#),
         (csv("0;a;1;2;3"), r#"fcd, line 2: "a" has no value in column speed"#),

@@ -39,7 +39,10 @@ impl Frames {
         let ids =
             states.get_item("id")?.try_iter()?.map(|id| Ok(id?.str()?.to_string())).collect::<PyResult<Vec<_>>>()?;
         let column = |name: &str| -> PyResult<Column> {
-            let column: Column = states.get_item(name)?.extract()?;
+            let Ok(column) = states.get_item(name) else {
+                return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
+            };
+            let column: Column = column.extract()?;
             if column.as_array().len() == ids.len() {
                 Ok(column)
             } else {
@@ -61,6 +64,9 @@ impl Frames {
         };
         for (row, id) in ids.iter().enumerate() {
             let user = match self.live.get(id) {
+                Some(&(_, step)) if step == self.steps => {
+                    return Err(PyValueError::new_err(format!("\"{id}\" is there twice")));
+                }
                 Some(&(user, _)) => user,
                 None => {
                     let size = [

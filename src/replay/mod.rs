@@ -68,6 +68,8 @@ struct Live {
     /// Read when it is first needed.
     route: Option<Arc<[EdgeIndex]>>,
     route_position: usize,
+    /// The recording's number of the lane that it was on last.
+    lane: u32,
 }
 
 impl Replay {
@@ -152,8 +154,19 @@ impl Replay {
         self.rows.resize(run.frame.len(), u32::MAX);
         for place in 0..self.step.rows().len() {
             let row = self.step.rows()[place];
-            let user = match self.live.get(row.user as usize) {
-                Some(Some(live)) => live.user,
+            let user = match self.live.get_mut(row.user as usize) {
+                Some(Some(live)) => {
+                    // In every lane, also where nobody asks for its place: a route may use an edge twice.
+                    if live.lane != row.lane && live.route.is_some() {
+                        live.lane = row.lane;
+                        if let Some(net) = run.net()
+                            && let Some(lane) = self.lanes.lane(row.lane, &self.recording, net)
+                        {
+                            live.go_on(net, lane);
+                        }
+                    }
+                    live.user
+                }
                 _ => self.enter(&row, run)?,
             };
             // Who rides in a vehicle has the vehicle's place in SUMO, and is no road user of its own.
@@ -197,7 +210,7 @@ impl Replay {
         if self.live.len() <= index {
             self.live.resize_with(index + 1, || None);
         }
-        self.live[index] = Some(Live { user, number, route: None, route_position: 0 });
+        self.live[index] = Some(Live { user, number, route: None, route_position: 0, lane: u32::MAX });
         Ok(user)
     }
 
@@ -224,7 +237,14 @@ impl Replay {
             _ => Arc::new([]),
         };
         live.route = Some(route.clone());
-        let placement = live.placement(net, lane, route, recorded);
+        live.go_on(net, lane);
+        let placement = Placement {
+            lane,
+            position: recorded.position,
+            route,
+            route_position: live.route_position,
+            lateral_speed: recorded.lateral_speed,
+        };
         run.place(row, &placement);
         Ok(())
     }
@@ -246,22 +266,20 @@ fn stand(row: &Row) -> Stand {
 }
 
 impl Live {
-    fn placement(&mut self, net: &Net, lane: LaneIndex, route: Arc<[EdgeIndex]>, row: &Row) -> Placement {
+    /// Moves on along its route to this lane.
+    fn go_on(&mut self, net: &Net, lane: LaneIndex) {
+        let Some(route) = &self.route else { return };
         let edge = net.lanes[lane.0 as usize].edge;
         let find = |edge: EdgeIndex| route[self.route_position..].iter().position(|known| *known == edge);
-        if net.edges[edge.0 as usize].function == EdgeFunction::Normal {
-            self.route_position += find(edge).unwrap_or(0);
+        let further = if net.edges[edge.0 as usize].function == EdgeFunction::Normal {
+            find(edge).unwrap_or(0)
         } else if let Some(link) = net.lanes[lane.0 as usize].links.first() {
             // Within a junction it is on the way from the edge before.
             let to = net.lanes[link.to.0 as usize].edge;
-            self.route_position += find(to).map_or(0, |further| further.saturating_sub(1));
-        }
-        Placement {
-            lane,
-            position: row.position,
-            route,
-            route_position: self.route_position,
-            lateral_speed: row.lateral_speed,
-        }
+            find(to).map_or(0, |further| further.saturating_sub(1))
+        } else {
+            0
+        };
+        self.route_position += further;
     }
 }

@@ -107,6 +107,9 @@ impl Users {
     pub fn know(&mut self, id: &[u8], person: bool, type_name: &[u8], lane: &[u8]) -> Result<Known, String> {
         let index = self.find(id, person)?;
         let user = &mut self.users[index as usize];
+        if user.step == self.step {
+            return Err(format!("\"{}\" is there twice in one step", user.id));
+        }
         let lane_before = user.lane;
         user.type_name = self.types.number(type_name, user.type_name)?;
         user.lane = self.lanes.number(lane, user.lane)?;

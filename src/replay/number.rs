@@ -5,7 +5,7 @@ const TENS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10,
 /// With so many digits at most, their whole number is below 2⁵³: an f64 holds it exactly.
 const DIGITS: usize = 15;
 
-/// The number in a text; none where it is no number.
+/// The number in a text; none where it is no number, or not finite.
 ///
 /// A short decimal is a whole number over a power of ten. Both are exact, and one division rounds once, so this is the
 /// nearest f64: what `str::parse` gives. All other texts are left to it.
@@ -75,7 +75,7 @@ fn decimal(negative: bool, digits: &[u8]) -> Option<f64> {
 
 #[cold]
 fn slowly(text: &[u8]) -> Option<f64> {
-    std::str::from_utf8(text).ok()?.parse().ok()
+    std::str::from_utf8(text).ok()?.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 #[cfg(test)]
@@ -84,7 +84,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn is_what_std_says(text: &str) {
-        let expected = text.parse::<f64>().ok().map(f64::to_bits);
+        let expected = text.parse::<f64>().ok().filter(|number| number.is_finite()).map(f64::to_bits);
         assert_eq!(number(text.as_bytes()).map(f64::to_bits), expected, "{text}");
     }
 
