@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::parquet::PARQUET;
 use crate::log::CONFLICTS;
+use crate::regress::outcome::SUMMARY;
 use crate::{Error, Result};
 
 /// How deep a sweep's folders may lie below the one that was named: a guard against links that lead upwards.
@@ -43,16 +44,21 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
     let entries = fs::read_dir(folder).map_err(|source| Error::file(folder, source))?;
-    let mut below = Vec::new();
+    let (mut below, mut is_log, mut is_blessed) = (Vec::new(), false, false);
     for entry in entries {
         let path = entry.map_err(|source| Error::file(folder, source))?.path();
         let name = path.file_name().unwrap_or_default();
         // Hidden is what a sweep has not finished.
         if path.is_dir() && !name.as_encoded_bytes().starts_with(b".") {
             below.push(path);
-        } else if name == CONFLICTS || name == PARQUET {
-            found.push(folder.to_owned());
+        } else {
+            is_log |= name == CONFLICTS || name == PARQUET;
+            is_blessed |= name == SUMMARY;
         }
+    }
+    // What `closecall regress` has blessed lies beside the scenario's own log, and is none.
+    if is_log && !is_blessed {
+        found.push(folder.to_owned());
     }
     if depth > 0 {
         below.iter().try_for_each(|path| search(path, depth - 1, found))?;
@@ -71,6 +77,8 @@ mod tests {
             fs::create_dir_all(top.join(run)).unwrap();
             fs::write(top.join(run).join(CONFLICTS), "").unwrap();
         }
+        fs::create_dir_all(top.join("expected")).unwrap();
+        [CONFLICTS, SUMMARY].iter().for_each(|file| fs::write(top.join("expected").join(file), "").unwrap());
         let found = log_folders(&[top.clone(), top.join("b")]).unwrap();
         assert_eq!(found, [top.join("a/seed=1"), top.join("a/seed=2"), top.join("b")]);
         fs::remove_file(top.join("b").join(CONFLICTS)).unwrap();
