@@ -120,7 +120,7 @@ pub struct Nearness {
     pub clearance: Metre,
     /// Time to collision at the speeds of now, along the paths; none if they never touch.
     pub ttc: Option<Second>,
-    /// Deceleration that the ego needs to just avoid contact; none if they never touch.
+    /// Deceleration that the ego needs to just avoid contact; none where they touch now or, at the speeds of now, never.
     pub drac: Option<MetrePerSecondSquared>,
     /// The worst of what the values above say.
     pub severity: Severity,

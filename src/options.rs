@@ -101,7 +101,7 @@ pub struct Options {
     /// Types of SUMO polygons that are static obstacles.
     #[arg(long, value_name = "TYPE,…", value_delimiter = ',')]
     pub obstacles: Vec<String>,
-    /// Selection file of SUMO (edge:ID, junction:ID lines): only what happens there.
+    /// Selection file of SUMO (edge:ID, lane:ID, junction:ID lines): only what happens there.
     #[arg(long, value_name = "FILE")]
     pub filter: Option<PathBuf>,
     /// Write encounters.csv too: a row per pair in conflict and step.
@@ -164,8 +164,16 @@ impl Options {
     /// # Errors
     /// [`Error::Value`] that names the setting that is unknown or out of its range.
     pub fn from_settings<'a>(settings: impl IntoIterator<Item = (&'a str, String)>) -> Result<Self> {
-        let words = settings.into_iter().flat_map(|(name, value)| words(name, &value)).collect::<Vec<_>>();
-        let matches = Settings::command().try_get_matches_from(words).map_err(plain)?;
+        let mut command = Settings::command();
+        let mut given = Vec::new();
+        for (name, value) in settings {
+            let option = name.replace('_', "-");
+            if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
+                return Err(Error::Value(format!("unexpected argument '--{option}' found")));
+            }
+            given.extend(words(name, &value));
+        }
+        let matches = command.try_get_matches_from_mut(given).map_err(plain)?;
         let settings = Settings::from_arg_matches(&matches).map_err(plain)?;
         settings.options.checked()
     }
@@ -263,7 +271,7 @@ fn plain_value(path: &Path, name: &str, value: &toml::Value) -> Result<String> {
 }
 
 fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
-    let line = error.span().map_or(1, |span| text[..span.start].lines().count().max(1) as u64);
+    let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count() as u64);
     Error::line(path, line, error.message())
 }
 
@@ -319,6 +327,8 @@ mod tests {
     fn an_unknown_or_impossible_setting_is_named() {
         let unknown = Options::from_settings([("colour", "red".to_owned())]).unwrap_err().to_string();
         assert!(unknown.contains("--colour"), "{unknown}");
+        let unset = Options::from_settings([("colour", "false".to_owned())]).unwrap_err().to_string();
+        assert!(unset.contains("--colour"), "{unset}");
         let negative = Options::from_settings([("epsilon", "-1".to_owned())]).unwrap_err().to_string();
         assert!(negative.contains("--epsilon") && !negative.contains('\n'), "{negative}");
     }

@@ -86,6 +86,9 @@ impl Run {
 
     /// Writes other files too, besides the log.
     pub fn write_to(&mut self, outputs: Outputs) {
+        if outputs.want_lanes() {
+            self.detector.ask_for_lanes();
+        }
         self.outputs = outputs;
     }
 

@@ -96,14 +96,16 @@ impl Checker {
     ///     time: simulated time in s; only with `states`.
     ///     states: where there is no simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper
     ///         centre, m), `heading` (rad, counter-clockwise from +x), `speed` (m/s) and where they are known `z`,
-    ///         `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row that is not finite is no road user.
+    ///         `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row whose place, heading or speed is not
+    ///         finite is no road user.
     ///
     /// Returns:
     ///     Whether the listener wants the next step too: a simulation drops one that is closed. Where its time goes
     ///     back (another one was started or loaded, or a state of before), the checker closes itself.
     ///
     /// Raises:
-    ///     ValueError: columns of different lengths, a time before the last, a type with impossible dimensions.
+    ///     ValueError: a column is missing or of another length, an id is there twice, the time is before the last,
+    ///         dimensions are impossible.
     ///     RuntimeError: the checker is closed, and it is not a simulation that calls.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
@@ -147,12 +149,18 @@ impl Checker {
 
     /// End the run: what is still open is closed and written, painted vehicles get their colours back.
     fn close(&mut self, py: Python) -> PyResult<()> {
+        self.end(py, None)
+    }
+
+    /// The same; with what ended the run before its time, if something did.
+    #[pyo3(name = "_end")]
+    fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
         if std::mem::replace(&mut self.is_closed, true) {
             return Ok(());
         }
         let summary = self.run.finish(Vec::new()).map_err(exception)?;
         if let (Some(log), Some(record)) = (self.run.take_log(), self.record.take()) {
-            log.run(&RunRecord { summary, complete: true, ..*record }).map_err(exception)?;
+            log.run(&RunRecord { summary, complete: error.is_none(), error, ..*record }).map_err(exception)?;
         }
         match &mut self.painter {
             Some(painter) => painter.clear(py),

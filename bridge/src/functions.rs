@@ -23,7 +23,7 @@ type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 ///     epsilon: redundancy in m; 0.5 by default.
 ///     kind: "rear_end", "side" or "frontal": the cosine of the angle between the headings is 1, 0 or -1.
 ///     model: "minimal", "at_rest" or "paper".
-///     angle: the angle between the headings in rad, instead of the kind.
+///     angle: the angle between the headings in rad, 0 to π, instead of the kind.
 ///
 /// Raises:
 ///     ValueError: a value out of its range, which the message names.
@@ -49,6 +49,12 @@ pub fn mu<'py>(
     let bad = |message: String| PyValueError::new_err(message);
     let kind =
         Kind::from_str(kind, false).map_err(|_| bad(format!("kind is \"{kind}\": rear_end, frontal or side")))?;
+    let angles = angle.map(|angles| angles.as_array().to_owned());
+    let is_angle = |angle: &f64| (0.0..=std::f64::consts::PI).contains(angle);
+    if let Some(angle) = angles.iter().flatten().find(|angle| !is_angle(angle)) {
+        return Err(bad(format!("angle is {angle}, it must be 0 to π")));
+    }
+    let sigmas = angles.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), kind.sigma()), |angles| angles.mapv(f64::cos));
     let model = MuModel::from_str(&model.replace('_', "-"), false)
         .map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
     let given = |numbers: Option<Numbers>, default: f64| {
@@ -62,23 +68,24 @@ pub fn mu<'py>(
         ("response_time", given(response_time, 1.05)),
         ("build_up", given(build_up, 0.1)),
         ("epsilon", given(epsilon, 0.5)),
-        ("angle", angle.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), f64::NAN), |angle| angle.as_array().to_owned())),
     ];
     for (name, values) in &columns {
         let above = matches!(*name, "decel" | "foe_decel");
         let fits = |value: &f64| value.is_finite() && *value >= 0.0 && !(above && *value == 0.0);
-        if let (false, Some(value)) = (*name == "angle", values.iter().find(|value| !fits(value))) {
+        if let Some(value) = values.iter().find(|value| !fits(value)) {
             return Err(bad(format!(
                 "{name} is {value}, it must be finite and {}",
                 if above { "above 0" } else { "0 or more" }
             )));
         }
     }
+    let [speed, foe_speed, decel, foe_decel, response_time, build_up, epsilon] = columns;
+    let columns = [speed, foe_speed, decel, foe_decel, response_time, build_up, epsilon, ("angle", sigmas)];
     let shape = columns.iter().try_fold(Vec::new(), |shape, (name, values)| {
         broadcast(&shape, values.shape()).ok_or_else(|| bad(format!("{name} does not broadcast with the others")))
     })?;
     let views = columns.each_ref().map(|(_, values)| values.broadcast(IxDyn(&shape)));
-    let [Some(v), Some(vi), Some(a), Some(ai), Some(r), Some(t3), Some(e), Some(angles)] = views else {
+    let [Some(v), Some(vi), Some(a), Some(ai), Some(r), Some(t3), Some(e), Some(sigmas)] = views else {
         return Err(bad("the arrays do not broadcast".to_owned()));
     };
     let found = py.detach(|| {
@@ -86,11 +93,9 @@ pub fn mu<'py>(
         ArrayD::from_shape_fn(IxDyn(&shape), |index| {
             let brakes = Brakes { response: at(&r, &index), build_up: at(&t3, &index), deceleration: at(&a, &index) };
             let foe_brakes = Brakes { deceleration: at(&ai, &index), ..brakes };
-            let angle = at(&angles, &index);
-            let sigma = if angle.is_nan() { kind.sigma() } else { angle.cos() };
             let ego = Braking { speed: at(&v, &index), brakes: &brakes };
             let foe = Braking { speed: at(&vi, &index), brakes: &foe_brakes };
-            braking::mu(model, ego, foe, sigma, at(&e, &index))
+            braking::mu(model, ego, foe, at(&sigmas, &index), at(&e, &index))
         })
     });
     Ok(found.into_pyarray(py))

@@ -1,4 +1,4 @@
-//! Ctrl-C and SIGTERM: they end a command at once as long as that has nothing to keep, and are told to it otherwise.
+//! Ctrl-C, SIGTERM and SIGHUP (a terminal that is gone): they end a command at once as long as that has nothing to keep, and are told to it otherwise.
 
 use std::cell::Cell;
 
@@ -25,8 +25,9 @@ impl<'py> Interrupts<'py> {
         let signals = py.import("signal")?;
         let (end, tell) = (signals.getattr("SIG_DFL")?, signals.getattr("default_int_handler")?);
         let mut handlers = Vec::new();
-        for (signal, pythons) in [("SIGINT", &tell), ("SIGTERM", &end)] {
-            let signal = signals.getattr(signal)?;
+        for (signal, pythons) in [("SIGINT", &tell), ("SIGTERM", &end), ("SIGHUP", &end)] {
+            // Not every system has all of them.
+            let Ok(signal) = signals.getattr(signal) else { continue };
             let handler = signals.call_method1("getsignal", (&signal,))?;
             // Those of signals are equal, not the same object.
             if handler.eq(pythons)? {

@@ -187,11 +187,11 @@ fn attach(
     let mut run = Run::new(&request.options, net)?;
     run.set_threads(usize::from(request.threads).saturating_sub(1));
     pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;
-    if has_no_rerouters(sumo).map_err(said)? {
+    // Who looks at sumo-gui may do what they like there, add a rerouter too.
+    if !request.gui && has_no_rerouters(sumo).map_err(said)? {
         run.routes_are_fixed();
     }
     let mut source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
-    // Who looks at sumo-gui may do what they like there.
     if !request.gui {
         source.is_alone();
     }

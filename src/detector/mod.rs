@@ -60,7 +60,7 @@ pub struct Work {
     pub frontal: u64,
     /// Met at an angle of a side encounter.
     pub side: u64,
-    /// Road users in pairs that were still on the path laid before.
+    /// Road users that were still on the path laid before.
     pub known_paths: u64,
 }
 
@@ -260,6 +260,11 @@ impl Detector {
     /// Says that encounters which are no conflict may be left out of what [`Detector::detect`] finds.
     pub fn set_conflicts_only(&mut self, only: bool) {
         self.conflicts_only = only;
+    }
+
+    /// Has the lane of everybody who drives asked for in every step: somebody else wants to know it.
+    pub fn ask_for_lanes(&mut self) {
+        self.leaves_out.known_paths = false;
     }
 
     /// What is left out.

@@ -124,6 +124,9 @@ impl NetReader<'_> {
             return Err(self.wrong(format!("lane \"{id}\": its length must be given, 0 m or more")));
         }
         let width = self.number(attributes, "width", super::LANE_WIDTH)?;
+        if !(width.is_finite() && width >= 0.0) {
+            return Err(self.wrong(format!("lane \"{id}\": its width must be 0 m or more")));
+        }
         let index = LaneIndex(self.net.lanes.len() as u32);
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;

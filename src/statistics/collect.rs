@@ -85,6 +85,8 @@ pub struct Collection {
     pub runs: Vec<LoggedRun>,
     /// Their folders.
     pub folders: Vec<Arc<Path>>,
+    /// Which of them have which seed.
+    by_seed: FxHashMap<Option<String>, Vec<usize>>,
     /// What was not counted, or only in part.
     pub left_out: Vec<LeftOutLog>,
     /// The conflicts, by group.
@@ -113,6 +115,7 @@ impl Collection {
         let mut found = Self {
             runs: Vec::new(),
             folders: Vec::new(),
+            by_seed: FxHashMap::default(),
             left_out: Vec::new(),
             groups: FxHashMap::default(),
             tallies: Default::default(),
@@ -154,7 +157,9 @@ impl Collection {
 
     fn add_run(&mut self, run: LoggedRun, folder: Arc<Path>, reader: ConflictReader, by: By) -> Result<()> {
         let number = self.runs.len();
-        let before = self.runs.iter().position(|known| same_run(known, &run));
+        let of_seed = self.by_seed.entry(run.seed.clone()).or_default();
+        let before = of_seed.iter().copied().find(|known| same_run(&self.runs[*known], &run));
+        of_seed.push(number);
         if let Some(before) = before {
             let why = format!("counted, but it repeats {}: same scenario and seed", self.folders[before].display());
             self.left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });

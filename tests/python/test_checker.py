@@ -169,6 +169,44 @@ def test_a_vehicle_that_the_script_takes_away_leaves_the_scene(scenario: Copy) -
     assert said[0] == said[1] and said[0].endswith(" 120"), said
 
 
+ANOTHER = """
+import sys
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--no-warnings"])
+checker = closecall.Checker(sumo)
+while not sumo.vehicle.getIDList():
+    sumo.simulationStep()
+checker.step()
+vehicle = sumo.vehicle.getIDList()[0]
+before = checker.summary["exposure"]
+route = sumo.vehicle.getRouteID(vehicle)
+sumo.vehicle.remove(vehicle)
+sumo.simulationStep()
+sumo.vehicle.add(vehicle, route, departSpeed="max")
+departed = 0
+for _ in range(8):
+    sumo.simulationStep()
+    departed += len(sumo.simulation.getDepartedIDList())
+checker.step()
+sumo.simulationStep()
+departed += len(sumo.simulation.getDepartedIDList())
+checker.step()
+sumo.simulationStep()
+departed += len(sumo.simulation.getDepartedIDList())
+checker.step()
+after = checker.summary["exposure"]
+print(after["vehicles"] - before["vehicles"] - departed, after["vehicle_kilometres"] > before["vehicle_kilometres"])
+"""
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_another_vehicle_with_the_id_of_one_that_left_is_another_road_user(module: str, scenario: Copy) -> None:
+    done = python(ANOTHER.replace("{module}", module), scenario("curves"))
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.splitlines()[-1] == "0 True"
+
+
 def test_in_plain_frames_time_does_not_go_back() -> None:
     checker = cc.Checker()
     checker.step(1.0, {**CAR, "x": [0.0, 20.0]})
@@ -205,6 +243,8 @@ def test_a_row_that_is_not_finite_is_no_road_user() -> None:
     [
         ({"x": [0.0]}, '"x" has 1 values, "id" has 2'),
         ({"x": [0.0, 9.0], "length": [-5.0, 5.0]}, "length is -5"),
+        ({}, 'there is no "x"'),
+        ({"x": [0.0, 9.0], "id": ["a", "a"]}, '"a" is there twice'),
     ],
 )
 def test_impossible_frames_are_refused(states: dict[str, Any], said: str) -> None:
@@ -213,13 +253,23 @@ def test_impossible_frames_are_refused(states: dict[str, Any], said: str) -> Non
 
 
 def test_an_unknown_option_is_named() -> None:
-    with pytest.raises(ValueError, match="--colour"):
-        cc.Checker(colour="red")
+    for value in ("red", False):
+        with pytest.raises(ValueError, match="--colour"):
+            cc.Checker(colour=value)
 
 
 def test_a_net_that_is_missing_is_a_file_that_is_not_found(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         cc.Checker(net=tmp_path / "none.net.xml")
+
+
+def test_a_script_that_fails_leaves_a_log_that_says_so(tmp_path: Path) -> None:
+    with pytest.raises(ZeroDivisionError), cc.Checker(out=tmp_path) as checker:
+        checker.step(1 / 2, {**CAR, "x": [0.0, 20.0]})
+        checker.step(1 / 0, {**CAR, "x": [0.0, 20.0]})
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert not record["complete"] and record["error"] == "ZeroDivisionError: division by zero"
+    assert record["summary"]["steps"] == len(rows(tmp_path / "conflicts.csv")) == 1
 
 
 def test_the_log_is_written_on_request(tmp_path: Path) -> None:

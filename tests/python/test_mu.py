@@ -147,6 +147,8 @@ def test_arrays_broadcast_as_in_numpy() -> None:
         ({"decel": 0.0}, "decel is 0"),
         ({"speed": -1.0}, "speed is -1"),
         ({"speed": math.nan}, "speed is NaN"),
+        ({"angle": [0.0, math.nan]}, "angle is NaN"),
+        ({"angle": -1.0}, "angle is -1"),
         ({"kind": "sideways"}, "rear_end, frontal or side"),
         ({"model": "best"}, "minimal, at_rest or paper"),
     ],

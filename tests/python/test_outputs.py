@@ -140,6 +140,14 @@ def test_the_trajectories_are_those_that_sumo_records(scenario: Copy, tmp_path: 
     assert len(set(numbers.values())) == len(numbers) > 300
 
 
+def test_the_trajectories_do_not_hang_on_what_is_left_out(scenario: Copy, tmp_path: Path) -> None:
+    config, files = scenario("left_turn"), [tmp_path / "some.trj", tmp_path / "all.trj"]
+    for file, words in zip(files, ([], ["--keep-all"])):
+        done = closecall("run", config, "--end", "120", "--trj-output", file, "--out", tmp_path / "out", *words)
+        assert done.returncode == 0, done.stderr
+    assert files[0].read_bytes() == files[1].read_bytes()
+
+
 @pytest.mark.parametrize("option", ["--ssm-output", "--trj-output"])
 def test_a_file_that_cannot_be_written_is_named(option: str, scenario: Copy) -> None:
     config = scenario("side")

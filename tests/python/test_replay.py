@@ -45,6 +45,8 @@ def same(live: list[Row], again: list[Row]) -> None:
                 assert not other[name]
 
 
+STANDING = '<vehicle id="a" x="%s" y="1" angle="0" speed="0"/>'
+
 RECORDINGS = [
     ("reckless", "900", 100, "fcd.xml", ()),
     ("reckless", "900", 100, "fcd.xml.gz", ()),
@@ -124,6 +126,11 @@ def test_a_gzip_and_a_csv_cut_short_are_noticed_too(scenario: Copy, tmp_path: Pa
         ("a;b\n1;2\n", "timestep_time"),
         ('<fcd-export><timestep time="0"><vehicle id="a" x="1"/></timestep></fcd-export>', '"a" has no attribute y'),
         ("timestep_time;vehicle_id;vehicle_x\n", "vehicle_y"),
+        (
+            f'<fcd-export><timestep time="0">{STANDING % "1"}{STANDING % "9"}</timestep></fcd-export>',
+            '"a" is there twice',
+        ),
+        (f'<fcd-export><timestep time="0">{STANDING % "inf"}</timestep></fcd-export>', 'x is "inf", not a number'),
     ],
 )
 def test_what_is_no_recording_is_refused(text: str, said: str, scenario: Copy, tmp_path: Path) -> None:

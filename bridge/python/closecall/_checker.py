@@ -27,5 +27,5 @@ class Checker(_Checker, StepListener):  # type: ignore[misc]
     def __enter__(self) -> Checker:
         return self
 
-    def __exit__(self, *_: object) -> None:
-        self.close()
+    def __exit__(self, _: object, error: BaseException | None, __: object) -> None:
+        self._end(None if error is None else f"{type(error).__name__}: {error}")

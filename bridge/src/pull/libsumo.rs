@@ -39,6 +39,7 @@ struct Placing {
     route_index: Py<PyAny>,
     route: Py<PyAny>,
     parameter: Py<PyAny>,
+    departure: Py<PyAny>,
 }
 
 /// What is asked of vehicles or of persons, and those of them that are in the scene.
@@ -112,6 +113,7 @@ impl Libsumo {
                 route_index: function("vehicle_getRouteIndex")?,
                 route: function("vehicle_getRoute")?,
                 parameter: function("vehicle_getParameter")?,
+                departure: function("vehicle_getDeparture")?,
             },
         })
     }
@@ -127,8 +129,12 @@ impl Libsumo {
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         // Lists of who departed are those of the last step: after a jump over several, everybody is looked up.
-        let jumped = run.time().is_none_or(|last| time - last > 1.5 * self.step_length);
+        let last = run.time();
+        let jumped = last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin(time);
+        if let (true, Some(last)) = (jumped, last) {
+            self.others_left(py, run, last)?;
+        }
         let entered = self.vehicles.update(py, run, jumped, |run, name| self.types.vehicle(py, run, name))?;
         for live in &self.vehicles.live[entered] {
             let id = run.roster.id(live.user);
@@ -140,6 +146,19 @@ impl Libsumo {
         self.park(py, run, jumped)?;
         self.vehicles.read(py, run)?;
         self.persons.read(py, run)
+    }
+
+    /// Lets the vehicles leave whose id another has, which departed after this time.
+    fn others_left(&mut self, py: Python, run: &mut Run, last: Second) -> PyResult<()> {
+        for place in (0..self.vehicles.live.len()).rev() {
+            let id: &str = run.roster.id(self.vehicles.live[place].user);
+            // Who is not in the simulation any more has no departure.
+            let departure = self.get.departure.bind(py).call1((id,)).and_then(|time| time.extract::<Second>());
+            if departure.is_ok_and(|departure| departure > last) {
+                self.vehicles.remove(run, place);
+            }
+        }
+        Ok(())
     }
 
     /// Keeps account of who is parked off the road: SUMO says who begins and who ends.
@@ -164,8 +183,10 @@ impl Libsumo {
     /// Whether a vehicle that has come into the scene carries a device that changes its route on the way.
     fn may_reroute(&self, py: Python, id: &str) -> PyResult<bool> {
         let parameter = |name: &str| self.get.parameter.bind(py).call1((id, name))?.extract::<String>();
-        if parameter("has.taxi.device")? == "true" {
-            return Ok(true);
+        for device in ["has.taxi.device", "has.stationfinder.device"] {
+            if parameter(device)? == "true" {
+                return Ok(true);
+            }
         }
         // Every trip has a device that looks for its route; without a period it does so before it departs, then never.
         let has_router = parameter("has.rerouting.device")? == "true";

@@ -158,16 +158,28 @@ impl Domain {
         self.rows.clear();
         self.first_row = run.frame.len() as u32;
         let ids = domain.call_method0(intern!(py, "getIDList"))?.cast_into::<PyTuple>()?;
+        let mut enter = |live: &mut FxHashMap<String, Live>, run: &mut Run, id: &Bound<PyAny>| -> PyResult<()> {
+            domain.call_method1(intern!(py, "subscribe"), (id, self.variables.clone()))?;
+            let type_id = domain.call_method1(intern!(py, "getTypeID"), (id,))?;
+            let profile = profile(run, type_id.extract::<&str>()?)?;
+            let user = run.enter(id.extract::<&str>()?, profile);
+            let gone = live.insert(id.extract()?, Live { user, seen: false, route: None, latest: None });
+            gone.into_iter().for_each(|gone| run.leave(gone.user));
+            Ok(())
+        };
         for id in ids.iter() {
             if !self.live.contains_key(id.extract::<&str>()?) {
-                domain.call_method1(intern!(py, "subscribe"), (&id, self.variables.clone()))?;
-                let type_id = domain.call_method1(intern!(py, "getTypeID"), (&id,))?;
-                let profile = profile(run, type_id.extract::<&str>()?)?;
-                let user = run.enter(id.extract::<&str>()?, profile);
-                self.live.insert(id.extract()?, Live { user, seen: false, route: None, latest: None });
+                enter(&mut self.live, run, &id)?;
             }
         }
-        let results = domain.call_method0(intern!(py, "getAllSubscriptionResults"))?;
+        let ask = || domain.call_method0(intern!(py, "getAllSubscriptionResults"));
+        let mut results = ask()?;
+        // Whose subscription SUMO has ended has left, and another has its id.
+        let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
+        if !others.is_empty() {
+            others.iter().try_for_each(|id| enter(&mut self.live, run, id))?;
+            results = ask()?;
+        }
         for id in ids.iter() {
             let id: Bound<PyString> = id.cast_into()?;
             let Some(live) = self.live.get_mut(id.extract::<&str>()?) else { continue };
