@@ -24,10 +24,16 @@ pub fn stopping_distance<N: Number>(speed: MetrePerSecond, brakes: &Brakes) -> N
     }
 }
 
+/// Si = Vi²/(2 ai), of who brakes at once and fully.
+fn braked_at_once<N: Number>(foe: Braking) -> N {
+    let speed = N::from(foe.speed);
+    speed / (N::from(2.0) * N::from(foe.brakes.deceleration)) * speed
+}
+
 /// S − σ Si.
 pub fn at_rest<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
     let own = stopping_distance::<N>(ego.speed, ego.brakes);
-    let other = N::from(sigma) * stopping_distance::<N>(foe.speed, &foe.brakes.at_once());
+    let other = N::from(sigma) * braked_at_once(foe);
     Needed { distance: own - other, scale: own.value() }
 }
 
@@ -35,9 +41,8 @@ pub fn at_rest<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
 pub fn on_paper<N: Number>(ego: Braking, foe: Braking) -> Needed<N> {
     let n = N::from;
     let (v, a) = (n(ego.speed), n(ego.brakes.deceleration));
-    let (foe_speed, foe_deceleration) = (n(foe.speed), n(foe.brakes.deceleration));
     let own = v * (n(ego.brakes.response) + n(ego.brakes.build_up)) + v / (n(2.0) * a) * v;
-    let other = foe_speed / (n(2.0) * foe_deceleration) * foe_speed;
+    let other = braked_at_once::<N>(foe);
     Needed { distance: own - other, scale: own.value().max(other.value()) }
 }
 
