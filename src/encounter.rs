@@ -33,6 +33,15 @@ impl Kind {
             Self::Side => "side",
         }
     }
+
+    /// σ = cos α of the kind's own angle.
+    pub fn sigma(self) -> f64 {
+        match self {
+            Self::RearEnd => 1.0,
+            Self::Side => 0.0,
+            Self::Frontal => -1.0,
+        }
+    }
 }
 
 /// How bad a conflict is.

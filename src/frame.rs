@@ -8,11 +8,11 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
+use crate::Result;
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile, origins};
 use crate::table::{self, add};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
-use crate::{Error, Result};
 
 /// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
 pub const SUMO_INVALID: f64 = -1_073_741_824.0;
@@ -43,42 +43,16 @@ impl Roster {
     /// Adds a type, or finds it by its name.
     ///
     /// # Errors
-    /// As [`Roster::check`] has them.
+    /// As [`Profile::check`] has them.
     pub fn profile(&mut self, profile: Profile) -> Result<ProfileIndex> {
         if let Some(known) = self.profile_named(&profile.name, profile.category) {
             return Ok(known);
         }
-        self.check(&profile)?;
+        profile.check()?;
         let index = ProfileIndex(self.profiles.len() as u32);
         self.by_name.entry(profile.name.clone()).or_default()[profile.category as usize] = Some(index);
         self.profiles.push(profile);
         Ok(index)
-    }
-
-    /// Whether a type is possible.
-    ///
-    /// # Errors
-    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
-    pub fn check(&self, profile: &Profile) -> Result<()> {
-        let checks = [
-            ("length", profile.length, false),
-            ("width", profile.width, false),
-            ("mass", profile.mass, true),
-            ("deceleration", profile.brakes.deceleration, profile.category == Category::Vehicle),
-            ("response time", profile.brakes.response, false),
-            ("build-up time", profile.brakes.build_up, false),
-        ];
-        for (what, value, must_be_positive) in checks {
-            let bad = !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0);
-            if bad {
-                let wanted = if must_be_positive { "above 0" } else { "0 or more" };
-                return Err(Error::Value(format!(
-                    "type \"{}\": {what} is {value}, it must be finite and {wanted}",
-                    profile.name
-                )));
-            }
-        }
-        Ok(())
     }
 
     /// The type that was added under this name.

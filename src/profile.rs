@@ -3,6 +3,7 @@
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
 use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
+use crate::{Error, Result};
 
 /// What sort of road user it is, as far as the model distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -92,6 +93,31 @@ fn settings(name: &str, options: &Options) -> TypeOptions {
 }
 
 impl Profile {
+    /// Whether it is possible.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
+    pub fn check(&self) -> Result<()> {
+        let checks = [
+            ("length", self.length, false),
+            ("width", self.width, false),
+            ("mass", self.mass, true),
+            ("deceleration", self.brakes.deceleration, self.category == Category::Vehicle),
+            ("response time", self.brakes.response, false),
+            ("build-up time", self.brakes.build_up, false),
+        ];
+        for (what, value, must_be_positive) in checks {
+            let bad = !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0);
+            if bad {
+                let (wanted, name) = (if must_be_positive { "above 0" } else { "0 or more" }, &self.name);
+                return Err(Error::Value(format!(
+                    "type \"{name}\": {what} is {value}, it must be finite and {wanted}"
+                )));
+            }
+        }
+        Ok(())
+    }
+
     /// The profile of a vehicle type: `[type.NAME]` first, then the general settings, then SUMO.
     pub fn vehicle(sumo: &SumoType, options: &Options) -> Self {
         let set = settings(&sumo.name, options);

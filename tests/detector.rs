@@ -1,4 +1,4 @@
-//! Scenes of two, straight on and without a net: what DESIGN.md's definitions give by hand.
+//! Scenes of two, straight on and without a net: what the definitions in docs/model.md give by hand.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 

@@ -175,7 +175,7 @@ impl Checker {
         PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.run.net())))
     }
 
-    /// Counts by kind and severity, the traffic that was checked, and what was left out, as in `run.json`.
+    /// Counts by kind and severity, the traffic that was checked, and, once it is closed, what was left out, as in `run.json`.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let text =

@@ -1,4 +1,5 @@
-//! Ctrl-C, SIGTERM and SIGHUP (a terminal that is gone): they end a command at once as long as that has nothing to keep, and are told to it otherwise.
+//! Ctrl-C, SIGTERM and SIGHUP (a terminal that is gone): they end a command at once as long as that has nothing to keep,
+//! and are told to it otherwise.
 
 use std::cell::Cell;
 

@@ -44,17 +44,6 @@ pub struct MuArgs {
     json: bool,
 }
 
-impl Kind {
-    /// σ = cos α of the kind's own angle.
-    pub fn sigma(self) -> f64 {
-        match self {
-            Self::RearEnd => 1.0,
-            Self::Side => 0.0,
-            Self::Frontal => -1.0,
-        }
-    }
-}
-
 /// Prints the three models.
 pub fn run(arguments: &MuArgs) -> Result<()> {
     let brakes =

@@ -66,8 +66,6 @@ pub struct RunRequest {
     pub gui: bool,
     /// Folder of the log.
     pub out: PathBuf,
-    /// Simulated second at which the run ends; none for the scenario's own end.
-    pub end: Option<Second>,
     /// How many threads to use, SUMO's own included: the results are the same.
     pub threads: u8,
     /// Whether to print nothing but errors.
@@ -122,7 +120,6 @@ pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
         scenario,
         gui: arguments.gui,
         out,
-        end: arguments.end,
         threads: arguments.threads,
         quiet: arguments.quiet,
         outputs: arguments.outputs,

@@ -80,7 +80,6 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         scenario: scenario.to_owned(),
         gui: false,
         out: recording.with_extension("log"),
-        end: Some(end),
         threads: 2,
         quiet: true,
         outputs: OutputFiles::default(),

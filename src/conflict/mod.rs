@@ -25,7 +25,7 @@ use crate::units::Second;
 
 pub use stance::Stance;
 
-/// How long the margin must be ≥ 0 before an event closes, in s (DESIGN.md, Events).
+/// How long the margin must be ≥ 0 before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
 /// Simulated times are sums of steps: what differs by less is the same moment, in s.
 const SAME_MOMENT: Second = 1e-6;

@@ -90,7 +90,7 @@ def run(words: list[str]) -> Recording:
 
 
 def kind_of(libsumo: object, name: str, person: bool, step: float) -> Kind:
-    """A type by DESIGN.md's defaults: t1 0.8 s, t2 0.25 or (air brakes) 0.35 s, t3 0.1 s; persons stop in a step."""
+    """A type by the defaults: t1 0.8 s, t2 0.25 or (air brakes) 0.35 s, t3 0.1 s; persons stop in a step."""
     types = libsumo.vehicletype  # type: ignore[attr-defined]
     length, width = types.getLength(name), types.getWidth(name)
     if person:

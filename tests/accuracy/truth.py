@@ -1,4 +1,4 @@
-"""The truth in a step: DESIGN.md's definitions on the paths that both road users really drove afterwards.
+"""The truth in a step: the definitions in docs/model.md on the paths that both road users really drove afterwards.
 
 Written from the definitions alone, without closecall's code: poses every `SPACING` m of the driven way, separating
 axes between all of them, μ by the largest of many moments. Errors of up to two spacings follow, well below the 0.75 m

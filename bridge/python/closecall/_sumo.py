@@ -93,7 +93,7 @@ def first_error(text: str) -> str:
     at = next((number for number, line in enumerate(lines) if line.startswith("Error:")), None)
     if at is None:
         return ""
-    told = [lines[at].removeprefix("Error:").strip()] if sys.version_info >= (3, 9) else [lines[at]]
+    told = [lines[at].removeprefix("Error:").strip()]
     for line in lines[at + 1 :]:
         if line.startswith(("Error:", "Warning:", "Quitting")):
             break

@@ -158,8 +158,9 @@ impl Domain {
         self.rows.clear();
         self.first_row = run.frame.len() as u32;
         let ids = domain.call_method0(intern!(py, "getIDList"))?.cast_into::<PyTuple>()?;
+        let subscribe =
+            |id: &Bound<PyAny>| domain.call_method1(intern!(py, "subscribe"), (id, self.variables.clone())).map(drop);
         let mut enter = |live: &mut FxHashMap<String, Live>, run: &mut Run, id: &Bound<PyAny>| -> PyResult<()> {
-            domain.call_method1(intern!(py, "subscribe"), (id, self.variables.clone()))?;
             let type_id = domain.call_method1(intern!(py, "getTypeID"), (id,))?;
             let profile = profile(run, type_id.extract::<&str>()?)?;
             let user = run.enter(id.extract::<&str>()?, profile);
@@ -169,6 +170,7 @@ impl Domain {
         };
         for id in ids.iter() {
             if !self.live.contains_key(id.extract::<&str>()?) {
+                subscribe(&id)?;
                 enter(&mut self.live, run, &id)?;
             }
         }
@@ -177,8 +179,10 @@ impl Domain {
         // Whose subscription SUMO has ended has left, and another has its id.
         let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
         if !others.is_empty() {
-            others.iter().try_for_each(|id| enter(&mut self.live, run, id))?;
+            others.iter().try_for_each(&subscribe)?;
             results = ask()?;
+            let mut others = others.iter().filter(|id| results.get_item(id).is_ok());
+            others.try_for_each(|id| enter(&mut self.live, run, id))?;
         }
         for id in ids.iter() {
             let id: Bound<PyString> = id.cast_into()?;
