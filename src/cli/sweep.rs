@@ -139,6 +139,8 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
     for vary in arguments.vary.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
         files.extend(vary.values.iter().map(PathBuf::from));
     }
+    let named = files.iter().filter_map(|file| filter_in(file)).collect::<Vec<_>>();
+    files.extend(named);
     let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
     check_runs(&plan, &arguments.seeds, &arguments.vary)?;
     let missing = plan.missing()?;
@@ -159,6 +161,12 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
         }
     }
     Ok(u8::from(failed > 0))
+}
+
+/// The selection file that a file of options names.
+fn filter_in(file: &Path) -> Option<PathBuf> {
+    let table = std::fs::read_to_string(file).ok()?.parse::<toml::Table>().ok()?;
+    Some(table.get("filter")?.as_str()?.into())
 }
 
 /// Has the missing runs done; how many failed.

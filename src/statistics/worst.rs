@@ -1,7 +1,7 @@
 //! The worst conflicts, and the SUMO command that shows each.
 
 use std::collections::BinaryHeap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use serde::Serialize;
@@ -171,7 +171,11 @@ fn quoted(word: &str) -> String {
 
 /// sumo-gui's zoom in %, of the whole net, that shows a conflict; none where the net is not at hand any more.
 fn zoom(run: &LoggedRun) -> Option<f64> {
-    let net: &PathBuf = &run.inputs.iter().find(|input| input.path.to_string_lossy().contains(".net.xml"))?.path;
+    run.inputs.iter().find_map(|input| zoom_on(&input.path))
+}
+
+/// The same of this net; none where the file is no net.
+fn zoom_on(net: &Path) -> Option<f64> {
     let mut head = Vec::new();
     std::io::Read::read_to_end(&mut std::io::Read::take(crate::net::open(net).ok()?, 1 << 16), &mut head).ok()?;
     let head = String::from_utf8_lossy(&head);

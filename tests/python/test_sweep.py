@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Callable, NamedTuple
@@ -220,6 +221,18 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
     config.with_suffix(".net.xml").open("a").write("<!-- changed -->\n")
     sweep(config, "--seeds", "2", "--epsilon", "1", *words)
     assert third.items() - files(out).items() == {("seed-2", third["seed-2"])}
+    # The selection too that only a file of options names.
+    edges = [
+        edge.get("id") for edge in ET.parse(config.with_suffix(".net.xml")).iter("edge") if not edge.get("function")
+    ]
+    selection, settings = tmp_path / "selection.txt", tmp_path / "closecall.toml"
+    settings.write_text(f"filter = '{selection}'\n")
+    written = []
+    for edge in edges[:2]:
+        selection.write_text(f"edge:{edge}\n")
+        sweep(config, "--seeds", "1", "--config", settings, *words)
+        written.append(files(out)["seed-1"])
+    assert written[0] != written[1]
     # A file that is broken is no run.
     (out / "conflicts" / "run=seed-2" / "conflicts.parquet").write_bytes(b"PAR1")
     sweep(config, "--seeds", "2", "--epsilon", "1", *words)
