@@ -2,23 +2,18 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use std::path::Path;
-use std::sync::Arc;
+#[path = "common/street.rs"]
+mod street;
 
 use closecall::detector::Detector;
 use closecall::encounter::Placement;
 use closecall::frame::{Frame, Roster, State};
-use closecall::net::Net;
 use closecall::options::Options;
-
-const STREET: &str = r#"<net>
-    <edge id="east" from="w" to="e"><lane id="east_0" index="0" length="200" width="3.2" shape="0,-1.6 200,-1.6"/></edge>
-    <edge id="west" from="e" to="w"><lane id="west_0" index="0" length="200" width="3.2" shape="200,1.6 0,1.6"/></edge>
-</net>"#;
+use street::street;
 
 /// Whether a car on the lane to the west, headed this way, is taken to drive to the west, on this route.
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
-    let net = Arc::new(Net::parse(Path::new("street.net.xml"), STREET).unwrap());
+    let net = street();
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::stress::car()).unwrap();
     let mut frame = Frame::default();

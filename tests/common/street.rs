@@ -1,0 +1,15 @@
+//! A street of one lane each way, 200 m long, from west to east and back.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::net::Net;
+
+const STREET: &str = r#"<net>
+    <edge id="east" from="w" to="e"><lane id="east_0" index="0" length="200" width="3.2" shape="0,-1.6 200,-1.6"/></edge>
+    <edge id="west" from="e" to="w"><lane id="west_0" index="0" length="200" width="3.2" shape="200,1.6 0,1.6"/></edge>
+</net>"#;
+
+pub fn street() -> Arc<Net> {
+    Arc::new(Net::parse(Path::new("street.net.xml"), STREET).unwrap())
+}
