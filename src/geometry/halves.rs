@@ -297,14 +297,14 @@ impl Halves {
         let part = &mut self.parts[of as usize];
         let room = stray + part.stray() + TOLERANCE;
         if !part.bounds.grown(room).meet(&hull.bounds)
-            || part.hull(&mut self.hulls).outline.room_to(&hull.outline, room) > room
+            || part.hull(&mut self.hulls).outline.is_further_than(room, &hull.outline)
         {
             return true;
         }
         if part.bend() <= TOLERANCE {
             let better = part.slide_before(which, known);
             return !better.bounds.grown(room).meet(&hull.bounds)
-                || better.step.hull().room_to(&hull.outline, room) > room;
+                || better.step.hull().is_further_than(room, &hull.outline);
         }
         let first = self.halve(of);
         // The half that ends at what is known is the likelier one to be near.

@@ -85,32 +85,39 @@ impl Outline {
 
     /// Whether it shares a point with another; touching counts.
     pub fn overlaps(&self, other: &Self) -> bool {
-        let room = self.room_to(other, UNSURE);
+        let room = self.room_to(other, -UNSURE, UNSURE);
         if room.abs() > UNSURE {
             return room < 0.0;
         }
         translation(self, &Vector::zeros(), other).is_some()
     }
 
-    /// How far another surely is away, in m: the widest room between one's edge and the other, or the first that is more
-    /// than `enough`. Negative where the two overlap by so much.
-    pub fn room_to(&self, other: &Self, enough: Metre) -> Metre {
-        let room = self.room_beside_edges(other, enough);
-        if room > enough { room } else { room.max(other.room_beside_edges(self, enough)) }
+    /// Whether another surely is further away than that, in m: beside an edge of one of the two.
+    pub fn is_further_than(&self, room: Metre, other: &Self) -> bool {
+        self.room_to(other, room, room) > room
     }
 
-    fn room_beside_edges(&self, other: &Self, enough: Metre) -> Metre {
+    /// How far another surely is away, in m: the widest room between one's edge and the other, or the first that is more
+    /// than `enough`. Negative where the two overlap by so much; −∞ where it is less than `little`.
+    fn room_to(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
+        let room = self.room_beside_edges(other, little, enough);
+        if room > enough { room } else { room.max(other.room_beside_edges(self, little, enough)) }
+    }
+
+    fn room_beside_edges(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
         let mut widest = f64::NEG_INFINITY;
         let mut start = self.corners[self.count - 1];
         for end in self.corners() {
             let normal = Vector::new(end.y - start.y, start.x - end.x);
-            let mut nearest = f64::INFINITY;
-            for corner in other.corners() {
-                let beside = (corner - start).dot(&normal);
-                nearest = if beside < nearest { beside } else { nearest };
-            }
             // No root: the sum is the length or more, and the room the true one or less.
-            widest = widest.max(nearest / (normal.x.abs() + normal.y.abs()));
+            let length = normal.x.abs() + normal.y.abs();
+            // Of most edges the first corner or two say that the other is not beside them.
+            let too_near = (little - UNSURE) * length;
+            let nearest = other.corners().iter().try_fold(f64::INFINITY, |nearest, corner| {
+                let beside = (corner - start).dot(&normal);
+                (beside >= too_near).then_some(if beside < nearest { beside } else { nearest })
+            });
+            widest = nearest.map_or(widest, |nearest| widest.max(nearest / length));
             if widest > enough {
                 break;
             }
