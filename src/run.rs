@@ -319,7 +319,8 @@ impl Run {
         self.summary.left_out = scene::left_out(&self.detector);
         self.summary.left_out.extend(left_out);
         let unmet = self.settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
-        self.summary.unmet = unmet.map(|(setting, _)| setting.clone()).collect();
+        let remarks = unmet.map(|(setting, _)| format!("{setting}: nobody of this type was in the scene"));
+        self.summary.remarks = remarks.collect();
         Ok(self.summary.clone())
     }
 

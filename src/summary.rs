@@ -26,9 +26,9 @@ pub struct Summary {
     pub exposure: Exposure,
     /// What the scene did not need.
     pub left_out: Vec<LeftOut>,
-    /// Settings of types of which nobody was in the scene; not part of the result.
+    /// What may have been meant otherwise, a line each; not part of the result.
     #[serde(skip)]
-    pub unmet: Vec<String>,
+    pub remarks: Vec<String>,
     /// Where the time went: what, and how many seconds; not part of the result.
     #[serde(skip)]
     pub spent: Vec<(&'static str, f64)>,
@@ -108,8 +108,8 @@ impl fmt::Display for Summary {
         for left_out in &self.left_out {
             writeln!(f, "{left_out}")?;
         }
-        for setting in &self.unmet {
-            writeln!(f, "{setting}: nobody of this type was in the scene")?;
+        for remark in &self.remarks {
+            writeln!(f, "{remark}")?;
         }
         let parts = self.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.3} s"));
         if !self.spent.is_empty() {

@@ -90,6 +90,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.write_to(outputs);
     let ended = steps(&mut replay, &mut run, interrupted, arguments.quiet);
     record.summary = run.finish(Vec::new())?;
+    record.summary.remarks.extend(replay.remark());
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
     if let Some(log) = run.take_log() {

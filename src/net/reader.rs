@@ -19,8 +19,13 @@ use crate::{Error, Result};
 /// Beyond this a coordinate is no place on earth, in m; SUMO's invalid value is larger.
 const FURTHEST: f64 = 1e9;
 
-/// A file that may be gzipped, to be read from its beginning.
+/// A file that may be gzipped, to be read from its beginning; a pipe is refused.
 pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
+    let is_regular = std::fs::metadata(path).map(|it| it.is_file() || it.is_dir());
+    if !is_regular.map_err(|source| Error::file(path, source))? {
+        // Not opened before: that would wait for who writes into it.
+        return Err(Error::content(path, "a pipe or device; it is read more than once, so it has to be a file"));
+    }
     let mut file = File::open(path).map_err(|source| Error::file(path, source))?;
     let mut magic = [0; 2];
     let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;

@@ -12,6 +12,7 @@ mod source;
 pub mod types;
 mod xml;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -34,6 +35,9 @@ use types::Types;
 /// Who is further than this from where its lane is, in m, is on another net, or in degrees.
 const ELSEWHERE: Metre = 100.0;
 
+/// Of types that are defined nowhere so many are named.
+const NAMED: usize = 5;
+
 /// A recording that is being replayed into a run.
 pub struct Replay {
     path: PathBuf,
@@ -44,6 +48,8 @@ pub struct Replay {
     following: Step,
     has_following: bool,
     types: Types,
+    /// Types that are defined nowhere, and so are SUMO's default car or pedestrian.
+    undefined: BTreeSet<String>,
     lanes: Lanes,
     /// None where paths are not laid along lanes.
     routes: Option<Routes>,
@@ -102,6 +108,7 @@ impl Replay {
             following,
             has_following,
             types,
+            undefined: BTreeSet::new(),
             lanes: Lanes::default(),
             routes: if by_lanes { Some(Routes::read(path, net)?) } else { None },
             options: options.clone(),
@@ -138,6 +145,19 @@ impl Replay {
         }
         run.finish_step()?;
         Ok(Some(self.step.time))
+    }
+
+    /// What there is to say of the types so far: which of them are defined nowhere.
+    pub fn remark(&self) -> Option<String> {
+        let named = |name: &String| if name.is_empty() { "(none)".to_owned() } else { format!("\"{name}\"") };
+        let names = self.undefined.iter().take(NAMED).map(named).collect::<Vec<_>>().join(", ");
+        let more = match self.undefined.len().saturating_sub(NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        (!names.is_empty()).then(|| {
+            format!("types {names}{more}: no file defines them, so they are SUMO's default car or pedestrian (--route-files)")
+        })
     }
 
     /// The number of road users in the step.
@@ -192,6 +212,9 @@ impl Replay {
         let profile = match run.roster.profile_named(type_name, category) {
             Some(known) => known,
             None => {
+                if !self.types.define(type_name) {
+                    self.undefined.insert(type_name.to_owned());
+                }
                 let sumo = self.types.named(type_name, row.person);
                 let profile = if row.person {
                     Profile::person(&sumo, &self.options, self.step_length)

@@ -45,18 +45,17 @@ impl Types {
         }
     }
 
+    /// Whether a file defines this type or the one that it was made from, or SUMO has one of that name.
+    pub fn define(&self, name: &str) -> bool {
+        origins(name).any(|name| self.known.contains_key(name) || OWN.iter().any(|(own, _)| *own == name))
+    }
+
     /// The type of this id: as it, or the one that it was made from, was read, else SUMO's default type of that name, else
     /// a car (or a pedestrian).
     pub fn named(&self, name: &str, person: bool) -> SumoType {
-        let default = |name| match name {
-            "DEFAULT_BIKETYPE" => Some("bicycle"),
-            "DEFAULT_TAXITYPE" => Some("taxi"),
-            "DEFAULT_RAILTYPE" => Some("rail"),
-            "DEFAULT_CONTAINERTYPE" => Some("container"),
-            _ => None,
-        };
         let any = if person { "pedestrian" } else { "passenger" };
-        let class = || origins(name).find_map(default).unwrap_or(any);
+        let own = |name| OWN.iter().find(|(own, _)| *own == name).map(|(_, class)| *class);
+        let class = || origins(name).find_map(own).unwrap_or(any);
         let known = origins(name).find_map(|name| self.known.get(name));
         known.map_or_else(|| of_class(name, class()), |known| SumoType { name: name.to_owned(), ..known.clone() })
     }
@@ -102,6 +101,16 @@ fn of_class(name: &str, class: &str) -> SumoType {
         decel,
     }
 }
+
+/// The types that SUMO itself has, and the vehicle class of each.
+const OWN: [(&str, &str); 6] = [
+    ("DEFAULT_VEHTYPE", "passenger"),
+    ("DEFAULT_PEDTYPE", "pedestrian"),
+    ("DEFAULT_BIKETYPE", "bicycle"),
+    ("DEFAULT_TAXITYPE", "taxi"),
+    ("DEFAULT_RAILTYPE", "rail"),
+    ("DEFAULT_CONTAINERTYPE", "container"),
+];
 
 /// SUMO's defaults by vehicle class, as SUMO 1.28 tells them: length and width in m, mass in kg, `emergencyDecel` and
 /// `decel` in m/s². A class that is not here has those of the first.

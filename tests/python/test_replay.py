@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import json
+import os
 import re
 import signal
 from pathlib import Path
@@ -158,6 +159,28 @@ def test_a_missing_recording_is_named(scenario: Copy, tmp_path: Path) -> None:
     status, message = replay(scenario("rear_end"), tmp_path / "none.xml", tmp_path / "out")
     assert (status, message.count("\n")) == (2, 1)
     assert "none.xml: No such file" in message
+
+
+def test_a_pipe_is_refused_at_once(scenario: Copy, tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    status, message = replay(scenario("rear_end"), pipe, tmp_path / "out")
+    assert (status, message.count("\n")) == (2, 1)
+    assert "pipe" in message and "has to be a file" in message
+
+
+def test_types_that_no_file_defines_are_told(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    recording = tmp_path / "fcd.xml"
+    types = ["", ' type="DEFAULT_VEHTYPE"', ' type="car"', *(f' type="{letter}"' for letter in "fbcade")]
+    states = [f'<vehicle id="{number}" x="{number}9" y="1" angle="0" speed="0"{its}/>' for number, its in enumerate(types)]
+    recording.write_text(f'<fcd-export><timestep time="0">{"".join(states)}</timestep></fcd-export>')
+    defined = tmp_path / "types.xml"
+    defined.write_text('<routes><vType id="car"/></routes>')
+    net = config.with_suffix(".net.xml")
+    done = closecall("replay", recording, "--net", net, "--route-files", defined, "--out", tmp_path / "out")
+    told = [line for line in done.stdout.splitlines() if line.startswith("types ")]
+    assert [line.split(":")[0] for line in told] == ['types (none), "a", "b", "c", "d" and 2 more'], done.stderr
 
 
 def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
