@@ -173,7 +173,9 @@ def test_types_that_no_file_defines_are_told(scenario: Copy, tmp_path: Path) -> 
     config = scenario("rear_end")
     recording = tmp_path / "fcd.xml"
     types = ["", ' type="DEFAULT_VEHTYPE"', ' type="car"', *(f' type="{letter}"' for letter in "fbcade")]
-    states = [f'<vehicle id="{number}" x="{number}9" y="1" angle="0" speed="0"{its}/>' for number, its in enumerate(types)]
+    states = [
+        f'<vehicle id="{number}" x="{number}9" y="1" angle="0" speed="0"{its}/>' for number, its in enumerate(types)
+    ]
     recording.write_text(f'<fcd-export><timestep time="0">{"".join(states)}</timestep></fcd-export>')
     defined = tmp_path / "types.xml"
     defined.write_text('<routes><vType id="car"/></routes>')
