@@ -1,11 +1,13 @@
 //! Where a road user will go while it brakes: the poses along its path.
 //!
 //! A pose is what SUMO's is: the chord from the rear to the front bumper, both on the path. [`straight`] and [`arc`]
-//! need nothing but the state, [`lanes`] the net and the route; the latter lays a [`track::Track`] once and follows it.
+//! need nothing but the state, [`lanes`] the net and the route; the latter lays a [`track::Track`] once and follows it; what stands on
+//! that is in `poses`.
 
 pub mod arc;
 mod beside;
 pub mod lanes;
+mod poses;
 mod segment;
 pub mod straight;
 pub mod track;

@@ -10,65 +10,16 @@
 //! Cohen et al. 1995, in strips, so that a wide scene does not make it quadratic). `closecall study --only candidates`
 //! compares it with all pairs, a grid, a plain sweep, parry2d's and rstar's trees.
 
+mod area;
+
 use std::ops::Range;
 
-use crate::geometry::{Bounds, Point, Vector};
+pub use area::{Area, Circle};
+
+use crate::geometry::{Bounds, Vector};
 use crate::table::{fill, make_room};
 use crate::team::Team;
 use crate::units::Metre;
-
-/// What a road user may cover until it stands, whichever way it turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Circle {
-    /// Centre, x.
-    pub x: Metre,
-    /// Centre, y.
-    pub y: Metre,
-    /// Radius: own stopping distance + half diagonal + ε.
-    pub radius: Metre,
-}
-
-/// Where a road user stays until it stands: within the box, and within the circle around the middle of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Area {
-    /// The box.
-    pub bounds: Bounds,
-    /// The circle's radius; infinite where the box alone decides.
-    pub radius: Metre,
-}
-
-impl Area {
-    /// What meets nothing.
-    pub const NOWHERE: Self = Self { bounds: Bounds::EMPTY, radius: 0.0 };
-
-    /// Whether two areas meet.
-    pub fn meets(&self, other: &Self) -> bool {
-        let (middle, other_middle) = (self.middle(), other.middle());
-        let reach = self.radius + other.radius;
-        self.bounds.meet(&other.bounds) && (middle - other_middle).norm_squared() <= reach * reach
-    }
-
-    fn middle(&self) -> Point {
-        self.bounds.low + self.size() / 2.0
-    }
-
-    fn size(&self) -> Vector {
-        self.bounds.high - self.bounds.low
-    }
-}
-
-impl From<Circle> for Area {
-    fn from(circle: Circle) -> Self {
-        let (middle, reach) = (Point::new(circle.x, circle.y), Vector::new(circle.radius, circle.radius));
-        Self { bounds: Bounds { low: middle - reach, high: middle + reach }, radius: circle.radius }
-    }
-}
-
-impl From<Bounds> for Area {
-    fn from(bounds: Bounds) -> Self {
-        Self { bounds, radius: f64::INFINITY }
-    }
-}
 
 /// A box larger than this many mean ones is compared with everybody: it would make all strips high.
 const LARGE: f64 = 2.5;
@@ -359,6 +310,7 @@ fn insert(places: &mut [Place], from: usize, moves: &mut usize) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
     use proptest::prelude::*;
 
     fn all_pairs(areas: &[Area]) -> Vec<(u32, u32)> {
