@@ -44,6 +44,7 @@ pub mod stress;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod summary;
+pub mod sumo_type;
 pub mod sweep;
 pub mod table;
 pub mod team;

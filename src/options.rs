@@ -56,6 +56,17 @@ pub enum BrakeSystem {
     Pneumatic,
 }
 
+/// The driver's response time t1 in s, unless it is set (Guan et al. 2008, fig. 4).
+const RESPONSE_TIME: Second = 0.8;
+/// Brake coordination time t2 of hydraulic brakes in s, unless it is set (the paper's lower bound).
+const HYDRAULIC_DELAY: Second = 0.25;
+/// Time t3 in which the deceleration builds up in s, unless it is set.
+pub const BUILD_UP: Second = 0.1;
+/// Redundancy ε of μ in m, unless it is set (eq. 21).
+pub const EPSILON: Metre = 0.5;
+/// t1 + t2 of a driver with hydraulic brakes in s, unless one of them is set.
+pub const RESPONSE: Second = RESPONSE_TIME + HYDRAULIC_DELAY;
+
 /// The settings of the detector and of what is logged.
 #[derive(Clone, Debug, PartialEq, Args, Serialize)]
 pub struct Options {
@@ -72,19 +83,19 @@ pub struct Options {
     #[arg(long, value_enum, default_value = "emergency")]
     pub decel: Deceleration,
     /// The driver's response time t1 in s (Guan et al. 2008, fig. 4).
-    #[arg(long, value_name = "S", default_value_t = 0.8, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = RESPONSE_TIME, value_parser = not_negative)]
     pub response_time: Second,
     /// Brake coordination time t2 of hydraulic brakes in s (the paper's lower bound).
-    #[arg(long, value_name = "S", default_value_t = 0.25, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = HYDRAULIC_DELAY, value_parser = not_negative)]
     pub hydraulic_delay: Second,
     /// Brake coordination time t2 of pneumatic brakes in s (the paper's lower bound).
     #[arg(long, value_name = "S", default_value_t = 0.35, value_parser = not_negative)]
     pub pneumatic_delay: Second,
     /// Time t3 in which the deceleration builds up, in s.
-    #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = not_negative)]
+    #[arg(long, value_name = "S", default_value_t = BUILD_UP, value_parser = not_negative)]
     pub build_up: Second,
     /// Redundancy ε of μ in m (eq. 21).
-    #[arg(long, value_name = "M", default_value_t = 0.5, value_parser = not_negative)]
+    #[arg(long, value_name = "M", default_value_t = EPSILON, value_parser = not_negative)]
     pub epsilon: Metre,
     /// A pair is rear-end where the angle at the meeting place is below this, in rad (30°).
     #[arg(long, value_name = "RAD", default_value_t = std::f64::consts::FRAC_PI_6, value_parser = angle)]

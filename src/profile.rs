@@ -2,6 +2,7 @@
 
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
+use crate::sumo_type::SumoType;
 use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
@@ -38,27 +39,6 @@ pub struct Profile {
     pub mass: Kilogram,
     /// How it brakes.
     pub brakes: Brakes,
-}
-
-/// What SUMO says of a vehicle or person type.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SumoType {
-    /// The type's id.
-    pub name: String,
-    /// SUMO's `vClass`.
-    pub vehicle_class: String,
-    /// SUMO's `guiShape`.
-    pub shape: String,
-    /// Length in m.
-    pub length: Metre,
-    /// Width in m.
-    pub width: Metre,
-    /// Mass in kg.
-    pub mass: Kilogram,
-    /// `emergencyDecel` in m/s².
-    pub emergency_decel: MetrePerSecondSquared,
-    /// `decel` in m/s².
-    pub decel: MetrePerSecondSquared,
 }
 
 /// Classes whose vehicles have air brakes.
@@ -190,19 +170,7 @@ mod tests {
         for (name, width) in [("car", 1.5), ("car@b", 3.0), ("car@wide", 2.5)] {
             options.types.insert(name.to_owned(), TypeOptions { width: Some(width), ..TypeOptions::default() });
         }
-        let width = |name: &str| {
-            let sumo = SumoType {
-                name: name.to_owned(),
-                vehicle_class: "passenger".to_owned(),
-                shape: String::new(),
-                length: 5.0,
-                width: 1.8,
-                mass: 1500.0,
-                emergency_decel: 9.0,
-                decel: 4.5,
-            };
-            Profile::vehicle(&sumo, &options).width
-        };
+        let width = |name: &str| Profile::vehicle(&SumoType::car(name), &options).width;
         assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
         // Neither the type's own id nor the vehicle's is free of @.
         assert_eq!(["car@wide@a", "car@wide@b@1", "car@c@1"].map(width), [2.5, 2.5, 1.5]);

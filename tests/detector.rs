@@ -6,8 +6,9 @@ use closecall::detector::Detector;
 use closecall::encounter::{Encounter, Kind};
 use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
-use closecall::profile::{Profile, SumoType};
+use closecall::profile::Profile;
 use closecall::scene;
+use closecall::sumo_type::SumoType;
 use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.
@@ -16,16 +17,7 @@ fn car(options: &Options) -> Profile {
 }
 
 fn sumo_car() -> SumoType {
-    SumoType {
-        name: "car".to_owned(),
-        vehicle_class: "passenger".to_owned(),
-        shape: "passenger".to_owned(),
-        length: 5.0,
-        width: 2.0,
-        mass: 1500.0,
-        emergency_decel: 8.0,
-        decel: 4.5,
-    }
+    SumoType { width: 2.0, emergency_decel: 8.0, ..SumoType::car("car") }
 }
 
 fn options() -> Options {

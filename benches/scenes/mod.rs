@@ -5,8 +5,9 @@ use std::path::Path;
 
 use closecall::frame::State;
 use closecall::options::Options;
-use closecall::profile::{Profile, SumoType};
+use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
+use closecall::sumo_type::SumoType;
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 
@@ -14,17 +15,7 @@ pub const SCENES: [(&str, Draw); 3] = [("jam", jam), ("platoons", platoons), ("u
 
 /// SUMO's default car.
 pub fn car() -> Profile {
-    let sumo = SumoType {
-        name: "car".to_owned(),
-        vehicle_class: "passenger".to_owned(),
-        shape: "passenger".to_owned(),
-        length: 5.0,
-        width: 1.8,
-        mass: 1500.0,
-        emergency_decel: 9.0,
-        decel: 4.5,
-    };
-    Profile::vehicle(&sumo, &Options::default())
+    Profile::vehicle(&SumoType::car("car"), &Options::default())
 }
 
 /// Writes who is where (rectangles: centre, heading in rad, length, width), for programs that are not ours.

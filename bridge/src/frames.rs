@@ -2,23 +2,15 @@
 
 use closecall::frame::{ProfileIndex, State, UserIndex};
 use closecall::options::Options;
-use closecall::profile::{Profile, SumoType};
+use closecall::profile::Profile;
 use closecall::run::Run;
+use closecall::sumo_type::SumoType;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 
 use crate::error::exception;
-
-/// Length in m of a road user that comes without one: SUMO's passenger car.
-const LENGTH: f64 = 5.0;
-/// Its width in m.
-const WIDTH: f64 = 1.8;
-/// Its braking deceleration in m/s².
-const DECELERATION: f64 = 9.0;
-/// Its mass in kg.
-const MASS: f64 = 1500.0;
 
 /// Who was in the frames so far.
 pub struct Frames {
@@ -69,13 +61,17 @@ impl Frames {
                 }
                 Some(&(user, _)) => user,
                 None => {
-                    let size = [
-                        value(&length, row, LENGTH),
-                        value(&width, row, WIDTH),
-                        value(&decel, row, DECELERATION),
-                        value(&mass, row, MASS),
-                    ];
-                    let profile = self.profile(run, size)?;
+                    let car = SumoType::car("");
+                    let decel = value(&decel, row, car.emergency_decel);
+                    let sumo = SumoType {
+                        length: value(&length, row, car.length),
+                        width: value(&width, row, car.width),
+                        mass: value(&mass, row, car.mass),
+                        emergency_decel: decel,
+                        decel,
+                        ..car
+                    };
+                    let profile = self.profile(run, sumo)?;
                     run.enter(id, profile)
                 }
             };
@@ -99,18 +95,10 @@ impl Frames {
         Ok(())
     }
 
-    /// The profile of all road users of one size.
-    fn profile(&self, run: &mut Run, [length, width, decel, mass]: [f64; 4]) -> PyResult<ProfileIndex> {
-        let sumo = SumoType {
-            name: format!("{length} m x {width} m, {decel} m/s², {mass} kg"),
-            vehicle_class: "passenger".to_owned(),
-            shape: "passenger".to_owned(),
-            length,
-            width,
-            mass,
-            emergency_decel: decel,
-            decel,
-        };
-        run.roster.profile(Profile::vehicle(&sumo, &self.options)).map_err(exception)
+    /// The profile of all road users like this one.
+    fn profile(&self, run: &mut Run, sumo: SumoType) -> PyResult<ProfileIndex> {
+        let SumoType { length, width, decel, mass, .. } = sumo;
+        let name = format!("{length} m x {width} m, {decel} m/s², {mass} kg");
+        run.roster.profile(Profile::vehicle(&SumoType { name, ..sumo }, &self.options)).map_err(exception)
     }
 }

@@ -5,6 +5,8 @@ use closecall::braking::{self, Brakes, Braking, MuModel};
 use closecall::encounter::Kind;
 use closecall::geometry::rectangle::{self, Rectangle};
 use closecall::geometry::{Point, Vector};
+use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
+use closecall::sumo_type::SumoType;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
 use pyo3::exceptions::PyValueError;
@@ -60,14 +62,15 @@ pub fn mu<'py>(
     let given = |numbers: Option<Numbers>, default: f64| {
         numbers.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), default), |numbers| numbers.as_array().to_owned())
     };
+    let car = SumoType::car("");
     let columns = [
         ("speed", given(Some(speed), 0.0)),
         ("foe_speed", given(Some(foe_speed), 0.0)),
-        ("decel", given(decel, 9.0)),
-        ("foe_decel", given(foe_decel, 9.0)),
-        ("response_time", given(response_time, 1.05)),
-        ("build_up", given(build_up, 0.1)),
-        ("epsilon", given(epsilon, 0.5)),
+        ("decel", given(decel, car.emergency_decel)),
+        ("foe_decel", given(foe_decel, car.emergency_decel)),
+        ("response_time", given(response_time, RESPONSE)),
+        ("build_up", given(build_up, BUILD_UP)),
+        ("epsilon", given(epsilon, EPSILON)),
     ];
     for (name, values) in &columns {
         let above = matches!(*name, "decel" | "foe_decel");

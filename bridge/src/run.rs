@@ -65,13 +65,9 @@ pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>
     Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
 }
 
-/// The command line that starts closecall in a process of its own, which ends when its standard input does: that of this
-/// interpreter, from wherever it imports closecall, but never from the folder in which it is started.
+/// The command line that starts closecall in a process of its own, which ends when its standard input does.
 fn closecall(py: Python) -> PyResult<Vec<OsString>> {
-    const START: &str = "import sys; sys.path[:] = filter(None, sys.path); \
-                         from closecall._child import main; sys.exit(main())";
-    let python: OsString = py.import("sys")?.getattr("executable")?.extract()?;
-    Ok(vec![python, "-c".into(), START.into()])
+    py.import("closecall._start")?.call_method1("command", ("_child",))?.extract()
 }
 
 /// Runs the scenario to its end.

@@ -205,6 +205,15 @@ fn value(message: impl Into<String>) -> Error {
     Error::Value(message.into())
 }
 
+fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+/// Runs in processes of their own have working directories of their own.
+fn absolute(path: &Path) -> Result<PathBuf> {
+    std::path::absolute(path).map_err(|source| Error::file(path, source))
+}
+
 /// What the command returns where SUMO is not at hand.
 fn no_sumo() -> Result<()> {
     Err(value("this binary was built without Python and cannot run SUMO; `pip install closecall` gives one that can"))

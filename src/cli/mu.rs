@@ -6,7 +6,8 @@ use super::say;
 use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::encounter::Kind;
-use crate::options::{angle, not_negative, positive};
+use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, not_negative, positive};
+use crate::sumo_type::SumoType;
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Two road users that brake.
@@ -19,19 +20,19 @@ pub struct MuArgs {
     #[arg(long, value_name = "V", value_parser = not_negative)]
     foe_speed: MetrePerSecond,
     /// The ego's deceleration in m/s² (SUMO's emergencyDecel of a car).
-    #[arg(long, value_name = "A", default_value_t = 9.0, value_parser = positive)]
+    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
     decel: MetrePerSecondSquared,
     /// The foe's deceleration in m/s².
-    #[arg(long, value_name = "A", default_value_t = 9.0, value_parser = positive)]
+    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
     foe_decel: MetrePerSecondSquared,
     /// Response time t1 + t2 of both in s.
-    #[arg(long, value_name = "T", default_value_t = 1.05, value_parser = not_negative)]
+    #[arg(long, value_name = "T", default_value_t = RESPONSE, value_parser = not_negative)]
     response_time: Second,
     /// Build-up time t3 of both in s.
-    #[arg(long, value_name = "T3", default_value_t = 0.1, value_parser = not_negative)]
+    #[arg(long, value_name = "T3", default_value_t = BUILD_UP, value_parser = not_negative)]
     build_up: Second,
     /// Redundancy ε in m.
-    #[arg(long, value_name = "E", default_value_t = 0.5, value_parser = not_negative)]
+    #[arg(long, value_name = "E", default_value_t = EPSILON, value_parser = not_negative)]
     epsilon: Metre,
     /// Kind, which gives σ = cos α: 1 for rear_end, 0 for side, −1 for frontal.
     #[arg(long, value_enum, default_value = "rear_end")]

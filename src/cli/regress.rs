@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, no_sumo, say, value};
+use super::{Sumo, absolute, no_sumo, processors, say, value};
+use crate::Result;
 use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
-use crate::{Error, Result};
 
 /// Scenarios and how to compare them.
 #[derive(Args)]
@@ -85,13 +85,4 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
         junit::write(path, &reports)?;
     }
     Ok(reports.iter().map(Report::exit_status).max().unwrap_or_default())
-}
-
-fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-/// The runs have working directories of their own.
-fn absolute(path: &Path) -> Result<PathBuf> {
-    std::path::absolute(path).map_err(|source| Error::file(path, source))
 }

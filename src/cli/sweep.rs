@@ -9,7 +9,7 @@ use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::run::{RunArgs, request};
-use super::{Command, Stop, Sumo, no_sumo, parse, say, usage, value};
+use super::{Command, Stop, Sumo, absolute, no_sumo, parse, processors, say, usage, value};
 use crate::sweep::{Seeds, Sweep, Task, Vary};
 use crate::units::counted;
 use crate::{Error, Result};
@@ -250,14 +250,6 @@ fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary]) -> Result<()> {
         }
     }
     Ok(())
-}
-
-fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
-fn absolute(path: &Path) -> Result<PathBuf> {
-    std::path::absolute(path).map_err(|source| Error::file(path, source))
 }
 
 fn text(path: &Path) -> Result<String> {

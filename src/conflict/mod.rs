@@ -210,7 +210,8 @@ mod tests {
     use super::*;
     use crate::frame::State;
     use crate::options::Options;
-    use crate::profile::{Profile, SumoType};
+    use crate::profile::Profile;
+    use crate::sumo_type::SumoType;
 
     struct Scene {
         tracker: Tracker,
@@ -221,16 +222,7 @@ mod tests {
     impl Scene {
         fn new() -> Self {
             let mut roster = Roster::default();
-            let sumo = SumoType {
-                name: "car".to_owned(),
-                vehicle_class: "passenger".to_owned(),
-                shape: "passenger".to_owned(),
-                length: 5.0,
-                width: 2.0,
-                mass: 1500.0,
-                emergency_decel: 9.0,
-                decel: 4.5,
-            };
+            let sumo = SumoType { width: 2.0, ..SumoType::car("car") };
             let profile = roster.profile(Profile::vehicle(&sumo, &Options::default())).unwrap();
             let users = [roster.enter("a", profile), roster.enter("b", profile)];
             Self { tracker: Tracker::default(), roster, users }

@@ -7,6 +7,7 @@ use super::outcome::{Outcome, Row, SeedSummary};
 use super::permutation::adjusted_p;
 use super::scenario::{Settings, Tolerance};
 use crate::encounter::{Kind, Severity};
+use crate::statistics::quantile;
 
 /// The percentiles of a distribution that are compared.
 const PERCENTILES: [(f64, &str); 3] = [(0.1, "10 %"), (0.5, "median"), (0.9, "90 %")];
@@ -160,10 +161,7 @@ impl Measure {
 fn percentile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
     let mut sorted = values.collect::<Vec<_>>();
     sorted.sort_by(f64::total_cmp);
-    let last = sorted.len().checked_sub(1)?;
-    let place = share * last as f64;
-    let (below, above) = (sorted[place.floor() as usize], sorted[(place.ceil() as usize).min(last)]);
-    Some(below + (above - below) * place.fract())
+    quantile(&sorted, share)
 }
 
 #[cfg(test)]

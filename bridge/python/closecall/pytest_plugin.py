@@ -10,7 +10,6 @@ from __future__ import annotations
 import csv
 import json
 import subprocess
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from os import PathLike
@@ -19,6 +18,7 @@ from typing import Any, Protocol
 
 import pytest
 
+from . import _start
 from ._closecall import scenario
 
 
@@ -83,7 +83,7 @@ def closecall_scenario(request: pytest.FixtureRequest, tmp_path_factory: pytest.
         folder, words, own_options, seed = scenario(str(request.path.parent / Path(path)))
         log = tmp_path_factory.mktemp("closecall")
         words += ["--quiet", "--out", str(log), f"--seed={seed}", *option_words(options)]
-        command = [sys.executable, "-c", START, *words, "--", *own_options, *sumo_options]
+        command = [*_start.command("__main__"), *words, "--", *own_options, *sumo_options]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             lines = [line for line in done.stderr.splitlines() if line.startswith("closecall: ")]
@@ -92,10 +92,6 @@ def closecall_scenario(request: pytest.FixtureRequest, tmp_path_factory: pytest.
         return read(log)
 
     return run
-
-
-# Not from the working directory, which is the scenario's folder.
-START = "import sys; sys.path[:] = filter(None, sys.path); from closecall.__main__ import main; sys.exit(main())"
 
 
 def option_words(options: dict[str, Any]) -> list[str]:

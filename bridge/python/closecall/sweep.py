@@ -10,7 +10,6 @@ from __future__ import annotations
 import logging
 import os
 import subprocess
-import sys
 import tempfile
 import threading
 import uuid
@@ -18,6 +17,7 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
+from . import _start
 from ._closecall import finish_run
 
 Task = tuple[str, list[str], str]
@@ -25,9 +25,6 @@ Task = tuple[str, list[str], str]
 
 ASKED_EVERY = 0.2
 """Seconds after which Dask is asked again whether a run is still wanted."""
-
-START = "import sys; sys.path[:] = filter(None, sys.path); from closecall._child import main; sys.exit(main())"
-"""Starts closecall from wherever this interpreter imports it, never from the working folder."""
 
 
 def results(
@@ -88,7 +85,7 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
     Path(folder).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=folder) as unfinished:
         log, told = Path(unfinished, "log"), Path(unfinished, "stderr.txt")
-        command = [sys.executable, "-c", START, "run", "--quiet", "--out", str(log), *words]
+        command = [*_start.command("_child"), "run", "--quiet", "--out", str(log), *words]
         with (
             told.open("wb") as stderr,
             subprocess.Popen(

@@ -1,0 +1,76 @@
+//! What SUMO says of a type of road users; of one that says nothing itself, SUMO's defaults by vehicle class.
+
+use crate::units::{Kilogram, Metre, MetrePerSecondSquared};
+
+/// What SUMO says of a vehicle or person type.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SumoType {
+    /// The type's id.
+    pub name: String,
+    /// SUMO's `vClass`.
+    pub vehicle_class: String,
+    /// SUMO's `guiShape`.
+    pub shape: String,
+    /// Length in m.
+    pub length: Metre,
+    /// Width in m.
+    pub width: Metre,
+    /// Mass in kg.
+    pub mass: Kilogram,
+    /// `emergencyDecel` in m/s².
+    pub emergency_decel: MetrePerSecondSquared,
+    /// `decel` in m/s².
+    pub decel: MetrePerSecondSquared,
+}
+
+impl SumoType {
+    /// A type of this vehicle class that says nothing else; a class that SUMO does not have is the first, a passenger car.
+    pub fn of_class(name: &str, class: &str) -> Self {
+        let known = CLASSES.iter().find(|(known, ..)| *known == class).unwrap_or(&CLASSES[0]);
+        let (_, length, width, mass, emergency_decel, decel) = *known;
+        let shape = if class == "trailer" { "truck/trailer" } else { class }.to_owned();
+        Self {
+            name: name.to_owned(),
+            vehicle_class: class.to_owned(),
+            shape,
+            length,
+            width,
+            mass,
+            emergency_decel,
+            decel,
+        }
+    }
+
+    /// A passenger car.
+    pub fn car(name: &str) -> Self {
+        Self::of_class(name, CLASSES[0].0)
+    }
+}
+
+/// SUMO's defaults by vehicle class, as SUMO 1.28 tells them: length and width in m, mass in kg, `emergencyDecel` and
+/// `decel` in m/s². A class that is not here has those of the first.
+const CLASSES: [(&str, f64, f64, f64, f64, f64); 23] = [
+    ("passenger", 5.0, 1.8, 1500.0, 9.0, 4.5),
+    ("emergency", 6.5, 2.16, 5000.0, 9.0, 4.5),
+    ("pedestrian", 0.215, 0.478, 70.0, 5.0, 2.0),
+    ("bus", 12.0, 2.5, 12000.0, 7.0, 4.0),
+    ("coach", 14.0, 2.6, 25000.0, 7.0, 4.0),
+    ("delivery", 6.5, 2.16, 5000.0, 9.0, 4.5),
+    ("truck", 7.1, 2.4, 4500.0, 7.0, 4.0),
+    ("trailer", 16.5, 2.55, 13000.0, 7.0, 4.0),
+    ("tram", 22.0, 2.4, 37900.0, 7.0, 3.0),
+    ("rail_urban", 109.5, 3.0, 59000.0, 7.0, 3.0),
+    ("rail", 135.0, 2.84, 79500.0, 5.0, 1.3),
+    ("rail_electric", 200.0, 2.95, 83000.0, 5.0, 1.3),
+    ("rail_fast", 200.0, 2.95, 409000.0, 5.0, 1.3),
+    ("motorcycle", 2.2, 0.9, 200.0, 10.0, 10.0),
+    ("moped", 2.1, 0.78, 80.0, 10.0, 7.0),
+    ("bicycle", 1.6, 0.65, 10.0, 7.0, 3.0),
+    ("ship", 17.0, 4.0, 100000.0, 1.0, 0.15),
+    ("container", 6.096, 2.438, 1500.0, 9.0, 4.5),
+    ("subway", 109.5, 3.0, 59000.0, 9.0, 4.5),
+    ("aircraft", 72.7, 79.8, 1500.0, 9.0, 4.5),
+    ("wheelchair", 1.2, 0.72, 90.0, 5.0, 2.0),
+    ("scooter", 1.2, 0.5, 10.0, 7.0, 3.0),
+    ("drone", 0.5, 0.5, 1500.0, 9.0, 4.5),
+];
