@@ -4,6 +4,7 @@
 //! crate: the same pictures on every machine.
 
 mod charts;
+pub(crate) mod file;
 pub(crate) mod font;
 mod map;
 
@@ -11,7 +12,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use plotters::coord::Shift;
-use plotters::prelude::{BitMapBackend, DrawingArea, DrawingBackend, IntoDrawingArea, RGBColor, SVGBackend, WHITE};
+use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor, WHITE};
 
 use crate::encounter::Severity;
 use crate::report::{self, Conflicts};
@@ -81,23 +82,20 @@ fn picture(
         Format::Png => format!("{name}.png"),
         Format::Svg => format!("{name}.svg"),
     });
-    // Drawn in memory or opened first, so that what is wrong with the file is told in the system's own words.
-    fs::File::create(&path).map_err(|source| Error::file(&path, source))?;
-    let drawn = match format {
-        Format::Png => on(BitMapBackend::new(&path, size).into_drawing_area(), conflicts, &chart),
-        Format::Svg => on(SVGBackend::new(&path, size).into_drawing_area(), conflicts, &chart),
-    };
-    drawn.map_err(|said| Error::content(&path, format!("it cannot be drawn: {said}")))?;
+    match format {
+        Format::Png => file::png(&path, size, |area| on(&area, conflicts, &chart))?,
+        Format::Svg => file::svg(&path, size, |area| on(&area, conflicts, &chart))?,
+    }
     Ok(path)
 }
 
 fn on<B: DrawingBackend>(
-    area: DrawingArea<B, Shift>,
+    area: &DrawingArea<B, Shift>,
     conflicts: &Conflicts,
     chart: &impl Chart,
 ) -> std::result::Result<(), String> {
     area.fill(&WHITE).map_err(said)?;
-    chart.draw(&area, conflicts)?;
+    chart.draw(area, conflicts)?;
     area.present().map_err(said)
 }
 

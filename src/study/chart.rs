@@ -7,8 +7,8 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use super::{Axis, Measurement, scenes};
-use crate::plot::font;
-use crate::{Error, Result};
+use crate::Result;
+use crate::plot::{file, font};
 
 const FONT: &str = font::NAME;
 
@@ -36,16 +36,9 @@ pub(super) fn draw(folder: &Path, axis: Axis, rows: &[Measurement]) -> Result<()
     let columns = panels.len().clamp(1, MOST_COLUMNS);
     let lines = panels.len().div_ceil(columns) as u32;
     let size = (PANEL.0 * columns as u32, PANEL.1 * lines + LEGEND);
-    for ending in ["svg", "png"] {
-        let path = folder.join(format!("{}.{ending}", axis.name()));
-        let drawn = if ending == "svg" {
-            page(SVGBackend::new(&path, size).into_drawing_area(), axis, &panels, columns, rows)
-        } else {
-            page(BitMapBackend::new(&path, size).into_drawing_area(), axis, &panels, columns, rows)
-        };
-        drawn.map_err(|error| Error::content(&path, error.to_string()))?;
-    }
-    Ok(())
+    let name = |ending: &str| folder.join(format!("{}.{ending}", axis.name()));
+    file::svg(&name("svg"), size, |area| page(area, axis, &panels, columns, rows))?;
+    file::png(&name("png"), size, |area| page(area, axis, &panels, columns, rows))
 }
 
 /// One panel: a title and its points.

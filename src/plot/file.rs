@@ -1,0 +1,50 @@
+//! A picture, drawn in memory, as a file: what is wrong with the file is told in the system's own words.
+
+use std::fmt::Display;
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::Path;
+
+use plotters::coord::Shift;
+use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend};
+
+use crate::{Error, Result};
+
+/// Pixels of red, green and blue, a byte each, as PNG.
+///
+/// # Errors
+/// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
+pub(crate) fn png<E: Display>(
+    path: &Path,
+    size: (u32, u32),
+    draw: impl FnOnce(DrawingArea<BitMapBackend<'_>, Shift>) -> std::result::Result<(), E>,
+) -> Result<()> {
+    let mut pixels = vec![0; 3 * size.0 as usize * size.1 as usize];
+    draw(BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area()).map_err(|said| undrawn(path, &said))?;
+    let file = File::create(path).map_err(|source| Error::file(path, source))?;
+    let mut encoder = png::Encoder::new(BufWriter::new(file), size.0, size.1);
+    encoder.set_color(png::ColorType::Rgb);
+    let written = encoder.write_header().and_then(|mut writer| {
+        writer.write_image_data(&pixels)?;
+        writer.finish()
+    });
+    written.map_err(|error| Error::file(path, error.into()))
+}
+
+/// Lines and text as SVG.
+///
+/// # Errors
+/// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
+pub(crate) fn svg<E: Display>(
+    path: &Path,
+    size: (u32, u32),
+    draw: impl FnOnce(DrawingArea<SVGBackend<'_>, Shift>) -> std::result::Result<(), E>,
+) -> Result<()> {
+    let mut text = String::new();
+    draw(SVGBackend::with_string(&mut text, size).into_drawing_area()).map_err(|said| undrawn(path, &said))?;
+    fs::write(path, text).map_err(|source| Error::file(path, source))
+}
+
+fn undrawn(path: &Path, said: &impl Display) -> Error {
+    Error::content(path, format!("it cannot be drawn: {said}"))
+}
