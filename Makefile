@@ -84,7 +84,7 @@ $(VENV)/wheel: $(VENV)/made $(SOURCES)
 	rm -rf target/wheels
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python $(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
 	$(BIN)/pip install --quiet --disable-pip-version-check --force-reinstall --no-deps target/wheels/*.whl
-	$(BIN)/pip install --quiet --disable-pip-version-check "$$(ls target/wheels/*.whl)[sumo]"
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile "$$(ls target/wheels/*.whl)[sumo]"
 	touch $@
 
 $(VENV)/tests: $(VENV)/made tests/requirements.txt
