@@ -80,6 +80,7 @@ $(VENV)/made:
 	$(BIN)/pip install --quiet --disable-pip-version-check "maturin>=1.9,<2"
 	touch $@
 
+# --no-compile: of SUMO's hundreds of tools hardly one is ever imported.
 $(VENV)/wheel: $(VENV)/made $(SOURCES)
 	rm -rf target/wheels
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python $(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels

@@ -17,16 +17,15 @@ from conftest import closecall, python, rows
 from playwright import sync_api as playwright
 
 CHROMIUM = shutil.which("chromium")
-# A browser is the system's to install; .ci/run does.
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed: apt install chromium")
-
 SIZES = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 Copy = Callable[[str], Path]
 
 
 @pytest.fixture(scope="module")
 def browser() -> Iterator[Any]:
-    """Headless Chromium."""
+    """Headless Chromium, which is the system's to install; .ci/run does."""
+    if CHROMIUM is None:
+        pytest.skip("Chromium is not installed: apt install chromium")
     with playwright.sync_playwright() as driver:
         # Root needs it, and in a container there is no other sandbox to be had.
         browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
@@ -353,3 +352,11 @@ def test_plot_names_what_it_cannot_write(tmp_path: Path) -> None:
     done = closecall("plot", made_up(tmp_path / "log", 2), "-o", "/proc/plots")
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert "/proc/plots: " in done.stderr
+
+
+@pytest.mark.parametrize("form", ["png", "svg"])
+def test_plot_says_when_the_disk_is_full(form: str, tmp_path: Path) -> None:
+    (tmp_path / f"map.{form}").symlink_to("/dev/full")
+    done = closecall("plot", made_up(tmp_path / "log", 2), "-o", tmp_path, "--format", form)
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert f"map.{form}: " in done.stderr and "No space left" in done.stderr
