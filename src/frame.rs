@@ -7,6 +7,7 @@
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 use crate::Result;
 use crate::geometry::polygon::Polygon;
@@ -28,8 +29,8 @@ pub struct ProfileIndex(pub u32);
 /// Everybody in the scene, by [`UserIndex`].
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
-    /// SUMO's.
-    ids: Vec<Arc<str>>,
+    /// SUMO's; short ones stand in the table itself.
+    ids: Vec<SmolStr>,
     types: Vec<ProfileIndex>,
     /// Those of obstacles, in convex parts.
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
@@ -95,7 +96,7 @@ impl Roster {
     }
 
     /// SUMO's id of this road user.
-    pub fn id(&self, user: UserIndex) -> &Arc<str> {
+    pub fn id(&self, user: UserIndex) -> &SmolStr {
         &self.ids[user.0 as usize]
     }
 

@@ -266,6 +266,7 @@ impl Run {
         for user in self.leaving.drain(..) {
             self.roster.leave(user);
             self.detector.forget(user);
+            self.outputs.forget(user);
         }
         Ok(())
     }

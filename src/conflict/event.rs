@@ -1,8 +1,7 @@
 //! One conflict: how the steps of a pair become its extremes.
 
-use std::sync::Arc;
-
 use serde::Serialize;
+use smol_str::SmolStr;
 
 use super::Stance;
 use super::pet::Pet;
@@ -23,9 +22,9 @@ const SAME_MARGIN: Metre = 1e-9;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// SUMO's id of the ego.
-    pub ego: Arc<str>,
+    pub ego: SmolStr,
     /// SUMO's id of the foe.
-    pub foe: Arc<str>,
+    pub foe: SmolStr,
     /// The ego's type.
     #[serde(skip)]
     pub ego_profile: ProfileIndex,

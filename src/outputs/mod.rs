@@ -13,7 +13,7 @@ use self::ssm::Ssm;
 use self::trajectories::Trajectories;
 use crate::conflict::Conflict;
 use crate::encounter::Placement;
-use crate::frame::{Frame, Roster};
+use crate::frame::{Frame, Roster, UserIndex};
 use crate::inputs::Input;
 use crate::net::Net;
 use crate::{Error, Result};
@@ -106,6 +106,13 @@ impl Outputs {
         match (&mut self.trajectories, net) {
             (Some(trajectories), Some(net)) => trajectories.step(frame, roster, net),
             _ => Ok(()),
+        }
+    }
+
+    /// Forgets a road user that has left the scene.
+    pub(crate) fn forget(&mut self, user: UserIndex) {
+        if let Some(trajectories) = &mut self.trajectories {
+            trajectories.forget(user);
         }
     }
 

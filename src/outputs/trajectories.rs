@@ -5,13 +5,12 @@
 //! front along its heading. Persons are no vehicles to SSAM and are left out.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
 use super::OutputFile;
 use crate::Result;
-use crate::frame::{Frame, Roster, Row};
+use crate::frame::{Frame, Roster, Row, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::net::{LaneIndex, Net};
@@ -44,7 +43,6 @@ pub struct Trajectories {
 /// A vehicle that was seen before.
 #[derive(Debug)]
 struct Known {
-    id: Arc<str>,
     number: i32,
     time: Second,
     speed: MetrePerSecond,
@@ -74,6 +72,13 @@ impl Trajectories {
         self.placed.insert(row, lane);
     }
 
+    /// Forgets a vehicle that has left: its index may be given to another.
+    pub fn forget(&mut self, user: UserIndex) {
+        if let Some(slot) = self.known.get_mut(user.0 as usize) {
+            *slot = None;
+        }
+    }
+
     /// Appends a step.
     pub fn step(&mut self, frame: &Frame, roster: &Roster, net: &Net) -> Result<()> {
         self.record.clear();
@@ -85,15 +90,13 @@ impl Trajectories {
             if profile.category != Category::Vehicle {
                 continue;
             }
-            let id = roster.id(*user);
             let slot = &mut self.known[user.0 as usize];
-            // An index may have been given to another vehicle meanwhile.
-            let before = slot.take().filter(|known| Arc::ptr_eq(&known.id, id));
+            let before = slot.take();
             let acceleration =
                 before.as_ref().map_or(0.0, |before| (state.speed - before.speed) / (frame.time - before.time));
             let number = before.map_or(self.numbers, |before| before.number);
             self.numbers = self.numbers.max(number + 1);
-            *slot = Some(Known { id: id.clone(), number, time: frame.time, speed: state.speed });
+            *slot = Some(Known { number, time: frame.time, speed: state.speed });
             let front = Point::new(state.x, state.y);
             let rear = front - direction(state.heading) * profile.length;
             let lane =

@@ -4,9 +4,9 @@
 //! model's result is the path model's doing.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
+use smol_str::SmolStr;
 
 use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
@@ -45,7 +45,7 @@ pub(super) enum Truth {
 }
 
 /// Both ids, the smaller first.
-pub(super) type Pair = (Arc<str>, Arc<str>);
+pub(super) type Pair = (SmolStr, SmolStr);
 
 /// The pair of two road users.
 pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> Pair {
