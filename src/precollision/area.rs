@@ -29,9 +29,14 @@ impl Area {
 
     /// Whether two areas meet.
     pub fn meets(&self, other: &Self) -> bool {
+        self.bounds.meet(&other.bounds) && self.circles_meet(other)
+    }
+
+    /// Whether two do whose boxes meet.
+    pub(super) fn circles_meet(&self, other: &Self) -> bool {
         let (middle, other_middle) = (self.middle(), other.middle());
         let reach = self.radius + other.radius;
-        self.bounds.meet(&other.bounds) && (middle - other_middle).norm_squared() <= reach * reach
+        (middle - other_middle).norm_squared() <= reach * reach
     }
 
     fn middle(&self) -> Point {
