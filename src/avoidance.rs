@@ -77,54 +77,52 @@ fn straight((ego, velocity): (&Rectangle, Vector), (foe, foe_velocity): (&Rectan
     let ahead = velocity / speed;
     let between = foe.centre - ego.centre;
     let (mut from, mut to) = (0.0, 2.0 * HORIZON);
-    // Only while `room + change · time` is not negative.
+    // Only while `room + change · time` is not negative. Which of the three it is no processor could guess.
     let mut while_positive = |room: f64, change: f64| {
-        if change != 0.0 {
-            let time = -room / change;
-            if change > 0.0 { from = f64::max(from, time) } else { to = f64::min(to, time) }
-        } else if room < 0.0 {
-            to = f64::NEG_INFINITY;
-        }
+        let time = -room / change;
+        from = f64::max(from, if change > 0.0 { time } else { f64::NEG_INFINITY });
+        to = f64::min(to, if change < 0.0 { time } else { f64::INFINITY });
+        to = if change == 0.0 && room < 0.0 { f64::NEG_INFINITY } else { to };
     };
-    let mut lower = [Line::default(); 5];
-    let mut upper = [Line { way: f64::INFINITY, speed: 0.0 }; 4];
-    for (number, (normal, reach)) in normals(ego, foe).into_iter().enumerate() {
+    // The first of the lower ones is where the ego is.
+    let (mut lower, mut upper, mut lines) = ([Line::default(); 5], [Line::default(); 4], 0);
+    for (normal, reach) in normals(ego, foe) {
         let along = normal.dot(&ahead);
-        let normal = if along < 0.0 { -normal } else { normal };
+        let normal = normal * 1_f64.copysign(along);
         let (room, change, along) = (normal.dot(&between), normal.dot(&foe_velocity), along.abs());
         if along < SIDEWAYS {
             while_positive(reach - room, -change);
             while_positive(reach + room, change);
         } else {
-            lower[number + 1] = Line { way: (room - reach) / along, speed: change / along };
-            upper[number] = Line { way: (room + reach) / along, speed: change / along };
+            upper[lines] = Line { way: (room + reach) / along, speed: change / along };
+            lines += 1;
+            lower[lines] = Line { way: (room - reach) / along, speed: change / along };
         }
     }
-    for (low, up) in
-        lower.iter().flat_map(|low| upper.iter().map(move |up| (low, up))).filter(|(_, up)| up.way.is_finite())
-    {
-        while_positive(up.way - low.way, up.speed - low.speed);
+    let (lower, upper) = (&lower[..=lines], &upper[..lines]);
+    for up in upper {
+        lower.iter().for_each(|low| while_positive(up.way - low.way, up.speed - low.speed));
     }
     if from > to {
         return 0.0;
     }
     let needed = |time: Second| {
-        let time = time.clamp(from, to);
         let way = lower.iter().map(|line| line.way + line.speed * time).fold(0.0, f64::max);
         to_stay_behind(speed, time, way)
     };
-    let mut most = needed(from).max(needed(to));
+    // Those of these times that lie between both ends, where a line bends or takes over from another.
+    let (mut between, mut count) = ([0.0; 15], 0);
+    let mut add = |time: Second| {
+        between[count] = time;
+        count += usize::from(from < time && time < to);
+    };
     for (number, line) in lower.iter().enumerate() {
-        if speed > line.speed {
-            most = most.max(needed(2.0 * line.way / (speed - line.speed)));
-        }
+        add(if speed > line.speed { 2.0 * line.way / (speed - line.speed) } else { from });
         for other in &lower[..number] {
-            if line.speed != other.speed {
-                most = most.max(needed((other.way - line.way) / (line.speed - other.speed)));
-            }
+            add((other.way - line.way) / (line.speed - other.speed));
         }
     }
-    most
+    between[..count].iter().fold(needed(from).max(needed(to)), |most, time| most.max(needed(*time)))
 }
 
 /// A way that grows evenly over time.
@@ -159,13 +157,10 @@ fn narrow(mut needed: impl FnMut(Second) -> f64, from: Second, to: Second, most:
 /// The least constant deceleration with which a way is not passed before a time; 0 where it is not passed anyway.
 fn to_stay_behind(speed: MetrePerSecond, time: Second, way: Metre) -> MetrePerSecondSquared {
     let unbraked = speed * time;
-    if unbraked <= way {
-        0.0
-    } else if unbraked >= 2.0 * way {
-        speed * speed / (2.0 * way)
-    } else {
-        2.0 * (unbraked - way) / (time * time)
-    }
+    // Both, so that no processor has to guess which.
+    let (to_stand, to_wait) = (speed * speed / (2.0 * way), 2.0 * (unbraked - way) / (time * time));
+    let needed = if unbraked >= 2.0 * way { to_stand } else { to_wait };
+    if unbraked <= way { 0.0 } else { needed }
 }
 
 /// The ego's way at which it would touch something that stands; infinite where it does not within `furthest`.

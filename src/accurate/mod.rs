@@ -13,7 +13,7 @@ use crate::braking::{self, Brakes, Braking, MuModel};
 use crate::encounter::Kind;
 use crate::geometry::halves::Halves;
 use crate::geometry::polygon::Polygon;
-use crate::geometry::rectangle::{Rectangle, touches};
+use crate::geometry::rectangle::{Rectangle, plainly_touches};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector, cross};
 use crate::options::Options;
@@ -51,19 +51,14 @@ impl Cover {
 
     /// The same around one that goes straight on from one pose to another, with the box that is known.
     pub fn straight(first: &Pose, last: &Pose, length: Metre, width: Metre, bounds: Bounds) -> Self {
-        let (now, by) = (Rectangle::behind(first.front, first.axis, length, width), last.front - first.front);
-        let around = Rectangle {
-            centre: now.centre + by / 2.0,
-            half_length: now.half_length + by.dot(&now.axis).abs() / 2.0 + TOLERANCE,
-            half_width: now.half_width + cross(&now.axis, &by).abs() / 2.0 + TOLERANCE,
-            ..now
-        };
+        let now = Rectangle::behind(first.front, first.axis, length, width);
+        let around = now.swept(&(last.front - first.front), TOLERANCE);
         Self { bounds, around }
     }
 
     /// Whether the boxes of two meet.
     pub fn meets(&self, other: &Self) -> bool {
-        self.bounds.meet(&other.bounds) && touches(&self.around, &other.around)
+        self.bounds.meet(&other.bounds) && plainly_touches(&self.around, &other.around)
     }
 }
 
@@ -111,7 +106,7 @@ pub struct Mover<'a> {
     pub reach: Metre,
     /// The boxes around all that it covers on the way.
     pub cover: &'a Cover,
-    /// The same from each pose to the next.
+    /// The same from each pose to the next; none of who drives straight on, where a part is hardly smaller than the whole.
     pub covers: &'a [Cover],
     /// Speed in m/s.
     pub speed: MetrePerSecond,
@@ -183,8 +178,12 @@ pub fn drive_in_line(a: &Mover, b: &Mover) -> bool {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return false;
     }
-    let extent = (a.stop + a.length()).max(b.stop + b.length());
-    cross(&a.rectangle.axis, &b.rectangle.axis).abs() * extent <= PARALLEL
+    lead_alike([&a.rectangle.axis, &b.rectangle.axis], [a.stop + a.length(), b.stop + b.length()])
+}
+
+/// Whether two axes lead so much the same way, or the opposite one, that over neither of these lengths they deviate.
+pub fn lead_alike([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
+    cross(a, b).abs() * length.max(other) <= PARALLEL
 }
 
 /// Whether two that drive in line drive towards each other, or away from each other.

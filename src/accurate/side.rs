@@ -25,8 +25,10 @@ pub fn meet(
 ) -> Option<(bool, Meeting)> {
     halves.clear();
     let (of_a, of_b) = (0, numbers(a));
-    let mut touch = |numbers, ego: &Mover, foe: &Mover| {
-        ego.shape.is_empty().then(|| first_touch(halves, numbers, ego, foe)).flatten()
+    let mut touch = |numbers, ego: &Mover, foe: &Mover| match one_rectangle(foe) {
+        _ if !ego.shape.is_empty() => None,
+        Some(covered) if ego.straight => first_slide(ego, &covered),
+        _ => first_touch(halves, numbers, ego, foe),
     };
     let (as_a, as_b) = (touch([of_a, of_b], a, b), touch([of_b, of_a], b, a));
     let (a_is_ego, (ego_way, rectangle)) = match (as_a, as_b) {
@@ -55,6 +57,29 @@ fn numbers(of: &Mover) -> usize {
     of.poses.len() + 1
 }
 
+/// The area that a foe covers now and still needs to stop, where that is one rectangle.
+fn one_rectangle(foe: &Mover) -> Option<Rectangle> {
+    if !foe.straight || !foe.shape.is_empty() {
+        return None;
+    }
+    if foe.stop <= 0.0 {
+        return stands(foe).covered();
+    }
+    match foe.poses {
+        [now, next, ..] if next.way >= foe.stop => now.step_to(next, foe.length(), foe.width()).covered(),
+        _ => None,
+    }
+}
+
+/// The way of an ego that drives straight on to such an area, and its rectangle there.
+fn first_slide(ego: &Mover, covered: &Rectangle) -> Option<(Metre, Rectangle)> {
+    ego.poses.windows(2).find_map(|pair| {
+        let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
+        let enter = step.slide_to(covered)?.enter;
+        Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)))
+    })
+}
+
 /// The ego's way to the foe's area and its rectangle there; the steps of both may be known already, by their numbers from
 /// these on.
 fn first_touch(
@@ -63,11 +88,12 @@ fn first_touch(
     ego: &Mover,
     foe: &Mover,
 ) -> Option<(Metre, Rectangle)> {
-    for (index, (pair, cover)) in ego.poses.windows(2).zip(ego.covers).enumerate() {
-        // Of a straight way all parts have the box of the whole, and the boxes of both meet.
-        if !ego.straight && !cover.meets(foe.cover) {
+    for (index, pair) in ego.poses.windows(2).enumerate() {
+        let cover = ego.covers.get(index);
+        if cover.is_some_and(|cover| !cover.meets(foe.cover)) {
             continue;
         }
+        let cover = cover.unwrap_or(ego.cover);
         let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
         let mut enter = Touch::First.none();
         for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
@@ -87,16 +113,18 @@ fn first_touch(
 /// The steps near an ego's over which the foe covers the area that it is in now and still needs to stop, with their
 /// numbers; none of an obstacle.
 fn area<'a>(foe: &'a Mover, near: &'a Cover) -> impl Iterator<Item = (usize, Step)> + 'a {
-    let stands = foe.shape.is_empty() && foe.stop <= 0.0;
-    let now = Pose {
-        way: 0.0,
-        front: foe.rectangle.centre + foe.rectangle.axis * foe.rectangle.half_length,
-        axis: foe.rectangle.axis,
-    };
+    let standing = (foe.shape.is_empty() && foe.stop <= 0.0).then(|| (foe.poses.len(), stands(foe)));
     let before_it_stands = foe.poses.iter().take_while(|pose| pose.way < foe.stop);
-    let moving = before_it_stands.zip(steps(foe).enumerate()).zip(foe.covers);
-    let moving = moving.filter(|(_, cover)| foe.straight || cover.meets(near)).map(|((_, step), _)| step);
-    stands.then(|| (foe.poses.len(), now.step_to(&now, foe.length(), foe.width()))).into_iter().chain(moving)
+    let moving = before_it_stands.zip(steps(foe).enumerate()).map(|(_, step)| step);
+    let moving = moving.filter(|(index, _)| foe.covers.get(*index).is_none_or(|cover| cover.meets(near)));
+    standing.into_iter().chain(moving)
+}
+
+/// The step of who stands.
+fn stands(of: &Mover) -> Step {
+    let front = of.rectangle.centre + of.rectangle.axis * of.rectangle.half_length;
+    let now = Pose { way: 0.0, front, axis: of.rectangle.axis };
+    now.step_to(&now, of.length(), of.width())
 }
 
 /// The foe's way to the ego's rectangle at the meeting place, and its axis there.

@@ -88,18 +88,21 @@ impl Scene<'_> {
     }
 
     fn meet(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2], found: &mut Found) {
-        ways.begin_pair();
-        slots.iter().for_each(|slot| ways.see(self, *slot));
         let [a, b] = slots;
         let both_ahead = self.user(a).ahead && self.user(b).ahead;
         // Of two that can only go straight on phase 1 has compared the boxes.
         let is_known = self.leaves_out.circles_apart && both_ahead;
-        if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
-            work.ways_apart += 1;
-            return;
-        }
         if is_known && self.leaves_out.in_line && self.conflicts_only && self.keeps_distance(slots) {
             work.in_line += 1;
+            return;
+        }
+        if self.go_onward(slots) {
+            return self.meet_onward(work, slots, found);
+        }
+        ways.begin_pair();
+        slots.iter().for_each(|slot| ways.see(self, *slot));
+        if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
+            work.ways_apart += 1;
             return;
         }
         // The narrow boxes of who turns: the sweep needs them anyway.
@@ -108,44 +111,81 @@ impl Scene<'_> {
         }
         // An obstacle is nobody's ego.
         let slots = if self.is_obstacle(a) { [b, a] } else { slots };
-        let first = ways.mover(self, slots[0]);
-        let second = ways.mover(self, slots[1]);
-        let id = |slot: u32| self.roster.id(self.user(slot).index);
-        let a_is_smaller = || id(slots[0]) <= id(slots[1]);
-        if side::touch_now(&first, &second) {
-            let roles = Roles::new(!second.shape.is_empty() || a_is_smaller(), slots, [&first, &second]);
-            let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
-            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
-            return self.met(work, found, &roles, &meeting, true);
-        }
-        let in_line = accurate::drive_in_line(&first, &second);
-        if in_line && self.leaves_out.in_line {
-            work.in_line += 1;
-            work.frontal += u64::from(accurate::drive_opposed(&first, &second));
-            if let Some((ego_is_first, meeting)) = accurate::meet_in_one_dimension(&first, &second, &a_is_smaller) {
-                self.met(work, found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
-            }
-            return;
-        }
+        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
         if both_ahead && self.are_apart(ways, work, slots) {
             return;
         }
-        let first = ways.covered(self, slots[0]);
-        let second = ways.covered(self, slots[1]);
+        let (first, second) = (ways.covered(self, slots[0]), ways.covered(self, slots[1]));
+        self.sweep(work, slots, [&first, &second], in_line, found);
+    }
+
+    /// Settles a pair that touches now, or that drives in line. Of any other, whether it drives in line all the same.
+    pub(super) fn settle(
+        &self,
+        work: &mut Work,
+        slots: [u32; 2],
+        [first, second]: [&Mover; 2],
+        found: &mut Found,
+    ) -> Option<bool> {
+        if side::touch_now(first, second) {
+            let first_is_ego = !second.shape.is_empty() || self.has_smaller_id(slots);
+            let roles = Roles::new(first_is_ego, slots, [first, second]);
+            let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
+            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
+            self.met(work, found, &roles, &meeting, true);
+            return None;
+        }
+        let in_line = accurate::drive_in_line(first, second);
+        if !in_line || !self.leaves_out.in_line {
+            return Some(in_line);
+        }
+        work.in_line += 1;
+        work.frontal += u64::from(accurate::drive_opposed(first, second));
+        let met = accurate::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
+        if let Some((first_is_ego, meeting)) = met {
+            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
+        }
+        None
+    }
+
+    /// Where two whose ways are covered would meet.
+    pub(super) fn sweep(
+        &self,
+        work: &mut Work,
+        slots: [u32; 2],
+        [first, second]: [&Mover; 2],
+        in_line: bool,
+        found: &mut Found,
+    ) {
         work.swept += 1;
         let halves = &mut found.scratch.halves;
-        if let Some((ego_is_first, meeting)) = side::meet(halves, &first, &second, in_line, &a_is_smaller) {
-            self.met(work, found, &Roles::new(ego_is_first, slots, [&first, &second]), &meeting, false);
+        let met = side::meet(halves, first, second, in_line, &|| self.has_smaller_id(slots));
+        if let Some((first_is_ego, meeting)) = met {
+            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
         }
+    }
+
+    /// Whether the first of two has the smaller id.
+    fn has_smaller_id(&self, slots: [u32; 2]) -> bool {
+        let [first, second] = slots.map(|slot| self.roster.id(self.user(slot).index));
+        first <= second
     }
 
     /// Whether of two who go straight on one follows the other and keeps its distance, as most pairs do: they are settled
     /// before anything is laid out that the others need.
     #[inline(always)]
     fn keeps_distance(&self, slots: [u32; 2]) -> bool {
-        let [a, b] = &slots.map(|slot| self.mover(slot));
-        let follows = accurate::drive_in_line(a, b) && !accurate::drive_opposed(a, b);
-        if !follows || !exact::are_far_apart(&a.rectangle, &b.rectangle) {
+        let users = slots.map(|slot| self.user(slot));
+        let lengths = users.map(|user| user.stop + self.profile(user).length);
+        // As most pairs that cross do not: that is known before anything is laid out.
+        if !accurate::lead_alike(users.map(|user| &user.axis), lengths)
+            || slots.iter().any(|slot| self.is_obstacle(*slot))
+        {
+            return false;
+        }
+        let (a, b) = (&self.mover(slots[0]), &self.mover(slots[1]));
+        if accurate::drive_opposed(a, b) || !exact::are_far_apart(&a.rectangle, &b.rectangle) {
             return false;
         }
         let Some((a_is_ego, meeting)) = accurate::meet_in_one_dimension(a, b, &|| true) else { return true };

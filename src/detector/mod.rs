@@ -7,6 +7,7 @@
 mod look;
 mod measure;
 mod meet;
+mod onward;
 mod order;
 mod ways;
 
@@ -27,7 +28,7 @@ use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::team::Team;
-use crate::units::{Metre, MetrePerSecond};
+use crate::units::{Metre, MetrePerSecond, Radian};
 use look::{Reach, Sight};
 use order::Order;
 use ways::Ways;
@@ -117,6 +118,8 @@ struct Turning {
 struct User {
     /// Front-bumper centre.
     front: Point,
+    heading: Radian,
+    /// Where that leads.
     axis: Vector,
     z: Metre,
     speed: MetrePerSecond,
@@ -389,7 +392,7 @@ impl Detector {
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
-        let user = sight.user(row, &sight.see(row));
+        let user = sight.user(row, &sight.see(row), &User::NOBODY);
         self.scene(roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }

@@ -152,10 +152,7 @@ impl Ways {
         };
         make_room(covers, poses.len().max(1));
         covers.push(whole);
-        if laid.straight {
-            // A part of it is hardly smaller, and there are two at most.
-            covers.extend(poses.windows(2).map(|_| whole));
-        } else {
+        if !laid.straight {
             covers.extend(poses.windows(2).map(of));
         }
     }
@@ -187,7 +184,7 @@ impl Ways {
             mover.straight = laid.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
             if let Some(start) = laid.covers {
-                let steps = mover.poses.len().saturating_sub(1);
+                let steps = if laid.straight { 0 } else { mover.poses.len().saturating_sub(1) };
                 mover.cover = &kept.covers[start as usize];
                 mover.covers = &kept.covers[start as usize + 1..][..steps];
             }

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::sweep::normals;
 use super::{Bounds, Point, Vector, cross, exact, left_of};
 use crate::units::{Metre, Radian};
 
@@ -46,6 +47,17 @@ impl Rectangle {
             self.centre - along - across,
             self.centre + along - across,
         ]
+    }
+
+    /// The rectangle along the same axis that holds all that this one covers while it moves `by` without turning, larger by
+    /// `margin` on every side.
+    pub fn swept(&self, by: &Vector, margin: Metre) -> Self {
+        Self {
+            centre: self.centre + by / 2.0,
+            half_length: self.half_length + by.dot(&self.axis).abs() / 2.0 + margin,
+            half_width: self.half_width + cross(&self.axis, by).abs() / 2.0 + margin,
+            ..*self
+        }
     }
 
     /// The smallest rectangle along `axis` that covers all of these, larger by `margin` on every side; of none, none.
@@ -110,14 +122,13 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     exact::touches(a, b)
 }
 
-/// The same by separating axes in plain f64 (Gottschalk et al. 1996): what [`touches`] is compared with.
+/// The same by separating axes in plain f64 (Gottschalk et al. 1996): for boxes with room to spare.
 ///
-/// Measured (`cargo bench --bench library`): 15 ns, parry2d's `intersection_test` 30 ns.
+/// Measured (`cargo bench --bench library`): 3 ns, [`touches`] 7, parry2d's `intersection_test` 33.
 pub fn plainly_touches(a: &Rectangle, b: &Rectangle) -> bool {
     let between = b.centre - a.centre;
-    [a.axis, left_of(&a.axis), b.axis, left_of(&b.axis)]
-        .iter()
-        .all(|axis| between.dot(axis).abs() <= reach(a, axis) + reach(b, axis))
+    // All four at once: which of them is the one no processor could guess.
+    normals(a, b).into_iter().fold(true, |touch, (normal, reach)| touch & (between.dot(&normal).abs() <= reach))
 }
 
 /// How far a rectangle reaches from its centre along a direction.
@@ -128,7 +139,7 @@ fn reach(rectangle: &Rectangle, direction: &Vector) -> Metre {
 
 /// The smallest distance between two rectangles in m; 0 where they touch or overlap.
 ///
-/// Measured (`cargo bench --bench library`): 28 ns, parry2d's `distance` 91.
+/// Measured (`cargo bench --bench library`): 24 ns, parry2d's `distance` 60.
 pub fn distance(a: &Rectangle, b: &Rectangle) -> Metre {
     if touches(a, b) { 0.0 } else { room(a, b) }
 }

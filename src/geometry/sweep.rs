@@ -5,7 +5,7 @@
 //! detection using oriented bounding boxes"). A turn is cut into translations short enough for [`TOLERANCE`], by
 //! [`super::halves`].
 //!
-//! Measured (`cargo bench --bench library`): 66 ns for a pair of rectangles, parry2d's `cast_shapes` 211 ns; its
+//! Measured (`cargo bench --bench library`): 58 ns for a pair of rectangles, parry2d's `cast_shapes` 226 ns; its
 //! `cast_shapes_nonlinear`, which would turn too, has no cap on its iterations and was seen not to return.
 
 use super::outline::Outline;
@@ -58,10 +58,11 @@ pub fn translation(moving: &Outline, by: &Vector, fixed: &Outline) -> Option<Con
 /// The same of two rectangles.
 ///
 /// All four normals are the axes of both, so that the products of these are all there is to know, as in
-/// [`super::exact`]. Measured (`cargo bench --bench library`): 32 ns, 74 by their outlines.
+/// [`super::exact`]. Measured (`cargo bench --bench library`): 21 ns, 58 by their outlines.
 pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Contact> {
     let between = fixed.centre - moving.centre;
-    let mut contact = Contact { enter: 0.0, leave: f64::INFINITY };
+    // Where they enter and, negated, where they leave: the same operations, so that a processor does both at once.
+    let mut last = [0.0, f64::NEG_INFINITY];
     for (normal, reach) in normals(moving, fixed) {
         let (room, speed) = (between.dot(&normal), by.dot(&normal));
         if speed == 0.0 {
@@ -71,9 +72,13 @@ pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Conta
             continue;
         }
         let ahead = reach.copysign(speed);
-        contact.enter = contact.enter.max((room - ahead) / speed);
-        contact.leave = contact.leave.min((room + ahead) / speed);
+        for (last, room) in last.iter_mut().zip([room, -room]) {
+            let at = (room - ahead) / speed;
+            // One instruction, which `max` is not, and no NaN gets here.
+            *last = if at > *last { at } else { *last };
+        }
     }
+    let contact = Contact { enter: last[0], leave: -last[1] };
     (contact.enter <= contact.leave && contact.enter <= 1.0).then_some(contact)
 }
 

@@ -1,0 +1,59 @@
+//! Two that go straight on along their headings, on no lanes: what they cover is two rectangles, and to lay these for each
+//! pair takes less than to keep them.
+
+use super::{Found, Scene, User, Work};
+use crate::accurate::Mover;
+use crate::geometry::rectangle::plainly_touches;
+use crate::geometry::sweep::TOLERANCE;
+use crate::path::{Pose, straight};
+use crate::profile::Category;
+
+/// Poses where somebody is now, where it stands and ε further; who stands has fewer.
+struct Onward {
+    poses: [Pose; 3],
+    count: usize,
+}
+
+impl Onward {
+    fn of(user: &User, reach: f64) -> Self {
+        let now = straight::pose(user.front, user.axis, 0.0);
+        let mut onward = Self { poses: [now; 3], count: 1 };
+        for way in [user.stop, reach] {
+            if way > 0.0 {
+                onward.poses[onward.count] = straight::pose(user.front, user.axis, way);
+                onward.count += 1;
+            }
+        }
+        onward
+    }
+
+    fn poses(&self) -> &[Pose] {
+        &self.poses[..self.count]
+    }
+}
+
+impl Scene<'_> {
+    /// Whether both do, and phase 1 has compared the boxes around all that they cover.
+    pub(super) fn go_onward(&self, slots: [u32; 2]) -> bool {
+        let goes_onward = |user: &User| user.ahead && !user.on_lanes && user.category != Category::Obstacle;
+        self.leaves_out.circles_apart
+            && self.leaves_out.ways_apart
+            && slots.iter().all(|slot| goes_onward(self.user(*slot)))
+    }
+
+    /// Where they would meet.
+    pub(super) fn meet_onward(&self, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+        let (mut first, mut second) = (self.mover(slots[0]), self.mover(slots[1]));
+        let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
+        let covered = |mover: &Mover| mover.rectangle.swept(&(mover.rectangle.axis * mover.reach), TOLERANCE);
+        if !plainly_touches(&covered(&first), &covered(&second)) {
+            work.ways_apart += 1;
+            return;
+        }
+        let of_first = Onward::of(self.user(slots[0]), first.reach);
+        let of_second = Onward::of(self.user(slots[1]), second.reach);
+        first.poses = of_first.poses();
+        second.poses = of_second.poses();
+        self.sweep(work, slots, [&first, &second], in_line, found);
+    }
+}
