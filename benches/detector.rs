@@ -23,7 +23,7 @@ use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
 use closecall::scene::Exclusion;
 use closecall::team::Team;
-use rivals::{AllPairs, AllTested, Boxes, Tree};
+use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 
 /// With more road users than this parry2d and all pairs are not asked.
 const LARGE: usize = 100_000;
@@ -231,9 +231,15 @@ fn measure(name: &str, start: Vec<State>) {
             Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options, 1)
         }));
     }
-    let (mut tree, mut told) = (Tree::new(Boxes::Circles), Tree::new(Boxes::StraightWays));
-    let mut tree = Rival::new("parry2d", |cars: &[State], car| tree.contacts(cars, car, options.epsilon));
-    let mut told = Rival::new("parry2d (straight)", |cars: &[State], car| told.contacts(cars, car, options.epsilon));
+    let mut trees = [
+        ("parry2d", Boxes::Circles, Making::Anew),
+        ("parry2d (kept)", Boxes::Circles, Making::Kept),
+        ("parry2d (kept, straight)", Boxes::StraightWays, Making::Kept),
+    ]
+    .map(|(name, boxes, making)| {
+        let mut tree = Tree::new(boxes, making);
+        Rival::new(name, move |cars: &[State], car: &Profile| tree.contacts(cars, car, options.epsilon))
+    });
     let (mut circles, mut tested) = (AllPairs::default(), AllTested::default());
     let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
     let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
@@ -250,22 +256,20 @@ fn measure(name: &str, start: Vec<State>) {
         others.iter_mut().for_each(|other| turn(other, &steps));
         if count <= LARGE {
             turn(&mut at_once, &steps);
-            turn(&mut tree, &steps);
-            turn(&mut told, &steps);
+            trees.iter_mut().for_each(|tree| turn(tree, &steps));
         }
         if count <= LARGE && number < TURNS_OF_ALL_PAIRS {
             turn(&mut circles, &steps[..1]);
             turn(&mut tested, &steps[..1]);
         }
     }
-    assert_eq!(tree.2, told.2);
+    assert!(trees.iter().all(|tree| tree.2 == trees[0].2));
     tested.1.medians.iter_mut().for_each(|time| *time *= AllTested::share(count));
     let closecall = &one.1[0];
     one.1.iter().for_each(|times| times.print(name, count));
     others.iter().for_each(|Phases(_, times)| times[0].print_beside(closecall, name, count));
     if count <= LARGE {
-        [at_once.2, tree.1, told.1, circles.1, tested.1]
-            .iter()
-            .for_each(|times| times.print_beside(closecall, name, count));
+        let rivals = trees.iter().map(|tree| &tree.1).chain([&circles.1, &tested.1]);
+        [&at_once.2].into_iter().chain(rivals).for_each(|times| times.print_beside(closecall, name, count));
     }
 }

@@ -6,7 +6,7 @@ use closecall::geometry::rectangle::direction;
 use closecall::profile::Profile;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector};
-use parry2d_f64::partitioning::{Bvh, BvhWorkspace};
+use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use parry2d_f64::query;
 use parry2d_f64::shape::Cuboid;
 
@@ -19,24 +19,37 @@ pub enum Boxes {
     StraightWays,
 }
 
-/// parry2d: a tree of boxes, kept from step to step as its documentation advises for what moves, and for each pair of
-/// boxes that meet its intersection test of the rectangles that both cover until they stand.
+/// Where parry2d's tree comes from in a step. Its documentation advises either for what moves.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Making {
+    /// It is built of all boxes, by the strategy advised for what moves.
+    Anew,
+    /// The one of the last step is brought up to date: partial updates, refit, incremental optimisation.
+    Kept,
+}
+
+/// parry2d: a tree of boxes, and for each pair of boxes that meet its intersection test of the rectangles that both cover
+/// until they stand.
 pub struct Tree {
     boxes: Boxes,
+    making: Making,
+    around: Vec<Aabb>,
     tree: Bvh,
     workspace: BvhWorkspace,
     covered: Vec<(Pose, Cuboid)>,
 }
 
 impl Tree {
-    pub fn new(boxes: Boxes) -> Self {
-        Self { boxes, tree: Bvh::default(), workspace: BvhWorkspace::default(), covered: Vec::new() }
+    pub fn new(boxes: Boxes, making: Making) -> Self {
+        let (tree, workspace) = (Bvh::default(), BvhWorkspace::default());
+        Self { boxes, making, around: Vec::new(), tree, workspace, covered: Vec::new() }
     }
 
     /// The number of pairs whose rectangles meet.
     pub fn contacts(&mut self, cars: &[State], car: &Profile, epsilon: f64) -> usize {
         self.covered.clear();
-        for (index, state) in (0..).zip(cars) {
+        self.around.clear();
+        for state in cars {
             let covered = Covered::of(state, car, epsilon);
             let Covered { axis, ahead, half, centre, .. } = covered;
             let around = match self.boxes {
@@ -50,11 +63,18 @@ impl Tree {
                 }
             };
             self.covered.push(covered.shape());
-            let aabb = Aabb::new(around.0 - around.1, around.0 + around.1);
-            self.tree.insert_or_update_partially(aabb, index, 0.0);
+            self.around.push(Aabb::new(around.0 - around.1, around.0 + around.1));
         }
-        self.tree.refit(&mut self.workspace);
-        self.tree.optimize_incremental(&mut self.workspace);
+        match self.making {
+            Making::Anew => self.tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &self.around),
+            Making::Kept => {
+                for (index, around) in (0..).zip(&self.around) {
+                    self.tree.insert_or_update_partially(*around, index, 0.0);
+                }
+                self.tree.refit(&mut self.workspace);
+                self.tree.optimize_incremental(&mut self.workspace);
+            }
+        }
         let (covered, mut found) = (&self.covered, 0);
         self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |i, j| {
             found += usize::from(meet(&covered[i as usize], &covered[j as usize]));
