@@ -75,6 +75,7 @@ impl Detector {
         self.search.lay(
             &mut self.users,
             &self.team,
+            |row| frame.user(row).0,
             |row| sight.see(row),
             |row, seen, user| {
                 *user = sight.user(row, seen, user);

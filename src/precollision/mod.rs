@@ -43,6 +43,15 @@ const STAY: u32 = 16;
 /// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
 const BLOCK: usize = 64;
 
+/// No item.
+const ABSENT: u32 = u32::MAX;
+
+/// Whose item that is, once.
+fn take(items_of: &mut [u32], who: u32) -> Option<u32> {
+    let item = items_of.get_mut(who as usize)?;
+    Some(std::mem::replace(item, ABSENT)).filter(|item| *item != ABSENT)
+}
+
 /// Where a box begins: what is sorted, while the areas stay in their slots.
 #[derive(Clone, Copy, Debug)]
 struct Place {
@@ -117,6 +126,10 @@ pub struct Search {
     last_items: Vec<u32>,
     /// For so many steps everybody has had its slot.
     since: u32,
+    /// By item, who that was in the last step.
+    who: Vec<u32>,
+    /// By who it is, the item; only while slots are given.
+    items_of: Vec<u32>,
     in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip, and the largest height.
@@ -134,26 +147,29 @@ impl Search {
             *known = item;
             areas[item as usize]
         };
-        self.lay(&mut items, &Team::default(), |_| (), area);
+        self.lay(&mut items, &Team::default(), |item| item, |_| (), area);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (items[a as usize], items[b as usize]);
             pairs.push((a.min(b), a.max(b)));
         });
     }
 
-    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `see` fetches what is
-    /// said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots are in the order
-    /// in which a step shortly before ended: those that meet are near each other.
+    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is,
+    /// by a small number that stays the same from step to step. `see` fetches what is said of an item, `area` says where that
+    /// is now and keeps what else is known of it in its slot. Slots are in the order in which a step shortly before
+    /// ended: those that meet are near each other.
     pub fn lay<Seen: Copy + Default, Known: Send>(
         &mut self,
         slots: &mut [Known],
         team: &Team,
+        who: impl Fn(u32) -> u32,
         see: impl Fn(u32) -> Seen + Sync,
         area: impl Fn(u32, &Seen, &mut Known) -> Area + Sync,
     ) {
         let count = slots.len();
-        if self.places.len() != count || self.since >= STAY {
-            self.hold(count);
+        let are_known = self.who.len() == count && self.who.iter().zip(0..).all(|(known, item)| *known == who(item));
+        if !are_known || self.since >= STAY {
+            self.hold(count, who);
         }
         self.since += 1;
         self.parts.clear();
@@ -180,18 +196,32 @@ impl Search {
         self.sort(team);
     }
 
-    /// Gives each of so many items a slot, in the order in which the last step ended.
-    fn hold(&mut self, count: usize) {
-        std::mem::swap(&mut self.items, &mut self.last_items);
-        self.items.clear();
-        make_room(&mut self.items, count);
-        let items = self.places.iter().map(|place| self.last_items[place.slot as usize]);
-        self.items.extend(items.filter(|item| (*item as usize) < count));
-        self.items.extend(self.places.len() as u32..count as u32);
-        fill(&mut self.areas, count, Area::NOWHERE);
-        self.places.clear();
-        make_room(&mut self.places, count);
-        self.places.extend((0..count as u32).map(|slot| Place { begin: 0.0, strip: 0, slot }));
+    /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
+    fn hold(&mut self, count: usize, who: impl Fn(u32) -> u32) {
+        let Self { places, areas, items, last_items, who: known, items_of, .. } = self;
+        std::mem::swap(items, last_items);
+        items.clear();
+        make_room(items, count);
+        items_of.fill(ABSENT);
+        for item in 0..count as u32 {
+            let who = who(item) as usize;
+            if who >= items_of.len() {
+                fill(items_of, who + 1, ABSENT);
+            }
+            // Whose item stands twice has a slot for both.
+            let twice = std::mem::replace(&mut items_of[who], item);
+            items.extend(Some(twice).filter(|item| *item != ABSENT));
+        }
+        let stayed = places.iter().map(|place| known[last_items[place.slot as usize] as usize]);
+        items.extend(stayed.filter_map(|who| take(items_of, who)));
+        known.clear();
+        make_room(known, count);
+        known.extend((0..count as u32).map(&who));
+        items.extend(known.iter().filter_map(|who| take(items_of, *who)));
+        fill(areas, count, Area::NOWHERE);
+        places.clear();
+        make_room(places, count);
+        places.extend((0..count as u32).map(|slot| Place { begin: 0.0, strip: 0, slot }));
         self.since = 0;
     }
 
@@ -200,27 +230,30 @@ impl Search {
         let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
         self.largest = all.largest;
         let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
+        while limit < all.largest.max().min(FAR) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
+            limit *= 2.0;
+        }
         if all.far || all.largest.max() > limit {
-            while self.part_large(limit) > count / SHARE_OF_LARGE + 1 && limit < FAR {
-                limit *= 2.0;
-                self.places.append(&mut self.large);
-            }
+            self.part_large(limit);
         }
         self.sort_in_strips(team);
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
     }
 
-    /// Sets aside what is larger than this, and what is too far away for a strip. Returns how many are too large.
-    fn part_large(&mut self, limit: Metre) -> usize {
-        let (mut too_large, mut largest) = (0, Vector::zeros());
+    /// Whether so many are larger than this.
+    fn are_large(&self, limit: Metre, many: usize) -> bool {
+        self.areas.iter().filter(|area| area.size().max() > limit).nth(many - 1).is_some()
+    }
+
+    /// Sets aside what is larger than this, and what is too far away for a strip. The others stay in their order.
+    fn part_large(&mut self, limit: Metre) {
+        let mut largest = Vector::zeros();
         let Self { places, areas, large, .. } = self;
         places.retain(|place| {
             let area = &areas[place.slot as usize];
             let size = area.size();
-            let fits = size.max() <= limit;
-            too_large += usize::from(!fits);
-            if fits && !is_far(&area.bounds) {
+            if size.max() <= limit && !is_far(&area.bounds) {
                 largest = size.sup(&largest);
                 return true;
             }
@@ -228,7 +261,6 @@ impl Search {
             false
         });
         self.largest = largest;
-        too_large
     }
 
     /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
@@ -389,7 +421,7 @@ mod tests {
             *known = item;
             areas[item as usize]
         };
-        search.lay(&mut items, &Team::new(parts), |_| (), area);
+        search.lay(&mut items, &Team::new(parts), |item| item, |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
