@@ -22,7 +22,7 @@ METHODS = {
     "closecall": ("closecall", OURS, "-"),
     "parry2d": ("parry2d, tree made anew and tests", "#8250df", "-"),
     "parry2d (kept)": ("the same, tree kept", "#8250df", "--"),
-    "parry2d (kept, straight)": ("and straight ways known", "#8250df", ":"),
+    "parry2d (kept; straight)": ("and straight ways known", "#8250df", ":"),
     "commonroad": ("commonroad-drivability-checker", "#bf8700", "-"),
     "all pairs": ("all pairs of circles", "#57606a", "-"),
 }

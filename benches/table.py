@@ -167,7 +167,7 @@ GOALS = [
     Goal("the same, where the tree is kept from step to step", steps("parry2d (kept)", 10**4, 10**5), at_least=3),
     Goal(
         "the same, where it also knows that all ways are straight",
-        steps("parry2d (kept, straight)", 10**4, 10**5),
+        steps("parry2d (kept; straight)", 10**4, 10**5),
         at_least=3,
     ),
     Goal("times faster than all pairs by parry2d's test, 10⁵", steps("all tested", 10**5), at_least=1000, form=",.0f"),

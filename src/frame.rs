@@ -36,6 +36,7 @@ pub struct Roster {
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
     profiles: Vec<Profile>,
     free: Vec<u32>,
+    changes: u64,
     /// By category: a vehicle and a person may be of the same type.
     by_name: FxHashMap<String, [Option<ProfileIndex>; Category::COUNT]>,
 }
@@ -68,6 +69,7 @@ impl Roster {
 
     /// Takes a road user into the scene.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
+        self.changes += 1;
         match self.free.pop() {
             Some(index) => {
                 self.ids[index as usize] = id.into();
@@ -91,8 +93,14 @@ impl Roster {
 
     /// Lets a road user leave; its index may be given to another from now on.
     pub fn leave(&mut self, user: UserIndex) {
+        self.changes += 1;
         self.shapes.remove(&user);
         self.free.push(user.0);
+    }
+
+    /// How often anybody has entered or left.
+    pub fn changes(&self) -> u64 {
+        self.changes
     }
 
     /// SUMO's id of this road user.

@@ -8,6 +8,7 @@ use closecall::frame::{Frame, Roster, State, UserIndex};
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::profile::Profile;
 use closecall::scene;
+use closecall::scene::Exclusion;
 use closecall::sumo_type::SumoType;
 use proptest::prelude::*;
 
@@ -155,6 +156,33 @@ proptest! {
     ) {
         let [(_, of_all), (_, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, speed), (x, y, turn, foe_speed)]);
         prop_assert_eq!(of_only, of_all);
+    }
+}
+
+/// Cars near each other, some of which stand; headings of few and of all directions.
+fn some_cars() -> impl Strategy<Value = Vec<(f64, f64, f64, f64)>> {
+    let heading = prop_oneof![-4.0..4.0, prop_oneof![Just(0.0), Just(1.0), Just(NORTH)]];
+    prop::collection::vec((-40.0..40.0, -40.0..40.0, heading, prop_oneof![Just(0.0), 0.0..35.0]), 2..7)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// With these kept a way is laid, kept and covered as that of one who turns.
+    #[test]
+    fn who_goes_straight_on_meets_the_same_whatever_is_left_out(cars in some_cars()) {
+        let [left_out, kept] = [vec![], vec![Exclusion::CirclesApart, Exclusion::WaysApart]].map(|keep| {
+            let options = Options { keep, ..options() };
+            look_at(&mut Detector::new(&options, None), &options, &cars)
+        });
+        prop_assert_eq!(left_out, kept);
+    }
+
+    #[test]
+    fn what_was_known_of_a_step_changes_nothing_in_the_next(before in some_cars(), cars in some_cars()) {
+        let mut warm = Detector::new(&options(), None);
+        look(&mut warm, &before);
+        prop_assert_eq!(look(&mut warm, &cars), encounters(&cars));
     }
 }
 

@@ -71,10 +71,13 @@ impl Detector {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths };
         let reach = Reach::new(roster, &self.options, self.leaves_out, &self.paths);
+        let who_is_there = (roster.changes(), frame.len());
+        let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
         fill(&mut self.users, frame.len(), User::NOBODY);
         self.search.lay(
             &mut self.users,
             &self.team,
+            are_same,
             |row| frame.user(row).0,
             |row| sight.see(row),
             |row, seen, user| {

@@ -98,6 +98,8 @@ pub struct Detector {
     /// Who is on its path along lanes, by row of the frame.
     on_lanes: Vec<bool>,
     search: Search,
+    /// How often anybody had entered or left until the last step, and how many were in it.
+    who_was_there: (u64, usize),
     /// Everybody in the step, in the search's slots: who meets is near in memory too.
     users: Vec<User>,
     order: Order,
@@ -225,6 +227,7 @@ impl Detector {
             turnings: Vec::new(),
             on_lanes: Vec::new(),
             search: Search::default(),
+            who_was_there: (0, 0),
             users: Vec::new(),
             order: Order::default(),
             unplaced: Vec::new(),

@@ -7,6 +7,7 @@ use crate::geometry::rectangle::plainly_touches;
 use crate::geometry::sweep::TOLERANCE;
 use crate::path::{Pose, straight};
 use crate::profile::Category;
+use crate::units::Metre;
 
 /// Poses where somebody is now, where it stands and ε further; who stands has fewer.
 struct Onward {
@@ -15,7 +16,7 @@ struct Onward {
 }
 
 impl Onward {
-    fn of(user: &User, reach: f64) -> Self {
+    fn of(user: &User, reach: Metre) -> Self {
         let now = straight::pose(user.front, user.axis, 0.0);
         let mut onward = Self { poses: [now; 3], count: 1 };
         for way in [user.stop, reach] {

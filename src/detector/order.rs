@@ -38,11 +38,8 @@ impl Order {
             self.sorted[*place as usize] = found;
             *place += 1;
         }
-        // Every start has moved up to where the next one's was.
-        let mut start = 0;
-        for end in &self.starts[..count] {
-            self.sorted[start..*end as usize].sort_unstable();
-            start = *end as usize;
+        for of_one_row in self.sorted.chunk_by_mut(|a, b| a.0.0 == b.0.0) {
+            of_one_row.sort_unstable();
         }
     }
 

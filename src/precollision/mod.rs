@@ -11,10 +11,14 @@
 //! compares it with all pairs, a grid, a plain sweep, parry2d's and rstar's trees.
 
 mod area;
+mod near;
+mod place;
 
 use std::ops::Range;
 
 pub use area::{Area, Circle};
+use near::Near;
+use place::{Place, insert, length};
 
 use crate::geometry::{Bounds, Vector};
 use crate::table::{fill, make_room};
@@ -50,31 +54,6 @@ const ABSENT: u32 = u32::MAX;
 fn take(items_of: &mut [u32], who: u32) -> Option<u32> {
     let item = items_of.get_mut(who as usize)?;
     Some(std::mem::replace(item, ABSENT)).filter(|item| *item != ABSENT)
-}
-
-/// Where a box begins: what is sorted, while the areas stay in their slots.
-#[derive(Clone, Copy, Debug)]
-struct Place {
-    /// Its lowest x.
-    begin: Metre,
-    strip: i32,
-    slot: u32,
-}
-
-impl Place {
-    /// The place of an area, in its strip.
-    fn of(area: &Area, slot: u32, per_metre: f64) -> Self {
-        let Bounds { low, high } = area.bounds;
-        let strips = (low.y + high.y) * 0.5 * per_metre;
-        // What `floor` says, without a call where the processor has no instruction for it.
-        let towards_0 = strips as i32;
-        let strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
-        Self { begin: low.x, strip, slot }
-    }
-
-    fn is_before(&self, other: &Self) -> bool {
-        (self.strip, self.begin) < (other.strip, other.begin)
-    }
 }
 
 /// What one thread knows of its part of the places.
@@ -147,7 +126,7 @@ impl Search {
             *known = item;
             areas[item as usize]
         };
-        self.lay(&mut items, &Team::default(), |item| item, |_| (), area);
+        self.lay(&mut items, &Team::default(), true, |item| item, |_| (), area);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (items[a as usize], items[b as usize]);
             pairs.push((a.min(b), a.max(b)));
@@ -155,20 +134,21 @@ impl Search {
     }
 
     /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is,
-    /// by a small number that stays the same from step to step. `see` fetches what is said of an item, `area` says where that
+    /// by a small number that stays the same from step to step; `are_same`, whether they are likely to be those of the last
+    /// step, in the same order. `see` fetches what is said of an item, `area` says where that
     /// is now and keeps what else is known of it in its slot. Slots are in the order in which a step shortly before
     /// ended: those that meet are near each other.
     pub fn lay<Seen: Copy + Default, Known: Send>(
         &mut self,
         slots: &mut [Known],
         team: &Team,
+        are_same: bool,
         who: impl Fn(u32) -> u32,
         see: impl Fn(u32) -> Seen + Sync,
         area: impl Fn(u32, &Seen, &mut Known) -> Area + Sync,
     ) {
         let count = slots.len();
-        let are_known = self.who.len() == count && self.who.iter().zip(0..).all(|(known, item)| *known == who(item));
-        if !are_known || self.since >= STAY {
+        if self.places.len() != count || self.since >= STAY || !are_same {
             self.hold(count, who);
         }
         self.since += 1;
@@ -188,10 +168,6 @@ impl Search {
                 }
             }
             *part = all;
-        });
-        let (areas, per_metre) = (&self.areas, 1.0 / self.strip_height);
-        team.each(&mut self.parts, self.places.chunks_mut(share), |_, places| {
-            places.iter_mut().for_each(|place| *place = Place::of(&areas[place.slot as usize], place.slot, per_metre));
         });
         self.sort(team);
     }
@@ -274,19 +250,19 @@ impl Search {
         } else {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
             let per_metre = 1.0 / self.strip_height;
-            for place in &mut self.places {
-                *place = Place::of(&self.areas[place.slot as usize], place.slot, per_metre);
-            }
+            self.places.iter_mut().for_each(|place| place.follow(&self.areas, per_metre));
         }
         // In another order the slots would be anywhere.
         self.since = STAY;
         self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
-    /// Sorts by insertion, each thread its part, where that takes few moves; whether it did.
+    /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
+    /// few moves; whether it did.
     fn is_nearly_sorted(&mut self, team: &Team) -> bool {
-        let share = team.share(self.places.len());
+        let (areas, per_metre, share) = (&self.areas, 1.0 / self.strip_height, team.share(self.places.len()));
         team.each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
+            places.iter_mut().for_each(|place| place.follow(areas, per_metre));
             let mut moves = MOVES * places.len();
             part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
         });
@@ -315,7 +291,7 @@ impl Search {
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
         let area = |place: &Place| &self.areas[place.slot as usize];
-        let mut near = Near { areas: &self.areas, pairs: [(0, 0); NOTED], count: 0 };
+        let mut near = Near::new(&self.areas);
         let mut start = from.start;
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
@@ -340,62 +316,6 @@ impl Search {
     }
 }
 
-/// So many pairs are noted before their circles decide.
-const NOTED: usize = 64;
-
-/// Slots of two whose boxes meet.
-struct Near<'a> {
-    areas: &'a [Area],
-    pairs: [(u32, u32); NOTED],
-    count: usize,
-}
-
-impl Near<'_> {
-    /// Notes the others whose boxes meet that of `a`.
-    #[inline(always)]
-    fn note<'b>(&mut self, a: &Place, others: impl Iterator<Item = &'b Place>, found: &mut impl FnMut(u32, u32)) {
-        let bounds = &self.areas[a.slot as usize].bounds;
-        for b in others {
-            if self.count == NOTED {
-                self.decide(found);
-            }
-            self.pairs[self.count] = (a.slot, b.slot);
-            self.count += usize::from(bounds.meet(&self.areas[b.slot as usize].bounds));
-        }
-    }
-
-    /// Whether the circles of those noted meet too; forgets them.
-    fn decide(&mut self, found: &mut impl FnMut(u32, u32)) {
-        for (a, b) in &self.pairs[..self.count] {
-            if self.areas[*a as usize].circles_meet(&self.areas[*b as usize]) {
-                found(*a, *b);
-            }
-        }
-        self.count = 0;
-    }
-}
-
-/// How many of these sorted places, which begin with that strip or a later one, are in it.
-fn length(places: &[Place], strip: i32) -> usize {
-    places.partition_point(|place| place.strip <= strip)
-}
-
-/// Moves a place to where it belongs among the sorted ones before it; `false` where that takes more moves than are left:
-/// then all are still there.
-fn insert(places: &mut [Place], from: usize, moves: &mut usize) -> bool {
-    if !places[from].is_before(&places[from - 1]) {
-        return true;
-    }
-    let (place, mut to) = (places[from], from);
-    while to > 0 && place.is_before(&places[to - 1]) && *moves > 0 {
-        *moves -= 1;
-        places[to] = places[to - 1];
-        to -= 1;
-    }
-    places[to] = place;
-    to == 0 || !place.is_before(&places[to - 1])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -415,13 +335,13 @@ mod tests {
     }
 
     /// What the search finds, swept in this many parts, in order.
-    fn found(search: &mut Search, areas: &[Area], parts: usize) -> Vec<(u32, u32)> {
+    fn found(search: &mut Search, areas: &[Area], who: &[u32], parts: usize) -> Vec<(u32, u32)> {
         let (count, mut items, mut pairs) = (areas.len(), vec![0; areas.len()], Vec::new());
         let area = |item: u32, (): &(), known: &mut u32| {
             *known = item;
             areas[item as usize]
         };
-        search.lay(&mut items, &Team::new(parts), |item| item, |_| (), area);
+        search.lay(&mut items, &Team::new(parts), true, |item| who[item as usize], |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
@@ -439,19 +359,28 @@ mod tests {
 
     proptest! {
         #[test]
-        fn none_is_lost_from_step_to_step_either(
+        fn none_is_lost_from_step_to_step_whoever_comes_and_goes(
             starts in prop::collection::vec((-300.0..300.0, -300.0..300.0, -9.0..9.0, -9.0..9.0, 0.5..20.0), 0..60),
-            leave in prop::collection::vec(prop_oneof![9 => Just(0), 1 => 0_usize..8], 40),
+            changes in prop::collection::vec(prop::option::weighted(0.3, (any::<usize>(), any::<bool>())), 40),
         ) {
             let mut search = Search::default();
-            let mut cars = starts;
-            for leaving in leave {
-                for (x, y, along, up, _) in &mut cars {
+            let mut cars: Vec<_> = (0..).zip(starts).collect();
+            for (step, change) in (1000..).zip(changes) {
+                for (_, (x, y, along, up, _)) in &mut cars {
                     (*x, *y) = (*x + *along, *y + *up);
                 }
-                cars.truncate(cars.len() - leaving.min(cars.len()));
-                let areas: Vec<_> = cars.iter().map(|&(x, y, _, _, radius)| Circle { x, y, radius }.into()).collect();
-                prop_assert_eq!(found(&mut search, &areas, 1), all_pairs(&areas));
+                match change {
+                    // Now and then one that is there already.
+                    Some((place, true)) => {
+                        let who = if place % 5 == 0 { 3 } else { step };
+                        cars.insert(place % (cars.len() + 1), (who, (f64::from(step % 300), 0.0, 1.0, -1.0, 9.0)));
+                    }
+                    Some((place, false)) if !cars.is_empty() => _ = cars.remove(place % cars.len()),
+                    _ => {}
+                }
+                let area = |&(_, (x, y, _, _, radius)): &(u32, (f64, f64, f64, f64, f64))| Circle { x, y, radius }.into();
+                let (areas, who): (Vec<_>, Vec<_>) = (cars.iter().map(area).collect(), cars.iter().map(|car| car.0).collect());
+                prop_assert_eq!(found(&mut search, &areas, &who, 1), all_pairs(&areas));
             }
         }
 
@@ -469,13 +398,14 @@ mod tests {
                 }
             };
             let areas: Vec<_> = places.into_iter().map(area).collect();
-            prop_assert_eq!(found(&mut Search::default(), &areas, parts), all_pairs(&areas));
+            let who: Vec<_> = (0..areas.len() as u32).collect();
+            prop_assert_eq!(found(&mut Search::default(), &areas, &who, parts), all_pairs(&areas));
         }
     }
 
     #[test]
     fn an_absurd_radius_costs_no_memory() {
         let areas = [Circle { x: 0.0, y: 0.0, radius: 1e300 }, Circle { x: 1e9, y: 0.0, radius: 1.0 }].map(Area::from);
-        assert_eq!(found(&mut Search::default(), &areas, 1), [(0, 1)]);
+        assert_eq!(found(&mut Search::default(), &areas, &[0, 1], 1), [(0, 1)]);
     }
 }
