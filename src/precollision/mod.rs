@@ -134,10 +134,10 @@ impl Search {
     }
 
     /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is,
-    /// by a small number that stays the same from step to step; `are_same`, whether they are likely to be those of the last
-    /// step, in the same order. `see` fetches what is said of an item, `area` says where that
-    /// is now and keeps what else is known of it in its slot. Slots are in the order in which a step shortly before
-    /// ended: those that meet are near each other.
+    /// by a small number that stays the same from step to step; `are_same`, whether they are likely to be those of the
+    /// last step, in the same order. `see` fetches what is said of an item, `area` says where that is now and keeps what
+    /// else is known of it in its slot. Slots are in the order in which a step shortly before ended: those that meet are
+    /// near each other.
     pub fn lay<Seen: Copy + Default, Known: Send>(
         &mut self,
         slots: &mut [Known],
