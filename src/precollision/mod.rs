@@ -101,12 +101,10 @@ pub struct Search {
     areas: Vec<Area>,
     /// By slot, which of the caller's items has it.
     items: Vec<u32>,
-    /// The same before they were given anew.
-    last_items: Vec<u32>,
+    /// By slot, who that was when slots were given.
+    who: Vec<u32>,
     /// For so many steps everybody has had its slot.
     since: u32,
-    /// By item, who that was in the last step.
-    who: Vec<u32>,
     /// By who it is, the item; only while slots are given.
     items_of: Vec<u32>,
     in_strips: usize,
@@ -174,8 +172,7 @@ impl Search {
 
     /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
     fn hold(&mut self, count: usize, who: impl Fn(u32) -> u32) {
-        let Self { places, areas, items, last_items, who: known, items_of, .. } = self;
-        std::mem::swap(items, last_items);
+        let Self { places, areas, items, who: known, items_of, .. } = self;
         items.clear();
         make_room(items, count);
         items_of.fill(ABSENT);
@@ -188,12 +185,11 @@ impl Search {
             let twice = std::mem::replace(&mut items_of[who], item);
             items.extend(Some(twice).filter(|item| *item != ABSENT));
         }
-        let stayed = places.iter().map(|place| known[last_items[place.slot as usize] as usize]);
-        items.extend(stayed.filter_map(|who| take(items_of, who)));
+        items.extend(places.iter().filter_map(|place| take(items_of, known[place.slot as usize])));
+        items.extend((0..count as u32).filter_map(|item| take(items_of, who(item))));
         known.clear();
         make_room(known, count);
-        known.extend((0..count as u32).map(&who));
-        items.extend(known.iter().filter_map(|who| take(items_of, *who)));
+        known.extend(items.iter().map(|item| who(*item)));
         fill(areas, count, Area::NOWHERE);
         places.clear();
         make_room(places, count);
