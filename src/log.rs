@@ -14,7 +14,7 @@ use crate::frame::Roster;
 use crate::geometry::Point;
 use crate::net::Net;
 use crate::record::RunRecord;
-use crate::units::Second;
+use crate::units::{Metre, Second};
 use crate::{Error, Result, decimal};
 
 /// The name of the conflicts' file.
@@ -223,6 +223,9 @@ struct Table {
     text: String,
 }
 
+/// The largest coordinate of a path, in m, that is written as 0.
+const HALF_A_CENTIMETRE: Metre = 0.005;
+
 /// One cell of a row.
 enum Cell<'a> {
     Text(&'a str),
@@ -250,7 +253,8 @@ impl Cell<'_> {
                     if number > 0 {
                         text.push(' ');
                     }
-                    decimal::push_fixed(text, value, 2);
+                    // What rounds to 0 has no sign: that would be one of rounding, another on another machine.
+                    decimal::push_fixed(text, if value.abs() < HALF_A_CENTIMETRE { 0.0 } else { value }, 2);
                 }
             }
             Self::Empty => {}
@@ -336,6 +340,12 @@ mod tests {
         rows.write_all(b"third\n").unwrap();
         rows.flush().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "first\nthird\n");
+    }
+
+    #[test]
+    fn a_path_writes_what_rounds_to_nothing_without_a_sign() {
+        let points = [(-0.0, -4e-16), (-0.0049, -0.0051)].map(|(x, y)| Point::new(x, y));
+        assert_eq!(Cell::Path(&points).text(&mut String::new()), "0.00 0.00 0.00 -0.01");
     }
 
     #[test]
