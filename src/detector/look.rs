@@ -5,9 +5,11 @@ use std::ops::Range;
 use super::{Detector, Turning, User};
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
+use crate::geometry::lines::Lines;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
+use crate::net::{LaneIndex, Net};
 use crate::options::{Mode, Options, PathModel};
 use crate::path::lanes::LanePath;
 use crate::path::track::Track;
@@ -69,8 +71,9 @@ impl Detector {
     /// Everybody in its slot, with the area of now.
     fn look(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
-        let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths };
-        let reach = Reach::new(roster, &self.options, self.leaves_out, &self.paths);
+        let paths = Paths::new(&self.paths, self.net.as_deref());
+        let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
+        let reach = Reach::new(roster, &self.options, self.leaves_out, paths);
         let who_is_there = (roster.changes(), frame.len());
         let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
         fill(&mut self.users, frame.len(), User::NOBODY);
@@ -115,7 +118,8 @@ impl Detector {
 
     /// Follows a row's path along the lanes, or asks for its lane.
     fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
-        self.on_lanes[row] = self.paths[user.0 as usize].follow(front);
+        let of_net = lines_of(self.net.as_deref());
+        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, front);
         if self.leaves_out.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
         } else {
@@ -132,6 +136,34 @@ pub(super) enum Turns {
     ByLanes,
 }
 
+/// Everybody's path, and the lines of the net's lanes, on which most of them are.
+#[derive(Clone, Copy)]
+pub(super) struct Paths<'a> {
+    paths: &'a [LanePath],
+    of_net: &'a Lines,
+}
+
+impl<'a> Paths<'a> {
+    pub(super) fn new(paths: &'a [LanePath], net: Option<&'a Net>) -> Self {
+        Self { paths, of_net: lines_of(net) }
+    }
+
+    /// Where somebody is, and on which lines.
+    pub(super) fn track(&self, user: UserIndex) -> (&'a Track, &'a Lines) {
+        let path = &self.paths[user.0 as usize];
+        (&path.track, path.lines(self.of_net))
+    }
+
+    /// The lane at a way ahead of somebody.
+    pub(super) fn lane_at(&self, user: UserIndex, way: Metre) -> Option<LaneIndex> {
+        self.paths[user.0 as usize].lane_at(self.of_net, way)
+    }
+}
+
+fn lines_of(net: Option<&Net>) -> &Lines {
+    net.map_or(Lines::NONE, |net| &net.lines)
+}
+
 /// What the step under way says of everybody.
 #[derive(Clone, Copy)]
 pub(super) struct Sight<'a> {
@@ -140,7 +172,7 @@ pub(super) struct Sight<'a> {
     pub turns: Turns,
     pub epsilon: Metre,
     pub on_lanes: &'a [bool],
-    pub paths: &'a [LanePath],
+    pub paths: Paths<'a>,
 }
 
 /// What is said of who stands in a row, fetched from where it is.
@@ -168,7 +200,10 @@ impl Sight<'_> {
         let axis = if last.heading == state.heading { last.axis } else { direction(state.heading) };
         let on_lanes = self.turns == Turns::ByLanes && self.on_lanes[row as usize];
         let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
-        let path = || &self.paths[index.0 as usize].track;
+        let goes_straight = || {
+            let (track, lines) = self.paths.track(index);
+            track.goes_straight(lines, &axis, profile.chord, stop + self.epsilon)
+        };
         User {
             front: Point::new(state.x, state.y),
             heading: state.heading,
@@ -183,7 +218,7 @@ impl Sight<'_> {
             ahead: match self.turns {
                 Turns::Not => true,
                 Turns::ByArcs => profile.category == Category::Obstacle,
-                Turns::ByLanes if on_lanes => path().goes_straight(&axis, profile.chord, stop + self.epsilon),
+                Turns::ByLanes if on_lanes => goes_straight(),
                 Turns::ByLanes => !moves || profile.category != Category::Vehicle,
             },
             on_lanes,
@@ -230,7 +265,7 @@ fn all_pairs(count: usize) -> u64 {
 #[derive(Clone, Copy)]
 pub(super) struct Reach<'a> {
     roster: &'a Roster,
-    paths: &'a [LanePath],
+    paths: Paths<'a>,
     epsilon: Metre,
     /// Whether whose way is known has a box around that.
     has_boxes: bool,
@@ -241,7 +276,7 @@ pub(super) struct Reach<'a> {
 }
 
 impl<'a> Reach<'a> {
-    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: &'a [LanePath]) -> Self {
+    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: Paths<'a>) -> Self {
         let on_paper = options.mode == Mode::Paper;
         let has_boxes = leaves_out.ways_apart && !on_paper;
         let on_arcs = options.path == PathModel::Arc && !on_paper;
@@ -269,7 +304,8 @@ impl<'a> Reach<'a> {
         if user.on_lanes && self.has_boxes {
             // Its front is on the line ahead, the rest of it nowhere further from there than that.
             let behind = profile.length + profile.width / 2.0;
-            return self.paths[user.index.0 as usize].track.bounds_ahead(reach).grown(TOLERANCE + behind).into();
+            let (track, lines) = self.paths.track(user.index);
+            return track.bounds_ahead(lines, reach).grown(TOLERANCE + behind).into();
         }
         if self.on_arcs {
             // Its tail swings out: it may get further than its front.

@@ -252,7 +252,6 @@ impl Scene<'_> {
         }
         let at = meeting.place();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
-        let path = ego.on_lanes.then(|| &self.paths[ego.index.0 as usize]);
         add(&mut found.pairs, (ego.row.min(foe.row), ego.row.max(foe.row)));
         let encounter = Encounter {
             ego: ego.index,
@@ -268,7 +267,7 @@ impl Scene<'_> {
             foe_way: meeting.foe_way,
             x: at.x,
             y: at.y,
-            lane: path.and_then(|path| path.lane_at(meeting.ego_way)),
+            lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_way) } else { None },
             collision,
             nearness: None,
         };

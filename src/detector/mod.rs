@@ -29,7 +29,7 @@ use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::team::Team;
 use crate::units::{Metre, MetrePerSecond, Radian};
-use look::{Reach, Sight};
+use look::{Paths, Reach, Sight};
 use order::Order;
 use ways::Ways;
 
@@ -192,7 +192,7 @@ struct Scene<'a> {
     leaves_out: Exclusions,
     conflicts_only: bool,
     roster: &'a Roster,
-    paths: &'a [LanePath],
+    paths: Paths<'a>,
     turnings: &'a [Turning],
     reach: Reach<'a>,
     users: &'a [User],
@@ -376,7 +376,11 @@ impl Detector {
 
     fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Sight<'a> {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
-        Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: &self.paths }
+        Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: self.all_paths() }
+    }
+
+    fn all_paths(&self) -> Paths<'_> {
+        Paths::new(&self.paths, self.net.as_deref())
     }
 
     fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {
@@ -385,9 +389,9 @@ impl Detector {
             leaves_out: self.leaves_out,
             conflicts_only: self.conflicts_only,
             roster,
-            paths: &self.paths,
+            paths: self.all_paths(),
             turnings: &self.turnings,
-            reach: Reach::new(roster, &self.options, self.leaves_out, &self.paths),
+            reach: Reach::new(roster, &self.options, self.leaves_out, self.all_paths()),
             users: &self.users,
         }
     }

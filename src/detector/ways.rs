@@ -230,8 +230,8 @@ impl<'a> Scene<'a> {
         }
         let chord = || self.profile(user).chord;
         if on_lanes {
-            self.paths[user.index.0 as usize].track.poses(axis, chord(), ways, beyond, poses);
-            return;
+            let (track, lines) = self.paths.track(user.index);
+            return track.poses(lines, axis, chord(), ways, beyond, poses);
         }
         poses.push(Pose { way: 0.0, front, axis });
         let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];

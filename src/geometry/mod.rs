@@ -5,6 +5,7 @@
 
 pub mod exact;
 pub mod halves;
+pub mod lines;
 pub mod outline;
 pub(crate) mod parry;
 pub mod polygon;

@@ -11,6 +11,7 @@ use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
 use crate::Result;
+use crate::geometry::lines::Lines;
 use crate::units::Metre;
 
 pub(crate) use reader::{LineCounter, open};
@@ -78,8 +79,6 @@ pub struct Lane {
     pub width: Metre,
     /// The centre line, two points at least.
     pub shape: Vec<Point2<Metre>>,
-    /// Way from the shape's start to each of its points, in m of the drawn line.
-    pub ways: Vec<Metre>,
     /// Where it leads. A junction lane in two parts leads to its second part (`via`), then to the edge.
     pub links: Vec<Link>,
     /// The lanes from which one gets here directly (for a lane behind a junction: the junction lanes).
@@ -104,6 +103,8 @@ pub struct Net {
     pub edges: Vec<Edge>,
     /// All junctions.
     pub junctions: Vec<Junction>,
+    /// The lanes' centre lines, by lane.
+    pub lines: Lines,
     lane_ids: FxHashMap<String, LaneIndex>,
     edge_ids: FxHashMap<String, EdgeIndex>,
     finder: finder::Finder,
@@ -186,8 +187,9 @@ mod tests {
     #[test]
     fn a_repeated_point_is_dropped() {
         let net = net(CORNER).unwrap();
-        let lane = &net.lanes[net.lane("bc_0").unwrap().0 as usize];
-        assert_eq!((lane.shape.len(), lane.width, lane.ways[1]), (2, 2.5, 50.0));
+        let index = net.lane("bc_0").unwrap();
+        let lane = &net.lanes[index.0 as usize];
+        assert_eq!((lane.shape.len(), lane.width, net.lines.length(index.0)), (2, 2.5, 50.0));
     }
 
     #[test]

@@ -137,18 +137,12 @@ impl NetReader<'_> {
         let place = edge_lanes.len() as u32;
         edge_lanes.push(index);
         self.net.lane_ids.insert(id.to_owned(), index);
-        let mut ways = Vec::with_capacity(shape.len());
-        let mut way = 0.0;
-        for (point, index) in shape.iter().zip(0_usize..) {
-            if let Some(before) = index.checked_sub(1) {
-                way += (point - shape[before]).norm();
-            }
-            ways.push(way);
-        }
+        self.net.lines.begin();
+        shape.iter().for_each(|point| self.net.lines.push(*point));
         let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
         let id = id.to_owned();
-        self.net.lanes.push(Lane { id, edge, index: place, length, width, shape, ways, links, from });
+        self.net.lanes.push(Lane { id, edge, index: place, length, width, shape, links, from });
         Ok(())
     }
 
@@ -196,6 +190,7 @@ impl NetReader<'_> {
                 from_lanes.push(from);
             }
         }
+        self.net.lines.shrink();
         self.net.finder = Finder::new(&self.net.lanes);
         Ok(self.net)
     }

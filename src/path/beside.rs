@@ -1,6 +1,6 @@
 //! The line beside the centre line of lanes: where somebody drives who keeps to one side, or changes to another.
 
-use super::track::Track;
+use crate::geometry::lines::Lines;
 use crate::geometry::{Point, Vector, left_of};
 use crate::units::Metre;
 
@@ -35,24 +35,24 @@ pub(super) struct Beside {
 
 impl Beside {
     /// None where it is the centre line itself.
-    pub fn new(offset: Offset) -> Option<Box<Self>> {
+    pub fn new(offset: Offset) -> Option<Self> {
         let is_aside = offset.now != 0.0 || offset.target != 0.0;
-        is_aside.then(|| Box::new(Self { offset, before: None, last: None, way: f64::NEG_INFINITY }))
+        is_aside.then_some(Self { offset, before: None, last: None, way: f64::NEG_INFINITY })
     }
 
     /// The next point of the centre line that is at or behind the front bumper.
-    pub fn push_behind(&mut self, track: &mut Track, point: Point) {
-        self.push(track, point, f64::NEG_INFINITY);
+    pub fn push_behind(&mut self, line: &mut Lines, point: Point) {
+        self.push(line, point, f64::NEG_INFINITY);
     }
 
     /// The point of the centre line beside the front bumper.
-    pub fn push_front(&mut self, track: &mut Track, point: Point) {
+    pub fn push_front(&mut self, line: &mut Lines, point: Point) {
         self.way = 0.0;
-        self.push(track, point, 0.0);
+        self.push(line, point, 0.0);
     }
 
     /// The next point of the centre line ahead.
-    pub fn push_ahead(&mut self, track: &mut Track, point: Point) {
+    pub fn push_ahead(&mut self, line: &mut Lines, point: Point) {
         let way = self.way + self.last.map_or(0.0, |last| (point - last).norm());
         // An offset that changes needs a corner where the change ends.
         if self.way < self.offset.over
@@ -60,31 +60,31 @@ impl Beside {
             && let Some(last) = self.last
         {
             let part = (self.offset.over - self.way) / (way - self.way);
-            self.push(track, last + (point - last) * part, self.offset.over);
+            self.push(line, last + (point - last) * part, self.offset.over);
         }
-        self.push(track, point, way);
+        self.push(line, point, way);
     }
 
     /// Adds a point of the centre line; the offset line's corner before it is settled by it.
-    fn push(&mut self, track: &mut Track, point: Point, way: Metre) {
+    fn push(&mut self, line: &mut Lines, point: Point, way: Metre) {
         if self.last.is_some_and(|last| (point - last).norm() < 1e-3) {
             return;
         }
         if let (Some(before), Some(last)) = (self.before, self.last) {
-            track.push(last + miter(&(last - before), &(point - last)) * self.offset.at(self.way));
+            line.push(last + miter(&(last - before), &(point - last)) * self.offset.at(self.way));
         } else if let Some(first) = self.last {
             let normal = left_of(&(point - first).try_normalize(0.0).unwrap_or_else(Vector::x));
-            track.push(first + normal * self.offset.at(self.way));
+            line.push(first + normal * self.offset.at(self.way));
         }
         self.before = self.last.replace(point);
         self.way = way;
     }
 
     /// Ends the line beside the last point of the centre line for now.
-    pub fn flush(&self, track: &mut Track) {
+    pub fn flush(&self, line: &mut Lines) {
         if let (Some(before), Some(last)) = (self.before, self.last) {
             let normal = left_of(&(last - before).try_normalize(0.0).unwrap_or_else(Vector::x));
-            track.push(last + normal * self.offset.at(self.way));
+            line.push(last + normal * self.offset.at(self.way));
         }
     }
 }

@@ -7,9 +7,13 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use super::beside::{Beside, Offset};
+use super::own::Own;
 use super::track::Track;
 use crate::encounter::Placement;
+use crate::geometry::lines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::units::{Metre, MetrePerSecond};
@@ -30,21 +34,12 @@ const OFF_THE_BORDER: Metre = 0.05;
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
 pub struct LanePath {
-    /// The line of the front bumper.
+    /// Where it is on the lanes' centre lines, or on its own line.
     pub track: Track,
-    plan: Option<Box<Plan>>,
-}
-
-/// What a path was laid along, and how it goes on: what following it does not need.
-#[derive(Clone, Debug, Default)]
-struct Plan {
-    route: Arc<[EdgeIndex]>,
+    own: Option<Box<Own>>,
+    route: Option<Arc<[EdgeIndex]>>,
     /// The place in the route of the last lane's edge, or of the one before; none where the line does not go on.
     route_position: Option<u32>,
-    /// On which lane the line is from which of its points on.
-    lanes: Vec<(u32, LaneIndex)>,
-    /// None on the lanes' centre line.
-    beside: Option<Box<Beside>>,
 }
 
 /// What laying a path starts from.
@@ -70,14 +65,19 @@ impl LanePath {
         *self = Self::default();
     }
 
+    /// The lines that its track runs over: those of the net's lanes, unless it has one of its own.
+    pub fn lines<'a>(&'a self, of_net: &'a Lines) -> &'a Lines {
+        self.own.as_ref().map_or(of_net, |own| &own.lines)
+    }
+
     /// Follows the front bumper; whether it still is on the path.
-    pub fn follow(&mut self, front: Point) -> bool {
-        self.track.follow(front)
+    pub fn follow(&mut self, of_net: &Lines, front: Point) -> bool {
+        self.track.follow(self.own.as_ref().map_or(of_net, |own| &own.lines), front)
     }
 
     /// The route that it was laid for.
     pub fn route(&self) -> Option<&Arc<[EdgeIndex]>> {
-        self.plan.as_ref().map(|plan| &plan.route)
+        self.route.as_ref()
     }
 
     /// Whether it was laid for this route.
@@ -88,111 +88,93 @@ impl LanePath {
     /// Lays the path anew; without geometry to lay it on, none.
     pub fn lay(&mut self, net: &Net, start: &Start, placement: &Placement) {
         let lane = &net.lanes[placement.lane.0 as usize];
-        let hint = placement.position * lane.ways.last().copied().unwrap_or(0.0) / lane.length.max(f64::MIN_POSITIVE);
-        let foot = Foot::of(&lane.shape, &lane.ways, start.front, hint);
+        let (line, length) = (net.lines.line(placement.lane.0), net.lines.length(placement.lane.0));
+        let hint = placement.position * length / lane.length.max(f64::MIN_POSITIVE);
+        let foot = Foot::of(line, start.front, hint);
         let against = foot.direction.dot(&start.axis) < 0.0 && !leads_along(net, lane, placement);
-        let mut line = Vec::new();
+        let beside = Beside::new(offset(net, start, placement, &foot, against));
+        self.route = Some(placement.route.clone());
+        self.route_position = (!against).then_some(placement.route_position as u32);
+        let points = |corners: &[Corner]| corners.iter().map(|corner| corner.point).collect::<SmallVec<[Point; 8]>>();
+        let (track, place) = (&mut self.track, placement.lane);
+        self.own = None;
         if against {
-            behind_against(lane, &foot, start, &mut line);
+            let needed = foot.way + start.length + KEPT_BEHIND;
+            let end = line.partition_point(|corner| corner.way <= needed).min(line.len() - 1);
+            let behind = points(&line[foot.segment + 1..=end]).into_iter().rev();
+            let ahead = points(&line[..=foot.segment]).into_iter().rev();
+            self.own = Some(Box::new(Own::lay(track, behind, foot.point, ahead, place, beside)));
         } else {
-            behind(net, placement.lane, &foot, start, &mut line);
-        }
-        let (track, plan) = (&mut self.track, self.plan.get_or_insert_default());
-        plan.route = placement.route.clone();
-        plan.route_position = None;
-        plan.lanes.clear();
-        plan.beside = Beside::new(offset(net, start, placement, &foot, against));
-        track.clear();
-        track.reserve(line.len() + 1 + lane.shape.len());
-        // The rear part of the line: its offset is that of now.
-        for point in line.into_iter().rev() {
-            match &mut plan.beside {
-                Some(beside) => beside.push_behind(track, point),
-                None => track.push(point),
+            let before = behind(net, place, &foot, start);
+            let joins = before.iter().try_fold(place.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
+            if beside.is_none() && line.len() > 1 && joins.is_some() {
+                track.begin(&net.lines, place.0, foot.way);
+                before.iter().for_each(|lane| track.come_from(lane.0));
+            } else {
+                let before = before.iter().rev().flat_map(|lane| points(net.lines.line(lane.0)));
+                let behind = before.chain(points(&line[..=foot.segment]));
+                let ahead = points(&line[foot.segment + 1..]).into_iter();
+                self.own = Some(Box::new(Own::lay(track, behind, foot.point, ahead, place, beside)));
             }
         }
-        match &mut plan.beside {
-            Some(beside) => beside.push_front(track, foot.point),
-            None => track.push(foot.point),
-        }
-        plan.begin_lane(track, placement.lane);
-        track.set_front(track.end());
-        if against {
-            plan.push_ahead(track, lane.shape[..=foot.segment].iter().rev());
-        } else {
-            plan.push_ahead(track, &lane.shape[foot.segment + 1..]);
-            plan.route_position = Some(placement.route_position as u32);
-        }
-        plan.forget(track.drop_behind(start.length + KEPT_BEHIND));
-        track.shrink();
+        self.forget_behind(net, start.length + KEPT_BEHIND);
     }
 
     /// Makes the path reach at least `way` ahead of the front bumper, if the route does, and forgets what lies
     /// behind the rear bumper.
     pub fn reach(&mut self, net: &Net, length: Metre, way: Metre) {
-        let track = &mut self.track;
-        let Some(plan) = &mut self.plan else { return };
-        if track.end() - track.front() >= way {
+        if self.track.ahead() >= way || !self.track.is_laid() {
             return;
         }
-        plan.forget(track.forget_behind(length + KEPT_BEHIND));
+        self.forget_behind(net, length + KEPT_BEHIND);
         // A ring of lanes of length 0 would go on for ever.
         let mut in_vain = 0;
-        while track.end() - track.front() < way + SPARE && in_vain <= net.lanes.len() {
-            let Some((lane, route_position)) = plan.next(net) else { break };
-            let before = track.end();
-            let shape = &net.lanes[lane.0 as usize].shape;
-            track.reserve(shape.len());
-            plan.begin_lane(track, lane);
-            plan.push_ahead(track, shape);
-            plan.route_position = Some(route_position);
-            in_vain = if track.end() > before { 0 } else { in_vain + 1 };
+        while self.track.ahead() < way + SPARE && in_vain <= net.lanes.len() {
+            let Some((lane, route_position)) = self.next(net) else { break };
+            let before = self.track.ahead();
+            self.go_on(net, lane);
+            self.route_position = Some(route_position);
+            in_vain = if self.track.ahead() > before { 0 } else { in_vain + 1 };
         }
-        track.shrink();
+        if let Some(own) = &mut self.own {
+            own.shrink();
+        }
     }
 
     /// The lane at a way ahead of the front bumper.
-    pub fn lane_at(&self, way: Metre) -> Option<LaneIndex> {
-        let lanes = &self.plan.as_ref()?.lanes;
-        let last = self.track.corner_before(self.track.front() + way);
-        let index = lanes.partition_point(|(corner, _)| *corner as usize <= last).saturating_sub(1);
-        lanes.get(index).map(|(_, lane)| *lane)
+    pub fn lane_at(&self, of_net: &Lines, way: Metre) -> Option<LaneIndex> {
+        let track = Some(&self.track).filter(|track| track.is_laid())?;
+        let (corner, line) = track.corner_ahead(self.lines(of_net), way);
+        self.own.as_ref().map_or(Some(LaneIndex(line)), |own| own.lane_at(corner))
     }
-}
 
-impl Plan {
-    /// From the end of the line on it is on this lane.
-    fn begin_lane(&mut self, track: &mut Track, lane: LaneIndex) {
-        if let Some(beside) = &mut self.beside {
-            beside.flush(track);
+    /// Goes on along this lane.
+    fn go_on(&mut self, net: &Net, lane: LaneIndex) {
+        let track = &mut self.track;
+        if self.own.is_none() && track.lines.last().is_some_and(|last| net.lines.join(*last, lane.0)) {
+            return track.go_on(&net.lines, lane.0);
         }
-        self.lanes.reserve_exact(1);
-        self.lanes.push((track.len().saturating_sub(1) as u32, lane));
+        self.own.get_or_insert_with(|| Box::new(Own::along(net, track))).go_on(net, track, lane);
     }
 
-    /// The line along these points of the centre line.
-    fn push_ahead<'a>(&mut self, track: &mut Track, points: impl IntoIterator<Item = &'a Point>) {
-        match &mut self.beside {
-            Some(beside) => {
-                points.into_iter().for_each(|point| beside.push_ahead(track, *point));
-                beside.flush(track);
+    /// Forgets what lies further behind the front bumper than this.
+    fn forget_behind(&mut self, net: &Net, behind: Metre) {
+        match &mut self.own {
+            Some(own) => {
+                own.forget_behind(&mut self.track, behind);
+                own.shrink();
             }
-            None => points.into_iter().for_each(|point| track.push(*point)),
+            None => self.track.forget_behind(&net.lines, behind),
         }
-    }
-
-    /// Takes account of points that the line's beginning has lost.
-    fn forget(&mut self, points: usize) {
-        for (corner, _) in &mut self.lanes {
-            *corner = corner.saturating_sub(points as u32);
-        }
-        let behind = self.lanes.partition_point(|(corner, _)| *corner == 0).saturating_sub(1);
-        self.lanes.drain(..behind);
     }
 
     /// The lane after the last one, and its place in the route.
     fn next(&self, net: &Net) -> Option<(LaneIndex, u32)> {
-        let (route, route_position, (_, last)) = (&*self.route, self.route_position?, *self.lanes.last()?);
+        let last = match &self.own {
+            Some(own) => own.last()?,
+            None => LaneIndex(*self.track.lines.last()?),
+        };
+        let (route, route_position) = (self.route.as_deref()?, self.route_position?);
         let position = route_position as usize;
         let lane = &net.lanes[last.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
@@ -239,9 +221,9 @@ struct Foot {
 }
 
 impl Foot {
-    fn of(shape: &[Point], ways: &[Metre], front: Point, hint: Metre) -> Self {
-        let best = Self::nearest(shape, ways, front, |start, end| start <= hint + NEAR_HINT && end >= hint - NEAR_HINT);
-        best.or_else(|| Self::nearest(shape, ways, front, |_, _| true)).unwrap_or(Self {
+    fn of(line: &[Corner], front: Point, hint: Metre) -> Self {
+        let best = Self::nearest(line, front, |start, end| start <= hint + NEAR_HINT && end >= hint - NEAR_HINT);
+        best.or_else(|| Self::nearest(line, front, |_, _| true)).unwrap_or(Self {
             point: front,
             segment: 0,
             way: 0.0,
@@ -250,20 +232,21 @@ impl Foot {
         })
     }
 
-    fn nearest(shape: &[Point], ways: &[Metre], front: Point, wanted: impl Fn(Metre, Metre) -> bool) -> Option<Self> {
+    fn nearest(line: &[Corner], front: Point, wanted: impl Fn(Metre, Metre) -> bool) -> Option<Self> {
         let mut best: Option<(f64, Self)> = None;
-        for segment in 0..shape.len().saturating_sub(1) {
-            let length = ways[segment + 1] - ways[segment];
-            if length <= 0.0 || !wanted(ways[segment], ways[segment + 1]) {
+        for (segment, ends) in line.windows(2).enumerate() {
+            let [start, end] = [&ends[0], &ends[1]];
+            let length = end.way - start.way;
+            if !wanted(start.way, end.way) {
                 continue;
             }
-            let direction = (shape[segment + 1] - shape[segment]) / length;
-            let along = (front - shape[segment]).dot(&direction).clamp(0.0, length);
-            let point = shape[segment] + direction * along;
+            let direction = (end.point - start.point) / length;
+            let along = (front - start.point).dot(&direction).clamp(0.0, length);
+            let point = start.point + direction * along;
             let distance = (front - point).norm_squared();
             if best.as_ref().is_none_or(|(least, _)| distance < *least) {
                 let aside = cross(&direction, &(front - point));
-                best = Some((distance, Self { point, segment, way: ways[segment] + along, direction, aside }));
+                best = Some((distance, Self { point, segment, way: start.way + along, direction, aside }));
             }
         }
         best.map(|(_, foot)| foot)
@@ -300,36 +283,28 @@ fn leads_to_a_lane(net: &Net, lane: LaneIndex, to_the_left: MetrePerSecond) -> b
     if to_the_left > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
-/// The centre line behind the front bumper, from there backwards, as far as the rear bumper and a little more.
-fn behind(net: &Net, lane: LaneIndex, foot: &Foot, start: &Start, line: &mut Vec<Point>) {
+/// The lanes behind the one that the front bumper is on, the nearest first, as far as the rear bumper and a little more.
+fn behind(net: &Net, lane: LaneIndex, foot: &Foot, start: &Start) -> SmallVec<[LaneIndex; 4]> {
     let needed = start.length + KEPT_BEHIND;
     let rear = start.front - start.axis * start.length;
-    let shape = &net.lanes[lane.0 as usize].shape;
-    line.extend(shape[..=foot.segment].iter().rev());
+    let mut lanes = SmallVec::new();
     let mut laid = foot.way;
     let mut current = lane;
     while laid < needed {
         let before = net.lanes[current.0 as usize].from.iter().copied().min_by(|&a, &b| {
             let distance = |lane: LaneIndex| {
-                let lane = &net.lanes[lane.0 as usize];
-                let way = lane.ways.last().copied().unwrap_or(0.0) - (start.length - laid);
-                (rear - Foot::of(&lane.shape, &lane.ways, rear, way).point).norm()
+                let way = net.lines.length(lane.0) - (start.length - laid);
+                (rear - Foot::of(net.lines.line(lane.0), rear, way).point).norm()
             };
             distance(a).total_cmp(&distance(b))
         });
         let Some(before) = before else { break };
-        line.extend(net.lanes[before.0 as usize].shape.iter().rev());
+        lanes.push(before);
         // A lane of length 0 must not make this endless.
-        laid += net.lanes[before.0 as usize].ways.last().copied().unwrap_or(0.0).max(0.1);
+        laid += net.lines.length(before.0).max(0.1);
         current = before;
     }
-}
-
-/// The same for one who drives against the lane's direction.
-fn behind_against(lane: &crate::net::Lane, foot: &Foot, start: &Start, line: &mut Vec<Point>) {
-    let needed = foot.way + start.length + KEPT_BEHIND;
-    let end = lane.ways.partition_point(|&way| way <= needed).min(lane.shape.len() - 1);
-    line.extend(&lane.shape[foot.segment + 1..=end]);
+    lanes
 }
 
 fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {

@@ -7,8 +7,8 @@
 pub mod arc;
 mod beside;
 pub mod lanes;
+mod own;
 mod poses;
-mod segment;
 pub mod straight;
 pub mod track;
 

@@ -1,9 +1,9 @@
 //! Along a line on the ground: the poses of a road user whose front and rear bumper are both on it.
 
-use super::segment::{ON_THE_LINE, Segment};
-use super::track::Track;
+use super::track::{Cursor, Track};
 use super::{Pose, largest_turn, rotated, turn};
-use crate::geometry::{Point, Vector, cross};
+use crate::geometry::lines::{Lines, ON_THE_LINE};
+use crate::geometry::{Vector, cross};
 use crate::units::{Metre, Radian};
 
 /// A heading that differs by less than this from the line's chord is the chord, in rad.
@@ -14,9 +14,11 @@ const SAME_DIRECTION: f64 = 1e-10;
 impl Track {
     /// Whether a road user of this length and heading drives straight on for so long, along the part of the line that it
     /// is on now; `false` also where that takes looking further ahead to know.
-    pub fn goes_straight(&self, axis: &Vector, length: Metre, way: Metre) -> bool {
-        let Segment { direction, length: whole, way: begin, .. } = &self.under;
-        self.front - length >= *begin && self.front + way <= begin + whole && turns_less(direction, axis, SAME_HEADING)
+    pub fn goes_straight(&self, lines: &Lines, axis: &Vector, length: Metre, way: Metre) -> bool {
+        let under = lines.segment(self.corner);
+        self.front - length >= under.way
+            && self.front + way <= under.way + under.length
+            && turns_less(&under.direction, axis, SAME_HEADING)
     }
 
     /// How far the way of who goes straight, so long as this, lies at most beside where it heads: as far as it may be off
@@ -31,15 +33,18 @@ impl Track {
     ///
     /// `axis` is the heading of now. Where it differs from the chord (a lane change, a rear on a lane that is not
     /// known) the difference fades out over the road user's own length.
-    pub fn poses(&self, axis: Vector, length: Metre, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
-        let limit = if beyond { f64::INFINITY } else { self.end() - self.front };
-        let mut front = Cursor { track: self, segment: self.segment, under: self.under, way: self.front };
-        let rear_way = self.front - length;
-        let mut rear = if rear_way >= self.under.way {
-            Cursor { way: rear_way, ..front }
-        } else {
-            Cursor::at(self, self.corner_before(rear_way).min(self.segment), rear_way)
-        };
+    pub fn poses(
+        &self,
+        lines: &Lines,
+        axis: Vector,
+        length: Metre,
+        ways: &[Metre],
+        beyond: bool,
+        poses: &mut Vec<Pose>,
+    ) {
+        let limit = if beyond { f64::INFINITY } else { self.ahead() };
+        let mut front = self.cursor(lines);
+        let mut rear = front.back(length);
         let chord_now = chord(&front, &rear, axis);
         let skew = if turns_less(&chord_now, &axis, SAME_HEADING) { 0.0 } else { turn(&chord_now, &axis) };
         let skew = if skew.abs() < SAME_HEADING { 0.0 } else { skew };
@@ -49,9 +54,10 @@ impl Track {
         poses.push(Pose { way: 0.0, front: front.point(), axis: first });
         let mut way = 0.0;
         let furthest = ways.last().map_or(0.0, |last| last.min(limit));
-        if skew == 0.0 && rear.segment == front.segment && furthest <= front.room() {
-            return front.straight_on(ways, limit, first, poses);
+        if skew == 0.0 && rear.corner == front.corner && furthest <= front.room() {
+            return straight_on(front, ways, limit, first, poses);
         }
+        let least = f64::EPSILON * self.length(lines).max(1.0);
         for &target in ways {
             let target = target.min(limit);
             while way < target {
@@ -60,11 +66,11 @@ impl Track {
                     next = next.min(length);
                 }
                 // Rounding may leave a room too small to move by; the next point is then as good as reached.
-                let step = (next - way).max(f64::EPSILON * self.end().max(1.0));
-                let before = [(front.segment, front.way), (rear.segment, rear.way)];
+                let step = (next - way).max(least);
+                let before = [front, rear];
                 let before_axis = axis_of_last(poses, axis);
-                front.advance(step);
-                rear.advance(step);
+                advance(&mut front, step, least);
+                advance(&mut rear, step, least);
                 let after = skewed(chord(&front, &rear, before_axis), skew, way + step, length);
                 let parts = if turns_less(&before_axis, &after, widest) {
                     1.0
@@ -73,7 +79,7 @@ impl Track {
                 };
                 for part in 1..parts as u32 {
                     let share = step * f64::from(part) / parts;
-                    let [front, rear] = before.map(|(segment, way)| Cursor::at(self, segment, way + share));
+                    let [front, rear] = before.map(|place| place.beyond(share));
                     let axis = skewed(chord(&front, &rear, before_axis), skew, way + share, length);
                     poses.push(Pose { way: way + share, front: front.point(), axis });
                 }
@@ -130,65 +136,36 @@ fn turns_less(from: &Vector, to: &Vector, angle: Radian) -> bool {
     cross(from, to).abs() < from.dot(to) * (angle * SURELY)
 }
 
-/// A place on a track that moves ahead.
-#[derive(Clone, Copy)]
-struct Cursor<'a> {
-    track: &'a Track,
-    segment: usize,
-    under: Segment,
-    way: Metre,
+/// Adds the poses at these ways from here, all on this part of the line, as [`Track::poses`] has them.
+fn straight_on(mut front: Cursor, ways: &[Metre], limit: Metre, axis: Vector, poses: &mut Vec<Pose>) {
+    let mut way = 0.0;
+    for target in ways.iter().map(|target| target.min(limit)) {
+        if way < target {
+            let step = target - way;
+            front.way += step;
+            way += step;
+            poses.push(Pose { way, front: front.point(), axis });
+        }
+    }
 }
 
-impl<'a> Cursor<'a> {
-    fn at(track: &'a Track, segment: usize, way: Metre) -> Self {
-        Self { track, segment, under: track.part(segment), way }
-    }
-
-    /// Before the line's beginning and beyond its end, straight on.
-    fn point(&self) -> Point {
-        self.under.at(self.way)
-    }
-
-    /// Way to the next point of the line.
-    fn room(&self) -> Metre {
-        match self.track.corners.get(self.segment + 1) {
-            Some(next) if self.segment + 2 < self.track.corners.len() => next.way - self.way,
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// Adds the poses at these ways from here, all on this part of the line, as [`Track::poses`] has them.
-    fn straight_on(mut self, ways: &[Metre], limit: Metre, axis: Vector, poses: &mut Vec<Pose>) {
-        let mut way = 0.0;
-        for target in ways.iter().map(|target| target.min(limit)) {
-            if way < target {
-                let step = target - way;
-                self.way += step;
-                way += step;
-                poses.push(Pose { way, front: self.point(), axis });
-            }
-        }
-    }
-
-    fn advance(&mut self, way: Metre) {
-        self.way += way;
-        while self.room() <= f64::EPSILON * self.track.end() {
-            self.segment += 1;
-            self.under = self.track.part(self.segment);
-        }
+/// Moves on; where no more than `least` is left to the next corner, as good as past that.
+fn advance(place: &mut Cursor, way: Metre, least: Metre) {
+    place.way += way;
+    while place.room() <= least {
+        place.go_on();
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Bounds;
+    use crate::geometry::{Bounds, Point};
 
-    fn poses(track: &Track, ways: &[f64]) -> Vec<Pose> {
+    fn poses((track, lines): &(Track, Lines), ways: &[f64]) -> Vec<Pose> {
         let mut found = Vec::new();
-        let front = Cursor::at(track, track.segment, track.front);
-        let rear = Cursor::at(track, 0, track.front - 5.0);
-        track.poses(chord(&front, &rear, Vector::x()), 5.0, ways, false, &mut found);
+        let front = track.cursor(lines);
+        track.poses(lines, chord(&front, &front.back(5.0), Vector::x()), 5.0, ways, false, &mut found);
         found
     }
 
@@ -212,11 +189,14 @@ mod tests {
 
     #[test]
     fn it_goes_straight_as_long_as_front_and_rear_are_on_one_part_of_the_line() {
-        let corner = |front: f64| Track::through(&[(0.0, 0.0), (30.0, 0.0), (30.0, 20.0)], front);
-        assert!(corner(8.0).goes_straight(&Vector::x(), 5.0, 22.0));
-        assert!(!corner(8.0).goes_straight(&Vector::x(), 5.0, 22.1), "the front comes round the corner");
-        assert!(!corner(33.0).goes_straight(&Vector::y(), 5.0, 1.0), "the rear does");
-        assert!(!corner(8.0).goes_straight(&rotated(&Vector::x(), 1e-5), 5.0, 1.0), "it changes lanes");
+        let goes_straight = |front: f64, axis: Vector, way: f64| {
+            let (track, lines) = Track::through(&[(0.0, 0.0), (30.0, 0.0), (30.0, 20.0)], front);
+            track.goes_straight(&lines, &axis, 5.0, way)
+        };
+        assert!(goes_straight(8.0, Vector::x(), 22.0));
+        assert!(!goes_straight(8.0, Vector::x(), 22.1), "the front comes round the corner");
+        assert!(!goes_straight(33.0, Vector::y(), 1.0), "the rear does");
+        assert!(!goes_straight(8.0, rotated(&Vector::x(), 1e-5), 1.0), "it changes lanes");
     }
 
     #[test]
@@ -225,7 +205,7 @@ mod tests {
         for (front, way) in [(2.0, 3.0), (8.0, 10.0), (8.0, 30.0), (12.0, 5.0), (8.0, 100.0)] {
             let (line, mut fronts) = (corner(front), Bounds::EMPTY);
             poses(&line, &[way]).iter().for_each(|pose| fronts.include(pose.front));
-            assert_eq!(line.bounds_ahead(way), fronts, "{way} m from {front} m on");
+            assert_eq!(line.0.bounds_ahead(&line.1, way), fronts, "{way} m from {front} m on");
         }
     }
 
@@ -237,9 +217,9 @@ mod tests {
 
     #[test]
     fn another_heading_fades_out_over_the_length() {
-        let line = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 20.0);
+        let (track, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 20.0);
         let mut found = Vec::new();
-        line.poses(rotated(&Vector::x(), 0.1), 5.0, &[30.0], false, &mut found);
+        track.poses(&lines, rotated(&Vector::x(), 0.1), 5.0, &[30.0], false, &mut found);
         assert!((turn(&Vector::x(), &found[0].axis) - 0.1).abs() < 1e-12);
         assert!(found.iter().filter(|pose| pose.way >= 5.0).all(|pose| pose.axis.y.abs() < 1e-12));
     }

@@ -1,6 +1,11 @@
-//! A line on the ground and a road user's place on it.
+//! A road user's place on lines that join: where its front bumper is, and how far they lead ahead.
+//!
+//! A track says which lines of a table it runs over, the net's lanes mostly, which nobody has to copy. Ways are those along
+//! the line that the front bumper is on: behind its beginning they are negative, beyond its end larger than it is long.
 
-use super::segment::{Corner, ON_THE_LINE, Segment};
+use smallvec::SmallVec;
+
+use crate::geometry::lines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point};
 use crate::units::Metre;
 
@@ -9,177 +14,226 @@ use crate::units::Metre;
 const LONGEST_DETOUR: f64 = 4.0;
 /// Who gets further back than this on a line does not drive along it, in m: more than recordings round, to 1 cm.
 const BACKWARDS: Metre = 0.02;
+/// Of so many lines hardly a track has more: the lane behind, the junction's, the next two.
+const MOSTLY: usize = 4;
 
-/// A polyline with a place on it.
-///
-/// What following needs stands in front: most steps end on the segment that they began on, and look at nothing else.
+/// Lines of a table that join, and a place on them.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
-    pub(super) under: Segment,
+    /// In their order.
+    pub(super) lines: SmallVec<[u32; MOSTLY]>,
+    /// On which of them the front bumper is.
+    pub(super) at: u32,
+    /// The last corner before it, in the table.
+    pub(super) corner: u32,
     pub(super) front: Metre,
-    /// The last corner's way: whether a path reaches far enough is asked of everybody in every step.
-    end: Metre,
-    pub(super) segment: usize,
-    pub(super) corners: Vec<Corner>,
+    /// Where the last line ends: whether a track reaches far enough is asked of everybody in every step.
+    pub(super) end: Metre,
 }
 
 impl Track {
-    /// Forgets the line.
+    /// Forgets the lines.
     pub fn clear(&mut self) {
-        self.corners.clear();
-        (self.under, self.front, self.end, self.segment) = Default::default();
+        *self = Self::default();
     }
 
-    /// Appends a point; one that repeats the last is left out.
-    pub fn push(&mut self, point: Point) {
-        let way = match self.corners.last() {
-            Some(last) => {
-                let step = (point - last.point).norm();
-                if step < ON_THE_LINE {
-                    return;
-                }
-                last.way + step
-            }
-            None => 0.0,
-        };
-        self.corners.push(Corner { point, way });
-        self.end = way;
-        if self.corners.len() == self.segment + 2 {
-            self.enter(self.segment);
-        }
+    /// Begins with this line, which has two corners at least, the front bumper at this way.
+    pub fn begin(&mut self, lines: &Lines, line: u32, front: Metre) {
+        self.lines.clear();
+        self.lines.push(line);
+        self.at = 0;
+        self.end = lines.length(line);
+        self.set_front(lines, front);
     }
 
-    /// Takes the memory for so many further points, no more.
-    pub fn reserve(&mut self, points: usize) {
-        self.corners.reserve_exact(points);
+    /// Puts the front bumper at a way along the line that it is on.
+    pub(super) fn set_front(&mut self, lines: &Lines, way: Metre) {
+        let line = self.lines[self.at as usize];
+        let corners = lines.line(line);
+        let before = corners.partition_point(|corner| corner.way <= way).saturating_sub(1).min(corners.len() - 2);
+        self.front = way;
+        self.corner = lines.range(line).0 + before as u32;
     }
 
-    /// Gives back the memory for further points.
-    pub fn shrink(&mut self) {
-        self.corners.shrink_to_fit();
+    /// Goes on over a line that joins the last one.
+    pub fn go_on(&mut self, lines: &Lines, line: u32) {
+        self.lines.push(line);
+        self.end += lines.length(line);
+    }
+
+    /// Has come over a line that the first one joins.
+    pub fn come_from(&mut self, line: u32) {
+        self.lines.insert(0, line);
+        self.at += 1;
     }
 
     /// Whether there is a line at all.
     pub fn is_laid(&self) -> bool {
-        self.corners.len() >= 2
+        !self.lines.is_empty()
     }
 
-    /// The way from the line's beginning to the front bumper.
+    /// The way from the beginning of the line that the front bumper is on.
     pub fn front(&self) -> Metre {
         self.front
     }
 
-    /// The way from the line's beginning to its end.
-    pub fn end(&self) -> Metre {
-        self.end
+    /// How far ahead the lines lead.
+    pub fn ahead(&self) -> Metre {
+        self.end - self.front
     }
 
-    /// How many points there are.
-    pub fn len(&self) -> usize {
-        self.corners.len()
-    }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.corners.is_empty()
-    }
-
-    /// The last point at this way from the line's beginning, or before it.
-    pub fn corner_before(&self, way: Metre) -> usize {
-        self.corners.partition_point(|corner| corner.way <= way).saturating_sub(1)
-    }
-
-    /// Puts the front bumper at a way from the line's beginning.
-    pub fn set_front(&mut self, way: Metre) {
-        self.front = way;
-        self.segment = self.corner_before(way).min(self.corners.len().saturating_sub(2));
-        if self.is_laid() {
-            self.enter(self.segment);
-        }
-    }
-
-    fn enter(&mut self, segment: usize) {
-        self.segment = segment;
-        self.under = self.part(segment);
-    }
-
-    pub(super) fn part(&self, segment: usize) -> Segment {
-        Segment::between(&self.corners[segment], &self.corners[segment + 1])
-    }
-
-    /// Follows the front bumper to where it is now; `false` if it is not on the line ahead any more.
-    pub fn follow(&mut self, front: Point) -> bool {
-        if self.under.length <= 0.0 {
+    /// Follows the front bumper to where it is now; `false` if it is not on the lines ahead any more.
+    pub fn follow(&mut self, lines: &Lines, front: Point) -> bool {
+        if !self.is_laid() {
             return false;
         }
-        if let Some(way) = self.under.way_to(front) {
+        let under = lines.segment(self.corner);
+        if let Some(way) = under.way_to(front) {
             let goes_on = way >= self.front - BACKWARDS;
             self.front = way;
             return goes_on;
         }
-        let moved = (front - self.under.at(self.front)).norm();
+        let moved = (front - under.at(self.front)).norm();
         let furthest = self.front + LONGEST_DETOUR * moved + ON_THE_LINE;
-        for segment in self.segment + 1..self.corners.len() - 1 {
-            if self.corners[segment].way > furthest {
-                return false;
-            }
-            if let Some(way) = self.part(segment).way_to(front) {
-                self.enter(segment);
-                self.front = way;
+        let mut cursor = Cursor { way: furthest, ..self.cursor(lines) };
+        while cursor.room() <= 0.0 {
+            cursor.go_on();
+            if let Some(way) = cursor.under.way_to(front) {
+                let (at, corner) = (cursor.at, cursor.corner);
+                let passed = self.lines[self.at as usize..at as usize].iter();
+                self.end -= passed.map(|line| lines.length(*line)).sum::<Metre>();
+                (self.at, self.corner, self.front) = (at, corner, way);
                 return true;
             }
         }
         false
     }
 
-    /// The box around the line from the front bumper to this way ahead of it, or to the line's end.
-    pub fn bounds_ahead(&self, way: Metre) -> Bounds {
-        let (mut bounds, mut last) = (Bounds::EMPTY, self.under);
-        bounds.include(last.at(self.front));
-        let end = (self.front + way).min(self.end());
-        for pair in self.corners[self.segment + 1..].windows(2).take_while(|pair| pair[0].way < end) {
-            bounds.include(pair[0].point);
-            last = Segment::between(&pair[0], &pair[1]);
+    /// The box around the lines from the front bumper to this way ahead of it, or to their end.
+    pub fn bounds_ahead(&self, lines: &Lines, way: Metre) -> Bounds {
+        let mut cursor = self.cursor(lines);
+        let mut bounds = Bounds::EMPTY;
+        bounds.include(cursor.point());
+        cursor.way = (self.front + way).min(self.end);
+        while cursor.room() < 0.0 {
+            cursor.go_on();
+            bounds.include(cursor.under.start);
         }
-        bounds.include(last.at(end));
+        bounds.include(cursor.point());
         bounds
     }
 
-    /// Drops the points that lie further behind the front bumper than `behind`, but the last of them; returns how many.
-    /// All ways stay as they are.
-    pub fn drop_behind(&mut self, behind: Metre) -> usize {
-        let dropped = self.corner_before(self.front - behind);
-        self.corners.drain(..dropped);
-        self.segment -= dropped;
-        dropped
+    /// The corner at this way ahead of the front bumper, or the last one before it, and which line has it.
+    pub(super) fn corner_ahead(&self, lines: &Lines, way: Metre) -> (u32, u32) {
+        let mut cursor = Cursor { way: self.front + way, ..self.cursor(lines) };
+        while cursor.room() <= 0.0 {
+            cursor.go_on();
+        }
+        (cursor.corner, self.lines[cursor.at as usize])
     }
 
-    /// Does so, and lets the line begin at the first point that is left: along a long way its points stay precise.
-    pub fn forget_behind(&mut self, behind: Metre) -> usize {
-        let dropped = self.drop_behind(behind);
-        let shift = self.corners.first().map_or(0.0, |first| first.way);
-        if shift > 0.0 {
-            for corner in &mut self.corners {
-                corner.way -= shift;
-            }
-            self.front -= shift;
-            self.end -= shift;
-            self.enter(self.segment);
+    /// Drops the lines that lie wholly further behind the front bumper than this.
+    pub fn forget_behind(&mut self, lines: &Lines, behind: Metre) {
+        let (mut begin, mut first) = (self.front, self.at as usize);
+        while begin < behind && first > 0 {
+            first -= 1;
+            begin += lines.length(self.lines[first]);
         }
-        dropped
+        self.lines.drain(..first);
+        self.lines.shrink_to_fit();
+        self.at -= first as u32;
+    }
+
+    /// How long its lines are, all together.
+    pub(super) fn length(&self, lines: &Lines) -> Metre {
+        self.end + self.lines[..self.at as usize].iter().map(|line| lines.length(*line)).sum::<Metre>()
+    }
+
+    /// Where the front bumper is.
+    pub(super) fn cursor<'a>(&'a self, lines: &'a Lines) -> Cursor<'a> {
+        let (at, corner, way) = (self.at, self.corner, self.front);
+        Cursor { track: self, lines, at, corner, last: self.last_corner(lines, at), under: lines.segment(corner), way }
+    }
+
+    fn last_corner(&self, lines: &Lines, at: u32) -> u32 {
+        lines.range(self.lines[at as usize]).1 - 1
+    }
+}
+
+/// A place on a track that moves.
+#[derive(Clone, Copy)]
+pub(super) struct Cursor<'a> {
+    track: &'a Track,
+    lines: &'a Lines,
+    /// On which of the track's lines it is, the table's last corner of that, and the last corner before it.
+    at: u32,
+    last: u32,
+    pub corner: u32,
+    pub under: Segment,
+    /// Along the line that it is on.
+    pub way: Metre,
+}
+
+impl Cursor<'_> {
+    /// Before the track's beginning and beyond its end, straight on.
+    pub fn point(&self) -> Point {
+        self.under.at(self.way)
+    }
+
+    /// Way to the next corner, behind it less than 0; from the last part of the track there is none.
+    pub fn room(&self) -> Metre {
+        let is_last = self.corner + 1 == self.last && self.at as usize + 1 == self.track.lines.len();
+        if is_last { f64::INFINITY } else { self.lines.corner(self.corner + 1).way - self.way }
+    }
+
+    /// On to the next part of the track, if there is one; the place stays where it is.
+    pub fn go_on(&mut self) {
+        if self.corner + 1 < self.last {
+            self.corner += 1;
+        } else if let Some(line) = self.track.lines.get(self.at as usize + 1) {
+            self.way -= self.lines.length(self.track.lines[self.at as usize]);
+            self.at += 1;
+            let (begin, end) = self.lines.range(*line);
+            (self.corner, self.last) = (begin, end - 1);
+        }
+        self.under = self.lines.segment(self.corner);
+    }
+
+    /// So far ahead, by the direction here.
+    pub fn beyond(mut self, way: Metre) -> Self {
+        self.way += way;
+        self
+    }
+
+    /// Back to where this way ends; before the track's beginning on its first part.
+    pub fn back(mut self, way: Metre) -> Self {
+        self.way -= way;
+        while self.way < self.under.way {
+            if self.corner > self.lines.range(self.track.lines[self.at as usize]).0 {
+                self.corner -= 1;
+            } else if self.at > 0 {
+                self.at -= 1;
+                let line = self.track.lines[self.at as usize];
+                self.way += self.lines.length(line);
+                self.last = self.lines.range(line).1 - 1;
+                self.corner = self.last - 1;
+            } else {
+                break;
+            }
+            self.under = self.lines.segment(self.corner);
+        }
+        self
     }
 }
 
 #[cfg(test)]
 impl Track {
-    /// A line through these points, the front bumper at this way.
-    pub(super) fn through(points: &[(f64, f64)], front: f64) -> Self {
+    /// A line through these points, the front bumper at this way, and how far its points are from each other.
+    pub(super) fn through(points: &[(f64, f64)], front: f64) -> (Self, Lines) {
+        let lines = Lines::through(points.iter().map(|&(x, y)| Point::new(x, y)));
         let mut track = Self::default();
-        for &(x, y) in points {
-            track.push(Point::new(x, y));
-        }
-        track.set_front(front);
-        track
+        track.begin(&lines, 0, front);
+        (track, lines)
     }
 }
 
@@ -189,17 +243,17 @@ mod tests {
 
     #[test]
     fn it_is_followed_as_long_as_the_front_is_on_it() {
-        let mut corner = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
-        assert!(corner.follow(Point::new(9.5, 0.0)));
-        assert!(corner.follow(Point::new(10.0, 3.0)));
+        let (mut corner, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
+        assert!(corner.follow(&lines, Point::new(9.5, 0.0)));
+        assert!(corner.follow(&lines, Point::new(10.0, 3.0)));
         assert_eq!(corner.front(), 13.0);
-        assert!(!corner.follow(Point::new(11.0, 4.0)));
+        assert!(!corner.follow(&lines, Point::new(11.0, 4.0)));
     }
 
     #[test]
     fn who_drives_back_on_it_is_not_on_it() {
-        let mut line = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
-        assert!(line.follow(Point::new(49.99, 0.0)), "a rounded position");
-        assert!(!line.follow(Point::new(49.0, 0.0)));
+        let (mut line, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
+        assert!(line.follow(&lines, Point::new(49.99, 0.0)), "a rounded position");
+        assert!(!line.follow(&lines, Point::new(49.0, 0.0)));
     }
 }

@@ -8,6 +8,7 @@ use super::tally::{Property, Tally, Unit};
 use super::{Case, Group};
 use crate::encounter::Placement;
 use crate::frame::State;
+use crate::geometry::lines::Lines;
 use crate::geometry::{Point, Vector};
 use crate::net::Net;
 use crate::path::Pose;
@@ -110,23 +111,23 @@ fn winding(chance: &mut Chance, least: Metre, most: Metre) -> Vec<Point> {
 }
 
 fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
-    let mut track = Track::default();
-    points.iter().for_each(|point| track.push(*point));
-    if !track.is_laid() {
+    let lines = Lines::through(points.iter().copied());
+    if lines.line(0).len() < 2 {
         return;
     }
-    track.set_front(track.end() * chance.between(0.0, 1.0));
-    let room = track.end() - track.front();
+    let (mut track, whole) = (Track::default(), lines.length(0));
+    track.begin(&lines, 0, whole * chance.between(0.0, 1.0));
+    let room = track.ahead();
     let length = chance.between(0.5, 20.0);
     let ways = [room * chance.between(0.0, 1.0), room];
     let mut poses = Vec::new();
-    track.poses(Vector::x(), length, &ways, false, &mut poses);
+    track.poses(&lines, Vector::x(), length, &ways, false, &mut poses);
     let inputs = (points, track.front(), length, ways);
     let unit = poses.iter().map(|pose| (pose.axis.norm() - 1.0).abs()).fold(0.0, worse);
     tally.error(UNIT, unit, &inputs);
     let ascending = poses.windows(2).all(|pair| pair[0].way < pair[1].way);
     let last = poses.last().map_or(f64::NAN, |pose| pose.way);
-    tally.holds(ASCENDING, ascending && (last - room).abs() <= 1e-9 * track.end().max(1.0), &inputs);
+    tally.holds(ASCENDING, ascending && (last - room).abs() <= 1e-9 * whole.max(1.0), &inputs);
     // A track leaves out points that are nearer than this to the last one (a millimetre): the line may be off by it.
     let kept = laid(points);
     // High precision takes its time: some poses of every line.

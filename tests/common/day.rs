@@ -109,8 +109,7 @@ impl Course {
     fn placement(&self, net: &Net, way: f64) -> Placement {
         let index = self.lanes.partition_point(|(start, _)| *start <= way).max(1) - 1;
         let (start, lane) = self.lanes[index];
-        let (drawn, edge) =
-            (*net.lanes[lane.0 as usize].ways.last().unwrap(), |lane: LaneIndex| net.lanes[lane.0 as usize].edge);
+        let (drawn, edge) = (net.lines.length(lane.0), |lane: LaneIndex| net.lanes[lane.0 as usize].edge);
         // Within a junction it is on the way from the edge before.
         let before = self.lanes[..=index].iter().rev().map(|(_, lane)| edge(*lane));
         let last = before.filter_map(|edge| self.route.iter().position(|known| *known == edge)).next();
