@@ -158,11 +158,16 @@ struct Found {
 }
 
 /// Memory for what is forgotten with the pair.
-#[derive(Default)]
 struct Scratch {
     /// Poses further ahead than the ways of the step: the ego's and the foe's.
     courses: [Vec<Pose>; 2],
     halves: Halves,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { courses: [const { Vec::new() }; 2], halves: Halves::to_keep() }
+    }
 }
 
 /// What measuring a pair that would meet starts from.

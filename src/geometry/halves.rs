@@ -18,8 +18,8 @@ use crate::units::Metre;
 /// More than rounding can move anything, in m.
 const ROUNDING: Metre = 1e-6;
 
-/// Memory for so many parts and hulls is kept from step to step. In `sumo_nets/town` one pair of 8,000 needs more than
-/// half of it.
+/// Memory for so many parts and hulls is taken at once where it is kept from step to step, and no more. In
+/// `sumo_nets/town` one pair of 8,000 needs more than half of it.
 const KEPT: usize = 256;
 
 /// Which touch is looked for.
@@ -167,6 +167,12 @@ impl Swept {
 }
 
 impl Halves {
+    /// With all the memory that is kept; as long as nothing turns, no system gives it.
+    pub fn to_keep() -> Self {
+        let room = Self { parts: Vec::with_capacity(KEPT), hulls: Vec::with_capacity(KEPT), ..Self::default() };
+        Self { numbered: Vec::with_capacity(KEPT), ..room }
+    }
+
     /// Forgets all steps.
     pub fn clear(&mut self) {
         self.parts.clear();
