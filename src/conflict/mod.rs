@@ -21,6 +21,7 @@ use crate::geometry::Point;
 use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::profile::Category;
+use crate::table::fill;
 use crate::units::Second;
 
 pub use stance::Stance;
@@ -80,7 +81,7 @@ impl Tracker {
             return &self.closed;
         }
         self.rows.clear();
-        self.rows.resize(roster.len(), ABSENT);
+        fill(&mut self.rows, roster.len(), ABSENT);
         for (number, row) in (0..).zip(frame.rows()) {
             self.rows[row.user.0 as usize] = number;
         }

@@ -1,7 +1,8 @@
 //! Phase 2, second half: the gap of a pair whose foe has to come and go first; of a pair in conflict clearance, TTC, DRAC,
 //! severity.
 
-use super::{Found, Met, Scene, Scratch, User, Worker};
+use super::worker::{Found, Met, Scratch, Worker};
+use super::{Scene, User};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::approach::{self, Course};
 use crate::avoidance;

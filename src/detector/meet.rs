@@ -3,7 +3,8 @@
 use std::hint::black_box;
 
 use super::ways::Ways;
-use super::{Found, LEVEL, Met, Scene, User, Work, Worker};
+use super::worker::{Found, Met, Worker};
+use super::{LEVEL, Scene, User, Work};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
@@ -252,7 +253,6 @@ impl Scene<'_> {
         }
         let at = meeting.place();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
-        add(&mut found.pairs, (ego.row.min(foe.row), ego.row.max(foe.row)));
         let encounter = Encounter {
             ego: ego.index,
             foe: foe.index,
@@ -276,12 +276,17 @@ impl Scene<'_> {
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || encounter.in_conflict() {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
-            if ego.on_lanes || foe.on_lanes {
-                add(unmeasured, (number, met));
-            } else {
+            if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
                 self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
+            } else {
+                add(unmeasured, (number, met));
             }
         }
+    }
+
+    /// Whether somebody's path is laid so far ahead, if it has one that may have to be.
+    fn reaches(&self, user: &User, way: Metre) -> bool {
+        !user.on_lanes || self.paths.track(user.index).0.ahead() >= way
     }
 
     /// Whether a pair is in conflict if its foe leaves the meeting place as late as it can.

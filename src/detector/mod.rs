@@ -10,19 +10,17 @@ mod meet;
 mod onward;
 mod order;
 mod ways;
+mod worker;
 
 use std::sync::Arc;
 
-use crate::accurate::Meeting;
 use crate::braking::stopping_distance;
 use crate::encounter::{Encounter, Placement};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
-use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
 use crate::options::Options;
-use crate::path::Pose;
 use crate::path::lanes::{LanePath, Start};
 use crate::precollision::Search;
 use crate::profile::{Category, Profile};
@@ -31,7 +29,7 @@ use crate::team::Team;
 use crate::units::{Metre, MetrePerSecond, Radian};
 use look::{Paths, Reach, Sight};
 use order::Order;
-use ways::Ways;
+use worker::Worker;
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
 pub const LEVEL: Metre = 2.5;
@@ -134,60 +132,6 @@ struct User {
     /// Whether it goes straight on until it stands: it has no lanes and no arc, or its lane leads straight on.
     ahead: bool,
     on_lanes: bool,
-}
-
-/// What one thread needs for its part of a step, and what it finds.
-#[derive(Default)]
-struct Worker {
-    work: Work,
-    /// Slots of two whose areas meet.
-    pairs: Vec<(u32, u32)>,
-    ways: Ways,
-    found: Found,
-}
-
-/// The pairs that would meet.
-#[derive(Default)]
-struct Found {
-    encounters: Vec<Encounter>,
-    /// The rows of each, the smaller first.
-    pairs: Vec<(u32, u32)>,
-    /// Which of them are not measured yet.
-    unmeasured: Vec<(u32, Met)>,
-    scratch: Scratch,
-}
-
-/// Memory for what is forgotten with the pair.
-struct Scratch {
-    /// Poses further ahead than the ways of the step: the ego's and the foe's.
-    courses: [Vec<Pose>; 2],
-    halves: Halves,
-}
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Self { courses: [const { Vec::new() }; 2], halves: Halves::to_keep() }
-    }
-}
-
-/// What measuring a pair that would meet starts from.
-#[derive(Clone, Copy)]
-struct Met {
-    /// The ego's slot and the foe's.
-    slots: [u32; 2],
-    meeting: Meeting,
-    /// cos α.
-    sigma: f64,
-    /// Whether the gap waits for when the foe has left the meeting place.
-    leaves: bool,
-}
-
-impl Found {
-    fn clear(&mut self) {
-        self.encounters.clear();
-        self.pairs.clear();
-        self.unmeasured.clear();
-    }
 }
 
 /// What phase 2 reads of the step under way.

@@ -1,7 +1,8 @@
 //! Two that go straight on along their headings, on no lanes: what they cover is two rectangles, and to lay these for each
 //! pair takes less than to keep them.
 
-use super::{Found, Scene, User, Work};
+use super::worker::Found;
+use super::{Scene, User, Work};
 use crate::accurate::Mover;
 use crate::geometry::rectangle::plainly_touches;
 use crate::geometry::sweep::TOLERANCE;

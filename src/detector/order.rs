@@ -1,7 +1,8 @@
 //! The pairs that different threads have met, in the order of the frame's rows.
 
-use super::Worker;
+use super::worker::Worker;
 use crate::encounter::Encounter;
+use crate::table::fill;
 
 /// Brings encounters into order where they are; keeps its memory.
 #[derive(Default)]
@@ -13,6 +14,10 @@ pub(super) struct Order {
 /// Which rows met, the smaller first, and which of whose finds that is.
 type Place = ((u32, u32), u32, u32);
 
+fn rows(found: &Encounter) -> (u32, u32) {
+    (found.ego_row.min(found.foe_row), found.ego_row.max(found.foe_row))
+}
+
 impl Order {
     /// Sorts what the workers have met, between rows below `count`.
     ///
@@ -20,11 +25,11 @@ impl Order {
     pub(super) fn sort(&mut self, count: usize, workers: &[Worker]) {
         let places = || {
             workers.iter().zip(0..).flat_map(|(worker, number)| {
-                worker.found.pairs.iter().zip(0..).map(move |(&pair, index)| (pair, number, index))
+                worker.found.encounters.iter().zip(0..).map(move |(found, index)| (rows(found), number, index))
             })
         };
         self.starts.clear();
-        self.starts.resize(count + 1, 0);
+        fill(&mut self.starts, count + 1, 0);
         for ((first, _), ..) in places() {
             self.starts[first as usize + 1] += 1;
         }
@@ -32,7 +37,7 @@ impl Order {
             self.starts[row + 1] += self.starts[row];
         }
         self.sorted.clear();
-        self.sorted.resize(self.starts[count] as usize, Place::default());
+        fill(&mut self.sorted, self.starts[count] as usize, Place::default());
         for found in places() {
             let place = &mut self.starts[found.0.0 as usize];
             self.sorted[*place as usize] = found;

@@ -19,13 +19,13 @@ pub struct Corner {
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     corners: Vec<Corner>,
-    /// By line, its first corner.
-    begins: Vec<u32>,
+    /// By line, its first corner, and where the last one ends.
+    bounds: Vec<u32>,
 }
 
 impl Lines {
     /// No lines.
-    pub const NONE: &'static Self = &Self { corners: Vec::new(), begins: Vec::new() };
+    pub const NONE: &'static Self = &Self { corners: Vec::new(), bounds: Vec::new() };
 
     /// One line through these points.
     pub fn through(points: impl IntoIterator<Item = Point>) -> Self {
@@ -37,13 +37,17 @@ impl Lines {
 
     /// Begins another line.
     pub fn begin(&mut self) {
-        self.begins.push(self.corners.len() as u32);
+        let end = self.corners.len() as u32;
+        if self.bounds.is_empty() {
+            self.bounds.push(end);
+        }
+        self.bounds.push(end);
     }
 
     /// Appends a point to the last line; one that repeats the one before, within a millimetre, is left out.
     pub fn push(&mut self, point: Point) {
-        let last = self.begins.last().and_then(|begin| self.corners[*begin as usize..].last());
-        let way = match last {
+        let [.., begin, end] = &mut self.bounds[..] else { return };
+        let way = match self.corners[*begin as usize..].last() {
             Some(last) => {
                 let step = (point - last.point).norm();
                 if step < ON_THE_LINE {
@@ -54,6 +58,7 @@ impl Lines {
             None => 0.0,
         };
         self.corners.push(Corner { point, way });
+        *end += 1;
     }
 
     /// Takes the memory for so many further points, no more.
@@ -64,12 +69,12 @@ impl Lines {
     /// Gives back what memory is not needed.
     pub(crate) fn shrink(&mut self) {
         self.corners.shrink_to_fit();
-        self.begins.shrink_to_fit();
+        self.bounds.shrink_to_fit();
     }
 
     /// How many lines there are.
     pub fn count(&self) -> u32 {
-        self.begins.len() as u32
+        self.bounds.len().saturating_sub(1) as u32
     }
 
     /// How many corners all lines have.
@@ -79,8 +84,7 @@ impl Lines {
 
     /// Where the corners of a line are.
     pub(crate) fn range(&self, line: u32) -> (u32, u32) {
-        let end = self.begins.get(line as usize + 1).copied().unwrap_or(self.corners.len() as u32);
-        (self.begins[line as usize], end)
+        (self.bounds[line as usize], self.bounds[line as usize + 1])
     }
 
     /// The corners of a line.
@@ -102,10 +106,6 @@ impl Lines {
         }
     }
 
-    pub(crate) fn corner(&self, corner: u32) -> &Corner {
-        &self.corners[corner as usize]
-    }
-
     /// The part of a line that begins at this corner, which is not the line's last.
     pub(crate) fn segment(&self, corner: u32) -> Segment {
         Segment::between(&self.corners[corner as usize], &self.corners[corner as usize + 1])
@@ -114,6 +114,7 @@ impl Lines {
     /// Drops so many corners of the only line, which then begins at the next; returns the way that was cut off.
     pub(crate) fn cut(&mut self, corners: usize) -> Metre {
         self.corners.drain(..corners);
+        self.bounds[1] = self.corners.len() as u32;
         let shift = self.corners.first().map_or(0.0, |first| first.way);
         self.corners.iter_mut().for_each(|corner| corner.way -= shift);
         shift
@@ -125,23 +126,24 @@ impl Lines {
 pub(crate) struct Segment {
     pub start: Point,
     pub direction: Vector,
-    pub length: Metre,
     /// The way from the line's beginning to its start.
     pub way: Metre,
+    /// The same to its end.
+    pub end: Metre,
 }
 
 impl Segment {
     #[inline]
     fn between(start: &Corner, end: &Corner) -> Self {
         let length = end.way - start.way;
-        Self { start: start.point, direction: (end.point - start.point) / length, length, way: start.way }
+        Self { start: start.point, direction: (end.point - start.point) / length, way: start.way, end: end.way }
     }
 
     /// The way from the line's beginning to a front bumper, if that is on this segment.
     pub fn way_to(&self, front: Point) -> Option<Metre> {
         let along = (front - self.start).dot(&self.direction);
         let aside = (front - (self.start + self.direction * along)).norm_squared();
-        let is_on = along <= self.length && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE;
+        let is_on = along <= self.end - self.way && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE;
         is_on.then_some(self.way + along.max(0.0))
     }
 

@@ -3,7 +3,7 @@
 use super::track::{Cursor, Track};
 use super::{Pose, largest_turn, rotated, turn};
 use crate::geometry::lines::{Lines, ON_THE_LINE};
-use crate::geometry::{Vector, cross};
+use crate::geometry::{Point, Vector, cross};
 use crate::units::{Metre, Radian};
 
 /// A heading that differs by less than this from the line's chord is the chord, in rad.
@@ -17,7 +17,7 @@ impl Track {
     pub fn goes_straight(&self, lines: &Lines, axis: &Vector, length: Metre, way: Metre) -> bool {
         let under = lines.segment(self.corner);
         self.front - length >= under.way
-            && self.front + way <= under.way + under.length
+            && self.front + way <= under.end
             && turns_less(&under.direction, axis, SAME_HEADING)
     }
 
@@ -45,7 +45,7 @@ impl Track {
         let limit = if beyond { f64::INFINITY } else { self.ahead() };
         let mut front = self.cursor(lines);
         let mut rear = front.back(length);
-        let chord_now = chord(&front, &rear, axis);
+        let chord_now = chord(front.point(), rear.point(), axis);
         let skew = if turns_less(&chord_now, &axis, SAME_HEADING) { 0.0 } else { turn(&chord_now, &axis) };
         let skew = if skew.abs() < SAME_HEADING { 0.0 } else { skew };
         let widest = largest_turn(length);
@@ -67,11 +67,11 @@ impl Track {
                 }
                 // Rounding may leave a room too small to move by; the next point is then as good as reached.
                 let step = (next - way).max(least);
-                let before = [front, rear];
+                let before = [(front.under, front.way), (rear.under, rear.way)];
                 let before_axis = axis_of_last(poses, axis);
                 advance(&mut front, step, least);
                 advance(&mut rear, step, least);
-                let after = skewed(chord(&front, &rear, before_axis), skew, way + step, length);
+                let after = skewed(chord(front.point(), rear.point(), before_axis), skew, way + step, length);
                 let parts = if turns_less(&before_axis, &after, widest) {
                     1.0
                 } else {
@@ -79,9 +79,9 @@ impl Track {
                 };
                 for part in 1..parts as u32 {
                     let share = step * f64::from(part) / parts;
-                    let [front, rear] = before.map(|place| place.beyond(share));
-                    let axis = skewed(chord(&front, &rear, before_axis), skew, way + share, length);
-                    poses.push(Pose { way: way + share, front: front.point(), axis });
+                    let [front, rear] = before.map(|(under, way)| under.at(way + share));
+                    let axis = skewed(chord(front, rear, before_axis), skew, way + share, length);
+                    poses.push(Pose { way: way + share, front, axis });
                 }
                 way += step;
                 let pose = Pose { way, front: front.point(), axis: after };
@@ -124,8 +124,8 @@ fn skewed(chord: Vector, skew: Radian, way: Metre, length: Metre) -> Vector {
 }
 
 /// The direction from the rear to the front; another where both are in one place (a hairpin of no width).
-fn chord(front: &Cursor, rear: &Cursor, otherwise: Vector) -> Vector {
-    (front.point() - rear.point()).try_normalize(1e-9).unwrap_or(otherwise)
+fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
+    (front - rear).try_normalize(1e-9).unwrap_or(otherwise)
 }
 
 /// Whether the angle from one direction to another is surely smaller than this one, without any trigonometry: an
@@ -160,12 +160,12 @@ fn advance(place: &mut Cursor, way: Metre, least: Metre) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Bounds, Point};
+    use crate::geometry::Bounds;
 
     fn poses((track, lines): &(Track, Lines), ways: &[f64]) -> Vec<Pose> {
         let mut found = Vec::new();
         let front = track.cursor(lines);
-        track.poses(lines, chord(&front, &front.back(5.0), Vector::x()), 5.0, ways, false, &mut found);
+        track.poses(lines, chord(front.point(), front.back(5.0).point(), Vector::x()), 5.0, ways, false, &mut found);
         found
     }
 

@@ -100,9 +100,9 @@ impl Track {
             cursor.go_on();
             if let Some(way) = cursor.under.way_to(front) {
                 let (at, corner) = (cursor.at, cursor.corner);
-                let passed = self.lines[self.at as usize..at as usize].iter();
+                let passed = self.lines[self.at as usize..at].iter();
                 self.end -= passed.map(|line| lines.length(*line)).sum::<Metre>();
-                (self.at, self.corner, self.front) = (at, corner, way);
+                (self.at, self.corner, self.front) = (at as u32, corner, way);
                 return true;
             }
         }
@@ -129,7 +129,7 @@ impl Track {
         while cursor.room() <= 0.0 {
             cursor.go_on();
         }
-        (cursor.corner, self.lines[cursor.at as usize])
+        (cursor.corner, self.lines[cursor.at])
     }
 
     /// Drops the lines that lie wholly further behind the front bumper than this.
@@ -150,26 +150,29 @@ impl Track {
     }
 
     /// Where the front bumper is.
+    #[inline]
     pub(super) fn cursor<'a>(&'a self, lines: &'a Lines) -> Cursor<'a> {
-        let (at, corner, way) = (self.at, self.corner, self.front);
-        Cursor { track: self, lines, at, corner, last: self.last_corner(lines, at), under: lines.segment(corner), way }
-    }
-
-    fn last_corner(&self, lines: &Lines, at: u32) -> u32 {
-        lines.range(self.lines[at as usize]).1 - 1
+        let (chain, at, way) = (&self.lines[..], self.at as usize, self.front);
+        let (range, under) = (lines.range(chain[at]), lines.segment(self.corner));
+        let mut cursor = Cursor { lines, chain, at, range, corner: self.corner, under, next: under.end, way };
+        cursor.look_ahead();
+        cursor
     }
 }
 
 /// A place on a track that moves.
 #[derive(Clone, Copy)]
 pub(super) struct Cursor<'a> {
-    track: &'a Track,
     lines: &'a Lines,
-    /// On which of the track's lines it is, the table's last corner of that, and the last corner before it.
-    at: u32,
-    last: u32,
+    chain: &'a [u32],
+    /// On which of these lines it is, and where its corners are.
+    at: usize,
+    range: (u32, u32),
+    /// The last corner before it.
     pub corner: u32,
     pub under: Segment,
+    /// Where the next corner is; from the track's last part there is none, however far.
+    next: Metre,
     /// Along the line that it is on.
     pub way: Metre,
 }
@@ -180,47 +183,54 @@ impl Cursor<'_> {
         self.under.at(self.way)
     }
 
-    /// Way to the next corner, behind it less than 0; from the last part of the track there is none.
+    /// Way to the next corner; behind it less than 0.
+    #[inline]
     pub fn room(&self) -> Metre {
-        let is_last = self.corner + 1 == self.last && self.at as usize + 1 == self.track.lines.len();
-        if is_last { f64::INFINITY } else { self.lines.corner(self.corner + 1).way - self.way }
+        self.next - self.way
+    }
+
+    /// How far the part of the track reaches that it is on.
+    #[inline]
+    fn look_ahead(&mut self) {
+        let is_last = self.corner + 2 == self.range.1 && self.at + 1 == self.chain.len();
+        self.next = if is_last { f64::INFINITY } else { self.under.end };
     }
 
     /// On to the next part of the track, if there is one; the place stays where it is.
     pub fn go_on(&mut self) {
-        if self.corner + 1 < self.last {
+        if self.corner + 2 < self.range.1 {
             self.corner += 1;
-        } else if let Some(line) = self.track.lines.get(self.at as usize + 1) {
-            self.way -= self.lines.length(self.track.lines[self.at as usize]);
+        } else if let Some(line) = self.chain.get(self.at + 1) {
+            self.way -= self.under.end;
             self.at += 1;
-            let (begin, end) = self.lines.range(*line);
-            (self.corner, self.last) = (begin, end - 1);
+            self.range = self.lines.range(*line);
+            self.corner = self.range.0;
         }
-        self.under = self.lines.segment(self.corner);
+        self.enter();
     }
 
-    /// So far ahead, by the direction here.
-    pub fn beyond(mut self, way: Metre) -> Self {
-        self.way += way;
-        self
+    #[inline]
+    fn enter(&mut self) {
+        self.under = self.lines.segment(self.corner);
+        self.look_ahead();
     }
 
     /// Back to where this way ends; before the track's beginning on its first part.
     pub fn back(mut self, way: Metre) -> Self {
         self.way -= way;
         while self.way < self.under.way {
-            if self.corner > self.lines.range(self.track.lines[self.at as usize]).0 {
+            if self.corner > self.range.0 {
                 self.corner -= 1;
+                self.enter();
             } else if self.at > 0 {
                 self.at -= 1;
-                let line = self.track.lines[self.at as usize];
-                self.way += self.lines.length(line);
-                self.last = self.lines.range(line).1 - 1;
-                self.corner = self.last - 1;
+                self.range = self.lines.range(self.chain[self.at]);
+                self.corner = self.range.1 - 2;
+                self.enter();
+                self.way += self.under.end;
             } else {
                 break;
             }
-            self.under = self.lines.segment(self.corner);
         }
         self
     }
@@ -228,7 +238,7 @@ impl Cursor<'_> {
 
 #[cfg(test)]
 impl Track {
-    /// A line through these points, the front bumper at this way, and how far its points are from each other.
+    /// On one line through these points, the front bumper at this way; and the line.
     pub(super) fn through(points: &[(f64, f64)], front: f64) -> (Self, Lines) {
         let lines = Lines::through(points.iter().map(|&(x, y)| Point::new(x, y)));
         let mut track = Self::default();

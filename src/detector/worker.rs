@@ -1,0 +1,59 @@
+//! What one thread needs for its part of a step, and what it finds.
+
+use super::Work;
+use super::ways::Ways;
+use crate::accurate::Meeting;
+use crate::encounter::Encounter;
+use crate::geometry::halves::Halves;
+use crate::path::Pose;
+
+/// One thread, its part of the pairs and what it finds among them.
+#[derive(Default)]
+pub(super) struct Worker {
+    pub work: Work,
+    /// Slots of two whose areas meet.
+    pub pairs: Vec<(u32, u32)>,
+    pub ways: Ways,
+    pub found: Found,
+}
+
+/// The pairs that would meet.
+#[derive(Default)]
+pub(super) struct Found {
+    pub encounters: Vec<Encounter>,
+    /// Which of them are not measured yet.
+    pub unmeasured: Vec<(u32, Met)>,
+    pub scratch: Scratch,
+}
+
+/// Memory for what is forgotten with the pair.
+pub(super) struct Scratch {
+    /// Poses further ahead than the ways of the step: the ego's and the foe's.
+    pub courses: [Vec<Pose>; 2],
+    pub halves: Halves,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self { courses: [const { Vec::new() }; 2], halves: Halves::to_keep() }
+    }
+}
+
+/// What measuring a pair that would meet starts from.
+#[derive(Clone, Copy)]
+pub(super) struct Met {
+    /// The ego's slot and the foe's.
+    pub slots: [u32; 2],
+    pub meeting: Meeting,
+    /// cos α.
+    pub sigma: f64,
+    /// Whether the gap waits for when the foe has left the meeting place.
+    pub leaves: bool,
+}
+
+impl Found {
+    pub fn clear(&mut self) {
+        self.encounters.clear();
+        self.unmeasured.clear();
+    }
+}
