@@ -95,27 +95,24 @@ impl LanePath {
         let beside = Beside::new(offset(net, start, placement, &foot, against));
         self.route = Some(placement.route.clone());
         self.route_position = (!against).then_some(placement.route_position as u32);
-        let points = |corners: &[Corner]| corners.iter().map(|corner| corner.point).collect::<SmallVec<[Point; 8]>>();
-        let (track, place) = (&mut self.track, placement.lane);
+        let before = if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start) };
+        let joins =
+            before.iter().try_fold(placement.lane.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
         self.own = None;
-        if against {
-            let needed = foot.way + start.length + KEPT_BEHIND;
-            let end = line.partition_point(|corner| corner.way <= needed).min(line.len() - 1);
-            let behind = points(&line[foot.segment + 1..=end]).into_iter().rev();
-            let ahead = points(&line[..=foot.segment]).into_iter().rev();
-            self.own = Some(Box::new(Own::lay(track, behind, foot.point, ahead, place, beside)));
+        if !against && beside.is_none() && line.len() > 1 && joins.is_some() {
+            self.track.begin(&net.lines, placement.lane.0, foot.way);
+            before.iter().for_each(|lane| self.track.come_from(lane.0));
         } else {
-            let before = behind(net, place, &foot, start);
-            let joins = before.iter().try_fold(place.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
-            if beside.is_none() && line.len() > 1 && joins.is_some() {
-                track.begin(&net.lines, place.0, foot.way);
-                before.iter().for_each(|lane| track.come_from(lane.0));
-            } else {
-                let before = before.iter().rev().flat_map(|lane| points(net.lines.line(lane.0)));
-                let behind = before.chain(points(&line[..=foot.segment]));
-                let ahead = points(&line[foot.segment + 1..]).into_iter();
-                self.own = Some(Box::new(Own::lay(track, behind, foot.point, ahead, place, beside)));
+            let points = |corners: &[Corner]| corners.iter().map(|corner| corner.point).collect::<Vec<_>>();
+            let (mut behind, mut ahead) = (points(&line[..=foot.segment]), points(&line[foot.segment + 1..]));
+            if against {
+                ahead.reverse();
+                behind.reverse();
+                std::mem::swap(&mut behind, &mut ahead);
             }
+            let before = before.iter().rev().flat_map(|lane| points(net.lines.line(lane.0)));
+            let own = Own::lay(&mut self.track, before.chain(behind), foot.point, ahead, placement.lane, beside);
+            self.own = Some(Box::new(own));
         }
         self.forget_behind(net, start.length + KEPT_BEHIND);
     }
@@ -284,7 +281,7 @@ fn leads_to_a_lane(net: &Net, lane: LaneIndex, to_the_left: MetrePerSecond) -> b
 }
 
 /// The lanes behind the one that the front bumper is on, the nearest first, as far as the rear bumper and a little more.
-fn behind(net: &Net, lane: LaneIndex, foot: &Foot, start: &Start) -> SmallVec<[LaneIndex; 4]> {
+fn lanes_behind(net: &Net, lane: LaneIndex, foot: &Foot, start: &Start) -> SmallVec<[LaneIndex; 4]> {
     let needed = start.length + KEPT_BEHIND;
     let rear = start.front - start.axis * start.length;
     let mut lanes = SmallVec::new();

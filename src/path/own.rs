@@ -28,7 +28,7 @@ impl Own {
         track: &mut Track,
         behind: impl Iterator<Item = Point>,
         foot: Point,
-        ahead: impl Iterator<Item = Point>,
+        ahead: Vec<Point>,
         lane: LaneIndex,
         beside: Option<Beside>,
     ) -> Self {
@@ -43,7 +43,7 @@ impl Own {
         }
         own.begin_lane(lane);
         let front = own.lines.length(LINE);
-        own.push_ahead(ahead);
+        own.push_ahead(ahead.into_iter());
         track.clear();
         if own.lines.len() > 1 {
             track.begin(&own.lines, LINE, front);
