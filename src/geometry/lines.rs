@@ -19,13 +19,13 @@ pub struct Corner {
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
     corners: Vec<Corner>,
-    /// By line, its first corner, and where the last one ends.
-    bounds: Vec<u32>,
+    /// By line, its first corner; then where the last line ends.
+    begins: Vec<u32>,
 }
 
 impl Lines {
     /// No lines.
-    pub const NONE: &'static Self = &Self { corners: Vec::new(), bounds: Vec::new() };
+    pub const NONE: &'static Self = &Self { corners: Vec::new(), begins: Vec::new() };
 
     /// One line through these points.
     pub fn through(points: impl IntoIterator<Item = Point>) -> Self {
@@ -38,15 +38,15 @@ impl Lines {
     /// Begins another line.
     pub fn begin(&mut self) {
         let end = self.corners.len() as u32;
-        if self.bounds.is_empty() {
-            self.bounds.push(end);
+        if self.begins.is_empty() {
+            self.begins.push(end);
         }
-        self.bounds.push(end);
+        self.begins.push(end);
     }
 
     /// Appends a point to the last line; one that repeats the one before, within a millimetre, is left out.
     pub fn push(&mut self, point: Point) {
-        let [.., begin, end] = &mut self.bounds[..] else { return };
+        let [.., begin, end] = &mut self.begins[..] else { return };
         let way = match self.corners[*begin as usize..].last() {
             Some(last) => {
                 let step = (point - last.point).norm();
@@ -69,12 +69,12 @@ impl Lines {
     /// Gives back what memory is not needed.
     pub(crate) fn shrink(&mut self) {
         self.corners.shrink_to_fit();
-        self.bounds.shrink_to_fit();
+        self.begins.shrink_to_fit();
     }
 
     /// How many lines there are.
     pub fn count(&self) -> u32 {
-        self.bounds.len().saturating_sub(1) as u32
+        self.begins.len().saturating_sub(1) as u32
     }
 
     /// How many corners all lines have.
@@ -84,7 +84,7 @@ impl Lines {
 
     /// Where the corners of a line are.
     pub(crate) fn range(&self, line: u32) -> (u32, u32) {
-        (self.bounds[line as usize], self.bounds[line as usize + 1])
+        (self.begins[line as usize], self.begins[line as usize + 1])
     }
 
     /// The corners of a line.
@@ -114,7 +114,7 @@ impl Lines {
     /// Drops so many corners of the only line, which then begins at the next; returns the way that was cut off.
     pub(crate) fn cut(&mut self, corners: usize) -> Metre {
         self.corners.drain(..corners);
-        self.bounds[1] = self.corners.len() as u32;
+        self.begins[1] = self.corners.len() as u32;
         let shift = self.corners.first().map_or(0.0, |first| first.way);
         self.corners.iter_mut().for_each(|corner| corner.way -= shift);
         shift
