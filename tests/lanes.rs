@@ -5,9 +5,14 @@
 #[path = "common/street.rs"]
 mod street;
 
+use std::path::Path;
+use std::sync::Arc;
+
 use closecall::detector::Detector;
 use closecall::encounter::Placement;
 use closecall::frame::{Frame, Roster, State};
+use closecall::geometry::Point;
+use closecall::net::Net;
 use closecall::options::Options;
 use street::street;
 
@@ -45,4 +50,44 @@ fn who_is_on_the_lane_of_those_who_come_towards_it_drives_against_it() {
     assert!(!drives_west(0.0, &["east"], 0));
     assert!(!drives_west(0.0, &[], 0), "of whom no route is known the heading says it");
     assert!(drives_west(3.0, &[], 0));
+}
+
+/// Two lanes that do not join, as in SUMO's nets without junction lanes.
+const APART: &str = r#"<net>
+    <edge id="a" from="w" to="m"><lane id="a_0" index="0" length="100" shape="0,0 100,0"/></edge>
+    <edge id="b" from="m" to="e"><lane id="b_0" index="0" length="100" shape="110,5 210,5"/></edge>
+    <connection from="a" to="b" fromLane="0" toLane="0" dir="s" state="M"/>
+</net>"#;
+
+#[test]
+fn where_lanes_do_not_join_a_path_leads_straight_across() {
+    let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
+    let mut roster = Roster::default();
+    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let (user, mut frame) = (roster.enter("car", profile), Frame::default());
+    let mut detector = Detector::new(&Options::default(), Some(net.clone()));
+    detector.set_fixed_routes(true);
+    let way = [(60.0, 0.0), (80.0, 0.0), (100.0, 0.0), (105.0, 2.5), (110.0, 5.0), (130.0, 5.0)];
+    for (step, (x, y)) in way.into_iter().enumerate() {
+        frame.begin(step as f64);
+        frame.push(user, State { x, y, z: 0.0, heading: 0.0, speed: 25.0 });
+        let asked = detector.follow(&frame, &roster).to_vec();
+        assert_eq!(asked.is_empty(), step > 0, "it has left its path at ({x}, {y})");
+        for row in asked {
+            let placement = Placement {
+                lane: net.lane("a_0").unwrap(),
+                position: x,
+                route: ["a", "b"].iter().map(|edge| net.edge(edge).unwrap()).collect(),
+                route_position: 0,
+                lateral_speed: 0.0,
+            };
+            detector.place(&frame, &roster, row, &placement);
+        }
+        detector.approach(&frame, &roster);
+        let path = detector.path(&frame, &roster, 0);
+        let passes = |x: f64, y: f64| path.iter().any(|point| (point - Point::new(x, y)).norm() < 1e-9);
+        assert!(x >= 100.0 || passes(100.0, 0.0), "{path:?}");
+        assert!(x >= 110.0 || passes(110.0, 5.0), "{path:?}");
+        assert!((path.last().unwrap().y - 5.0).abs() < 1e-9, "{path:?}");
+    }
 }
