@@ -167,7 +167,7 @@ impl Swept {
 }
 
 impl Halves {
-    /// With all the memory that is kept; as long as nothing turns, no system gives it.
+    /// With all the memory that is kept from step to step, so that it does not grow with what is looked at.
     pub fn to_keep() -> Self {
         let room = Self { parts: Vec::with_capacity(KEPT), hulls: Vec::with_capacity(KEPT), ..Self::default() };
         Self { numbered: Vec::with_capacity(KEPT), ..room }

@@ -115,6 +115,7 @@ impl LanePath {
             self.own = Some(Box::new(own));
         }
         self.forget_behind(net, start.length + KEPT_BEHIND);
+        self.shrink();
     }
 
     /// Makes the path reach at least `way` ahead of the front bumper, if the route does, and forgets what lies
@@ -133,9 +134,7 @@ impl LanePath {
             self.route_position = Some(route_position);
             in_vain = if self.track.ahead() > before { 0 } else { in_vain + 1 };
         }
-        if let Some(own) = &mut self.own {
-            own.shrink();
-        }
+        self.shrink();
     }
 
     /// The lane at a way ahead of the front bumper.
@@ -157,11 +156,15 @@ impl LanePath {
     /// Forgets what lies further behind the front bumper than this.
     fn forget_behind(&mut self, net: &Net, behind: Metre) {
         match &mut self.own {
-            Some(own) => {
-                own.forget_behind(&mut self.track, behind);
-                own.shrink();
-            }
+            Some(own) => own.forget_behind(&mut self.track, behind),
             None => self.track.forget_behind(&net.lines, behind),
+        }
+    }
+
+    /// Gives back what memory is not needed.
+    fn shrink(&mut self) {
+        if let Some(own) = &mut self.own {
+            own.shrink();
         }
     }
 
