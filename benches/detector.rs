@@ -175,7 +175,7 @@ impl Look for Phases {
             detector.follow(frame, roster);
             detector.approach(frame, roster);
         });
-        second.add(|| detector.detect(roster).len());
+        second.add(|| detector.detect(frame, roster).len());
         both.turn.extend(first.turn.last().zip(second.turn.last()).map(|(first, second)| first + second));
     }
 
@@ -201,7 +201,7 @@ impl Look for AtOnce {
             team.each(detectors, [(), ()], |detector, ()| {
                 detector.follow(frame, roster);
                 detector.approach(frame, roster);
-                black_box(detector.detect(roster).len());
+                black_box(detector.detect(frame, roster).len());
             });
         });
     }

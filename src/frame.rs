@@ -10,6 +10,7 @@ use rustc_hash::FxHashMap;
 use smol_str::SmolStr;
 
 use crate::Result;
+use crate::geometry::Point;
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile, origins};
 use crate::table::{self, add};
@@ -157,6 +158,16 @@ pub struct State {
 impl State {
     /// No state: of who is no road user in this step.
     pub const NOWHERE: Self = Self { x: f64::NAN, y: f64::NAN, z: f64::NAN, heading: f64::NAN, speed: f64::NAN };
+
+    /// The front bumper's centre.
+    pub fn front(&self) -> Point {
+        Point::new(self.x, self.y)
+    }
+
+    /// Whether it moves at all: slower than SUMO's own threshold for halting would be too coarse.
+    pub fn moves(&self) -> bool {
+        self.speed > 0.0
+    }
 
     fn is_valid(&self) -> bool {
         let Self { x, y, z, heading, speed } = *self;

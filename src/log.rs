@@ -167,7 +167,12 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where the disk takes no more.
-    pub fn encounters(&mut self, time: Second, encounters: &[Encounter], roster: &Roster) -> Result<()> {
+    pub fn encounters<'a>(
+        &mut self,
+        time: Second,
+        encounters: impl Iterator<Item = &'a Encounter>,
+        roster: &Roster,
+    ) -> Result<()> {
         let Some(table) = &mut self.encounters else { return Ok(()) };
         for found in encounters {
             let Some(near) = &found.nearness else { continue };

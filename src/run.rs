@@ -21,7 +21,6 @@ use crate::outputs::Outputs;
 use crate::profile::{Category, Profile, obstacle_name};
 use crate::scene::{self, Exclusions, LeftOut};
 use crate::summary::Summary;
-use crate::table::add;
 use crate::units::Second;
 
 /// One run.
@@ -38,7 +37,6 @@ pub struct Run {
     outputs: Outputs,
     keeps: bool,
     conflicts: Vec<Conflict>,
-    in_conflict: Vec<Encounter>,
     leaving: Vec<UserIndex>,
     obstacles: Vec<(UserIndex, Point)>,
     /// What the options say of single types: as they name it, and as the roster does.
@@ -70,7 +68,6 @@ impl Run {
             outputs: Outputs::default(),
             keeps: true,
             conflicts: Vec::new(),
-            in_conflict: Vec::new(),
             leaving: Vec::new(),
             obstacles: Vec::new(),
             settings: settings(options),
@@ -209,16 +206,15 @@ impl Run {
         self.outputs.place(row, placement);
     }
 
-    /// Both phases, the events and the log; returns the pairs that are in conflict in this step.
+    /// Both phases, the events and the log.
     ///
     /// # Errors
     /// As [`Run::write`].
-    pub fn finish_step(&mut self) -> Result<&[Encounter]> {
+    pub fn finish_step(&mut self) -> Result<()> {
         self.approach();
         self.detect();
         self.close_conflicts();
-        self.write()?;
-        Ok(&self.in_conflict)
+        self.write()
     }
 
     /// Phase 1.
@@ -228,22 +224,21 @@ impl Run {
 
     /// Phase 2.
     pub fn detect(&mut self) {
-        self.in_conflict.clear();
-        for found in self.detector.detect(&self.roster).filter(|found| found.in_conflict()) {
-            let mut found = *found;
-            if let (None, Some(net)) = (found.lane, &self.net) {
+        let Self { detector, net, filter, .. } = self;
+        _ = detector.detect(&self.frame, &self.roster);
+        detector.retain(|found| {
+            if let (true, None, Some(net)) = (found.in_conflict(), found.lane, &net) {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
             }
-            if self.filter.as_ref().is_none_or(|filter| filter.holds(found.lane)) {
-                add(&mut self.in_conflict, found);
-            }
-        }
+            found.in_conflict() && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
+        });
     }
 
     /// The events.
     pub fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
-        let closed = self.tracker.step(frame, roster, &self.in_conflict, |row| detector.path(frame, roster, row));
+        let path = |row| detector.path(frame, roster, row);
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path);
         settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
     }
 
@@ -257,7 +252,7 @@ impl Run {
             if !closed.is_empty() {
                 log.conflicts(closed, self.net.as_deref(), &self.roster)?;
             }
-            log.encounters(self.frame.time, &self.in_conflict, &self.roster)?;
+            log.encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
         }
         self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.conflicts(closed)?;
@@ -272,8 +267,8 @@ impl Run {
     }
 
     /// The pairs that were in conflict in the last step.
-    pub fn in_conflict(&self) -> &[Encounter] {
-        &self.in_conflict
+    pub fn in_conflict(&self) -> impl ExactSizeIterator<Item = &Encounter> {
+        self.detector.encounters()
     }
 
     /// The conflicts that go on in this step.

@@ -48,7 +48,7 @@ fn assert_warm_allocates_nothing(options: &Options, step: impl Fn(&mut Frame, &[
         step(&mut frame, &users, number);
         detector.follow(&frame, &roster);
         detector.approach(&frame, &roster);
-        found += detector.detect(&roster).len();
+        found += detector.detect(&frame, &roster).len();
     }
     assert!(found > 1000, "{found}");
     assert_eq!(counting::allocations() - before, 0);

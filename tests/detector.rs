@@ -62,7 +62,7 @@ fn look_at(detector: &mut Detector, options: &Options, cars: &[(f64, f64, f64, f
     }
     detector.follow(&frame, &roster);
     detector.approach(&frame, &roster);
-    let found = detector.detect(&roster).copied().collect::<Vec<_>>();
+    let found = detector.detect(&frame, &roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.id(found.ego).to_string())).collect()
 }
 
@@ -242,12 +242,12 @@ fn any_number_of_threads_finds_the_same() {
         let [alone, others @ ..] = &mut detectors;
         alone.follow(&frame, &roster);
         alone.approach(&frame, &roster);
-        let found = alone.detect(&roster).copied().collect::<Vec<_>>();
+        let found = alone.detect(&frame, &roster).copied().collect::<Vec<_>>();
         assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
         for detector in others {
             detector.follow(&frame, &roster);
             detector.approach(&frame, &roster);
-            assert!(detector.detect(&roster).eq(&found));
+            assert!(detector.detect(&frame, &roster).eq(&found));
             assert_eq!(detector.work(), alone.work());
         }
     }
@@ -279,7 +279,7 @@ fn turned_by(
         detector.approach(&frame, roster);
     }
     let by_number = |found: &Encounter| Encounter { ego_row: found.ego.0, foe_row: found.foe.0, ..*found };
-    detector.detect(roster).map(by_number).collect()
+    detector.detect(&frame, roster).map(by_number).collect()
 }
 
 /// Of many the detector forgets ways, and lays them again.

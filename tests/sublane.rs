@@ -39,7 +39,7 @@ fn encounters(y: f64, drift: f64) -> usize {
         detector.place(&frame, &roster, row, &placement);
     }
     detector.approach(&frame, &roster);
-    detector.detect(&roster).len()
+    detector.detect(&frame, &roster).len()
 }
 
 #[test]

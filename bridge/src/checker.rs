@@ -140,7 +140,7 @@ impl Checker {
                 return Err(PyTypeError::new_err("a checker without a simulation needs states: step(time, states)"));
             }
         }
-        py.detach(|| self.run.finish_step().map(|_| ())).map_err(exception)?;
+        py.detach(|| self.run.finish_step()).map_err(exception)?;
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.run)?;
         }

@@ -69,15 +69,15 @@ struct Event {
 impl Tracker {
     /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
     /// and ids. `path` has the path of a row's front bumper, from where it is.
-    pub fn step(
+    pub fn step<'a>(
         &mut self,
         frame: &Frame,
         roster: &Roster,
-        encounters: &[Encounter],
+        encounters: impl Iterator<Item = &'a Encounter> + Clone,
         path: impl Fn(u32) -> Vec<Point>,
     ) -> &[Conflict] {
         self.forget_closed();
-        if self.events.is_empty() && self.waiting.is_empty() && encounters.iter().all(|found| !found.in_conflict()) {
+        if self.events.is_empty() && self.waiting.is_empty() && encounters.clone().all(|found| !found.in_conflict()) {
             return &self.closed;
         }
         self.rows.clear();
@@ -85,7 +85,7 @@ impl Tracker {
         for (number, row) in (0..).zip(frame.rows()) {
             self.rows[row.user.0 as usize] = number;
         }
-        for found in encounters.iter().filter(|found| found.in_conflict()) {
+        for found in encounters.filter(|found| found.in_conflict()) {
             self.take(&Seen { frame, roster, found }, &path);
         }
         self.follow(frame, roster);
@@ -259,7 +259,7 @@ mod tests {
                 nearness: None,
             };
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker.step(&frame, &self.roster, &found, |_| Vec::new()).to_vec()
+            self.tracker.step(&frame, &self.roster, found.iter(), |_| Vec::new()).to_vec()
         }
     }
 

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{Detector, Turning, User};
 use crate::braking::{stopping_distance, stopping_distance_paper};
-use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
 use crate::geometry::lines::Lines;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
@@ -14,14 +14,11 @@ use crate::options::{Mode, Options, PathModel};
 use crate::path::lanes::LanePath;
 use crate::path::track::Track;
 use crate::path::{arc, turn};
-use crate::precollision::{Area, Circle};
+use crate::precollision::{Area, Circle, Slot};
 use crate::profile::Category;
 use crate::scene::Exclusions;
 use crate::table::{add, fill};
 use crate::units::Metre;
-
-/// What stands: slower than SUMO's own threshold for halting would be too coarse, so exactly 0.
-const STANDS: f64 = 0.0;
 
 impl Detector {
     /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller
@@ -39,8 +36,8 @@ impl Detector {
         fill(&mut self.on_lanes, frame.len(), false);
         if self.turns() == Turns::ByLanes {
             for (row, Row { user, state }) in frame.rows().iter().enumerate() {
-                if state.speed > STANDS && roster.profile_of(*user).category == Category::Vehicle {
-                    self.keep_on_path(row, *user, Point::new(state.x, state.y));
+                if state.moves() && roster.profile_of(*user).category == Category::Vehicle {
+                    self.keep_on_path(row, *user, state.front());
                 }
             }
         }
@@ -53,7 +50,7 @@ impl Detector {
         self.look(frame, roster);
         if self.turns() == Turns::ByArcs {
             fill(&mut self.turnings, self.paths.len(), Turning::default());
-            self.turn();
+            self.turn(frame);
         }
         self.find_pairs();
     }
@@ -73,37 +70,37 @@ impl Detector {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
-        let reach = Reach::new(roster, &self.options, self.leaves_out, paths);
+        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
         let who_is_there = (roster.changes(), frame.len());
         let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
-        fill(&mut self.users, frame.len(), User::NOBODY);
         self.search.lay(
-            &mut self.users,
+            frame.len(),
             &self.team,
             are_same,
             |row| frame.user(row).0,
             |row| sight.see(row),
-            |row, seen, user| {
-                *user = sight.user(row, seen, user);
-                reach.area(user)
+            |seen, user| {
+                *user = sight.user(user.row, seen, user);
+                reach.area_of(user, &seen.row.state)
             },
         );
     }
 
     /// How the paths of now turn, where they are arcs.
-    fn turn(&mut self) {
-        for user in &self.users {
+    fn turn(&mut self, frame: &Frame) {
+        for user in self.search.slots() {
+            let front = frame.state(user.row).front();
             let turning = &mut self.turnings[user.index.0 as usize];
             if let Some((last, last_axis)) = turning.last {
-                turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (user.front - last).norm());
+                turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (front - last).norm());
             }
-            turning.last = Some((user.front, user.axis));
+            turning.last = Some((front, user.axis));
         }
     }
 
     /// The pairs whose areas meet. Each worker keeps those that it found.
     fn find_pairs(&mut self) {
-        let (search, count, all) = (&self.search, self.users.len(), !self.leaves_out.circles_apart);
+        let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
         let share = self.team.share(count);
         let parts = (0..count).step_by(share).map(|start| start..(start + share).min(count));
         self.workers.iter_mut().for_each(|worker| worker.pairs.clear());
@@ -196,7 +193,7 @@ impl Sight<'_> {
     #[inline(always)]
     pub fn user(&self, row: u32, seen: &Seen, last: &User) -> User {
         let Seen { row: Row { user: index, ref state }, profile: type_index } = *seen;
-        let (profile, moves) = (self.roster.profile_at(type_index), state.speed > STANDS);
+        let (profile, moves) = (self.roster.profile_at(type_index), state.moves());
         let axis = if last.heading == state.heading { last.axis } else { direction(state.heading) };
         let on_lanes = self.turns == Turns::ByLanes && self.on_lanes[row as usize];
         let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
@@ -205,11 +202,8 @@ impl Sight<'_> {
             track.goes_straight(lines, &axis, profile.chord, stop + self.epsilon)
         };
         User {
-            front: Point::new(state.x, state.y),
             heading: state.heading,
             axis,
-            z: state.z,
-            speed: state.speed,
             stop,
             row,
             index,
@@ -226,25 +220,34 @@ impl Sight<'_> {
     }
 }
 
-impl User {
+impl Default for User {
     /// Nobody yet.
-    pub(super) const NOBODY: Self = Self {
-        front: Point::new(0.0, 0.0),
-        heading: 0.0,
-        axis: Vector::new(1.0, 0.0),
-        z: 0.0,
-        speed: 0.0,
-        stop: 0.0,
-        row: 0,
-        index: UserIndex(0),
-        profile: ProfileIndex(0),
-        category: Category::Obstacle,
-        ahead: true,
-        on_lanes: false,
-    };
+    fn default() -> Self {
+        Self {
+            heading: 0.0,
+            axis: Vector::new(1.0, 0.0),
+            stop: 0.0,
+            row: 0,
+            index: UserIndex(0),
+            profile: ProfileIndex(0),
+            category: Category::Obstacle,
+            ahead: true,
+            on_lanes: false,
+        }
+    }
+}
 
-    pub(super) fn moves(&self) -> bool {
-        self.speed > STANDS
+impl Slot for User {
+    fn item(&self) -> u32 {
+        self.row
+    }
+
+    fn give(&mut self, item: u32) {
+        self.row = item;
+    }
+
+    fn who(&self) -> u32 {
+        self.index.0
     }
 }
 
@@ -264,6 +267,7 @@ fn all_pairs(count: usize) -> u64 {
 /// How far road users reach until they stand.
 #[derive(Clone, Copy)]
 pub(super) struct Reach<'a> {
+    frame: &'a Frame,
     roster: &'a Roster,
     paths: Paths<'a>,
     epsilon: Metre,
@@ -276,19 +280,31 @@ pub(super) struct Reach<'a> {
 }
 
 impl<'a> Reach<'a> {
-    pub(super) fn new(roster: &'a Roster, options: &Options, leaves_out: Exclusions, paths: Paths<'a>) -> Self {
+    pub(super) fn new(
+        frame: &'a Frame,
+        roster: &'a Roster,
+        options: &Options,
+        leaves_out: Exclusions,
+        paths: Paths<'a>,
+    ) -> Self {
         let on_paper = options.mode == Mode::Paper;
         let has_boxes = leaves_out.ways_apart && !on_paper;
         let on_arcs = options.path == PathModel::Arc && !on_paper;
-        Self { roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
+        Self { frame, roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
     }
 
     /// What somebody may cover until it stands, and ε further.
     // For the same reason.
     #[inline(always)]
     pub(super) fn area(&self, user: &User) -> Area {
-        let profile = self.roster.profile_at(user.profile);
-        let stop = if self.on_paper { stopping_distance_paper(user.speed, &profile.brakes) } else { user.stop };
+        self.area_of(user, self.frame.state(user.row))
+    }
+
+    /// The same of somebody whose state is at hand.
+    #[inline(always)]
+    pub(super) fn area_of(&self, user: &User, state: &State) -> Area {
+        let (profile, front) = (self.roster.profile_at(user.profile), state.front());
+        let stop = if self.on_paper { stopping_distance_paper(state.speed, &profile.brakes) } else { user.stop };
         let reach = stop + self.epsilon;
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;
@@ -296,7 +312,7 @@ impl<'a> Reach<'a> {
             return bounds.into();
         }
         if user.ahead && self.has_boxes {
-            let (front, length) = (user.front + user.axis * reach, profile.length + reach);
+            let (front, length) = (front + user.axis * reach, profile.length + reach);
             let beside = if user.on_lanes { Track::beside_heading(length) } else { 0.0 };
             let bounds = Rectangle::behind(front, user.axis, length, profile.width).bounds();
             return bounds.grown(TOLERANCE + beside).into();
@@ -310,9 +326,9 @@ impl<'a> Reach<'a> {
         if self.on_arcs {
             // Its tail swings out: it may get further than its front.
             let behind = profile.length.hypot(profile.width / 2.0);
-            return Circle { x: user.front.x, y: user.front.y, radius: reach + behind + TOLERANCE }.into();
+            return Circle { x: front.x, y: front.y, radius: reach + behind + TOLERANCE }.into();
         }
-        let centre = user.front - user.axis * (profile.length / 2.0);
+        let centre = front - user.axis * (profile.length / 2.0);
         let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
         Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }.into()
     }

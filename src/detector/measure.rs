@@ -15,7 +15,7 @@ use crate::units::{Metre, MetrePerSecondSquared, Second};
 impl Scene<'_> {
     /// How far ahead somebody's path has to be known to measure a pair that it is in.
     pub(super) fn way_to_measure(&self, user: &User, meeting: &Meeting) -> Metre {
-        (user.speed * approach::HORIZON).max(self.furthest_way_out(user, meeting))
+        (self.state(user).speed * approach::HORIZON).max(self.furthest_way_out(user, meeting))
     }
 
     /// Measures what a worker could not measure at once.
@@ -81,11 +81,11 @@ impl Scene<'_> {
         let users = met.slots.map(|slot| self.user(slot));
         for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
             poses.clear();
-            self.course(user, &[user.speed * approach::HORIZON], true, poses);
+            self.course(user, &[self.state(user).speed * approach::HORIZON], true, poses);
         }
         let course = |user: &User, poses| {
             let profile = self.profile(user);
-            Course { poses, speed: user.speed, length: profile.length, width: profile.width }
+            Course { poses, speed: self.state(user).speed, length: profile.length, width: profile.width }
         };
         let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
         let is_obstacle = self.is_obstacle(met.slots[1]);

@@ -8,6 +8,7 @@ use super::{LEVEL, Scene, User, Work};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, MuModel};
 use crate::encounter::{Encounter, Kind};
+use crate::frame::State;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{exact, rectangle};
 use crate::options::Mode;
@@ -46,12 +47,12 @@ struct How {
 }
 
 /// Whether two road users near each other are a pair at all.
-fn is_pair(a: &User, b: &User, work: &mut Work) -> bool {
-    if !a.moves() && !b.moves() {
+fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], work: &mut Work) -> bool {
+    if !a_state.moves() && !b_state.moves() {
         work.both_stand += 1;
         return false;
     }
-    if (a.z - b.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
+    if (a_state.z - b_state.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
         work.other_level += 1;
         return false;
     }
@@ -67,12 +68,13 @@ impl Scene<'_> {
     pub(super) fn meet_all(&self, worker: &mut Worker) {
         let Worker { pairs, work, ways, found } = worker;
         for block in pairs.chunks(BLOCK) {
-            block.iter().for_each(|&(a, b)| self.fetch([a, b]));
+            self.fetch(block);
             for &(a, b) in block {
-                if !is_pair(self.user(a), self.user(b), work) {
+                let users = [a, b].map(|slot| self.user(slot));
+                if !is_pair(users.map(|user| (user, self.state(user))), work) {
                     continue;
                 }
-                let slots = if self.user(a).row < self.user(b).row { [a, b] } else { [b, a] };
+                let slots = if users[0].row < users[1].row { [a, b] } else { [b, a] };
                 match self.options.mode {
                     Mode::Closecall => self.meet(ways, work, slots, found),
                     Mode::Paper => self.meet_on_paper(work, slots, found),
@@ -81,10 +83,17 @@ impl Scene<'_> {
         }
     }
 
-    /// Reads what is far apart in memory, and does nothing with it.
-    fn fetch(&self, slots: [u32; 2]) {
-        for user in slots.map(|slot| self.user(slot)) {
-            black_box((user.front.x, user.row));
+    /// Reads what is far apart in memory, and does nothing with it: what stands in the slots of these pairs, then in the rows
+    /// that those name.
+    fn fetch(&self, pairs: &[(u32, u32)]) {
+        let mut rows = [0; 2 * BLOCK];
+        for (rows, &(a, b)) in rows.chunks_exact_mut(2).zip(pairs) {
+            rows[0] = black_box(self.user(a)).row;
+            rows[1] = black_box(self.user(b)).row;
+        }
+        for row in &rows[..2 * pairs.len()] {
+            let state = self.frame.state(*row);
+            black_box((state.x, state.speed));
         }
     }
 
@@ -278,6 +287,9 @@ impl Scene<'_> {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
             if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
                 self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
+                if self.conflicts_only && !encounter.in_conflict() {
+                    encounters.pop();
+                }
             } else {
                 add(unmeasured, (number, met));
             }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use crate::braking::stopping_distance;
 use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, ProfileIndex, Roster, Row, UserIndex};
+use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
 use crate::net::{EdgeIndex, Net};
@@ -26,7 +26,7 @@ use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::team::Team;
-use crate::units::{Metre, MetrePerSecond, Radian};
+use crate::units::{Metre, Radian};
 use look::{Paths, Reach, Sight};
 use order::Order;
 use worker::Worker;
@@ -95,11 +95,10 @@ pub struct Detector {
     turnings: Vec<Turning>,
     /// Who is on its path along lanes, by row of the frame.
     on_lanes: Vec<bool>,
-    search: Search,
+    /// Everybody in the step in a slot: who meets is near in memory too.
+    search: Search<User>,
     /// How often anybody had entered or left until the last step, and how many were in it.
     who_was_there: (u64, usize),
-    /// Everybody in the step, in the search's slots: who meets is near in memory too.
-    users: Vec<User>,
     order: Order,
     unplaced: Vec<u32>,
     workers: Vec<Worker>,
@@ -113,16 +112,12 @@ struct Turning {
     curvature: f64,
 }
 
-/// What the phases know of a road user in the step under way.
+/// What the phases know of a road user in the step under way, besides its row of the frame.
 #[derive(Clone, Copy, Debug)]
 struct User {
-    /// Front-bumper centre.
-    front: Point,
     heading: Radian,
     /// Where that leads.
     axis: Vector,
-    z: Metre,
-    speed: MetrePerSecond,
     stop: Metre,
     /// Which row of the frame.
     row: u32,
@@ -140,6 +135,7 @@ struct Scene<'a> {
     options: &'a Options,
     leaves_out: Exclusions,
     conflicts_only: bool,
+    frame: &'a Frame,
     roster: &'a Roster,
     paths: Paths<'a>,
     turnings: &'a [Turning],
@@ -150,6 +146,10 @@ struct Scene<'a> {
 impl Scene<'_> {
     fn user(&self, slot: u32) -> &User {
         &self.users[slot as usize]
+    }
+
+    fn state(&self, user: &User) -> &State {
+        self.frame.state(user.row)
     }
 
     fn is_obstacle(&self, slot: u32) -> bool {
@@ -177,7 +177,6 @@ impl Detector {
             on_lanes: Vec::new(),
             search: Search::default(),
             who_was_there: (0, 0),
-            users: Vec::new(),
             order: Order::default(),
             unplaced: Vec::new(),
             workers: vec![Worker::default()],
@@ -261,7 +260,7 @@ impl Detector {
         let Row { user, state } = frame.rows()[row as usize];
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let start = Start {
-            front: Point::new(state.x, state.y),
+            front: state.front(),
             axis: direction(state.heading),
             length: profile.chord,
             width: profile.width,
@@ -272,35 +271,45 @@ impl Detector {
         self.on_lanes[row as usize] = path.track.is_laid();
     }
 
-    /// Phase 2: the pairs that would meet, in the order of the frame's rows.
-    pub fn detect(&mut self, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> {
+    /// Phase 2: the pairs that would meet, in the order of the frame's rows. The frame is that of [`Detector::approach`].
+    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
             worker.found.clear();
-            worker.ways.begin(self.users.len());
+            worker.ways.begin(self.search.slots().len());
         }
-        let scene = self.scene(roster);
+        let scene = self.scene(frame, roster);
         let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
         self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
-                let user = self.users[slot as usize];
+                let user = self.search.slots()[slot as usize];
                 if user.on_lanes {
-                    let way = self.scene(roster).way_to_measure(&user, &met.meeting);
+                    let way = self.scene(frame, roster).way_to_measure(&user, &met.meeting);
                     self.lengthen(roster, &user, way);
                 }
             }
         }
-        let scene = self.scene(roster);
+        let scene = self.scene(frame, roster);
         let busy = workers.iter_mut().filter(|worker| !worker.found.unmeasured.is_empty());
         self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
-        self.order.sort(self.users.len(), &workers);
+        self.order.sort(frame.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);
             worker.found.scratch.halves.shrink();
         }
         self.workers = workers;
+        self.encounters()
+    }
+
+    /// What [`Detector::detect`] has found in the last step, as far as it was retained.
+    pub fn encounters(&self) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
         self.order.sorted(&self.workers)
+    }
+
+    /// Forgets those encounters that are not to be kept.
+    pub fn retain(&mut self, keep: impl FnMut(&mut Encounter) -> bool) {
+        self.order.retain(&mut self.workers, keep);
     }
 
     /// Sees to it that all paths reach as far as both phases look, in a pair or not: who came to the end of its path
@@ -332,24 +341,25 @@ impl Detector {
         Paths::new(&self.paths, self.net.as_deref())
     }
 
-    fn scene<'a>(&'a self, roster: &'a Roster) -> Scene<'a> {
+    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Scene<'a> {
         Scene {
             options: &self.options,
             leaves_out: self.leaves_out,
             conflicts_only: self.conflicts_only,
+            frame,
             roster,
             paths: self.all_paths(),
             turnings: &self.turnings,
-            reach: Reach::new(roster, &self.options, self.leaves_out, self.all_paths()),
-            users: &self.users,
+            reach: Reach::new(frame, roster, &self.options, self.leaves_out, self.all_paths()),
+            users: self.search.slots(),
         }
     }
 
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
-        let user = sight.user(row, &sight.see(row), &User::NOBODY);
-        self.scene(roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
+        let user = sight.user(row, &sight.see(row), &User::default());
+        self.scene(frame, roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
 }

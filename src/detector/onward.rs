@@ -4,6 +4,7 @@
 use super::worker::Found;
 use super::{Scene, User, Work};
 use crate::accurate::Mover;
+use crate::geometry::Point;
 use crate::geometry::rectangle::plainly_touches;
 use crate::geometry::sweep::TOLERANCE;
 use crate::path::{Pose, straight};
@@ -17,12 +18,12 @@ struct Onward {
 }
 
 impl Onward {
-    fn of(user: &User, reach: Metre) -> Self {
-        let now = straight::pose(user.front, user.axis, 0.0);
+    fn of(front: Point, user: &User, reach: Metre) -> Self {
+        let now = straight::pose(front, user.axis, 0.0);
         let mut onward = Self { poses: [now; 3], count: 1 };
         for way in [user.stop, reach] {
             if way > 0.0 {
-                onward.poses[onward.count] = straight::pose(user.front, user.axis, way);
+                onward.poses[onward.count] = straight::pose(front, user.axis, way);
                 onward.count += 1;
             }
         }
@@ -52,8 +53,11 @@ impl Scene<'_> {
             work.ways_apart += 1;
             return;
         }
-        let of_first = Onward::of(self.user(slots[0]), first.reach);
-        let of_second = Onward::of(self.user(slots[1]), second.reach);
+        let onward = |slot: u32, mover: &Mover| {
+            let user = self.user(slot);
+            Onward::of(self.state(user).front(), user, mover.reach)
+        };
+        let (of_first, of_second) = (onward(slots[0], &first), onward(slots[1], &second));
         first.poses = of_first.poses();
         second.poses = of_second.poses();
         self.sweep(work, slots, [&first, &second], in_line, found);

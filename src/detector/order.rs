@@ -4,6 +4,9 @@ use super::worker::Worker;
 use crate::encounter::Encounter;
 use crate::table::fill;
 
+/// Counted together: so many rows have hardly more than a few encounters.
+const TOGETHER: u32 = 16;
+
 /// Brings encounters into order where they are; keeps its memory.
 #[derive(Default)]
 pub(super) struct Order {
@@ -21,35 +24,41 @@ fn rows(found: &Encounter) -> (u32, u32) {
 impl Order {
     /// Sorts what the workers have met, between rows below `count`.
     ///
-    /// Counting sort by the smaller row of each pair; the few of one row are then sorted by the other.
+    /// Counting sort by the smaller row of each pair, some rows together; the few of these are then sorted by both.
     pub(super) fn sort(&mut self, count: usize, workers: &[Worker]) {
         let places = || {
             workers.iter().zip(0..).flat_map(|(worker, number)| {
                 worker.found.encounters.iter().zip(0..).map(move |(found, index)| (rows(found), number, index))
             })
         };
+        let start_of = |(first, _): (u32, u32)| (first / TOGETHER) as usize;
         self.starts.clear();
-        fill(&mut self.starts, count + 1, 0);
-        for ((first, _), ..) in places() {
-            self.starts[first as usize + 1] += 1;
+        fill(&mut self.starts, count / TOGETHER as usize + 2, 0);
+        for (rows, ..) in places() {
+            self.starts[start_of(rows) + 1] += 1;
         }
-        for row in 0..count {
-            self.starts[row + 1] += self.starts[row];
+        for start in 1..self.starts.len() {
+            self.starts[start] += self.starts[start - 1];
         }
         self.sorted.clear();
-        fill(&mut self.sorted, self.starts[count] as usize, Place::default());
+        fill(&mut self.sorted, places().count(), Place::default());
         for found in places() {
-            let place = &mut self.starts[found.0.0 as usize];
+            let place = &mut self.starts[start_of(found.0)];
             self.sorted[*place as usize] = found;
             *place += 1;
         }
-        for of_one_row in self.sorted.chunk_by_mut(|a, b| a.0.0 == b.0.0) {
-            of_one_row.sort_unstable();
+        for together in self.sorted.chunk_by_mut(|a, b| start_of(a.0) == start_of(b.0)) {
+            together.sort_unstable();
         }
     }
 
+    /// Forgets those that are not to be kept.
+    pub(super) fn retain(&mut self, workers: &mut [Worker], mut keep: impl FnMut(&mut Encounter) -> bool) {
+        self.sorted.retain(|&(_, worker, index)| keep(&mut workers[worker as usize].found.encounters[index as usize]));
+    }
+
     /// The sorted encounters of these workers.
-    pub(super) fn sorted<'a>(&'a self, workers: &'a [Worker]) -> impl ExactSizeIterator<Item = &'a Encounter> {
+    pub(super) fn sorted<'a>(&'a self, workers: &'a [Worker]) -> impl ExactSizeIterator<Item = &'a Encounter> + Clone {
         self.sorted.iter().map(|&(_, worker, index)| &workers[worker as usize].found.encounters[index as usize])
     }
 }

@@ -19,19 +19,21 @@ const MOST_POSES: usize = 32;
 const MOST_STRAIGHT: usize = 3;
 
 /// How many ways are kept: this many times the square root of the road users in the step. The search comes back to
-/// somebody after about one of its strips, and about the root of all stand in a strip. With twice as many, phase 2 would take
-/// 2.6 % less time on SUMO's A10, in twice the memory.
+/// somebody after about one of its strips, and about the root of all stand in a strip.
 const KEPT: f64 = 0.5;
 
-/// No fewer are kept.
-const KEPT_AT_LEAST: usize = 8;
+/// No fewer are kept. With half as many, phase 2 would take 7 % more time on SUMO's A10.
+const KEPT_AT_LEAST: usize = 32;
+
+/// So many poses has a way, on average.
+const POSES: usize = 12;
 
 /// The ways of a step that were asked for last. Those of everybody took a quarter of the memory that a run holds per road
 /// user; whose way is asked for after it was forgotten has it laid again, and it is the same.
 #[derive(Default)]
 pub(super) struct Ways {
     /// By slot, where its way is, if it is kept: among the newer or the older ones.
-    places: Vec<u32>,
+    places: Vec<u16>,
     /// So many newer ones make the older ones be forgotten.
     most: usize,
     /// The generations, the newer first.
@@ -39,11 +41,22 @@ pub(super) struct Ways {
 }
 
 /// Ways that were laid one after the other.
-#[derive(Default)]
 struct Kept {
     laid: Vec<Laid>,
     poses: Vec<Pose>,
     covers: Vec<Cover>,
+}
+
+impl Default for Kept {
+    /// With the memory for the least that is kept, so that it does not grow with what is looked at.
+    fn default() -> Self {
+        let poses = KEPT_AT_LEAST * POSES + MOST_POSES;
+        Self {
+            laid: Vec::with_capacity(KEPT_AT_LEAST),
+            poses: Vec::with_capacity(poses),
+            covers: Vec::with_capacity(poses),
+        }
+    }
 }
 
 /// The way of who is in a slot.
@@ -65,7 +78,7 @@ impl Kept {
         self.covers.clear();
     }
 
-    fn find(&self, slot: u32, place: u32) -> Option<&Laid> {
+    fn find(&self, slot: u32, place: u16) -> Option<&Laid> {
         self.laid.get(place as usize).filter(|laid| laid.slot == slot)
     }
 }
@@ -74,7 +87,9 @@ impl Ways {
     /// Forgets those of the last step; slots below `slots` may be asked for.
     pub(super) fn begin(&mut self, slots: usize) {
         fill(&mut self.places, slots, 0);
-        self.most = ((slots as f64).sqrt() * KEPT) as usize + KEPT_AT_LEAST;
+        let most = ((slots as f64).sqrt() * KEPT) as usize;
+        // One more than the most may be laid for a pair.
+        self.most = most.clamp(KEPT_AT_LEAST, usize::from(u16::MAX) - 1);
         self.kept.iter_mut().for_each(Kept::clear);
     }
 
@@ -120,7 +135,7 @@ impl Ways {
             }
             bounds.grown(TOLERANCE)
         };
-        self.places[slot as usize] = laid.len() as u32;
+        self.places[slot as usize] = laid.len() as u16;
         let way = Laid { slot, poses: (start as u32, all.len() as u32), covers: None, straight, bounds };
         add(laid, way);
     }
@@ -202,16 +217,16 @@ impl<'a> Scene<'a> {
     /// Who is in a slot, without its way.
     pub(super) fn mover(&self, slot: u32) -> Mover<'a> {
         let user = self.user(slot);
-        let profile = self.roster.profile_at(user.profile);
+        let (profile, state) = (self.roster.profile_at(user.profile), self.state(user));
         let mut mover = Mover {
-            rectangle: Rectangle::behind(user.front, user.axis, profile.length, profile.width),
+            rectangle: Rectangle::behind(state.front(), user.axis, profile.length, profile.width),
             shape: &[],
             poses: &[],
             straight: true,
             reach: user.stop + self.options.epsilon,
             cover: &Cover::NOWHERE,
             covers: &[],
-            speed: user.speed,
+            speed: state.speed,
             brakes: &profile.brakes,
             stop: user.stop,
         };
@@ -224,7 +239,7 @@ impl<'a> Scene<'a> {
 
     /// Adds a road user's poses at the given ways, and between, as far as its path is known; `beyond` that straight on.
     pub(super) fn course(&self, user: &User, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
-        let User { front, axis, category, on_lanes, .. } = *user;
+        let (User { axis, category, on_lanes, .. }, front) = (*user, self.state(user).front());
         if category == Category::Obstacle {
             return;
         }

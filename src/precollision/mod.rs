@@ -92,17 +92,41 @@ fn is_far(Bounds { low, high }: &Bounds) -> bool {
     low.x.min(low.y) <= -FAR || high.x.max(high.y) >= FAR
 }
 
+/// What stands in a slot of a [`Search`].
+pub trait Slot: Clone + Default + Send {
+    /// Which of the caller's items has the slot, in this step.
+    fn item(&self) -> u32;
+
+    /// Gives the slot to another.
+    fn give(&mut self, item: u32);
+
+    /// Whose item it was last, by a small number that stays the same from step to step.
+    fn who(&self) -> u32;
+}
+
+/// The item is all that is known.
+impl Slot for u32 {
+    fn item(&self) -> u32 {
+        *self
+    }
+
+    fn give(&mut self, item: u32) {
+        *self = item;
+    }
+
+    fn who(&self) -> u32 {
+        *self
+    }
+}
+
 /// Finds the pairs of areas that meet; keeps its memory, and the order that it found, from step to step.
 #[derive(Default)]
-pub struct Search {
+pub struct Search<S> {
     /// Those in strips, sorted; then the large ones.
     places: Vec<Place>,
     /// By slot.
     areas: Vec<Area>,
-    /// By slot, which of the caller's items has it.
-    items: Vec<u32>,
-    /// By slot, who that was when slots were given.
-    who: Vec<u32>,
+    slots: Vec<S>,
     /// For so many steps everybody has had its slot.
     since: u32,
     /// By who it is, the item; only while slots are given.
@@ -115,37 +139,37 @@ pub struct Search {
     parts: Vec<Part>,
 }
 
-impl Search {
+impl Search<u32> {
     /// Puts the index pairs (smaller first) of all areas that meet into `pairs`, in no particular order.
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
-        let mut items = vec![0; areas.len()];
-        let area = |item: u32, (): &(), known: &mut u32| {
-            *known = item;
-            areas[item as usize]
-        };
-        self.lay(&mut items, &Team::default(), true, |item| item, |_| (), area);
+        self.lay(areas.len(), &Team::default(), true, |item| item, |_| (), |(), item| areas[*item as usize]);
         self.sweep(0..areas.len(), |a, b| {
-            let (a, b) = (items[a as usize], items[b as usize]);
+            let (a, b) = (self.slots[a as usize], self.slots[b as usize]);
             pairs.push((a.min(b), a.max(b)));
         });
     }
+}
 
-    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is,
-    /// by a small number that stays the same from step to step; `are_same`, whether they are likely to be those of the
-    /// last step, in the same order. `see` fetches what is said of an item, `area` says where that is now and keeps what
-    /// else is known of it in its slot. Slots are in the order in which a step shortly before ended: those that meet are
-    /// near each other.
-    pub fn lay<Seen: Copy + Default, Known: Send>(
+impl<S: Slot> Search<S> {
+    /// What stands in the slots of this step.
+    pub fn slots(&self) -> &[S] {
+        &self.slots
+    }
+
+    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is, as
+    /// its slot says it later; `are_same`, whether they are likely to be those of the last step, in the same order. `see`
+    /// fetches what is said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots
+    /// are in the order in which a step shortly before ended: those that meet are near each other.
+    pub fn lay<Seen: Copy + Default>(
         &mut self,
-        slots: &mut [Known],
+        count: usize,
         team: &Team,
         are_same: bool,
         who: impl Fn(u32) -> u32,
         see: impl Fn(u32) -> Seen + Sync,
-        area: impl Fn(u32, &Seen, &mut Known) -> Area + Sync,
+        area: impl Fn(&Seen, &mut S) -> Area + Sync,
     ) {
-        let count = slots.len();
         if self.places.len() != count || self.since >= STAY || !are_same {
             self.hold(count, who);
         }
@@ -153,15 +177,14 @@ impl Search {
         self.parts.clear();
         self.parts.resize(team.threads(), Part::EMPTY);
         let share = team.share(count);
-        let parts = self.areas.chunks_mut(share).zip(self.items.chunks(share)).zip(slots.chunks_mut(share));
-        team.each(&mut self.parts, parts, |part, ((areas, items), slots)| {
+        let parts = self.areas.chunks_mut(share).zip(self.slots.chunks_mut(share));
+        team.each(&mut self.parts, parts, |part, (areas, slots)| {
             let mut all = Part::EMPTY;
             let mut block = [Seen::default(); BLOCK];
-            let blocks = areas.chunks_mut(BLOCK).zip(items.chunks(BLOCK)).zip(slots.chunks_mut(BLOCK));
-            for ((areas, items), slots) in blocks {
-                block.iter_mut().zip(items).for_each(|(seen, item)| *seen = see(*item));
-                for (((item, seen), known), laid) in items.iter().zip(&block).zip(slots).zip(areas) {
-                    *laid = area(*item, seen, known);
+            for (areas, slots) in areas.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
+                block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));
+                for ((seen, slot), laid) in block.iter().zip(slots).zip(areas) {
+                    *laid = area(seen, slot);
                     all.include(laid);
                 }
             }
@@ -172,9 +195,8 @@ impl Search {
 
     /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
     fn hold(&mut self, count: usize, who: impl Fn(u32) -> u32) {
-        let Self { places, areas, items, who: known, items_of, .. } = self;
-        items.clear();
-        make_room(items, count);
+        let Self { places, areas, slots, items_of, .. } = self;
+        let mut twice = Vec::new();
         items_of.fill(ABSENT);
         for item in 0..count as u32 {
             let who = who(item) as usize;
@@ -182,18 +204,25 @@ impl Search {
                 fill(items_of, who + 1, ABSENT);
             }
             // Whose item stands twice has a slot for both.
-            let twice = std::mem::replace(&mut items_of[who], item);
-            items.extend(Some(twice).filter(|item| *item != ABSENT));
+            twice.extend(Some(std::mem::replace(&mut items_of[who], item)).filter(|item| *item != ABSENT));
         }
-        items.extend(places.iter().filter_map(|place| take(items_of, known[place.slot as usize])));
-        items.extend((0..count as u32).filter_map(|item| take(items_of, who(item))));
-        known.clear();
-        make_room(known, count);
-        known.extend(items.iter().map(|item| who(*item)));
+        // A place says which item its slot is for, until all have one.
+        places.retain_mut(|place| match take(items_of, slots[place.slot as usize].who()) {
+            Some(item) => {
+                place.slot = item;
+                true
+            }
+            None => false,
+        });
+        make_room(places, count - places.len());
+        let others = (0..count as u32).filter_map(|item| take(items_of, who(item))).chain(twice);
+        places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
+        fill(slots, count, S::default());
         fill(areas, count, Area::NOWHERE);
-        places.clear();
-        make_room(places, count);
-        places.extend((0..count as u32).map(|slot| Place { begin: 0.0, strip: 0, slot }));
+        for ((number, place), slot) in (0..).zip(places).zip(slots) {
+            slot.give(place.slot);
+            place.slot = number;
+        }
         self.since = 0;
     }
 
@@ -330,18 +359,38 @@ mod tests {
         pairs
     }
 
+    #[derive(Clone, Default)]
+    struct Known {
+        item: u32,
+        who: u32,
+    }
+
+    impl Slot for Known {
+        fn item(&self) -> u32 {
+            self.item
+        }
+
+        fn give(&mut self, item: u32) {
+            self.item = item;
+        }
+
+        fn who(&self) -> u32 {
+            self.who
+        }
+    }
+
     /// What the search finds, swept in this many parts, in order.
-    fn found(search: &mut Search, areas: &[Area], who: &[u32], parts: usize) -> Vec<(u32, u32)> {
-        let (count, mut items, mut pairs) = (areas.len(), vec![0; areas.len()], Vec::new());
-        let area = |item: u32, (): &(), known: &mut u32| {
-            *known = item;
-            areas[item as usize]
+    fn found(search: &mut Search<Known>, areas: &[Area], who: &[u32], parts: usize) -> Vec<(u32, u32)> {
+        let (count, mut pairs) = (areas.len(), Vec::new());
+        let area = |(): &(), known: &mut Known| {
+            known.who = who[known.item as usize];
+            areas[known.item as usize]
         };
-        search.lay(&mut items, &Team::new(parts), true, |item| who[item as usize], |_| (), area);
+        search.lay(count, &Team::new(parts), true, |item| who[item as usize], |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
-                let (a, b) = (items[a as usize], items[b as usize]);
+                let (a, b) = (search.slots[a as usize].item, search.slots[b as usize].item);
                 pairs.push((a.min(b), a.max(b)));
             });
         }

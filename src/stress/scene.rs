@@ -48,7 +48,7 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     let mut detector = Detector::new(&Options::default(), None);
     detector.follow(&frame, &roster);
     detector.approach(&frame, &roster);
-    detector.detect(&roster).next().copied()
+    detector.detect(&frame, &roster).next().copied()
 }
 
 /// A run of cars, step by step.
@@ -96,16 +96,8 @@ impl Scene {
         if let Some(placement) = placement {
             unplaced.into_iter().for_each(|row| self.run.place(row, placement));
         }
-        match self.run.finish_step() {
-            Ok(found) => {
-                self.finite &= found.iter().all(is_finite);
-                found.len()
-            }
-            Err(_) => {
-                self.finite = false;
-                0
-            }
-        }
+        self.finite &= self.run.finish_step().is_ok() && self.run.in_conflict().all(is_finite);
+        self.run.in_conflict().len()
     }
 
     /// All conflicts, after the last step.

@@ -18,7 +18,7 @@ use crate::reference::chance::Chance;
 use crate::units::Second;
 
 type Pairs = Vec<(u32, u32)>;
-type Method = (&'static str, fn(&[Circle], &mut Search, &mut Pairs));
+type Method = (&'static str, fn(&[Circle], &mut Search<u32>, &mut Pairs));
 type Scene = (&'static str, fn(&mut Chance, usize) -> Vec<Circle>);
 
 const DEFAULT: &str = "sweep in strips";
@@ -83,7 +83,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
     rows
 }
 
-fn found(method: fn(&[Circle], &mut Search, &mut Pairs), circles: &[Circle]) -> Pairs {
+fn found(method: fn(&[Circle], &mut Search<u32>, &mut Pairs), circles: &[Circle]) -> Pairs {
     let mut pairs = Pairs::new();
     method(circles, &mut Search::default(), &mut pairs);
     pairs.sort_unstable();

@@ -125,7 +125,7 @@ impl Scene {
 }
 
 fn conflicts(run: &Run) -> FxHashMap<Pair, Metre> {
-    run.in_conflict().iter().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
+    run.in_conflict().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
 }
 
 /// What a method found, beside what was.
