@@ -278,7 +278,7 @@ impl Run {
 
     /// The conflicts that are kept in memory, and those that go on as they are now.
     pub fn conflicts(&self) -> Vec<Conflict> {
-        self.conflicts.iter().cloned().chain(self.tracker.open()).collect()
+        self.conflicts.iter().cloned().chain(self.tracker.open(&self.roster)).collect()
     }
 
     /// The net, if there is one.
@@ -289,7 +289,7 @@ impl Run {
     /// What was found so far, conflicts that go on included.
     pub fn summary(&self) -> Summary {
         let mut summary = self.summary.clone();
-        for conflict in self.tracker.open() {
+        for conflict in self.tracker.open(&self.roster) {
             summary.add(&conflict);
         }
         summary
@@ -305,7 +305,7 @@ impl Run {
     /// # Errors
     /// An error that names the log's file if it cannot be written.
     pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
-        let closed = self.tracker.finish();
+        let closed = self.tracker.finish(&self.roster);
         if let Some(log) = &mut self.log {
             log.conflicts(closed, self.net.as_deref(), &self.roster)?;
         }

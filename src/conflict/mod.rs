@@ -4,6 +4,7 @@
 //! one of the two is no road user any more. A side or frontal event then waits for its PET, at most [`pet::WAIT`].
 
 mod event;
+mod extremes;
 pub mod pet;
 mod stance;
 
@@ -13,7 +14,7 @@ use rustc_hash::FxHashMap;
 
 pub use event::{Conflict, Moment};
 
-use event::Seen;
+use extremes::{Extremes, Seen};
 
 use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, Roster, UserIndex};
@@ -47,9 +48,9 @@ pub struct Alarm {
 /// Follows the pairs in conflict from step to step.
 #[derive(Debug, Default)]
 pub struct Tracker {
-    events: FxHashMap<(UserIndex, UserIndex), Event>,
+    events: FxHashMap<Pair, Box<Event>>,
     /// Closed, but its PET is not known yet.
-    waiting: Vec<Event>,
+    waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
     rows: Vec<u32>,
 }
@@ -57,13 +58,33 @@ pub struct Tracker {
 /// No row of the frame.
 const ABSENT: u32 = u32::MAX;
 
+/// Two road users, in their order.
+type Pair = [UserIndex; 2];
+
 /// An event under way, or closed and waiting for its PET.
 #[derive(Debug)]
 struct Event {
-    pair: (UserIndex, UserIndex),
     alarm: Alarm,
-    conflict: Box<Conflict>,
-    courses: Option<Box<[pet::Course; 2]>>,
+    extremes: Extremes,
+    driven: Option<Box<Driven>>,
+}
+
+/// What the two of a side or frontal event have driven since it began, in their order, and the PET as far as it is known.
+#[derive(Debug, Default)]
+struct Driven {
+    courses: [pet::Course; 2],
+    pet: Option<pet::Pet>,
+}
+
+impl Event {
+    fn pair(&self) -> Pair {
+        let Alarm { ego, foe, .. } = self.alarm;
+        [ego.min(foe), ego.max(foe)]
+    }
+
+    fn conflict(&self, roster: &Roster) -> Conflict {
+        Conflict::of(&self.extremes, self.driven.as_ref().and_then(|driven| driven.pet), roster)
+    }
 }
 
 impl Tracker {
@@ -86,11 +107,11 @@ impl Tracker {
             self.rows[row.user.0 as usize] = number;
         }
         for found in encounters.filter(|found| found.in_conflict()) {
-            self.take(&Seen { frame, roster, found }, &path);
+            self.take(&Seen { frame, found }, &path);
         }
         self.follow(frame, roster);
         self.close(frame.time);
-        self.settle(frame.time, false);
+        self.settle(frame.time, false, roster);
         sort(&mut self.closed);
         &self.closed
     }
@@ -106,10 +127,10 @@ impl Tracker {
     }
 
     /// Closes whatever is still open: the run has ended.
-    pub fn finish(&mut self) -> &[Conflict] {
+    pub fn finish(&mut self, roster: &Roster) -> &[Conflict] {
         self.closed.clear();
         self.waiting.extend(self.events.drain().map(|(_, event)| event));
-        self.settle(f64::INFINITY, true);
+        self.settle(f64::INFINITY, true, roster);
         sort(&mut self.closed);
         &self.closed
     }
@@ -120,38 +141,38 @@ impl Tracker {
     }
 
     /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
-    pub fn open(&self) -> Vec<Conflict> {
-        let mut open =
-            self.events.values().chain(&self.waiting).map(|event| (*event.conflict).clone()).collect::<Vec<_>>();
+    pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
+        let events = self.events.values().chain(&self.waiting);
+        let mut open = events.map(|event| event.conflict(roster)).collect::<Vec<_>>();
         sort(&mut open);
         open
     }
 
     fn take(&mut self, seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) {
         let Encounter { ego, foe, kind, .. } = *seen.found;
-        let (pair, alarm) = ((ego.min(foe), ego.max(foe)), Alarm { ego, foe, severity: seen.severity(), kind });
-        let event = match self.events.entry(pair) {
+        let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
+        let event = match self.events.entry([ego.min(foe), ego.max(foe)]) {
             Entry::Occupied(known) => {
                 let event = known.into_mut();
                 event.alarm = alarm;
-                event.conflict.take(seen, path);
+                event.extremes.take(seen, path);
                 event
             }
             Entry::Vacant(place) => {
-                let conflict = Box::new(Conflict::of(seen, path));
-                place.insert(Event { pair, alarm, conflict, courses: None })
+                place.insert(Box::new(Event { alarm, extremes: Extremes::of(seen, path), driven: None }))
             }
         };
-        if kind != Kind::RearEnd && event.courses.is_none() {
-            event.courses = Some(Default::default());
+        if kind != Kind::RearEnd && event.driven.is_none() {
+            event.driven = Some(Box::default());
         }
     }
 
     /// Records where the pairs of side and frontal events go.
     fn follow(&mut self, frame: &Frame, roster: &Roster) {
         for event in self.events.values_mut().chain(&mut self.waiting) {
-            let Some(courses) = &mut event.courses else { continue };
-            for (user, course) in [event.pair.0, event.pair.1].into_iter().zip(courses.iter_mut()) {
+            let pair = event.pair();
+            let Some(driven) = &mut event.driven else { continue };
+            for (user, course) in pair.into_iter().zip(&mut driven.courses) {
                 let row = self.rows.get(user.0 as usize).copied().unwrap_or(ABSENT);
                 // An index that was given to another road user meanwhile is not followed.
                 if row == ABSENT || course.has_ended() {
@@ -163,8 +184,8 @@ impl Tracker {
                     continue;
                 }
                 let state = frame.state(row);
-                let front = Point::new(state.x, state.y);
-                let rectangle = Rectangle::behind(front, direction(state.heading), profile.length, profile.width);
+                let axis = direction(state.heading);
+                let rectangle = Rectangle::behind(state.front(), axis, profile.length, profile.width);
                 course.push(frame.time, rectangle);
             }
         }
@@ -174,31 +195,32 @@ impl Tracker {
         let rows = &self.rows;
         let gone = |user: UserIndex| rows.get(user.0 as usize).is_none_or(|row| *row == ABSENT);
         let over = self.events.extract_if(|pair, event| {
-            time - event.conflict.end >= CLOSES_AFTER - SAME_MOMENT || gone(pair.0) || gone(pair.1)
+            time - event.extremes.end >= CLOSES_AFTER - SAME_MOMENT || pair.iter().any(|user| gone(*user))
         });
         self.waiting.extend(over.map(|(_, event)| event));
     }
 
     /// Passes on the closed events whose PET is known, or will not be.
-    fn settle(&mut self, time: Second, at_once: bool) {
+    fn settle(&mut self, time: Second, at_once: bool, roster: &Roster) {
         // For all of the step, but no longer: what a long wait in small steps needs would be kept for the rest of the run.
         let mut halves = Halves::default();
         let settled = self.waiting.extract_if(.., |event| {
-            if let (Some(courses), true) = (&event.courses, event.conflict.kind != Kind::RearEnd) {
+            let since = time - event.extremes.end;
+            if let (Some(driven), true) = (&mut event.driven, event.extremes.worst.kind != Kind::RearEnd) {
+                let Driven { courses, pet } = &mut **driven;
                 let last_call = at_once
-                    || time - event.conflict.end >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
+                    || since >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
                     || courses.iter().any(pet::Course::has_ended);
-                let just_closed = time - event.conflict.end < 2.0 * CLOSES_AFTER;
+                let just_closed = since < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    let found = pet::post_encroachment_time(&mut halves, &courses[0], &courses[1]);
-                    event.conflict.set_pet(found);
-                    return last_call || found.is_some_and(|pet| pet.is_final);
+                    *pet = pet::post_encroachment_time(&mut halves, &courses[0], &courses[1]);
+                    return last_call || pet.is_some_and(|pet| pet.is_final);
                 }
                 return false;
             }
             true
         });
-        self.closed.extend(settled.map(|event| *event.conflict));
+        self.closed.extend(settled.map(|event| event.conflict(roster)));
     }
 }
 
@@ -281,7 +303,7 @@ mod tests {
         for (time, margin) in [(0.0, -1.0), (0.5, -3.0), (1.0, -3.0 - 1e-14), (1.5, -1.0)] {
             scene.step(time, margin);
         }
-        let [closed] = scene.tracker.finish() else { panic!() };
+        let [closed] = scene.tracker.finish(&scene.roster) else { panic!() };
         assert_eq!((closed.time, closed.margin), (0.5, -3.0));
     }
 
@@ -291,7 +313,7 @@ mod tests {
         for (time, margin) in [(0.0, -1.0), (0.9, 1.0), (1.5, -2.0), (2.0, 1.0)] {
             scene.step(time, margin);
         }
-        let [closed] = scene.tracker.finish() else { panic!() };
+        let [closed] = scene.tracker.finish(&scene.roster) else { panic!() };
         assert_eq!((closed.begin, closed.end), (0.0, 1.5));
     }
 

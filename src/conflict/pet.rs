@@ -5,13 +5,13 @@
 //! second enters it when its rectangle touches the first's corridor for the first time. As long as the second is in that
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
-use crate::geometry::Bounds;
 use crate::geometry::halves::{Halves, Part, Touch};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::{Bounds, Point, Vector};
 use crate::path::Pose;
 use crate::table::add;
-use crate::units::Second;
+use crate::units::{Metre, Second};
 
 /// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
 pub const WAIT: Second = 5.0;
@@ -19,21 +19,44 @@ pub const WAIT: Second = 5.0;
 /// What one road user drove: its rectangle at each time.
 #[derive(Clone, Debug, Default)]
 pub struct Course {
-    moments: Vec<(Second, Rectangle)>,
+    moments: Vec<Moment>,
+    half_length: Metre,
+    half_width: Metre,
     ended: bool,
+}
+
+/// Where it was at a time, and which way it headed.
+#[derive(Clone, Copy, Debug)]
+struct Moment {
+    time: Second,
+    centre: Point,
+    axis: Vector,
+}
+
+impl Moment {
+    fn is_at(&self, rectangle: &Rectangle) -> bool {
+        (self.centre, self.axis) == (rectangle.centre, rectangle.axis)
+    }
 }
 
 impl Course {
     /// Adds where it is at a time; one that stands adds nothing.
     pub fn push(&mut self, time: Second, rectangle: Rectangle) {
-        if let [.., (_, before), (last_time, last)] = &mut self.moments[..]
-            && *before == *last
-            && *last == rectangle
+        if let [.., before, last] = &mut self.moments[..]
+            && before.is_at(&rectangle)
+            && last.is_at(&rectangle)
         {
-            *last_time = time;
+            last.time = time;
             return;
         }
-        add(&mut self.moments, (time, rectangle));
+        let Rectangle { centre, axis, half_length, half_width } = rectangle;
+        (self.half_length, self.half_width) = (half_length, half_width);
+        add(&mut self.moments, Moment { time, centre, axis });
+    }
+
+    fn rectangle(&self, moment: &Moment) -> Rectangle {
+        let (Moment { centre, axis, .. }, &Self { half_length, half_width, .. }) = (*moment, self);
+        Rectangle { centre, axis, half_length, half_width }
     }
 
     /// It is no road user any more.
@@ -49,7 +72,7 @@ impl Course {
     /// The box around all that it covered; larger than what rounding can do.
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        self.moments.iter().for_each(|(_, rectangle)| bounds.join(&rectangle.bounds()));
+        self.moments.iter().for_each(|moment| bounds.join(&self.rectangle(moment).bounds()));
         bounds.grown(TOLERANCE)
     }
 
@@ -61,17 +84,17 @@ impl Course {
             axis: rectangle.axis,
         };
         let steps = self.moments.windows(2).filter_map(|pair| {
-            let [(from, start), (to, end)] = [&pair[0], &pair[1]];
+            let [start, end] = [&pair[0], &pair[1]].map(|moment| self.rectangle(moment));
             let mut bounds = start.bounds();
             bounds.join(&end.bounds());
             if !bounds.grown(TOLERANCE).meet(near) {
                 return None;
             }
             let (length, width) = (2.0 * start.half_length, 2.0 * start.half_width);
-            let part = halves.add(pose(start, 0.0).step_to(&pose(end, 1.0), length, width));
-            Some((*from, *to, part))
+            let part = halves.add(pose(&start, 0.0).step_to(&pose(&end, 1.0), length, width));
+            Some((pair[0].time, pair[1].time, part))
         });
-        Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |(time, _)| *time) }
+        Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |moment| moment.time) }
     }
 }
 
@@ -138,7 +161,6 @@ pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Op
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Point, Vector};
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
     fn course(heading: f64, arrives: f64) -> Course {

@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::frame::{Frame, Roster};
+use crate::frame::State;
 use crate::geometry::Point;
+use crate::profile::Profile;
 use crate::units::{Metre, Radian};
 
 /// A point of a path that lies nearer than this to the line between its neighbours is left out, in m: less than a
@@ -25,19 +26,27 @@ pub struct Stance {
     pub path: Arc<[Point]>,
 }
 
+/// The same of an event under way, as far as its type does not say it.
+#[derive(Debug)]
+pub(super) struct Stood {
+    front: Point,
+    heading: Radian,
+    path: Box<[Point]>,
+}
+
+impl Stood {
+    /// In this state, its front bumper about to go along these points.
+    pub fn of(state: &State, points: &[Point]) -> Self {
+        let front = state.front();
+        Self { front, heading: state.heading, path: drawn(&front, points).into() }
+    }
+}
+
 impl Stance {
-    /// A row of the frame, whose front bumper is about to go along these points.
-    pub(super) fn of(frame: &Frame, roster: &Roster, row: u32, points: &[Point]) -> Self {
-        let state = frame.state(row);
-        let profile = roster.profile_of(frame.user(row));
-        let front = Point::new(state.x, state.y);
-        Self {
-            front,
-            heading: state.heading,
-            length: profile.length,
-            width: profile.width,
-            path: drawn(&front, points).into(),
-        }
+    /// Somebody of this type.
+    pub(super) fn of(stood: &Stood, profile: &Profile) -> Self {
+        let Stood { front, heading, ref path } = *stood;
+        Self { front, heading, length: profile.length, width: profile.width, path: path.clone().into() }
     }
 }
 
