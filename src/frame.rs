@@ -210,8 +210,7 @@ impl Frame {
     }
 
     /// Adds a row for each of so many road users. `fill` is given them all, [`State::NOWHERE`], and may fill them in any
-    /// order; who then still is no road user in this step, as [`Frame::push`] has it, is left out, and `kept` is told the
-    /// places of the others.
+    /// order; who then still is no road user in this step, as [`Frame::push`] has it, is left out.
     ///
     /// # Errors
     /// That of `fill`; nobody is added then.
@@ -219,7 +218,6 @@ impl Frame {
         &mut self,
         users: usize,
         fill: impl FnOnce(&mut [Row]) -> std::result::Result<(), E>,
-        mut kept: impl FnMut(usize),
     ) -> std::result::Result<(), E> {
         let (first, nowhere) = (self.rows.len(), Row { user: UserIndex(0), state: State::NOWHERE });
         table::fill(&mut self.rows, first + users, nowhere);
@@ -230,7 +228,6 @@ impl Frame {
                 if self.rows[first + place].state.is_valid() {
                     self.rows.swap(end, first + place);
                     end += 1;
-                    kept(place);
                 }
             }
         }
@@ -276,7 +273,7 @@ mod tests {
 
     #[test]
     fn rows_filled_in_any_order_stand_in_their_own_without_those_who_are_nowhere() {
-        let (mut frame, mut kept) = (Frame::default(), Vec::new());
+        let mut frame = Frame::default();
         frame.push(UserIndex(7), HERE);
         let fill = |rows: &mut [Row]| {
             rows[3] = row(3);
@@ -284,9 +281,8 @@ mod tests {
             rows[1] = row(1);
             Ok::<(), ()>(())
         };
-        assert_eq!(frame.extend(4, fill, |place| kept.push(place)), Ok(()));
+        assert_eq!(frame.extend(4, fill), Ok(()));
         assert_eq!(frame.rows(), [7, 1, 3].map(row));
-        assert_eq!(kept, [1, 3]);
     }
 
     #[test]
@@ -297,7 +293,7 @@ mod tests {
             rows[0] = row(0);
             Err("gone")
         };
-        assert_eq!(frame.extend(2, fill, |place| panic!("{place} is kept")), Err("gone"));
+        assert_eq!(frame.extend(2, fill), Err("gone"));
         assert_eq!(frame.rows(), [row(7)]);
     }
 }

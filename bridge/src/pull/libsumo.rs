@@ -15,6 +15,7 @@ use closecall::table::make_room;
 use closecall::units::Second;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
+use rustc_hash::FxHashMap;
 
 use super::getters::{self, Getters, Kept};
 use super::sumo::{self, Types};
@@ -54,9 +55,8 @@ struct Domain {
     live: Vec<Live>,
     /// Where in `live` everybody is, in the order of their ids, in which SUMO finds them soonest.
     by_id: Vec<u32>,
-    /// Who of `live` stands in the frame's rows from `first_row` on.
-    rows: Vec<u32>,
-    first_row: u32,
+    /// The routes of those who may get another one; the others' the run knows.
+    routes: FxHashMap<UserIndex, Route>,
 }
 
 /// Somebody in the scene; its id is the roster's.
@@ -64,8 +64,6 @@ struct Live {
     user: UserIndex,
     parked: bool,
     kept: Kept,
-    /// The route of who may get another one; else the run knows it.
-    route: Option<Box<Route>>,
 }
 
 /// A route and its id.
@@ -91,8 +89,7 @@ impl Libsumo {
                 keeps: false,
                 live: Vec::new(),
                 by_id: Vec::new(),
-                rows: Vec::new(),
-                first_row: 0,
+                routes: FxHashMap::default(),
             })
         };
         Ok(Self {
@@ -197,29 +194,28 @@ impl Libsumo {
         // A route that stays is asked for once: from then on the path that is laid along it knows it.
         let stays = run.has_fixed_routes() && run.leaves_out().known_paths;
         for &row in rows {
-            let Some(place) = row.checked_sub(self.vehicles.first_row) else { continue };
-            let Some(&live) = self.vehicles.rows.get(place as usize) else { continue };
-            let live = &mut self.vehicles.live[live as usize];
             let Some(net) = run.net() else { return Ok(()) };
-            let id: &str = run.roster.id(live.user);
+            let user = run.frame.user(row);
+            let id: &str = run.roster.id(user);
             let ask = |getter: &Py<PyAny>| getter.bind(py).call1((id,));
             let route_now = || sumo::route(net, &ask(&self.get.route)?);
             let laid;
             let edges = if stays {
-                laid = run.route(live.user).cloned().map_or_else(route_now, Ok)?;
+                laid = run.route(user).cloned().map_or_else(route_now, Ok)?;
                 &laid
             } else {
+                let Domain { getters, routes, .. } = &mut self.vehicles;
                 let has = |route: &str| -> PyResult<bool> {
-                    Ok(self.vehicles.getters.has_route(id, route)
-                        || ask(&self.get.route_id)?.extract::<&str>()? == route)
+                    Ok(getters.has_route(id, route) || ask(&self.get.route_id)?.extract::<&str>()? == route)
                 };
-                let route = match live.route.take() {
-                    Some(known) if has(&known.id)? => known,
+                match routes.get(&user) {
+                    Some(known) if has(&known.id)? => {}
                     _ => {
-                        Box::new(Route { id: ask(&self.get.route_id)?.extract::<&str>()?.into(), edges: route_now()? })
+                        let id = ask(&self.get.route_id)?.extract::<&str>()?.into();
+                        routes.insert(user, Route { id, edges: route_now()? });
                     }
-                };
-                &live.route.insert(route).edges
+                }
+                &routes[&user].edges
             };
             if run.keeps_path(row, edges) {
                 continue;
@@ -290,7 +286,7 @@ impl Domain {
         self.getters.enters(py, name);
         let user = run.enter(name, profile);
         make_room(&mut self.live, 1);
-        self.live.push(Live { user, parked: false, kept: Kept::default(), route: None });
+        self.live.push(Live { user, parked: false, kept: Kept::default() });
         make_room(&mut self.by_id, 1);
         self.by_id.insert(rank, self.live.len() as u32 - 1);
         Ok(())
@@ -303,7 +299,9 @@ impl Domain {
             self.by_id[of_last] = place as u32;
             self.by_id.remove(own);
         }
-        run.leave(self.live.swap_remove(place).user);
+        let user = self.live.swap_remove(place).user;
+        self.routes.remove(&user);
+        run.leave(user);
     }
 
     /// Where in `live` somebody is.
@@ -331,9 +329,7 @@ impl Domain {
     }
 
     fn read_all(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let Self { live, by_id, rows, getters, keeps, .. } = self;
-        rows.clear();
-        self.first_row = run.frame.len() as u32;
+        let Self { live, by_id, getters, keeps, .. } = self;
         let (count, roster) = (live.len(), &run.roster);
         let fill = |states: &mut [Row]| {
             for &place in &*by_id {
@@ -344,9 +340,6 @@ impl Domain {
             }
             Ok(())
         };
-        run.frame.extend(count, fill, |place| {
-            make_room(rows, 1);
-            rows.push(place as u32);
-        })
+        run.frame.extend(count, fill)
     }
 }
