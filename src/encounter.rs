@@ -77,8 +77,8 @@ pub struct Placement {
     pub lane: LaneIndex,
     /// Its front bumper's way from the lane's beginning, in SUMO's lane length, in m.
     pub position: Metre,
-    /// Its route; shared between those who drive the same.
-    pub route: Arc<[EdgeIndex]>,
+    /// Its route, where that is new or has changed; none where it has not, or nobody knows one.
+    pub route: Option<Arc<[EdgeIndex]>>,
     /// Which edge of the route it is on, or left last when it is within a junction.
     pub route_position: usize,
     /// Speed to the left across the lane, in m/s; other than 0 while a lane change is under way.

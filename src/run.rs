@@ -15,7 +15,7 @@ use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
-use crate::net::{EdgeIndex, Net};
+use crate::net::Net;
 use crate::options::Options;
 use crate::outputs::Outputs;
 use crate::profile::{Category, Profile, obstacle_name};
@@ -189,15 +189,15 @@ impl Run {
         self.detector.follow(&self.frame, &self.roster)
     }
 
-    /// Whether the road user of a row, if it still has this route, is on the path laid before: nobody needs to know
-    /// where it is on the net.
-    pub fn keeps_path(&self, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        !self.outputs.want_lanes() && self.detector.keeps_path(&self.frame, row, route)
+    /// Whether the road user of a row, if it still has its route, is on the path laid before: nobody needs to know where it
+    /// is on the net.
+    pub fn keeps_path(&self, row: u32) -> bool {
+        !self.outputs.want_lanes() && self.detector.keeps_path(row)
     }
 
-    /// The route that a road user's path was laid for last; none as long as it has none.
-    pub fn route(&self, user: UserIndex) -> Option<&Arc<[EdgeIndex]>> {
-        self.detector.route(user)
+    /// Whether the route that a road user was said to have is known from this place in it on.
+    pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
+        self.detector.knows_route(user, position)
     }
 
     /// Says where the road user of a row is on the net.

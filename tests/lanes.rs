@@ -29,7 +29,7 @@ fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     let placement = Placement {
         lane: net.lane("west_0").unwrap(),
         position: 80.0,
-        route: route.iter().map(|edge| net.edge(edge).unwrap()).collect(),
+        route: Some(route.iter().map(|edge| net.edge(edge).unwrap()).collect()),
         route_position,
         lateral_speed: 0.0,
     };
@@ -77,7 +77,7 @@ fn where_lanes_do_not_join_a_path_leads_straight_across() {
             let placement = Placement {
                 lane: net.lane("a_0").unwrap(),
                 position: x,
-                route: ["a", "b"].iter().map(|edge| net.edge(edge).unwrap()).collect(),
+                route: Some(["a", "b"].iter().map(|edge| net.edge(edge).unwrap()).collect()),
                 route_position: 0,
                 lateral_speed: 0.0,
             };

@@ -32,7 +32,7 @@ fn encounters(y: f64, drift: f64) -> usize {
         let placement = Placement {
             lane: net.lane(&format!("{name}_0")).unwrap(),
             position: 80.0,
-            route: Arc::new([net.edge(name).unwrap()]),
+            route: Some(Arc::new([net.edge(name).unwrap()])),
             route_position: 0,
             lateral_speed: if row == 0 { drift } else { 0.0 },
         };

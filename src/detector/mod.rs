@@ -19,7 +19,7 @@ use crate::encounter::{Encounter, Placement};
 use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
-use crate::net::{EdgeIndex, Net};
+use crate::net::Net;
 use crate::options::Options;
 use crate::path::lanes::{LanePath, Start};
 use crate::precollision::Search;
@@ -241,20 +241,20 @@ impl Detector {
         }
     }
 
-    /// Whether the road user of a row is still on the path that was laid for this route.
-    pub fn keeps_path(&self, frame: &Frame, row: u32, route: &Arc<[EdgeIndex]>) -> bool {
-        self.on_lanes[row as usize] && self.paths[frame.user(row).0 as usize].is_for(route)
+    /// Whether the road user of a row is still on the path that was laid before.
+    pub fn keeps_path(&self, row: u32) -> bool {
+        self.on_lanes[row as usize]
     }
 
-    /// The route that a road user's path was laid for last; none as long as it has none.
-    pub fn route(&self, user: UserIndex) -> Option<&Arc<[EdgeIndex]>> {
-        self.paths.get(user.0 as usize)?.route()
+    /// Whether the route that a road user was said to have is known from this place in it on.
+    pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
+        self.paths.get(user.0 as usize).is_some_and(|path| path.knows_route(position))
     }
 
-    /// Where the road user of a row is on the net.
+    /// Where the road user of a row is on the net, if it is not on its path still or that is not that of its route.
     pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
-        if self.keeps_path(frame, row, &placement.route) {
+        if self.keeps_path(row) && placement.route.is_none() {
             return;
         }
         let Row { user, state } = frame.rows()[row as usize];

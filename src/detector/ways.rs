@@ -13,7 +13,7 @@ use crate::table::{add, fill, make_room};
 use crate::units::Metre;
 
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
-const MOST_POSES: usize = 32;
+pub(super) const MOST_POSES: usize = 64;
 
 /// A straight way has poses where it begins, where it stands and ε further.
 const MOST_STRAIGHT: usize = 3;
@@ -52,7 +52,8 @@ impl Default for Kept {
     fn default() -> Self {
         let poses = KEPT_AT_LEAST * POSES + MOST_POSES;
         Self {
-            laid: Vec::with_capacity(KEPT_AT_LEAST),
+            // That of a pair's second road user may come on top.
+            laid: Vec::with_capacity(KEPT_AT_LEAST + 1),
             poses: Vec::with_capacity(poses),
             covers: Vec::with_capacity(poses),
         }
@@ -88,7 +89,6 @@ impl Ways {
     pub(super) fn begin(&mut self, slots: usize) {
         fill(&mut self.places, slots, 0);
         let most = ((slots as f64).sqrt() * KEPT) as usize;
-        // One more than the most may be laid for a pair.
         self.most = most.clamp(KEPT_AT_LEAST, usize::from(u16::MAX) - 1);
         self.kept.iter_mut().for_each(Kept::clear);
     }

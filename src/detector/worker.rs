@@ -1,7 +1,7 @@
 //! What one thread needs for its part of a step, and what it finds.
 
 use super::Work;
-use super::ways::Ways;
+use super::ways::{MOST_POSES, Ways};
 use crate::accurate::Meeting;
 use crate::encounter::Encounter;
 use crate::geometry::halves::Halves;
@@ -35,7 +35,7 @@ pub(super) struct Scratch {
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { courses: [const { Vec::new() }; 2], halves: Halves::to_keep() }
+        Self { courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)), halves: Halves::to_keep() }
     }
 }
 

@@ -5,13 +5,12 @@
 //! the vehicle came from, since the rear drives there still. Where the lane does not lead to the next edge of the
 //! route, the path ends with the lane.
 
-use std::sync::Arc;
-
 use smallvec::SmallVec;
 
 use super::beside::{Beside, Offset};
 use super::own::Own;
 use super::track::Track;
+use super::turns::Turns;
 use crate::encounter::Placement;
 use crate::geometry::lines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
@@ -37,10 +36,12 @@ pub struct LanePath {
     /// Where it is on the lanes' centre lines, or on its own line.
     pub track: Track,
     own: Option<Box<Own>>,
-    route: Option<Arc<[EdgeIndex]>>,
-    /// The place in the route of the last lane's edge, or of the one before; none where the line does not go on.
-    route_position: Option<u32>,
+    /// From the edge on it was on when the path was laid.
+    route: Turns,
 }
+
+/// The edge of who drives against its lane: its path does not go on.
+const NONE: u16 = u16::MAX;
 
 /// What laying a path starts from.
 #[derive(Clone, Copy, Debug)]
@@ -75,14 +76,9 @@ impl LanePath {
         self.track.follow(self.own.as_ref().map_or(of_net, |own| &own.lines), front)
     }
 
-    /// The route that it was laid for.
-    pub fn route(&self) -> Option<&Arc<[EdgeIndex]>> {
-        self.route.as_ref()
-    }
-
-    /// Whether it was laid for this route.
-    pub fn is_for(&self, route: &Arc<[EdgeIndex]>) -> bool {
-        self.route().is_some_and(|own| Arc::ptr_eq(own, route) || own == route)
+    /// Whether it knows the route from this place in it on.
+    pub fn knows_route(&self, position: usize) -> bool {
+        !self.route.are_free() && self.route.begin_before(position)
     }
 
     /// Lays the path anew; without geometry to lay it on, none.
@@ -91,10 +87,12 @@ impl LanePath {
         let (line, length) = (net.lines.line(placement.lane.0), net.lines.length(placement.lane.0));
         let hint = placement.position * length / lane.length.max(f64::MIN_POSITIVE);
         let foot = Foot::of(line, start.front, hint);
-        let against = foot.direction.dot(&start.axis) < 0.0 && !leads_along(net, lane, placement);
+        match &placement.route {
+            Some(route) => self.route = Turns::of(net, route, placement.route_position),
+            None => self.route.advance(net, placement.route_position),
+        }
+        let against = foot.direction.dot(&start.axis) < 0.0 && !leads_along(net, lane, &self.route);
         let beside = Beside::new(offset(net, start, placement, &foot, against));
-        self.route = Some(placement.route.clone());
-        self.route_position = (!against).then_some(placement.route_position as u32);
         let before = if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start) };
         let joins =
             before.iter().try_fold(placement.lane.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
@@ -114,6 +112,7 @@ impl LanePath {
             let own = Own::lay(&mut self.track, before.chain(behind), foot.point, ahead, placement.lane, beside);
             self.own = Some(Box::new(own));
         }
+        self.track.edge = if against { NONE } else { 0 };
         self.forget_behind(net, start.length + KEPT_BEHIND);
         self.shrink();
     }
@@ -128,10 +127,10 @@ impl LanePath {
         // A ring of lanes of length 0 would go on for ever.
         let mut in_vain = 0;
         while self.track.ahead() < way + SPARE && in_vain <= net.lanes.len() {
-            let Some((lane, route_position)) = self.next(net) else { break };
+            let Some((lane, edge)) = self.next(net) else { break };
             let before = self.track.ahead();
             self.go_on(net, lane);
-            self.route_position = Some(route_position);
+            self.track.edge = edge;
             in_vain = if self.track.ahead() > before { 0 } else { in_vain + 1 };
         }
         self.shrink();
@@ -168,26 +167,27 @@ impl LanePath {
         }
     }
 
-    /// The lane after the last one, and its place in the route.
-    fn next(&self, net: &Net) -> Option<(LaneIndex, u32)> {
+    /// The lane after the last one, and on which edge of the route that is.
+    fn next(&self, net: &Net) -> Option<(LaneIndex, u16)> {
         let last = match &self.own {
             Some(own) => own.last()?,
             None => LaneIndex(*self.track.lines.last()?),
         };
-        let (route, route_position) = (self.route.as_deref()?, self.route_position?);
-        let position = route_position as usize;
+        let position = Some(self.track.edge).filter(|edge| *edge != NONE)?;
+        let ahead = self.route.edges(net).skip(position as usize + 1).take(EDGES_AHEAD + 1);
+        let ahead = ahead.collect::<SmallVec<[_; EDGES_AHEAD + 1]>>();
         let lane = &net.lanes[last.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
-        let wanted = route.get(position + 1).copied();
+        let wanted = ahead.first().copied();
         let leads = |link: &&crate::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
-        if wanted.is_none() && !inside && !route.is_empty() {
+        if wanted.is_none() && !inside && !self.route.are_free() {
             return None;
         }
         let link = lane.links.iter().filter(leads).fold(None, |best: Option<(&crate::net::Link, Metre)>, link| {
             let worth = if lane.links.len() < 2 {
                 0.0
             } else if wanted.is_some() {
-                continuation(net, route, link.to, position + 1, EDGES_AHEAD)
+                continuation(net, &ahead, link.to)
             } else {
                 straightness(net, last, link.via.unwrap_or(link.to))
             };
@@ -195,16 +195,16 @@ impl LanePath {
         })?;
         let (link, _) = link;
         Some(match link.via {
-            Some(via) => (via, route_position),
-            None => (link.to, route_position + u32::from(wanted == Some(edge_of(net, link.to)))),
+            Some(via) => (via, position),
+            None => (link.to, position + u16::from(wanted == Some(edge_of(net, link.to)))),
         })
     }
 }
 
 /// Whether a lane is one of the route, where the road user is now. Who is on such a lane drives along it, whatever its
 /// heading says: after a sharp turn the rear stands across for as long as the road user.
-fn leads_along(net: &Net, lane: &crate::net::Lane, placement: &Placement) -> bool {
-    let on_route = |further: usize| placement.route.get(placement.route_position + further).copied();
+fn leads_along(net: &Net, lane: &crate::net::Lane, route: &Turns) -> bool {
+    let on_route = |further: usize| route.edges(net).nth(further);
     if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
         return on_route(0) == Some(lane.edge);
     }
@@ -311,15 +311,16 @@ fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {
     net.lanes[lane.0 as usize].edge
 }
 
-/// How far one gets along the route from a lane without changing lanes (what SUMO chooses lanes by).
-fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex, route_position: usize, edges: usize) -> Metre {
+/// How far one gets along the edges of a route from a lane of the first of them without changing lanes (what SUMO chooses
+/// lanes by).
+fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex) -> Metre {
     let here = &net.lanes[lane.0 as usize];
-    let beyond = match route.get(route_position + 1) {
-        Some(next) if edges > 0 => here
+    let beyond = match route {
+        [_, rest @ ..] if !rest.is_empty() => here
             .links
             .iter()
-            .filter(|link| edge_of(net, link.to) == *next)
-            .map(|link| continuation(net, route, link.to, route_position + 1, edges - 1))
+            .filter(|link| edge_of(net, link.to) == rest[0])
+            .map(|link| continuation(net, rest, link.to))
             .fold(0.0, f64::max),
         _ => 0.0,
     };

@@ -11,6 +11,7 @@ mod own;
 mod poses;
 pub mod straight;
 pub mod track;
+mod turns;
 
 use crate::geometry::sweep::Step;
 use crate::geometry::{Point, Vector};

@@ -23,7 +23,9 @@ pub struct Track {
     /// In their order.
     pub(super) lines: SmallVec<[u32; MOSTLY]>,
     /// On which of them the front bumper is.
-    pub(super) at: u32,
+    pub(super) at: u16,
+    /// On which edge of the route the last of them is, or was when the route was left, as [`super::lanes`] counts them.
+    pub(super) edge: u16,
     /// The last corner before it, in the table.
     pub(super) corner: u32,
     pub(super) front: Metre,
@@ -102,7 +104,7 @@ impl Track {
                 let (at, corner) = (cursor.at, cursor.corner);
                 let passed = self.lines[self.at as usize..at].iter();
                 self.end -= passed.map(|line| lines.length(*line)).sum::<Metre>();
-                (self.at, self.corner, self.front) = (at as u32, corner, way);
+                (self.at, self.corner, self.front) = (at as u16, corner, way);
                 return true;
             }
         }
@@ -141,7 +143,7 @@ impl Track {
         }
         self.lines.drain(..first);
         self.lines.shrink_to_fit();
-        self.at -= first as u32;
+        self.at -= first as u16;
     }
 
     /// How long its lines are, all together.

@@ -261,10 +261,11 @@ impl Replay {
         };
         live.route = Some(route.clone());
         live.go_on(net, lane);
+        let is_new = !run.knows_route(live.user, live.route_position);
         let placement = Placement {
             lane,
             position: recorded.position,
-            route,
+            route: is_new.then_some(route),
             route_position: live.route_position,
             lateral_speed: recorded.lateral_speed,
         };

@@ -83,7 +83,7 @@ fn along_a_ring(degenerate: [usize; 2], position: Metre, speed: MetrePerSecond) 
     }
     let Ok(net) = Net::parse(Path::new("ring.net.xml"), text + "</net>") else { return false };
     let Some(lane) = net.lane("e0_0") else { return false };
-    let placement = Placement { lane, position, route: Arc::new([]), route_position: 0, lateral_speed: 0.0 };
+    let placement = Placement { lane, position, route: None, route_position: 0, lateral_speed: 0.0 };
     let Ok(mut scene) = Scene::new(Some(Arc::new(net))) else { return false };
     let users = [scene.enter("leader"), scene.enter("follower")];
     for step in 0..3 {

@@ -116,7 +116,7 @@ impl Course {
         Placement {
             lane,
             position: (way - start) * net.lanes[lane.0 as usize].length / drawn,
-            route: self.route.clone(),
+            route: Some(self.route.clone()),
             route_position: last.unwrap(),
             lateral_speed: 0.0,
         }

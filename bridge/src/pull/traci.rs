@@ -3,11 +3,8 @@
 //! The names of its functions are interned: whatever name Python is asked for anew in every step stays in its cache of
 //! attributes.
 
-use std::sync::Arc;
-
 use closecall::encounter::Placement;
 use closecall::frame::{State, UserIndex};
-use closecall::net::EdgeIndex;
 use closecall::options::Options;
 use closecall::run::Run;
 use closecall::units::Second;
@@ -59,7 +56,7 @@ struct Domain {
 struct Live {
     user: UserIndex,
     seen: bool,
-    route: Option<(String, Arc<[EdgeIndex]>)>,
+    route: Option<String>,
     latest: Option<Py<PyDict>>,
 }
 
@@ -122,19 +119,19 @@ impl Traci {
             let value = |variable: i32| latest.as_any().get_item(variable);
             let Some(lane) = net.lane(value(self.variable.lane)?.extract::<&str>()?) else { continue };
             let route_id: String = value(self.variable.route_id)?.extract()?;
-            let route = match &live.route {
-                Some((known, route)) if *known == route_id => route.clone(),
-                _ => {
-                    let route = sumo::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?;
-                    live.route = Some((route_id, route.clone()));
-                    route
-                }
+            let position = usize::try_from(value(self.variable.route_index)?.extract::<i64>()?).unwrap_or(0);
+            let has_changed = live.route.as_ref() != Some(&route_id);
+            let route = if has_changed || !run.knows_route(live.user, position) {
+                Some(sumo::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?)
+            } else {
+                None
             };
+            live.route = Some(route_id);
             let placement = Placement {
                 lane,
                 position: value(self.variable.lane_position)?.extract()?,
                 route,
-                route_position: usize::try_from(value(self.variable.route_index)?.extract::<i64>()?).unwrap_or(0),
+                route_position: position,
                 lateral_speed: value(self.variable.lateral_speed)?.extract()?,
             };
             run.place(row, &placement);
