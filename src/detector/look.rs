@@ -52,7 +52,7 @@ impl Detector {
             fill(&mut self.turnings, self.paths.len(), Turning::default());
             self.turn(frame);
         }
-        self.find_pairs();
+        self.find_pairs(frame, roster);
     }
 
     /// What makes road users turn.
@@ -99,14 +99,25 @@ impl Detector {
     }
 
     /// The pairs whose areas meet. Each worker keeps those that it found.
-    fn find_pairs(&mut self) {
+    fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
+        let paths = Paths::new(&self.paths, self.net.as_deref());
+        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
         let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
         let share = self.team.share(count);
         let parts = (0..count).step_by(share).map(|start| start..(start + share).min(count));
         self.workers.iter_mut().for_each(|worker| worker.pairs.clear());
         self.team.each(&mut self.workers, parts, |worker, part| {
-            let found = |a: u32, b: u32| add(&mut worker.pairs, (a, b));
-            if all { every_pair(part, found) } else { search.sweep(part, found) }
+            let mut found = |a: u32, b: u32| add(&mut worker.pairs, (a, b));
+            let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
+            match (all, search.has_round()) {
+                (true, _) => every_pair(part, found),
+                (false, false) => search.sweep(part, found),
+                (false, true) => search.sweep(part, |a, b| {
+                    if area(a).circles_meet(&area(b)) {
+                        found(a, b);
+                    }
+                }),
+            }
         });
         let found = self.workers.iter().map(|worker| worker.pairs.len() as u64).sum::<u64>();
         self.work.circles_apart += all_pairs(count) - found;

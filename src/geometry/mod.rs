@@ -38,6 +38,11 @@ impl Bounds {
     /// Bounds that hold the whole plane.
     pub const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
 
+    /// How long and how high they are.
+    pub fn size(&self) -> Vector {
+        self.high - self.low
+    }
+
     /// Grows to hold a point.
     pub fn include(&mut self, point: Point) {
         self.low = self.low.inf(&point);

@@ -24,8 +24,10 @@ pub struct Area {
 }
 
 impl Area {
-    /// What meets nothing.
-    pub const NOWHERE: Self = Self { bounds: Bounds::EMPTY, radius: 0.0 };
+    /// Whether it is smaller than its box.
+    pub fn is_round(&self) -> bool {
+        self.radius < f64::INFINITY
+    }
 
     /// Whether two areas meet.
     pub fn meets(&self, other: &Self) -> bool {
@@ -33,18 +35,14 @@ impl Area {
     }
 
     /// Whether two do whose boxes meet.
-    pub(super) fn circles_meet(&self, other: &Self) -> bool {
+    pub fn circles_meet(&self, other: &Self) -> bool {
         let (middle, other_middle) = (self.middle(), other.middle());
         let reach = self.radius + other.radius;
         (middle - other_middle).norm_squared() <= reach * reach
     }
 
     fn middle(&self) -> Point {
-        self.bounds.low + self.size() / 2.0
-    }
-
-    pub(super) fn size(&self) -> Vector {
-        self.bounds.high - self.bounds.low
+        self.bounds.low + self.bounds.size() / 2.0
     }
 }
 

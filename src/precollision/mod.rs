@@ -65,17 +65,20 @@ struct Part {
     largest: Vector,
     /// Whether one is too far away for a strip.
     far: bool,
+    /// Whether one is smaller than its box.
+    round: bool,
     sorted: bool,
 }
 
 impl Part {
-    const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, sorted: true };
+    const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true };
 
     fn include(&mut self, area: &Area) {
-        let size = area.size();
+        let size = area.bounds.size();
         self.sum += size.max().clamp(0.0, 1e3);
         self.largest = self.largest.sup(&size);
         self.far |= is_far(&area.bounds);
+        self.round |= area.is_round();
     }
 
     fn join(self, other: &Self) -> Self {
@@ -83,6 +86,7 @@ impl Part {
             sum: self.sum + other.sum,
             largest: self.largest.sup(&other.largest),
             far: self.far || other.far,
+            round: self.round || other.round,
             sorted: self.sorted && other.sorted,
         }
     }
@@ -119,13 +123,15 @@ impl Slot for u32 {
     }
 }
 
-/// Finds the pairs of areas that meet; keeps its memory, and the order that it found, from step to step.
+/// Finds the pairs of areas whose boxes meet; keeps its memory, and the order that it found, from step to step.
 #[derive(Default)]
 pub struct Search<S> {
     /// Those in strips, sorted; then the large ones.
     places: Vec<Place>,
-    /// By slot.
-    areas: Vec<Area>,
+    /// By slot, the box around its area.
+    boxes: Vec<Bounds>,
+    /// Whether any area is smaller than its box.
+    has_round: bool,
     slots: Vec<S>,
     /// For so many steps everybody has had its slot.
     since: u32,
@@ -146,7 +152,9 @@ impl Search<u32> {
         self.lay(areas.len(), &Team::default(), true, |item| item, |_| (), |(), item| areas[*item as usize]);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (self.slots[a as usize], self.slots[b as usize]);
-            pairs.push((a.min(b), a.max(b)));
+            if areas[a as usize].circles_meet(&areas[b as usize]) {
+                pairs.push((a.min(b), a.max(b)));
+            }
         });
     }
 }
@@ -155,6 +163,11 @@ impl<S: Slot> Search<S> {
     /// What stands in the slots of this step.
     pub fn slots(&self) -> &[S] {
         &self.slots
+    }
+
+    /// Whether the area of somebody in this step is smaller than its box: two whose boxes meet may be apart.
+    pub fn has_round(&self) -> bool {
+        self.has_round
     }
 
     /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is, as
@@ -177,15 +190,16 @@ impl<S: Slot> Search<S> {
         self.parts.clear();
         self.parts.resize(team.threads(), Part::EMPTY);
         let share = team.share(count);
-        let parts = self.areas.chunks_mut(share).zip(self.slots.chunks_mut(share));
-        team.each(&mut self.parts, parts, |part, (areas, slots)| {
+        let parts = self.boxes.chunks_mut(share).zip(self.slots.chunks_mut(share));
+        team.each(&mut self.parts, parts, |part, (boxes, slots)| {
             let mut all = Part::EMPTY;
             let mut block = [Seen::default(); BLOCK];
-            for (areas, slots) in areas.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
+            for (boxes, slots) in boxes.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
                 block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));
-                for ((seen, slot), laid) in block.iter().zip(slots).zip(areas) {
-                    *laid = area(seen, slot);
-                    all.include(laid);
+                for ((seen, slot), laid) in block.iter().zip(slots).zip(boxes) {
+                    let area = area(seen, slot);
+                    all.include(&area);
+                    *laid = area.bounds;
                 }
             }
             *part = all;
@@ -195,7 +209,7 @@ impl<S: Slot> Search<S> {
 
     /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
     fn hold(&mut self, count: usize, who: impl Fn(u32) -> u32) {
-        let Self { places, areas, slots, items_of, .. } = self;
+        let Self { places, boxes, slots, items_of, .. } = self;
         let mut twice = Vec::new();
         items_of.fill(ABSENT);
         for item in 0..count as u32 {
@@ -218,7 +232,7 @@ impl<S: Slot> Search<S> {
         let others = (0..count as u32).filter_map(|item| take(items_of, who(item))).chain(twice);
         places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
         fill(slots, count, S::default());
-        fill(areas, count, Area::NOWHERE);
+        fill(boxes, count, Bounds::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
             slot.give(place.slot);
             place.slot = number;
@@ -229,7 +243,7 @@ impl<S: Slot> Search<S> {
     /// Sorts the areas of now.
     fn sort(&mut self, team: &Team) {
         let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
-        self.largest = all.largest;
+        (self.largest, self.has_round) = (all.largest, all.round);
         let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
         while limit < all.largest.max().min(FAR) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
             limit *= 2.0;
@@ -244,17 +258,17 @@ impl<S: Slot> Search<S> {
 
     /// Whether so many are larger than this.
     fn are_large(&self, limit: Metre, many: usize) -> bool {
-        self.areas.iter().filter(|area| area.size().max() > limit).nth(many - 1).is_some()
+        self.boxes.iter().filter(|bounds| bounds.size().max() > limit).nth(many - 1).is_some()
     }
 
     /// Sets aside what is larger than this, and what is too far away for a strip. The others stay in their order.
     fn part_large(&mut self, limit: Metre) {
         let mut largest = Vector::zeros();
-        let Self { places, areas, large, .. } = self;
+        let Self { places, boxes, large, .. } = self;
         places.retain(|place| {
-            let area = &areas[place.slot as usize];
-            let size = area.size();
-            if size.max() <= limit && !is_far(&area.bounds) {
+            let bounds = &boxes[place.slot as usize];
+            let size = bounds.size();
+            if size.max() <= limit && !is_far(bounds) {
                 largest = size.sup(&largest);
                 return true;
             }
@@ -275,7 +289,7 @@ impl<S: Slot> Search<S> {
         } else {
             self.strip_height = SPARE_HEIGHT.sqrt() * least;
             let per_metre = 1.0 / self.strip_height;
-            self.places.iter_mut().for_each(|place| place.follow(&self.areas, per_metre));
+            self.places.iter_mut().for_each(|place| place.follow(&self.boxes, per_metre));
         }
         // In another order the slots would be anywhere.
         self.since = STAY;
@@ -285,9 +299,9 @@ impl<S: Slot> Search<S> {
     /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
     /// few moves; whether it did.
     fn is_nearly_sorted(&mut self, team: &Team) -> bool {
-        let (areas, per_metre, share) = (&self.areas, 1.0 / self.strip_height, team.share(self.places.len()));
+        let (boxes, per_metre, share) = (&self.boxes, 1.0 / self.strip_height, team.share(self.places.len()));
         team.each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
-            places.iter_mut().for_each(|place| place.follow(areas, per_metre));
+            places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
             let mut moves = MOVES * places.len();
             part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
         });
@@ -309,14 +323,11 @@ impl<S: Slot> Search<S> {
     }
 
     /// From each of these of the sorted places ahead in its own strip, and to both sides in the next; from a large one
-    /// at everybody before it. `found` gets the slots of two that meet.
-    ///
-    /// Whose boxes meet is a matter of chance: a processor that had to guess it would guess wrong for each road user. So
-    /// those pairs are noted, and asked for their circles later.
+    /// at everybody before it. `found` gets the slots of two whose boxes meet.
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
-        let area = |place: &Place| &self.areas[place.slot as usize];
-        let mut near = Near::new(&self.areas);
+        let bounds = |place: &Place| &self.boxes[place.slot as usize];
+        let mut near = Near::new(&self.boxes);
         let mut start = from.start;
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
@@ -324,7 +335,7 @@ impl<S: Slot> Search<S> {
             let (above, mut behind) = (&others[..length(others, strip + 1)], 0);
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
-                let Bounds { low, high } = area(a).bounds;
+                let Bounds { low, high } = *bounds(a);
                 near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= high.x), &mut found);
                 let begin = low.x - self.largest.x;
                 behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
@@ -332,10 +343,10 @@ impl<S: Slot> Search<S> {
             }
             start = own.len();
         }
-        near.decide(&mut found);
+        near.tell(&mut found);
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
-            let meets = |b: &&Place| area(a).meets(area(b));
+            let meets = |b: &&Place| bounds(a).meet(bounds(b));
             self.places[..place].iter().filter(meets).for_each(|b| found(a.slot, b.slot));
         }
     }
@@ -391,7 +402,9 @@ mod tests {
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
                 let (a, b) = (search.slots[a as usize].item, search.slots[b as usize].item);
-                pairs.push((a.min(b), a.max(b)));
+                if areas[a as usize].meets(&areas[b as usize]) {
+                    pairs.push((a.min(b), a.max(b)));
+                }
             });
         }
         pairs.sort_unstable();

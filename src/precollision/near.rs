@@ -1,22 +1,22 @@
-//! Notes of pairs that are near each other: whose boxes meet is a matter of chance, which no processor could guess, so it is
-//! not asked before there are many.
+//! Notes of pairs that are near each other: whose boxes meet is a matter of chance, and a processor that had to guess it would
+//! guess wrong for each road user. So nothing depends on it before there are many.
 
-use super::Area;
 use super::place::Place;
+use crate::geometry::Bounds;
 
-/// So many pairs are noted before their circles decide.
+/// So many pairs are noted before they are told.
 const NOTED: usize = 64;
 
 /// Slots of two whose boxes meet.
 pub(super) struct Near<'a> {
-    areas: &'a [Area],
+    boxes: &'a [Bounds],
     pairs: [(u32, u32); NOTED],
     count: usize,
 }
 
 impl<'a> Near<'a> {
-    pub(super) fn new(areas: &'a [Area]) -> Self {
-        Self { areas, pairs: [(0, 0); NOTED], count: 0 }
+    pub(super) fn new(boxes: &'a [Bounds]) -> Self {
+        Self { boxes, pairs: [(0, 0); NOTED], count: 0 }
     }
 
     /// Notes the others whose boxes meet that of `a`.
@@ -27,23 +27,19 @@ impl<'a> Near<'a> {
         others: impl Iterator<Item = &'b Place>,
         found: &mut impl FnMut(u32, u32),
     ) {
-        let bounds = &self.areas[a.slot as usize].bounds;
+        let bounds = &self.boxes[a.slot as usize];
         for b in others {
             if self.count == NOTED {
-                self.decide(found);
+                self.tell(found);
             }
             self.pairs[self.count] = (a.slot, b.slot);
-            self.count += usize::from(bounds.meet(&self.areas[b.slot as usize].bounds));
+            self.count += usize::from(bounds.meet(&self.boxes[b.slot as usize]));
         }
     }
 
-    /// Whether the circles of those noted meet too; forgets them.
-    pub(super) fn decide(&mut self, found: &mut impl FnMut(u32, u32)) {
-        for (a, b) in &self.pairs[..self.count] {
-            if self.areas[*a as usize].circles_meet(&self.areas[*b as usize]) {
-                found(*a, *b);
-            }
-        }
+    /// Tells those noted, and forgets them.
+    pub(super) fn tell(&mut self, found: &mut impl FnMut(u32, u32)) {
+        self.pairs[..self.count].iter().for_each(|(a, b)| found(*a, *b));
         self.count = 0;
     }
 }

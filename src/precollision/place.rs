@@ -1,10 +1,9 @@
 //! Places along x, in strips: what is sorted.
 
-use super::Area;
 use crate::geometry::Bounds;
 use crate::units::Metre;
 
-/// Where a box begins: what is sorted, while the areas stay in their slots.
+/// Where a box begins: what is sorted, while the boxes stay in their slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     /// Its lowest x.
@@ -14,9 +13,9 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Where the area of its slot is now, and in which strip.
-    pub fn follow(&mut self, areas: &[Area], per_metre: f64) {
-        let Bounds { low, high } = areas[self.slot as usize].bounds;
+    /// Where the box of its slot is now, and in which strip.
+    pub fn follow(&mut self, boxes: &[Bounds], per_metre: f64) {
+        let Bounds { low, high } = boxes[self.slot as usize];
         let strips = (low.y + high.y) * 0.5 * per_metre;
         // What `floor` says, without a call where the processor has no instruction for it.
         let towards_0 = strips as i32;
