@@ -20,7 +20,6 @@ use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, Roster, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::halves::Halves;
-use crate::geometry::rectangle::{Rectangle, direction};
 use crate::profile::Category;
 use crate::table::fill;
 use crate::units::Second;
@@ -70,7 +69,7 @@ struct Event {
 }
 
 /// What the two of a side or frontal event have driven since it began, in their order, and the PET as far as it is known.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 struct Driven {
     courses: [pet::Course; 2],
     pet: Option<pet::Pet>,
@@ -107,7 +106,7 @@ impl Tracker {
             self.rows[row.user.0 as usize] = number;
         }
         for found in encounters.filter(|found| found.in_conflict()) {
-            self.take(&Seen { frame, found }, &path);
+            self.take(&Seen { frame, found }, roster, &path);
         }
         self.follow(frame, roster);
         self.close(frame.time);
@@ -148,7 +147,7 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) {
+    fn take(&mut self, seen: &Seen, roster: &Roster, path: &impl Fn(u32) -> Vec<Point>) {
         let Encounter { ego, foe, kind, .. } = *seen.found;
         let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
         let event = match self.events.entry([ego.min(foe), ego.max(foe)]) {
@@ -163,7 +162,11 @@ impl Tracker {
             }
         };
         if kind != Kind::RearEnd && event.driven.is_none() {
-            event.driven = Some(Box::default());
+            let courses = event.pair().map(|user| {
+                let profile = roster.profile_of(user);
+                pet::Course::new(profile.length, profile.width)
+            });
+            event.driven = Some(Box::new(Driven { courses, pet: None }));
         }
     }
 
@@ -179,14 +182,10 @@ impl Tracker {
                     course.end();
                     continue;
                 }
-                let profile = roster.profile_of(user);
-                if profile.category == Category::Obstacle {
-                    continue;
+                if roster.profile_of(user).category != Category::Obstacle {
+                    let state = frame.state(row);
+                    course.push(frame.time, state.front(), state.heading);
                 }
-                let state = frame.state(row);
-                let axis = direction(state.heading);
-                let rectangle = Rectangle::behind(state.front(), axis, profile.length, profile.width);
-                course.push(frame.time, rectangle);
             }
         }
     }

@@ -6,12 +6,12 @@
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
 use crate::geometry::halves::{Halves, Part, Touch};
-use crate::geometry::rectangle::Rectangle;
+use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{Bounds, Point, Vector};
+use crate::geometry::{Bounds, Point};
 use crate::path::Pose;
 use crate::table::add;
-use crate::units::{Metre, Second};
+use crate::units::{Metre, Radian, Second};
 
 /// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
 pub const WAIT: Second = 5.0;
@@ -20,43 +20,38 @@ pub const WAIT: Second = 5.0;
 #[derive(Clone, Debug, Default)]
 pub struct Course {
     moments: Vec<Moment>,
-    half_length: Metre,
-    half_width: Metre,
+    length: Metre,
+    width: Metre,
     ended: bool,
 }
 
-/// Where it was at a time, and which way it headed.
+/// Where its front bumper was at a time, and which way it headed.
 #[derive(Clone, Copy, Debug)]
 struct Moment {
     time: Second,
-    centre: Point,
-    axis: Vector,
+    front: Point,
+    heading: Radian,
 }
 
 impl Moment {
-    fn is_at(&self, rectangle: &Rectangle) -> bool {
-        (self.centre, self.axis) == (rectangle.centre, rectangle.axis)
+    fn stands_as(&self, other: &Self) -> bool {
+        (self.front, self.heading) == (other.front, other.heading)
     }
 }
 
 impl Course {
-    /// Adds where it is at a time; one that stands adds nothing.
-    pub fn push(&mut self, time: Second, rectangle: Rectangle) {
-        if let [.., before, last] = &mut self.moments[..]
-            && before.is_at(&rectangle)
-            && last.is_at(&rectangle)
-        {
-            last.time = time;
-            return;
-        }
-        let Rectangle { centre, axis, half_length, half_width } = rectangle;
-        (self.half_length, self.half_width) = (half_length, half_width);
-        add(&mut self.moments, Moment { time, centre, axis });
+    /// Of who is of this length and width.
+    pub fn new(length: Metre, width: Metre) -> Self {
+        Self { length, width, ..Self::default() }
     }
 
-    fn rectangle(&self, moment: &Moment) -> Rectangle {
-        let (Moment { centre, axis, .. }, &Self { half_length, half_width, .. }) = (*moment, self);
-        Rectangle { centre, axis, half_length, half_width }
+    /// Adds where its front bumper is at a time, and which way it heads; one that stands adds nothing.
+    pub fn push(&mut self, time: Second, front: Point, heading: Radian) {
+        let moment = Moment { time, front, heading };
+        match &mut self.moments[..] {
+            [.., before, last] if before.stands_as(last) && last.stands_as(&moment) => last.time = time,
+            _ => add(&mut self.moments, moment),
+        }
     }
 
     /// It is no road user any more.
@@ -69,29 +64,31 @@ impl Course {
         self.ended
     }
 
+    fn pose(&self, moment: &Moment) -> Pose {
+        Pose { way: 0.0, front: moment.front, axis: direction(moment.heading) }
+    }
+
+    fn bounds_at(&self, pose: &Pose) -> Bounds {
+        Rectangle::behind(pose.front, pose.axis, self.length, self.width).bounds()
+    }
+
     /// The box around all that it covered; larger than what rounding can do.
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        self.moments.iter().for_each(|moment| bounds.join(&self.rectangle(moment).bounds()));
+        self.moments.iter().for_each(|moment| bounds.join(&self.bounds_at(&self.pose(moment))));
         bounds.grown(TOLERANCE)
     }
 
     /// The steps that may touch what lies within these bounds.
     fn corridor(&self, near: &Bounds, halves: &mut Halves) -> Corridor {
-        let pose = |rectangle: &Rectangle, way| Pose {
-            way,
-            front: rectangle.centre + rectangle.axis * rectangle.half_length,
-            axis: rectangle.axis,
-        };
         let steps = self.moments.windows(2).filter_map(|pair| {
-            let [start, end] = [&pair[0], &pair[1]].map(|moment| self.rectangle(moment));
-            let mut bounds = start.bounds();
-            bounds.join(&end.bounds());
+            let [start, end] = [&pair[0], &pair[1]].map(|moment| self.pose(moment));
+            let mut bounds = self.bounds_at(&start);
+            bounds.join(&self.bounds_at(&end));
             if !bounds.grown(TOLERANCE).meet(near) {
                 return None;
             }
-            let (length, width) = (2.0 * start.half_length, 2.0 * start.half_width);
-            let part = halves.add(pose(&start, 0.0).step_to(&pose(&end, 1.0), length, width));
+            let part = halves.add(start.step_to(&end, self.length, self.width));
             Some((pair[0].time, pair[1].time, part))
         });
         Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |moment| moment.time) }
@@ -164,12 +161,12 @@ mod tests {
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
     fn course(heading: f64, arrives: f64) -> Course {
-        let axis = crate::geometry::rectangle::direction(heading);
-        let mut course = Course::default();
+        let axis = direction(heading);
+        let mut course = Course::new(4.0, 2.0);
         for step in 0..=20 {
             let time = f64::from(step) * 0.5;
             let front = Point::origin() + axis * ((time - arrives) * 10.0);
-            course.push(time, Rectangle::behind(front, axis, 4.0, 2.0));
+            course.push(time, front, heading);
         }
         course
     }
@@ -189,15 +186,14 @@ mod tests {
 
     /// A car that turns left from the south to the west on a radius of 9 m, with 8 m/s, in steps of this length.
     fn turn(step: f64) -> Course {
-        let mut course = Course::default();
+        let mut course = Course::new(4.0, 2.0);
         let steps = (4.0 / step).round() as u32;
         for time in (0..=steps).map(|number| f64::from(number) * step) {
             let way = 8.0 * (time - 1.0);
             let angle = (way / 9.0).clamp(0.0, std::f64::consts::FRAC_PI_2);
             let beyond =
                 Point::new(9.0 * angle.cos() - way.max(9.0 * angle) + 9.0 * angle, 9.0 * angle.sin() + way.min(0.0));
-            let axis = crate::geometry::rectangle::direction(angle + std::f64::consts::FRAC_PI_2);
-            course.push(time, Rectangle::behind(beyond, axis, 4.0, 2.0));
+            course.push(time, beyond, angle + std::f64::consts::FRAC_PI_2);
         }
         course
     }
@@ -205,10 +201,10 @@ mod tests {
     #[test]
     fn a_turn_in_long_steps_covers_hardly_more_than_in_short_ones() {
         let crossing = |step: f64| {
-            let mut course = Course::default();
+            let mut course = Course::new(4.0, 2.0);
             let steps = (8.0 / step).round() as u32;
             for time in (0..=steps).map(|number| f64::from(number) * step) {
-                course.push(time, Rectangle::behind(Point::new(10.0 * (time - 5.0), 5.0), Vector::x(), 4.0, 2.0));
+                course.push(time, Point::new(10.0 * (time - 5.0), 5.0), 0.0);
             }
             post_encroachment_time(&mut Halves::default(), &turn(step), &course).unwrap()
         };
@@ -220,12 +216,11 @@ mod tests {
     fn it_is_known_when_the_second_has_left() {
         let first = turn(0.1);
         // It crosses the way out of the turn at an angle.
-        let axis = crate::geometry::rectangle::direction(2.6);
+        let axis = direction(2.6);
         let second = |until: f64| {
-            let mut course = Course::default();
+            let mut course = Course::new(4.0, 2.0);
             for time in (0..=80).map(|number| f64::from(number) * 0.1).take_while(|time| *time < until) {
-                course
-                    .push(time, Rectangle::behind(Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), axis, 4.0, 2.0));
+                course.push(time, Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), 2.6);
             }
             post_encroachment_time(&mut Halves::default(), &first, &course)
         };
