@@ -86,6 +86,9 @@ impl Run {
         if outputs.want_lanes() {
             self.detector.ask_for_lanes();
         }
+        if outputs.want_moments() {
+            self.tracker.want_moments();
+        }
         self.outputs = outputs;
     }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 use smol_str::SmolStr;
 
 use super::Stance;
-use super::extremes::{Extreme, Extremes, Worst};
+use super::extremes::{Extremes, Worst};
 use super::pet::Pet;
 use crate::encounter::{Kind, Severity};
 use crate::frame::{ProfileIndex, Roster};
@@ -75,9 +75,9 @@ pub struct Conflict {
     /// The same of the foe.
     #[serde(skip)]
     pub foe_stance: Stance,
-    /// When and where `ttc`, `drac` and `pet` were found.
+    /// When and where `ttc`, `drac` and `pet` were found; where nobody wanted to know it (`Tracker::want_moments`), none.
     #[serde(skip)]
-    pub found: [Option<Moment>; 3],
+    pub found: Option<[Option<Moment>; 3]>,
 }
 
 /// When and where an extreme was found.
@@ -96,12 +96,11 @@ pub struct Moment {
 impl Conflict {
     /// What an event has come to so far, between two who are in the roster still, and its PET.
     pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
-        let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref worst } = *extremes;
+        let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref found, ref worst } = *extremes;
         let Worst { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let (of_ego, of_foe) = (roster.profile_of(ego), roster.profile_of(foe));
         let ([ego_speed, foe_speed], [ego_stood, foe_stood]) = (worst.speeds, &worst.stood);
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
-        let (value, moment) = (|extreme: Extreme| extreme.value, |extreme: Extreme| extreme.moment);
         Self {
             ego: roster.id(ego).clone(),
             foe: roster.id(foe).clone(),
@@ -116,8 +115,8 @@ impl Conflict {
             mu,
             margin,
             clearance,
-            ttc: ttc.map(value),
-            drac: drac.map(value),
+            ttc,
+            drac,
             pet: pet.map(|pet| pet.lasts),
             delta_v: measures::delta_v((ego_speed, of_ego.mass), (foe_speed, of_foe.mass), angle),
             ego_speed,
@@ -129,7 +128,7 @@ impl Conflict {
             collision,
             ego_stance: Stance::of(ego_stood, of_ego),
             foe_stance: Stance::of(foe_stood, of_foe),
-            found: [ttc.map(moment), drac.map(moment), entered],
+            found: found.as_ref().map(|found| [found[0], found[1], entered]),
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::encounter::{Encounter, Kind, Severity};
 use crate::frame::{Frame, UserIndex};
 use crate::geometry::Point;
 use crate::net::LaneIndex;
-use crate::units::{Metre, MetrePerSecond, Radian, Second};
+use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
 const SAME_MARGIN: Metre = 1e-9;
@@ -26,16 +26,11 @@ pub(super) struct Extremes {
     pub severity: Severity,
     pub collision: bool,
     pub clearance: Metre,
-    pub ttc: Option<Extreme>,
-    pub drac: Option<Extreme>,
+    pub ttc: Option<Second>,
+    pub drac: Option<MetrePerSecondSquared>,
+    /// When and where these two were found, if anybody wants to know it.
+    pub found: Option<Box<[Option<Moment>; 2]>>,
     pub worst: Worst,
-}
-
-/// A value, when and where that was.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Extreme {
-    pub value: f64,
-    pub moment: Moment,
 }
 
 /// The step with the smallest margin.
@@ -68,18 +63,17 @@ impl Seen<'_> {
         self.found.nearness.map_or(f64::INFINITY, |near| near.clearance)
     }
 
-    fn ttc(&self) -> Option<Extreme> {
-        self.extreme(self.found.nearness?.ttc?)
+    fn ttc(&self) -> Option<Second> {
+        self.found.nearness?.ttc
     }
 
-    fn drac(&self) -> Option<Extreme> {
-        self.extreme(self.found.nearness?.drac?)
+    fn drac(&self) -> Option<MetrePerSecondSquared> {
+        self.found.nearness?.drac
     }
 
-    fn extreme(&self, value: f64) -> Option<Extreme> {
+    fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
-        let moment = Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed };
-        Some(Extreme { value, moment })
+        Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
     }
 }
 
@@ -95,8 +89,9 @@ impl Worst {
 }
 
 impl Extremes {
-    /// Those of a first step; `path` has the path of a row's front bumper.
-    pub fn of(seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    /// Those of a first step; `path` has the path of a row's front bumper, `moments` says whether they are to be known.
+    pub fn of(seen: &Seen, moments: bool, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+        let moment = |_| seen.moment();
         Self {
             begin: seen.frame.time,
             end: seen.frame.time,
@@ -105,6 +100,7 @@ impl Extremes {
             clearance: seen.clearance(),
             ttc: seen.ttc(),
             drac: seen.drac(),
+            found: moments.then(|| Box::new([seen.ttc().map(moment), seen.drac().map(moment)])),
             worst: Worst::of(seen, path),
         }
     }
@@ -119,15 +115,20 @@ impl Extremes {
         self.severity = self.severity.max(seen.severity());
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;
-        take_if(&mut self.ttc, seen.ttc(), f64::lt);
-        take_if(&mut self.drac, seen.drac(), f64::gt);
+        let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
+        for (found, _) in
+            self.found.iter_mut().flat_map(|found| found.iter_mut()).zip(taken).filter(|(_, taken)| *taken)
+        {
+            *found = Some(seen.moment());
+        }
     }
 }
 
-/// Takes the value of a step where it is beyond the one known so far.
-fn take_if(known: &mut Option<Extreme>, now: Option<Extreme>, is_beyond: fn(&f64, &f64) -> bool) {
-    let Some(now) = now else { return };
-    if known.is_none_or(|known| is_beyond(&now.value, &known.value)) {
-        *known = Some(now);
+/// Takes the value of a step where it is beyond the one known so far; whether it was.
+fn take_if(known: &mut Option<f64>, now: Option<f64>, is_beyond: fn(&f64, &f64) -> bool) -> bool {
+    let is_taken = now.is_some_and(|now| known.is_none_or(|known| is_beyond(&now, &known)));
+    if is_taken {
+        *known = now;
     }
+    is_taken
 }

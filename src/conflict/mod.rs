@@ -52,6 +52,7 @@ pub struct Tracker {
     waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
     rows: Vec<u32>,
+    wants_moments: bool,
 }
 
 /// No row of the frame.
@@ -87,6 +88,11 @@ impl Event {
 }
 
 impl Tracker {
+    /// Has conflicts say when and where their extremes were found.
+    pub fn want_moments(&mut self) {
+        self.wants_moments = true;
+    }
+
     /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
     /// and ids. `path` has the path of a row's front bumper, from where it is.
     pub fn step<'a>(
@@ -157,9 +163,11 @@ impl Tracker {
                 event.extremes.take(seen, path);
                 event
             }
-            Entry::Vacant(place) => {
-                place.insert(Box::new(Event { alarm, extremes: Extremes::of(seen, path), driven: None }))
-            }
+            Entry::Vacant(place) => place.insert(Box::new(Event {
+                alarm,
+                extremes: Extremes::of(seen, self.wants_moments, path),
+                driven: None,
+            })),
         };
         if kind != Kind::RearEnd && event.driven.is_none() {
             let courses = event.pair().map(|user| {
