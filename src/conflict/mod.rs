@@ -8,10 +8,6 @@ mod extremes;
 pub mod pet;
 mod stance;
 
-use std::collections::hash_map::Entry;
-
-use rustc_hash::FxHashMap;
-
 pub use event::{Conflict, Moment};
 
 use extremes::{Extremes, Seen};
@@ -21,7 +17,7 @@ use crate::frame::{Frame, Roster, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::halves::Halves;
 use crate::profile::Category;
-use crate::table::fill;
+use crate::table::{fill, make_room};
 use crate::units::Second;
 
 pub use stance::Stance;
@@ -47,7 +43,8 @@ pub struct Alarm {
 /// Follows the pairs in conflict from step to step.
 #[derive(Debug, Default)]
 pub struct Tracker {
-    events: FxHashMap<Pair, Box<Event>>,
+    /// In the order of the pairs.
+    events: Vec<(Pair, Box<Event>)>,
     /// Closed, but its PET is not known yet.
     waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
@@ -134,7 +131,7 @@ impl Tracker {
     /// Closes whatever is still open: the run has ended.
     pub fn finish(&mut self, roster: &Roster) -> &[Conflict] {
         self.closed.clear();
-        self.waiting.extend(self.events.drain().map(|(_, event)| event));
+        self.waiting.extend(self.events.drain(..).map(|(_, event)| event));
         self.settle(f64::INFINITY, true, roster);
         sort(&mut self.closed);
         &self.closed
@@ -142,12 +139,12 @@ impl Tracker {
 
     /// The events that go on, in no order that means anything.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
-        self.events.values().map(|event| event.alarm)
+        self.events.iter().map(|(_, event)| event.alarm)
     }
 
     /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
-        let events = self.events.values().chain(&self.waiting);
+        let events = self.events.iter().map(|(_, event)| event).chain(&self.waiting);
         let mut open = events.map(|event| event.conflict(roster)).collect::<Vec<_>>();
         sort(&mut open);
         open
@@ -156,21 +153,18 @@ impl Tracker {
     fn take(&mut self, seen: &Seen, roster: &Roster, path: &impl Fn(u32) -> Vec<Point>) {
         let Encounter { ego, foe, kind, .. } = *seen.found;
         let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
-        let event = match self.events.entry([ego.min(foe), ego.max(foe)]) {
-            Entry::Occupied(known) => {
-                let event = known.into_mut();
-                event.alarm = alarm;
-                event.extremes.take(seen, path);
-                event
-            }
-            Entry::Vacant(place) => place.insert(Box::new(Event {
-                alarm,
-                extremes: Extremes::of(seen, self.wants_moments, path),
-                driven: None,
-            })),
-        };
+        let pair = [ego.min(foe), ego.max(foe)];
+        let place = self.events.binary_search_by_key(&pair, |(known, _)| *known).unwrap_or_else(|place| {
+            let extremes = Extremes::of(seen, self.wants_moments, path);
+            make_room(&mut self.events, 1);
+            self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
+            place
+        });
+        let (_, event) = &mut self.events[place];
+        event.alarm = alarm;
+        event.extremes.take(seen, path);
         if kind != Kind::RearEnd && event.driven.is_none() {
-            let courses = event.pair().map(|user| {
+            let courses = pair.map(|user| {
                 let profile = roster.profile_of(user);
                 pet::Course::new(profile.length, profile.width)
             });
@@ -180,7 +174,7 @@ impl Tracker {
 
     /// Records where the pairs of side and frontal events go.
     fn follow(&mut self, frame: &Frame, roster: &Roster) {
-        for event in self.events.values_mut().chain(&mut self.waiting) {
+        for event in self.events.iter_mut().map(|(_, event)| event).chain(&mut self.waiting) {
             let pair = event.pair();
             let Some(driven) = &mut event.driven else { continue };
             for (user, course) in pair.into_iter().zip(&mut driven.courses) {
@@ -201,7 +195,7 @@ impl Tracker {
     fn close(&mut self, time: Second) {
         let rows = &self.rows;
         let gone = |user: UserIndex| rows.get(user.0 as usize).is_none_or(|row| *row == ABSENT);
-        let over = self.events.extract_if(|pair, event| {
+        let over = self.events.extract_if(.., |(pair, event)| {
             time - event.extremes.end >= CLOSES_AFTER - SAME_MOMENT || pair.iter().any(|user| gone(*user))
         });
         self.waiting.extend(over.map(|(_, event)| event));

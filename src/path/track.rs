@@ -15,7 +15,7 @@ const LONGEST_DETOUR: f64 = 4.0;
 /// Who gets further back than this on a line does not drive along it, in m: more than recordings round, to 1 cm.
 const BACKWARDS: Metre = 0.02;
 /// Of so many lines hardly a track has more: the lane behind, the junction's, the next two.
-const MOSTLY: usize = 4;
+const MOSTLY: usize = 6;
 
 /// Lines of a table that join, and a place on them.
 #[derive(Clone, Debug, Default)]
