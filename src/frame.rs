@@ -6,14 +6,14 @@
 
 use std::sync::Arc;
 
+use ecow::EcoString;
 use rustc_hash::FxHashMap;
-use smol_str::SmolStr;
 
 use crate::Result;
 use crate::geometry::Point;
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile, origins};
-use crate::table::{self, add};
+use crate::table::{self, add, make_room};
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
@@ -31,7 +31,7 @@ pub struct ProfileIndex(pub u32);
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
     /// SUMO's; short ones stand in the table itself.
-    ids: Vec<SmolStr>,
+    ids: Vec<EcoString>,
     types: Vec<ProfileIndex>,
     /// Those of obstacles, in convex parts.
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
@@ -105,7 +105,7 @@ impl Roster {
     }
 
     /// SUMO's id of this road user.
-    pub fn id(&self, user: UserIndex) -> &SmolStr {
+    pub fn id(&self, user: UserIndex) -> &EcoString {
         &self.ids[user.0 as usize]
     }
 
@@ -189,14 +189,25 @@ pub struct Row {
 pub struct Frame {
     /// Simulated time in s.
     pub time: Second,
-    rows: Vec<Row>,
+    /// By row.
+    users: Vec<UserIndex>,
+    /// By row.
+    states: Vec<State>,
+    /// By [`UserIndex`], the row.
+    rows: Vec<u32>,
 }
+
+/// No row.
+const ABSENT: u32 = u32::MAX;
 
 impl Frame {
     /// Empties the frame for the step at `time`; its memory is kept.
     pub fn begin(&mut self, time: Second) {
         self.time = time;
-        self.rows.clear();
+        for user in self.users.drain(..) {
+            self.rows[user.0 as usize] = ABSENT;
+        }
+        self.states.clear();
     }
 
     /// Adds a road user's row. What has no valid position (SUMO's invalid value, NaN, infinities) or no valid
@@ -204,60 +215,88 @@ impl Frame {
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
         let valid = state.is_valid();
         if valid {
-            add(&mut self.rows, Row { user, state });
+            add(&mut self.users, user);
+            add(&mut self.states, state);
+            self.number(self.len() - 1);
         }
         valid
     }
 
-    /// Adds a row for each of so many road users. `fill` is given them all, [`State::NOWHERE`], and may fill them in any
-    /// order; who then still is no road user in this step, as [`Frame::push`] has it, is left out.
+    /// Adds a row for each of these road users. `fill` is given the states of all, [`State::NOWHERE`], and may fill them in
+    /// any order; who then still is no road user in this step, as [`Frame::push`] has it, is left out.
     ///
     /// # Errors
     /// That of `fill`; nobody is added then.
     pub fn extend<E>(
         &mut self,
-        users: usize,
-        fill: impl FnOnce(&mut [Row]) -> std::result::Result<(), E>,
+        users: impl ExactSizeIterator<Item = UserIndex>,
+        fill: impl FnOnce(&mut [State]) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
-        let (first, nowhere) = (self.rows.len(), Row { user: UserIndex(0), state: State::NOWHERE });
-        table::fill(&mut self.rows, first + users, nowhere);
-        let filled = fill(&mut self.rows[first..]);
+        let first = self.len();
+        table::fill(&mut self.states, first + users.len(), State::NOWHERE);
+        make_room(&mut self.users, users.len());
+        self.users.extend(users);
+        let filled = fill(&mut self.states[first..]);
         let mut end = first;
         if filled.is_ok() {
-            for place in 0..users {
-                if self.rows[first + place].state.is_valid() {
-                    self.rows.swap(end, first + place);
+            for row in first..self.len() {
+                if self.states[row].is_valid() {
+                    self.states.swap(end, row);
+                    self.users.swap(end, row);
                     end += 1;
                 }
             }
         }
-        self.rows.truncate(end);
+        self.states.truncate(end);
+        self.users.truncate(end);
+        self.number(first);
         filled
+    }
+
+    /// Says of whom the rows from this one on are.
+    fn number(&mut self, first: usize) {
+        for (row, UserIndex(user)) in (first as u32..).zip(&self.users[first..]) {
+            let place = *user as usize;
+            if place >= self.rows.len() {
+                table::fill(&mut self.rows, place + 1, ABSENT);
+            }
+            self.rows[place] = row;
+        }
     }
 
     /// Number of rows.
     pub fn len(&self) -> usize {
-        self.rows.len()
+        self.users.len()
     }
 
     /// Whether nobody is in the scene.
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty()
+        self.users.is_empty()
     }
 
     /// Everybody, in the order in which they were added.
-    pub fn rows(&self) -> &[Row] {
-        &self.rows
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = Row> + Clone {
+        self.users.iter().zip(&self.states).map(|(user, state)| Row { user: *user, state: *state })
+    }
+
+    /// What stands in a row.
+    pub fn row(&self, row: u32) -> Row {
+        Row { user: self.user(row), state: *self.state(row) }
     }
 
     /// Who stands in a row.
     pub fn user(&self, row: u32) -> UserIndex {
-        self.rows[row as usize].user
+        self.users[row as usize]
     }
 
     /// The state in a row.
     pub fn state(&self, row: u32) -> &State {
-        &self.rows[row as usize].state
+        &self.states[row as usize]
+    }
+
+    /// In which row a road user stands, the last one if in several; none where it is no road user in this step.
+    pub fn row_of(&self, user: UserIndex) -> Option<u32> {
+        self.rows.get(user.0 as usize).copied().filter(|row| *row != ABSENT)
     }
 }
 
@@ -275,25 +314,31 @@ mod tests {
     fn rows_filled_in_any_order_stand_in_their_own_without_those_who_are_nowhere() {
         let mut frame = Frame::default();
         frame.push(UserIndex(7), HERE);
-        let fill = |rows: &mut [Row]| {
-            rows[3] = row(3);
-            rows[0] = Row { state: State { speed: -1.0, ..HERE }, ..row(0) };
-            rows[1] = row(1);
+        let fill = |states: &mut [State]| {
+            states[3] = HERE;
+            states[0] = State { speed: -1.0, ..HERE };
+            states[1] = HERE;
             Ok::<(), ()>(())
         };
-        assert_eq!(frame.extend(4, fill), Ok(()));
-        assert_eq!(frame.rows(), [7, 1, 3].map(row));
+        assert_eq!(frame.extend((0..4).map(UserIndex), fill), Ok(()));
+        assert!(frame.rows().eq([7, 1, 3].map(row)));
+        assert_eq!(
+            [0, 1, 2, 3, 7, 9].map(|user| frame.row_of(UserIndex(user))),
+            [None, Some(1), None, Some(2), Some(0), None]
+        );
+        frame.begin(1.0);
+        assert_eq!([1, 7].map(|user| frame.row_of(UserIndex(user))), [None; 2]);
     }
 
     #[test]
     fn nobody_is_added_where_filling_fails() {
         let mut frame = Frame::default();
         frame.push(UserIndex(7), HERE);
-        let fill = |rows: &mut [Row]| {
-            rows[0] = row(0);
+        let fill = |states: &mut [State]| {
+            states[0] = HERE;
             Err("gone")
         };
-        assert_eq!(frame.extend(2, fill), Err("gone"));
-        assert_eq!(frame.rows(), [row(7)]);
+        assert_eq!(frame.extend((0..2).map(UserIndex), fill), Err("gone"));
+        assert!(frame.rows().eq([row(7)]));
     }
 }

@@ -180,7 +180,7 @@ impl Run {
     fn expose(&mut self, lasted: Second) {
         let exposure = &mut self.summary.exposure;
         for Row { user, state } in self.frame.rows() {
-            if self.roster.profile_of(*user).category == Category::Vehicle {
+            if self.roster.profile_of(user).category == Category::Vehicle {
                 exposure.vehicle_kilometres += state.speed * lasted / 1e3;
                 exposure.vehicle_hours += lasted / 3600.0;
             }

@@ -1,7 +1,7 @@
 //! One conflict, as it is told.
 
+use ecow::EcoString;
 use serde::Serialize;
-use smol_str::SmolStr;
 
 use super::Stance;
 use super::extremes::{Extremes, Worst};
@@ -19,9 +19,9 @@ use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second}
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// SUMO's id of the ego.
-    pub ego: SmolStr,
+    pub ego: EcoString,
     /// SUMO's id of the foe.
-    pub foe: SmolStr,
+    pub foe: EcoString,
     /// The ego's type.
     #[serde(skip)]
     pub ego_profile: ProfileIndex,

@@ -17,7 +17,7 @@ use crate::frame::{Frame, Roster, UserIndex};
 use crate::geometry::Point;
 use crate::geometry::halves::Halves;
 use crate::profile::Category;
-use crate::table::{fill, make_room};
+use crate::table::make_room;
 use crate::units::Second;
 
 pub use stance::Stance;
@@ -48,12 +48,8 @@ pub struct Tracker {
     /// Closed, but its PET is not known yet.
     waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
-    rows: Vec<u32>,
     wants_moments: bool,
 }
-
-/// No row of the frame.
-const ABSENT: u32 = u32::MAX;
 
 /// Two road users, in their order.
 type Pair = [UserIndex; 2];
@@ -103,16 +99,11 @@ impl Tracker {
         if self.events.is_empty() && self.waiting.is_empty() && encounters.clone().all(|found| !found.in_conflict()) {
             return &self.closed;
         }
-        self.rows.clear();
-        fill(&mut self.rows, roster.len(), ABSENT);
-        for (number, row) in (0..).zip(frame.rows()) {
-            self.rows[row.user.0 as usize] = number;
-        }
         for found in encounters.filter(|found| found.in_conflict()) {
             self.take(&Seen { frame, found }, roster, &path);
         }
         self.follow(frame, roster);
-        self.close(frame.time);
+        self.close(frame);
         self.settle(frame.time, false, roster);
         sort(&mut self.closed);
         &self.closed
@@ -178,12 +169,11 @@ impl Tracker {
             let pair = event.pair();
             let Some(driven) = &mut event.driven else { continue };
             for (user, course) in pair.into_iter().zip(&mut driven.courses) {
-                let row = self.rows.get(user.0 as usize).copied().unwrap_or(ABSENT);
                 // An index that was given to another road user meanwhile is not followed.
-                if row == ABSENT || course.has_ended() {
+                let Some(row) = frame.row_of(user).filter(|_| !course.has_ended()) else {
                     course.end();
                     continue;
-                }
+                };
                 if roster.profile_of(user).category != Category::Obstacle {
                     let state = frame.state(row);
                     course.push(frame.time, state.front(), state.heading);
@@ -192,11 +182,10 @@ impl Tracker {
         }
     }
 
-    fn close(&mut self, time: Second) {
-        let rows = &self.rows;
-        let gone = |user: UserIndex| rows.get(user.0 as usize).is_none_or(|row| *row == ABSENT);
+    fn close(&mut self, frame: &Frame) {
         let over = self.events.extract_if(.., |(pair, event)| {
-            time - event.extremes.end >= CLOSES_AFTER - SAME_MOMENT || pair.iter().any(|user| gone(*user))
+            let is_gone = |user: &UserIndex| frame.row_of(*user).is_none();
+            frame.time - event.extremes.end >= CLOSES_AFTER - SAME_MOMENT || pair.iter().any(is_gone)
         });
         self.waiting.extend(over.map(|(_, event)| event));
     }

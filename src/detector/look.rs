@@ -35,9 +35,9 @@ impl Detector {
         self.on_lanes.clear();
         fill(&mut self.on_lanes, frame.len(), false);
         if self.turns() == Turns::ByLanes {
-            for (row, Row { user, state }) in frame.rows().iter().enumerate() {
-                if state.moves() && roster.profile_of(*user).category == Category::Vehicle {
-                    self.keep_on_path(row, *user, state.front());
+            for (row, Row { user, state }) in frame.rows().enumerate() {
+                if state.moves() && roster.profile_of(user).category == Category::Vehicle {
+                    self.keep_on_path(row, user, state.front());
                 }
             }
         }
@@ -77,7 +77,7 @@ impl Detector {
             frame.len(),
             &self.team,
             are_same,
-            |row| frame.user(row).0,
+            |user| frame.row_of(UserIndex(user)),
             |row| sight.see(row),
             |seen, user| {
                 *user = sight.user(user.row, seen, user);
@@ -194,7 +194,7 @@ impl Sight<'_> {
     /// What is said of who stands in a row.
     #[inline]
     pub fn see(&self, row: u32) -> Seen {
-        let row = self.frame.rows()[row as usize];
+        let row = self.frame.row(row);
         Seen { row, profile: self.roster.type_of(row.user) }
     }
 

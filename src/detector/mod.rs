@@ -257,7 +257,7 @@ impl Detector {
         if self.keeps_path(row) && placement.route.is_none() {
             return;
         }
-        let Row { user, state } = frame.rows()[row as usize];
+        let Row { user, state } = frame.row(row);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let start = Start {
             front: state.front(),
@@ -316,9 +316,9 @@ impl Detector {
     /// would be given another one.
     fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
         let Some(net) = &self.net else { return };
-        for (Row { user, state }, on_lanes) in frame.rows().iter().zip(&self.on_lanes) {
+        for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
             if *on_lanes {
-                let profile = roster.profile_of(*user);
+                let profile = roster.profile_of(user);
                 let way = stopping_distance(state.speed, &profile.brakes) + self.options.epsilon;
                 self.paths[user.0 as usize].reach(net, profile.chord, way);
             }

@@ -86,7 +86,7 @@ impl Trajectories {
         self.record.extend((frame.time as f32).to_le_bytes());
         self.known.resize_with(roster.len(), || None);
         for (row, Row { user, state }) in (0..).zip(frame.rows()) {
-            let profile = roster.profile_of(*user);
+            let profile = roster.profile_of(user);
             if profile.category != Category::Vehicle {
                 continue;
             }

@@ -47,15 +47,6 @@ const STAY: u32 = 16;
 /// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
 const BLOCK: usize = 64;
 
-/// No item.
-const ABSENT: u32 = u32::MAX;
-
-/// Whose item that is, once.
-fn take(items_of: &mut [u32], who: u32) -> Option<u32> {
-    let item = items_of.get_mut(who as usize)?;
-    Some(std::mem::replace(item, ABSENT)).filter(|item| *item != ABSENT)
-}
-
 /// What one thread knows of its part of the places.
 #[derive(Clone, Copy, Debug)]
 struct Part {
@@ -135,8 +126,8 @@ pub struct Search<S> {
     slots: Vec<S>,
     /// For so many steps everybody has had its slot.
     since: u32,
-    /// By who it is, the item; only while slots are given.
-    items_of: Vec<u32>,
+    /// Which items have a slot, a bit each; only while slots are given.
+    given: Vec<u64>,
     in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip, and the largest height.
@@ -149,7 +140,8 @@ impl Search<u32> {
     /// Puts the index pairs (smaller first) of all areas that meet into `pairs`, in no particular order.
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
-        self.lay(areas.len(), &Team::default(), true, |item| item, |_| (), |(), item| areas[*item as usize]);
+        let item_of = |who: u32| Some(who).filter(|who| (*who as usize) < areas.len());
+        self.lay(areas.len(), &Team::default(), true, item_of, |_| (), |(), item| areas[*item as usize]);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (self.slots[a as usize], self.slots[b as usize]);
             if areas[a as usize].circles_meet(&areas[b as usize]) {
@@ -170,8 +162,8 @@ impl<S: Slot> Search<S> {
         self.has_round
     }
 
-    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `who` says whose item it is, as
-    /// its slot says it later; `are_same`, whether they are likely to be those of the last step, in the same order. `see`
+    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `item_of` says which of
+    /// them belongs to whom a slot knows; `are_same`, whether they are likely to be those of the last step, in the same order. `see`
     /// fetches what is said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots
     /// are in the order in which a step shortly before ended: those that meet are near each other.
     pub fn lay<Seen: Copy + Default>(
@@ -179,12 +171,12 @@ impl<S: Slot> Search<S> {
         count: usize,
         team: &Team,
         are_same: bool,
-        who: impl Fn(u32) -> u32,
+        item_of: impl Fn(u32) -> Option<u32>,
         see: impl Fn(u32) -> Seen + Sync,
         area: impl Fn(&Seen, &mut S) -> Area + Sync,
     ) {
         if self.places.len() != count || self.since >= STAY || !are_same {
-            self.hold(count, who);
+            self.hold(count, item_of);
         }
         self.since += 1;
         self.parts.clear();
@@ -208,28 +200,24 @@ impl<S: Slot> Search<S> {
     }
 
     /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
-    fn hold(&mut self, count: usize, who: impl Fn(u32) -> u32) {
-        let Self { places, boxes, slots, items_of, .. } = self;
-        let mut twice = Vec::new();
-        items_of.fill(ABSENT);
-        for item in 0..count as u32 {
-            let who = who(item) as usize;
-            if who >= items_of.len() {
-                fill(items_of, who + 1, ABSENT);
-            }
-            // Whose item stands twice has a slot for both.
-            twice.extend(Some(std::mem::replace(&mut items_of[who], item)).filter(|item| *item != ABSENT));
-        }
+    fn hold(&mut self, count: usize, item_of: impl Fn(u32) -> Option<u32>) {
+        let Self { places, boxes, slots, given, .. } = self;
+        given.clear();
+        fill(given, count.div_ceil(64), 0);
+        let mut is_first = |item: u32| {
+            let (word, bit) = (&mut given[item as usize / 64], 1 << (item % 64));
+            let is_first = *word & bit == 0;
+            *word |= bit;
+            is_first
+        };
         // A place says which item its slot is for, until all have one.
-        places.retain_mut(|place| match take(items_of, slots[place.slot as usize].who()) {
-            Some(item) => {
-                place.slot = item;
-                true
-            }
-            None => false,
+        places.retain_mut(|place| {
+            let item = item_of(slots[place.slot as usize].who()).filter(|item| is_first(*item));
+            place.slot = item.unwrap_or_default();
+            item.is_some()
         });
         make_room(places, count - places.len());
-        let others = (0..count as u32).filter_map(|item| take(items_of, who(item))).chain(twice);
+        let others = (0..count as u32).filter(|item| is_first(*item));
         places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
         fill(slots, count, S::default());
         fill(boxes, count, Bounds::EMPTY);
@@ -397,7 +385,8 @@ mod tests {
             known.who = who[known.item as usize];
             areas[known.item as usize]
         };
-        search.lay(count, &Team::new(parts), true, |item| who[item as usize], |_| (), area);
+        let item_of = |known| who.iter().position(|who| *who == known).map(|item| item as u32);
+        search.lay(count, &Team::new(parts), true, item_of, |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {

@@ -5,8 +5,8 @@
 
 use std::path::Path;
 
+use ecow::EcoString;
 use rustc_hash::FxHashMap;
-use smol_str::SmolStr;
 
 use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
@@ -45,7 +45,7 @@ pub(super) enum Truth {
 }
 
 /// Both ids, the smaller first.
-pub(super) type Pair = (SmolStr, SmolStr);
+pub(super) type Pair = (EcoString, EcoString);
 
 /// The pair of two road users.
 pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> Pair {
@@ -74,18 +74,18 @@ impl Driven {
 
     /// What really was of all pairs of a step that are near each other.
     pub fn truth(&self, frame: &Frame, roster: &Roster, options: &Options) -> FxHashMap<Pair, Truth> {
-        let stops = frame.rows().iter().map(|Row { user, state }| {
-            if state.speed > 0.0 { stopping_distance(state.speed, &roster.profile_of(*user).brakes) } else { 0.0 }
+        let stops = frame.rows().map(|Row { user, state }| {
+            if state.speed > 0.0 { stopping_distance(state.speed, &roster.profile_of(user).brakes) } else { 0.0 }
         });
         let stops = stops.collect::<Vec<_>>();
-        let circles = frame.rows().iter().zip(&stops).map(|(Row { user, state }, stop)| {
-            let profile = roster.profile_of(*user);
+        let circles = frame.rows().zip(&stops).map(|(Row { user, state }, stop)| {
+            let profile = roster.profile_of(user);
             Circle { x: state.x, y: state.y, radius: stop + profile.length + profile.width + options.epsilon }
         });
         let mut pairs = Vec::new();
         Search::default().pairs(&circles.map(Area::from).collect::<Vec<_>>(), &mut pairs);
         pairs.sort_unstable();
-        let ways = frame.rows().iter().zip(&stops).map(|(row, stop)| {
+        let ways = frame.rows().zip(&stops).map(|(row, stop)| {
             let profile = roster.profile_of(row.user);
             let beyond = profile.length + profile.width + 30.0;
             let reach = [*stop, stop + options.epsilon, stop + options.epsilon + beyond];
@@ -105,7 +105,7 @@ impl Driven {
                 }
                 _ => Truth::Aside,
             };
-            (pair(roster, frame.rows()[a].user, frame.rows()[b].user), truth)
+            (pair(roster, frame.user(a as u32), frame.user(b as u32)), truth)
         };
         judged.map(judge).collect()
     }
@@ -157,7 +157,7 @@ struct Way<'a> {
 
 impl<'a> Way<'a> {
     fn of(frame: &Frame, roster: &'a Roster, row: usize, stop: Metre, epsilon: Metre, all: &'a [Pose]) -> Self {
-        let Row { user, state: State { x, y, heading, speed, .. } } = frame.rows()[row];
+        let Row { user, state: State { x, y, heading, speed, .. } } = frame.row(row as u32);
         let profile = roster.profile_of(user);
         let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
         let end = all.partition_point(|pose| pose.way <= stop + epsilon);

@@ -6,14 +6,14 @@
 use std::ops::RangeFrom;
 
 use closecall::encounter::Placement;
-use closecall::frame::{Roster, Row, UserIndex};
+use closecall::frame::{Roster, State, UserIndex};
 use closecall::options::Options;
 use closecall::run::Run;
 use closecall::table::make_room;
 use closecall::units::Second;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::getters::{self, Getters, Kept};
 use super::sumo::{self, Types};
@@ -48,20 +48,17 @@ struct Domain {
     ids: Py<PyAny>,
     type_id: Py<PyAny>,
     getters: Getters,
-    /// Whether those of `live` are found where they were, without their ids.
+    /// Whether they are found where they were, without their ids.
     keeps: bool,
-    live: Vec<Live>,
+    /// Those in the scene; their ids are the roster's.
+    live: Vec<UserIndex>,
+    /// Where SUMO has them, in the same order.
+    kept: Vec<Kept>,
     /// Where in `live` everybody is, in the order of their ids, in which SUMO finds them soonest.
     by_id: Vec<u32>,
+    parked: FxHashSet<UserIndex>,
     /// The ids of the routes of those who may get another one.
     routes: FxHashMap<UserIndex, Box<str>>,
-}
-
-/// Somebody in the scene; its id is the roster's.
-struct Live {
-    user: UserIndex,
-    parked: bool,
-    kept: Kept,
 }
 
 /// Which state of a parked vehicle changed.
@@ -80,7 +77,9 @@ impl Libsumo {
                 getters: Getters::new(&compiled, domain)?,
                 keeps: false,
                 live: Vec::new(),
+                kept: Vec::new(),
                 by_id: Vec::new(),
+                parked: FxHashSet::default(),
                 routes: FxHashMap::default(),
             })
         };
@@ -125,8 +124,8 @@ impl Libsumo {
             self.others_left(py, run, last)?;
         }
         let entered = self.vehicles.update(py, run, jumped, |run, name| self.types.vehicle(py, run, name))?;
-        for live in &self.vehicles.live[entered] {
-            let id = run.roster.id(live.user);
+        for user in &self.vehicles.live[entered] {
+            let id = run.roster.id(*user);
             if run.has_fixed_routes() && self.may_reroute(py, id)? {
                 run.routes_may_change();
             }
@@ -140,7 +139,7 @@ impl Libsumo {
     /// Lets the vehicles leave whose id another has, which departed after this time.
     fn others_left(&mut self, py: Python, run: &mut Run, last: Second) -> PyResult<()> {
         for place in (0..self.vehicles.live.len()).rev() {
-            let id: &str = run.roster.id(self.vehicles.live[place].user);
+            let id: &str = run.roster.id(self.vehicles.live[place]);
             // Who is not in the simulation any more has no departure.
             let departure = self.get.departure.bind(py).call1((id,)).and_then(|time| time.extract::<Second>());
             if departure.is_ok_and(|departure| departure > last) {
@@ -155,15 +154,15 @@ impl Libsumo {
         for (list, parks) in self.parking.iter().zip(PARKS) {
             for id in list.bind(py).call0()?.try_iter()? {
                 if let Some(place) = self.vehicles.find(&run.roster, id?.extract::<&str>()?) {
-                    self.vehicles.live[place].parked = parks;
+                    self.vehicles.park(place, parks);
                 }
             }
         }
         if jumped {
             let is_parked = py.import("libsumo")?.getattr("vehicle")?.getattr("isStoppedParking")?;
-            for live in &mut self.vehicles.live {
-                let id: &str = run.roster.id(live.user);
-                live.parked = is_parked.call1((id,))?.extract()?;
+            for place in 0..self.vehicles.live.len() {
+                let id: &str = run.roster.id(self.vehicles.live[place]);
+                self.vehicles.park(place, is_parked.call1((id,))?.extract()?);
             }
         }
         Ok(())
@@ -233,7 +232,7 @@ impl Domain {
         if jumped {
             let now = self.ids.bind(py).call0()?;
             let gone = (0..self.live.len())
-                .filter(|&place| !now.contains(&**run.roster.id(self.live[place].user)).unwrap_or(false))
+                .filter(|&place| !now.contains(&**run.roster.id(self.live[place])).unwrap_or(false))
                 .collect::<Vec<_>>();
             for place in gone.into_iter().rev() {
                 self.remove(run, place);
@@ -273,7 +272,9 @@ impl Domain {
         self.getters.enters(py, name);
         let user = run.enter(name, profile);
         make_room(&mut self.live, 1);
-        self.live.push(Live { user, parked: false, kept: Kept::default() });
+        self.live.push(user);
+        make_room(&mut self.kept, 1);
+        self.kept.push(Kept::default());
         make_room(&mut self.by_id, 1);
         self.by_id.insert(rank, self.live.len() as u32 - 1);
         Ok(())
@@ -281,14 +282,25 @@ impl Domain {
 
     fn remove(&mut self, run: &mut Run, place: usize) {
         let last = self.live.len() - 1;
-        let rank = |place: usize| self.rank(&run.roster, run.roster.id(self.live[place].user));
+        let rank = |place: usize| self.rank(&run.roster, run.roster.id(self.live[place]));
         if let (Ok(own), Ok(of_last)) = (rank(place), rank(last)) {
             self.by_id[of_last] = place as u32;
             self.by_id.remove(own);
         }
-        let user = self.live.swap_remove(place).user;
+        let user = self.live.swap_remove(place);
+        self.kept.swap_remove(place);
+        self.parked.remove(&user);
         self.routes.remove(&user);
         run.leave(user);
+    }
+
+    fn park(&mut self, place: usize, parks: bool) {
+        let user = self.live[place];
+        if parks {
+            self.parked.insert(user)
+        } else {
+            self.parked.remove(&user)
+        };
     }
 
     /// Where in `live` somebody is.
@@ -298,15 +310,15 @@ impl Domain {
 
     /// Where an id is in the order of all; the error is where it would be.
     fn rank(&self, roster: &Roster, id: &str) -> Result<usize, usize> {
-        self.by_id.binary_search_by(|&place| (**roster.id(self.live[place as usize].user)).cmp(id))
+        self.by_id.binary_search_by(|&place| (**roster.id(self.live[place as usize])).cmp(id))
     }
 
     /// Everybody's state into the run's frame. Whom a script has taken out of the simulation since the last step, which
     /// SUMO's list of those who arrived does not say, leaves the scene.
     fn read(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
         self.read_all(py, run).or_else(|error| {
-            let is_unknown = |live: &Live| self.type_id.bind(py).call1((&**run.roster.id(live.user),)).is_err();
-            let gone = (0..self.live.len()).filter(|&place| is_unknown(&self.live[place])).collect::<Vec<_>>();
+            let is_unknown = |user: UserIndex| self.type_id.bind(py).call1((&**run.roster.id(user),)).is_err();
+            let gone = (0..self.live.len()).filter(|&place| is_unknown(self.live[place])).collect::<Vec<_>>();
             if gone.is_empty() {
                 return Err(error);
             }
@@ -316,17 +328,19 @@ impl Domain {
     }
 
     fn read_all(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
-        let Self { live, by_id, getters, keeps, .. } = self;
-        let (count, roster) = (live.len(), &run.roster);
-        let fill = |states: &mut [Row]| {
-            for &place in &*by_id {
-                let Live { user, parked, ref mut kept, .. } = live[place as usize];
-                if !parked && let Some(state) = getters.state(py, roster.id(user), keeps.then_some(kept))? {
-                    states[place as usize] = Row { user, state };
+        let Self { live, kept, by_id, parked, getters, keeps, .. } = self;
+        let roster = &run.roster;
+        let fill = |states: &mut [State]| {
+            for place in by_id.iter().map(|place| *place as usize) {
+                let (user, kept) = (live[place], &mut kept[place]);
+                if !parked.contains(&user)
+                    && let Some(state) = getters.state(py, roster.id(user), keeps.then_some(kept))?
+                {
+                    states[place] = state;
                 }
             }
             Ok(())
         };
-        run.frame.extend(count, fill)
+        run.frame.extend(live.iter().copied(), fill)
     }
 }
