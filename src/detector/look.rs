@@ -103,20 +103,25 @@ impl Detector {
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
         let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
-        let share = self.team.share(count);
-        let parts = (0..count).step_by(share).map(|start| start..(start + share).min(count));
+        // One from the front and one from the back: who comes late has fewer, or more, to be compared with.
+        let busy = count.div_ceil(self.team.share(count)).max(1);
+        let half = count.div_ceil(2 * busy);
+        let range = |number: usize| (number * half).min(count)..((number + 1) * half).min(count);
+        let parts = (0..busy).map(|number| [range(number), range(2 * busy - 1 - number)]);
         self.workers.iter_mut().for_each(|worker| worker.pairs.clear());
-        self.team.each(&mut self.workers, parts, |worker, part| {
+        self.team.each(&mut self.workers, parts, |worker, parts| {
             let mut found = |a: u32, b: u32| add(&mut worker.pairs, (a, b));
             let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
-            match (all, search.has_round()) {
-                (true, _) => every_pair(part, found),
-                (false, false) => search.sweep(part, found),
-                (false, true) => search.sweep(part, |a, b| {
-                    if area(a).circles_meet(&area(b)) {
-                        found(a, b);
-                    }
-                }),
+            for part in parts {
+                match (all, search.has_round()) {
+                    (true, _) => every_pair(part, &mut found),
+                    (false, false) => search.sweep(part, &mut found),
+                    (false, true) => search.sweep(part, |a, b| {
+                        if area(a).circles_meet(&area(b)) {
+                            found(a, b);
+                        }
+                    }),
+                }
             }
         });
         let found = self.workers.iter().map(|worker| worker.pairs.len() as u64).sum::<u64>();

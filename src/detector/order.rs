@@ -41,7 +41,8 @@ impl Order {
             self.starts[start] += self.starts[start - 1];
         }
         self.sorted.clear();
-        fill(&mut self.sorted, places().count(), Place::default());
+        let found = self.starts.last().map_or(0, |end| *end as usize);
+        fill(&mut self.sorted, found, Place::default());
         for found in places() {
             let place = &mut self.starts[start_of(found.0)];
             self.sorted[*place as usize] = found;

@@ -320,12 +320,14 @@ impl<S: Slot> Search<S> {
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
             let (own, others) = in_strips.split_at(start + length(&in_strips[start..], strip));
-            let (above, mut behind) = (&others[..length(others, strip + 1)], 0);
+            let above = &others[..length(others, strip + 1)];
+            let reaches = |a: &Place| bounds(a).low.x - self.largest.x;
+            let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
-                let Bounds { low, high } = *bounds(a);
+                let Bounds { high, .. } = *bounds(a);
                 near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= high.x), &mut found);
-                let begin = low.x - self.largest.x;
+                let begin = reaches(a);
                 behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
                 near.note(a, above[behind..].iter().take_while(|b| b.begin <= high.x), &mut found);
             }
