@@ -30,6 +30,7 @@ fuzz: target/tools/bin/cargo-fuzz ## random files into the readers, a minute eac
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
+	cargo check --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 	$(BIN)/ruff format --check bridge/python tests benches
 	$(BIN)/ruff check bridge/python tests benches
 	$(BIN)/mypy

@@ -4,7 +4,7 @@ of the same simulation, how much is in use, with the checker and without.
     python benches/memory.py
 
 What does not depend on the traffic (the net, the program) falls out: the figure is the growth of the difference from
-the first step with a tenth of the most road users to the one with the most. Both are run three times, of which the
+the first step with a tenth of the most road users to the one with the most. Both are run five times, of which the
 median counts: now and then SUMO alone holds 50 kB less. Python's own allocator is switched off, so that what it holds
 is counted too, and so is glibc's cache per thread: what is free in it counts as in use. glibc only.
 """
@@ -48,8 +48,8 @@ def sample() -> None:
 
 
 def median(command: list[str], folder: Path) -> list[tuple[int, float]]:
-    """Road users and bytes before every step, in the median of three runs."""
-    runs = [samples(command, folder) for _ in range(3)]
+    """Road users and bytes before every step, in the median of five runs."""
+    runs = [samples(command, folder) for _ in range(5)]
     return [(step[0][0], statistics.median(held for _, held in step)) for step in zip(*runs)]
 
 

@@ -46,7 +46,7 @@ pub struct Tracker {
     /// In the order of the pairs.
     events: Vec<(Pair, Box<Event>)>,
     /// Closed, but its PET is not known yet.
-    waiting: Vec<Box<Event>>,
+    waiting: Vec<(Pair, Box<Event>)>,
     closed: Vec<Conflict>,
     wants_moments: bool,
 }
@@ -70,11 +70,6 @@ struct Driven {
 }
 
 impl Event {
-    fn pair(&self) -> Pair {
-        let Alarm { ego, foe, .. } = self.alarm;
-        [ego.min(foe), ego.max(foe)]
-    }
-
     fn conflict(&self, roster: &Roster) -> Conflict {
         Conflict::of(&self.extremes, self.driven.as_ref().and_then(|driven| driven.pet), roster)
     }
@@ -122,7 +117,7 @@ impl Tracker {
     /// Closes whatever is still open: the run has ended.
     pub fn finish(&mut self, roster: &Roster) -> &[Conflict] {
         self.closed.clear();
-        self.waiting.extend(self.events.drain(..).map(|(_, event)| event));
+        self.waiting.append(&mut self.events);
         self.settle(f64::INFINITY, true, roster);
         sort(&mut self.closed);
         &self.closed
@@ -135,8 +130,8 @@ impl Tracker {
 
     /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
-        let events = self.events.iter().map(|(_, event)| event).chain(&self.waiting);
-        let mut open = events.map(|event| event.conflict(roster)).collect::<Vec<_>>();
+        let events = self.events.iter().chain(&self.waiting);
+        let mut open = events.map(|(_, event)| event.conflict(roster)).collect::<Vec<_>>();
         sort(&mut open);
         open
     }
@@ -165,16 +160,15 @@ impl Tracker {
 
     /// Records where the pairs of side and frontal events go.
     fn follow(&mut self, frame: &Frame, roster: &Roster) {
-        for event in self.events.iter_mut().map(|(_, event)| event).chain(&mut self.waiting) {
-            let pair = event.pair();
+        for (pair, event) in self.events.iter_mut().chain(&mut self.waiting) {
             let Some(driven) = &mut event.driven else { continue };
-            for (user, course) in pair.into_iter().zip(&mut driven.courses) {
+            for (user, course) in pair.iter().zip(&mut driven.courses) {
                 // An index that was given to another road user meanwhile is not followed.
-                let Some(row) = frame.row_of(user).filter(|_| !course.has_ended()) else {
+                let Some(row) = frame.row_of(*user).filter(|_| !course.has_ended()) else {
                     course.end();
                     continue;
                 };
-                if roster.profile_of(user).category != Category::Obstacle {
+                if roster.profile_of(*user).category != Category::Obstacle {
                     let state = frame.state(row);
                     course.push(frame.time, state.front(), state.heading);
                 }
@@ -187,14 +181,14 @@ impl Tracker {
             let is_gone = |user: &UserIndex| frame.row_of(*user).is_none();
             frame.time - event.extremes.end >= CLOSES_AFTER - SAME_MOMENT || pair.iter().any(is_gone)
         });
-        self.waiting.extend(over.map(|(_, event)| event));
+        self.waiting.extend(over);
     }
 
     /// Passes on the closed events whose PET is known, or will not be.
     fn settle(&mut self, time: Second, at_once: bool, roster: &Roster) {
         // For all of the step, but no longer: what a long wait in small steps needs would be kept for the rest of the run.
         let mut halves = Halves::default();
-        let settled = self.waiting.extract_if(.., |event| {
+        let settled = self.waiting.extract_if(.., |(_, event)| {
             let since = time - event.extremes.end;
             if let (Some(driven), true) = (&mut event.driven, event.extremes.worst.kind != Kind::RearEnd) {
                 let Driven { courses, pet } = &mut **driven;
@@ -210,7 +204,7 @@ impl Tracker {
             }
             true
         });
-        self.closed.extend(settled.map(|event| event.conflict(roster)));
+        self.closed.extend(settled.map(|(_, event)| event.conflict(roster)));
     }
 }
 

@@ -310,13 +310,12 @@ impl<'a> Reach<'a> {
     }
 
     /// What somebody may cover until it stands, and ε further.
-    // For the same reason.
-    #[inline(always)]
     pub(super) fn area(&self, user: &User) -> Area {
         self.area_of(user, self.frame.state(user.row))
     }
 
     /// The same of somebody whose state is at hand.
+    // Always, for the same reason.
     #[inline(always)]
     pub(super) fn area_of(&self, user: &User, state: &State) -> Area {
         let (profile, front) = (self.roster.profile_at(user.profile), state.front());

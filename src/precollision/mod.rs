@@ -12,13 +12,17 @@
 
 mod area;
 mod near;
+mod part;
 mod place;
+mod slot;
 
 use std::ops::Range;
 
 pub use area::{Area, Circle};
 use near::Near;
+use part::{Part, is_far};
 use place::{Place, insert, length};
+pub use slot::Slot;
 
 use crate::geometry::{Bounds, Vector};
 use crate::table::{fill, make_room};
@@ -46,73 +50,6 @@ const STAY: u32 = 16;
 
 /// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
 const BLOCK: usize = 64;
-
-/// What one thread knows of its part of the places.
-#[derive(Clone, Copy, Debug)]
-struct Part {
-    /// Sum of the sizes.
-    sum: Metre,
-    /// Largest length along x, and largest height.
-    largest: Vector,
-    /// Whether one is too far away for a strip.
-    far: bool,
-    /// Whether one is smaller than its box.
-    round: bool,
-    sorted: bool,
-}
-
-impl Part {
-    const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true };
-
-    fn include(&mut self, area: &Area) {
-        let size = area.bounds.size();
-        self.sum += size.max().clamp(0.0, 1e3);
-        self.largest = self.largest.sup(&size);
-        self.far |= is_far(&area.bounds);
-        self.round |= area.is_round();
-    }
-
-    fn join(self, other: &Self) -> Self {
-        Self {
-            sum: self.sum + other.sum,
-            largest: self.largest.sup(&other.largest),
-            far: self.far || other.far,
-            round: self.round || other.round,
-            sorted: self.sorted && other.sorted,
-        }
-    }
-}
-
-fn is_far(Bounds { low, high }: &Bounds) -> bool {
-    low.x.min(low.y) <= -FAR || high.x.max(high.y) >= FAR
-}
-
-/// What stands in a slot of a [`Search`].
-pub trait Slot: Clone + Default + Send {
-    /// Which of the caller's items has the slot, in this step.
-    fn item(&self) -> u32;
-
-    /// Gives the slot to another.
-    fn give(&mut self, item: u32);
-
-    /// Whose item it was last, by a small number that stays the same from step to step.
-    fn who(&self) -> u32;
-}
-
-/// The item is all that is known.
-impl Slot for u32 {
-    fn item(&self) -> u32 {
-        *self
-    }
-
-    fn give(&mut self, item: u32) {
-        *self = item;
-    }
-
-    fn who(&self) -> u32 {
-        *self
-    }
-}
 
 /// Finds the pairs of areas whose boxes meet; keeps its memory, and the order that it found, from step to step.
 #[derive(Default)]

@@ -1,0 +1,46 @@
+//! What threads learn of the areas while they lay them, each of its part: how large, how far away, whether round.
+
+use super::{Area, FAR};
+use crate::geometry::{Bounds, Vector};
+use crate::units::Metre;
+
+/// What one thread knows of its part of the places.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// Sum of the sizes.
+    pub sum: Metre,
+    /// Largest length along x, and largest height.
+    pub largest: Vector,
+    /// Whether one is too far away for a strip.
+    pub far: bool,
+    /// Whether one is smaller than its box.
+    pub round: bool,
+    pub sorted: bool,
+}
+
+impl Part {
+    pub const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true };
+
+    pub fn include(&mut self, area: &Area) {
+        let size = area.bounds.size();
+        self.sum += size.max().clamp(0.0, 1e3);
+        self.largest = self.largest.sup(&size);
+        self.far |= is_far(&area.bounds);
+        self.round |= area.is_round();
+    }
+
+    pub fn join(self, other: &Self) -> Self {
+        Self {
+            sum: self.sum + other.sum,
+            largest: self.largest.sup(&other.largest),
+            far: self.far || other.far,
+            round: self.round || other.round,
+            sorted: self.sorted && other.sorted,
+        }
+    }
+}
+
+/// Whether a box is too far away for a strip.
+pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
+    low.x.min(low.y) <= -FAR || high.x.max(high.y) >= FAR
+}
