@@ -4,9 +4,9 @@ of the same simulation, how much is in use, with the checker and without.
     python benches/memory.py
 
 What does not depend on the traffic (the net, the program) falls out: the figure is the growth of the difference from
-the first step with a tenth of the most road users to the one with the most. Both are run five times, of which the
-median counts: now and then SUMO alone holds 50 kB less. Python's own allocator is switched off, so that what it holds
-is counted too, and so is glibc's cache per thread: what is free in it counts as in use. glibc only.
+the first step with a tenth of the most road users to the one with the most. Both are run nine times, of which the
+median counts: with other addresses SUMO alone holds up to 50 kB less. Python's own allocator is switched off, so that
+what it holds is counted too, and so is glibc's cache per thread: what is free in it counts as in use. glibc only.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def sample() -> None:
 
 
 def median(command: list[str], folder: Path) -> list[tuple[int, float]]:
-    """Road users and bytes before every step, in the median of five runs."""
-    runs = [samples(command, folder) for _ in range(5)]
+    """Road users and bytes before every step, in the median of nine runs."""
+    runs = [samples(command, folder) for _ in range(9)]
     return [(step[0][0], statistics.median(held for _, held in step)) for step in zip(*runs)]
 
 

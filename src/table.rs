@@ -1,10 +1,10 @@
 //! Tables that hold little more memory than they need: [`Vec`] doubles when it is full, which leaves up to half of it
 //! empty.
 
-/// Makes room for further rows: where there is none, for a sixteenth more than that.
+/// Makes room for further rows: where there is none, for a thirty-second more than that.
 pub fn make_room<T>(table: &mut Vec<T>, further: usize) {
     if table.capacity() - table.len() < further {
-        table.reserve_exact(further + (table.len() + further) / 16);
+        table.reserve_exact(further + (table.len() + further) / 32);
     }
 }
 

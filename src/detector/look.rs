@@ -15,7 +15,7 @@ use crate::path::lanes::LanePath;
 use crate::path::track::Track;
 use crate::path::{arc, turn};
 use crate::precollision::{Area, Circle, Slot};
-use crate::profile::Category;
+use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::table::{add, fill};
 use crate::units::Metre;
@@ -212,15 +212,13 @@ impl Sight<'_> {
         let (profile, moves) = (self.roster.profile_at(type_index), state.moves());
         let axis = if last.heading == state.heading { last.axis } else { direction(state.heading) };
         let on_lanes = self.turns == Turns::ByLanes && self.on_lanes[row as usize];
-        let stop = if moves { stopping_distance(state.speed, &profile.brakes) } else { 0.0 };
         let goes_straight = || {
             let (track, lines) = self.paths.track(index);
-            track.goes_straight(lines, &axis, profile.chord, stop + self.epsilon)
+            track.goes_straight(lines, &axis, profile.chord, stop(state, profile) + self.epsilon)
         };
         User {
             heading: state.heading,
             axis,
-            stop,
             row,
             index,
             profile: type_index,
@@ -242,7 +240,6 @@ impl Default for User {
         Self {
             heading: 0.0,
             axis: Vector::new(1.0, 0.0),
-            stop: 0.0,
             row: 0,
             index: UserIndex(0),
             profile: ProfileIndex(0),
@@ -265,6 +262,12 @@ impl Slot for User {
     fn who(&self) -> u32 {
         self.index.0
     }
+}
+
+/// How far somebody of this type still moves.
+#[inline(always)]
+pub(super) fn stop(state: &State, profile: &Profile) -> Metre {
+    if state.moves() { stopping_distance(state.speed, &profile.brakes) } else { 0.0 }
 }
 
 /// Each of these slots with all before it.
@@ -319,7 +322,8 @@ impl<'a> Reach<'a> {
     #[inline(always)]
     pub(super) fn area_of(&self, user: &User, state: &State) -> Area {
         let (profile, front) = (self.roster.profile_at(user.profile), state.front());
-        let stop = if self.on_paper { stopping_distance_paper(state.speed, &profile.brakes) } else { user.stop };
+        let stop =
+            if self.on_paper { stopping_distance_paper(state.speed, &profile.brakes) } else { stop(state, profile) };
         let reach = stop + self.epsilon;
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;

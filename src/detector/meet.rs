@@ -187,7 +187,7 @@ impl Scene<'_> {
     #[inline(always)]
     fn keeps_distance(&self, slots: [u32; 2]) -> bool {
         let users = slots.map(|slot| self.user(slot));
-        let lengths = users.map(|user| user.stop + self.profile(user).length);
+        let lengths = users.map(|user| self.stop(user) + self.profile(user).length);
         // As most pairs that cross do not: that is known before anything is laid out.
         if !accurate::lead_alike(users.map(|user| &user.axis), lengths)
             || slots.iter().any(|slot| self.is_obstacle(*slot))

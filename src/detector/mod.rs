@@ -118,7 +118,6 @@ struct User {
     heading: Radian,
     /// Where that leads.
     axis: Vector,
-    stop: Metre,
     /// Which row of the frame.
     row: u32,
     index: UserIndex,
@@ -150,6 +149,12 @@ impl Scene<'_> {
 
     fn state(&self, user: &User) -> &State {
         self.frame.state(user.row)
+    }
+
+    /// How far somebody still moves.
+    #[inline(always)]
+    fn stop(&self, user: &User) -> Metre {
+        look::stop(self.state(user), self.profile(user))
     }
 
     fn is_obstacle(&self, slot: u32) -> bool {
@@ -359,7 +364,8 @@ impl Detector {
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
         let user = sight.user(row, &sight.see(row), &User::default());
-        self.scene(frame, roster).course(&user, &[user.stop, user.stop + self.options.epsilon], false, &mut poses);
+        let stop = self.scene(frame, roster).stop(&user);
+        self.scene(frame, roster).course(&user, &[stop, stop + self.options.epsilon], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
 }

@@ -18,10 +18,10 @@ struct Onward {
 }
 
 impl Onward {
-    fn of(front: Point, user: &User, reach: Metre) -> Self {
+    fn of(front: Point, user: &User, stop: Metre, reach: Metre) -> Self {
         let now = straight::pose(front, user.axis, 0.0);
         let mut onward = Self { poses: [now; 3], count: 1 };
-        for way in [user.stop, reach] {
+        for way in [stop, reach] {
             if way > 0.0 {
                 onward.poses[onward.count] = straight::pose(front, user.axis, way);
                 onward.count += 1;
@@ -55,7 +55,7 @@ impl Scene<'_> {
         }
         let onward = |slot: u32, mover: &Mover| {
             let user = self.user(slot);
-            Onward::of(self.state(user).front(), user, mover.reach)
+            Onward::of(self.state(user).front(), user, mover.stop, mover.reach)
         };
         let (of_first, of_second) = (onward(slots[0], &first), onward(slots[1], &second));
         first.poses = of_first.poses();

@@ -119,7 +119,8 @@ impl Ways {
         let Kept { laid, poses: all, .. } = &mut self.kept[0];
         let (profile, start) = (scene.profile(user), all.len());
         make_room(all, MOST_POSES);
-        scene.course(user, &[user.stop, user.stop + scene.options.epsilon], false, all);
+        let stop = scene.stop(user);
+        scene.course(user, &[stop, stop + scene.options.epsilon], false, all);
         let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
         let straight = poses.iter().all(|pose| pose.axis == axis);
@@ -218,17 +219,18 @@ impl<'a> Scene<'a> {
     pub(super) fn mover(&self, slot: u32) -> Mover<'a> {
         let user = self.user(slot);
         let (profile, state) = (self.roster.profile_at(user.profile), self.state(user));
+        let stop = self.stop(user);
         let mut mover = Mover {
             rectangle: Rectangle::behind(state.front(), user.axis, profile.length, profile.width),
             shape: &[],
             poses: &[],
             straight: true,
-            reach: user.stop + self.options.epsilon,
+            reach: stop + self.options.epsilon,
             cover: &Cover::NOWHERE,
             covers: &[],
             speed: state.speed,
             brakes: &profile.brakes,
-            stop: user.stop,
+            stop,
         };
         if user.category == Category::Obstacle {
             mover.shape = self.roster.shape(user.index);
