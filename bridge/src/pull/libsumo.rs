@@ -197,6 +197,7 @@ impl Libsumo {
             if !has_changed && run.keeps_path(row) {
                 continue;
             }
+            let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let position = usize::try_from(ask(&self.get.route_index)?.extract::<i64>()?).unwrap_or(0);
             let route = if has_changed || !run.knows_route(user, position) {
                 Some(sumo::route(net, &ask(&self.get.route)?)?)
@@ -206,7 +207,6 @@ impl Libsumo {
             if has_changed {
                 routes.insert(user, ask(&self.get.route_id)?.extract::<&str>()?.into());
             }
-            let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let placement = Placement {
                 lane,
                 position: ask(&self.get.lane_position)?.extract()?,
