@@ -1,6 +1,6 @@
 //! Slots: where in the search's memory somebody is.
 
-/// What stands in a slot of a [`Search`].
+/// What stands in a slot of a [`Search`](super::Search).
 pub trait Slot: Clone + Default + Send {
     /// Which of the caller's items has the slot, in this step.
     fn item(&self) -> u32;
