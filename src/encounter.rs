@@ -77,7 +77,7 @@ pub struct Placement {
     pub lane: LaneIndex,
     /// Its front bumper's way from the lane's beginning, in SUMO's lane length, in m.
     pub position: Metre,
-    /// Its route, where that is new or has changed; none where it has not, or nobody knows one.
+    /// Its route, where that is new or may have changed; none where it has not, or nobody knows one.
     pub route: Option<Arc<[EdgeIndex]>>,
     /// Which edge of the route it is on, or left last when it is within a junction.
     pub route_position: usize,

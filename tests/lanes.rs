@@ -91,3 +91,39 @@ fn where_lanes_do_not_join_a_path_leads_straight_across() {
         assert!((path.last().unwrap().y - 5.0).abs() < 1e-9, "{path:?}");
     }
 }
+
+/// A street from which another turns off to the south.
+const FORK: &str = r#"<net>
+    <edge id="a" from="w" to="m"><lane id="a_0" index="0" length="100" shape="0,0 100,0"/></edge>
+    <edge id="b" from="m" to="e"><lane id="b_0" index="0" length="100" shape="100,0 200,0"/></edge>
+    <edge id="c" from="m" to="s"><lane id="c_0" index="0" length="100" shape="100,0 100,-100"/></edge>
+    <connection from="a" to="b" fromLane="0" toLane="0" dir="s" state="M"/>
+    <connection from="a" to="c" fromLane="0" toLane="0" dir="r" state="M"/>
+</net>"#;
+
+#[test]
+fn a_path_is_laid_anew_where_the_route_is_another_one_not_where_it_is_told_again() {
+    let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
+    let mut roster = Roster::default();
+    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let (user, mut frame) = (roster.enter("car", profile), Frame::default());
+    let mut detector = Detector::new(&Options::default(), Some(net.clone()));
+    // Where its path ends; a step later it stands where it did.
+    let mut told = |route: Option<[&str; 2]>, lateral_speed: f64| {
+        frame.begin(frame.time + 1.0);
+        frame.push(user, State { x: 80.0, y: 0.0, z: 0.0, heading: 0.0, speed: 25.0 });
+        assert_eq!(detector.follow(&frame, &roster), [0]);
+        let route = route.map(|edges| edges.iter().map(|edge| net.edge(edge).unwrap()).collect());
+        let lane = net.lane("a_0").unwrap();
+        let placement = Placement { lane, position: 80.0, route, route_position: 0, lateral_speed };
+        detector.place(&frame, &roster, 0, &placement);
+        detector.approach(&frame, &roster);
+        detector.path(&frame, &roster, 0).pop().unwrap()
+    };
+    let drifts = told(Some(["a", "b"]), 1.0);
+    assert!(drifts.y > 1.0, "{drifts}");
+    assert_eq!(told(Some(["a", "b"]), 0.0), drifts);
+    assert_eq!(told(None, 0.0), drifts);
+    let turns = told(Some(["a", "c"]), 0.0);
+    assert!(turns.y < -10.0, "{turns}");
+}

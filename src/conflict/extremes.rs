@@ -116,10 +116,8 @@ impl Extremes {
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;
         let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
-        for (found, _) in
-            self.found.iter_mut().flat_map(|found| found.iter_mut()).zip(taken).filter(|(_, taken)| *taken)
-        {
-            *found = Some(seen.moment());
+        if let Some(found) = &mut self.found {
+            found.iter_mut().zip(taken).filter(|(_, taken)| *taken).for_each(|(found, _)| *found = Some(seen.moment()));
         }
     }
 }

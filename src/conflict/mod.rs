@@ -140,15 +140,21 @@ impl Tracker {
         let Encounter { ego, foe, kind, .. } = *seen.found;
         let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
         let pair = [ego.min(foe), ego.max(foe)];
-        let place = self.events.binary_search_by_key(&pair, |(known, _)| *known).unwrap_or_else(|place| {
-            let extremes = Extremes::of(seen, self.wants_moments, path);
-            make_room(&mut self.events, 1);
-            self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
-            place
-        });
+        let place = match self.events.binary_search_by_key(&pair, |(known, _)| *known) {
+            Ok(place) => {
+                let (_, event) = &mut self.events[place];
+                event.alarm = alarm;
+                event.extremes.take(seen, path);
+                place
+            }
+            Err(place) => {
+                let extremes = Extremes::of(seen, self.wants_moments, path);
+                make_room(&mut self.events, 1);
+                self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
+                place
+            }
+        };
         let (_, event) = &mut self.events[place];
-        event.alarm = alarm;
-        event.extremes.take(seen, path);
         if kind != Kind::RearEnd && event.driven.is_none() {
             let courses = pair.map(|user| {
                 let profile = roster.profile_of(user);

@@ -259,11 +259,12 @@ impl Detector {
     /// Where the road user of a row is on the net, if it is not on its path still or that is not that of its route.
     pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
-        if self.keeps_path(row) && placement.route.is_none() {
-            return;
-        }
         let Row { user, state } = frame.row(row);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
+        let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
+        if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
+            return;
+        }
         let start = Start {
             front: state.front(),
             axis: direction(state.heading),

@@ -81,6 +81,13 @@ impl LanePath {
         !self.route.are_free() && self.route.begin_before(position)
     }
 
+    /// Whether it was laid for the rest of this route from this place in it on.
+    pub fn is_for(&self, net: &Net, route: &[EdgeIndex], position: usize) -> bool {
+        let mut own = self.route.clone();
+        own.advance(net, position);
+        own == Turns::of(net, route, position)
+    }
+
     /// Lays the path anew; without geometry to lay it on, none.
     pub fn lay(&mut self, net: &Net, start: &Start, placement: &Placement) {
         let lane = &net.lanes[placement.lane.0 as usize];
@@ -174,15 +181,17 @@ impl LanePath {
             None => LaneIndex(*self.track.lines.last()?),
         };
         let position = Some(self.track.edge).filter(|edge| *edge != NONE)?;
-        let ahead = self.route.edges(net).skip(position as usize + 1).take(EDGES_AHEAD + 1);
-        let ahead = ahead.collect::<SmallVec<[_; EDGES_AHEAD + 1]>>();
+        let mut ahead = self.route.edges(net).skip(position as usize + 1);
         let lane = &net.lanes[last.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
-        let wanted = ahead.first().copied();
+        let wanted = ahead.next();
         let leads = |link: &&crate::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
         if wanted.is_none() && !inside && !self.route.are_free() {
             return None;
         }
+        // Where there is no choice nobody asks how far each leads.
+        let further = ahead.take(if lane.links.len() < 2 { 0 } else { EDGES_AHEAD });
+        let ahead = wanted.into_iter().chain(further).collect::<SmallVec<[_; EDGES_AHEAD + 1]>>();
         let link = lane.links.iter().filter(leads).fold(None, |best: Option<(&crate::net::Link, Metre)>, link| {
             let worth = if lane.links.len() < 2 {
                 0.0

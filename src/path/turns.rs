@@ -19,7 +19,7 @@ const FREE: EdgeIndex = EdgeIndex(u32::MAX);
 const NOWHERE: EdgeIndex = EdgeIndex(u32::MAX - 1);
 
 /// A route from one of its edges on.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Turns {
     /// That edge.
     begin: EdgeIndex,
