@@ -200,7 +200,7 @@ impl Look for AtOnce {
     fn look(&mut self, Scene { frame, roster, .. }: &Scene) {
         let Self(team, detectors, times) = self;
         times.add(|| {
-            team.each(detectors, [(), ()], |detector, ()| {
+            team.each([(), ()], detectors.iter_mut(), |(), detector| {
                 detector.follow(frame, roster);
                 detector.approach(frame, roster);
                 black_box(detector.detect(frame, roster).len());

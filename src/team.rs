@@ -2,6 +2,7 @@
 
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
+use std::sync::{Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
@@ -10,6 +11,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// A part with fewer road users than this is not worth waking a thread for: of 5,000 in a jam two threads save a tenth of
 /// the step, of 5,000 in platoons two fifths.
 const LEAST_SHARE: usize = 2000;
+
+/// So many parts the work has for each thread: who has to wake, or has a slower core, does fewer of them.
+const PARTS: usize = 8;
 
 /// A helper looks for work so long before it sleeps. To wake it takes the caller up to 70 µs on a virtual machine, as long
 /// as both phases of 50 road users; of a step that takes SUMO longer than this, it is little.
@@ -37,32 +41,47 @@ impl Team {
         1 + self.helpers.as_ref().map_or(0, ThreadPool::current_num_threads)
     }
 
-    /// How many items each thread gets, of so many.
-    pub fn share(&self, count: usize) -> usize {
-        count.div_ceil(self.threads()).max(LEAST_SHARE)
+    /// How many threads so many road users are worth.
+    pub fn busy(&self, count: usize) -> usize {
+        (count / LEAST_SHARE).clamp(1, self.threads())
     }
 
-    /// Each part of the work by a worker of its own; the first is the caller's thread's.
-    pub fn each<'a, Worker: Send + 'a, Part: Send>(
+    /// Each part of the work once, by whichever worker is free; the first is the caller's thread's. It takes parts from
+    /// the front and every other worker from the back: two of them have the same parts in each step, but for those in
+    /// the middle.
+    pub fn each<Worker: Send, Part: Send>(
         &self,
-        workers: impl IntoIterator<Item = &'a mut Worker>,
-        parts: impl IntoIterator<Item = Part>,
+        workers: impl IntoIterator<Item = Worker>,
+        parts: impl DoubleEndedIterator<Item = Part> + Send,
         work: impl Fn(&mut Worker, Part) + Sync,
     ) {
-        let mut jobs = workers.into_iter().zip(parts).peekable();
-        let Some((worker, part)) = jobs.next() else { return };
-        let Some(helpers) = self.helpers.as_ref().filter(|_| jobs.peek().is_some()) else {
-            work(worker, part);
-            return jobs.for_each(|(worker, part)| work(worker, part));
+        let mut workers = workers.into_iter().peekable();
+        let Some(mut own) = workers.next() else { return };
+        let Some(helpers) = self.helpers.as_ref().filter(|_| workers.peek().is_some()) else {
+            return parts.for_each(|part| work(&mut own, part));
         };
+        let parts = Mutex::new(parts);
+        let from_front = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let from_back = || parts.lock().unwrap_or_else(PoisonError::into_inner).next_back();
         helpers.in_place_scope(|scope| {
-            let work = &work;
-            for (worker, part) in jobs {
-                scope.spawn(move |_| work(worker, part));
+            let (work, from_back) = (&work, &from_back);
+            for mut worker in workers {
+                scope.spawn(move |_| {
+                    while let Some(part) = from_back() {
+                        work(&mut worker, part);
+                    }
+                });
             }
-            work(worker, part);
+            while let Some(part) = from_front() {
+                work(&mut own, part);
+            }
         });
     }
+}
+
+/// How many of so many items a part of the work has, for so many busy threads; at least one.
+pub fn share(busy: usize, count: usize) -> usize {
+    count.div_ceil(if busy > 1 { busy * PARTS } else { 1 }).max(1)
 }
 
 /// A thread that does the same to all that it is given, while the caller does something else.
@@ -132,9 +151,16 @@ mod tests {
     #[test]
     fn every_part_is_done_once_by_however_many() {
         for threads in [1, 2, 5] {
-            let mut done = [0; 9];
-            Team::new(threads).each(&mut done, 1..=9, |done, part| *done += part);
-            assert_eq!(done, [1, 2, 3, 4, 5, 6, 7, 8, 9], "by {threads}");
+            for workers in 1..=threads {
+                let (mut sums, mut done) = (vec![0; workers], [0; 99]);
+                let add_up = |sum: &mut &mut usize, (number, done): (usize, &mut usize)| {
+                    **sum += number;
+                    *done += 1;
+                };
+                Team::new(threads).each(&mut sums, done.iter_mut().enumerate(), add_up);
+                let sum = sums.iter().sum::<usize>();
+                assert_eq!((done, sum), ([1; 99], 99 * 49), "by {workers} of {threads}");
+            }
         }
     }
 

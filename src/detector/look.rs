@@ -18,6 +18,7 @@ use crate::precollision::{Area, Circle, Slot};
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
 use crate::table::{add, fill};
+use crate::team::share;
 use crate::units::Metre;
 
 impl Detector {
@@ -98,33 +99,29 @@ impl Detector {
         }
     }
 
-    /// The pairs whose areas meet. Each worker keeps those that it found.
+    /// The pairs whose areas meet, those that each thread has found.
     fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
         let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
-        // One from the front and one from the back: who comes late has fewer, or more, to be compared with.
-        let busy = count.div_ceil(self.team.share(count)).max(1);
-        let half = count.div_ceil(2 * busy);
-        let range = |number: usize| (number * half).min(count)..((number + 1) * half).min(count);
-        let parts = (0..busy).map(|number| [range(number), range(2 * busy - 1 - number)]);
-        self.workers.iter_mut().for_each(|worker| worker.pairs.clear());
-        self.team.each(&mut self.workers, parts, |worker, parts| {
-            let mut found = |a: u32, b: u32| add(&mut worker.pairs, (a, b));
+        let busy = self.team.busy(count);
+        let share = share(busy, count);
+        let parts = (0..count.div_ceil(share)).map(|part| part * share..count.min((part + 1) * share));
+        self.pairs.iter_mut().for_each(Vec::clear);
+        self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
+            let mut found = |a: u32, b: u32| add(pairs, (a, b));
             let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
-            for part in parts {
-                match (all, search.has_round()) {
-                    (true, _) => every_pair(part, &mut found),
-                    (false, false) => search.sweep(part, &mut found),
-                    (false, true) => search.sweep(part, |a, b| {
-                        if area(a).circles_meet(&area(b)) {
-                            found(a, b);
-                        }
-                    }),
-                }
+            match (all, search.has_round()) {
+                (true, _) => every_pair(part, &mut found),
+                (false, false) => search.sweep(part, &mut found),
+                (false, true) => search.sweep(part, |a, b| {
+                    if area(a).circles_meet(&area(b)) {
+                        found(a, b);
+                    }
+                }),
             }
         });
-        let found = self.workers.iter().map(|worker| worker.pairs.len() as u64).sum::<u64>();
+        let found = self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
         self.work.circles_apart += all_pairs(count) - found;
         self.work.pairs += found;
     }

@@ -4,13 +4,13 @@ use std::hint::black_box;
 
 use super::ways::Ways;
 use super::worker::{Found, Met, Worker};
-use super::{LEVEL, Scene, User, Work};
+use super::{LEVEL, Scene, User, Work, look};
 use crate::accurate::{self, Meeting, Mover, side};
-use crate::braking::{self, MuModel};
+use crate::braking::{self, Braking, MuModel};
 use crate::encounter::{Encounter, Kind};
 use crate::frame::State;
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{exact, rectangle};
+use crate::geometry::{cross, rectangle};
 use crate::options::Mode;
 use crate::profile::Category;
 use crate::table::add;
@@ -64,9 +64,9 @@ fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], work: &mut Work) 
 }
 
 impl Scene<'_> {
-    /// The pairs of a worker that would meet.
-    pub(super) fn meet_all(&self, worker: &mut Worker) {
-        let Worker { pairs, work, ways, found } = worker;
+    /// Those of these pairs that would meet.
+    pub(super) fn meet_all(&self, worker: &mut Worker, pairs: &[(u32, u32)]) {
+        let Worker { work, ways, found } = worker;
         for block in pairs.chunks(BLOCK) {
             self.fetch(block);
             for &(a, b) in block {
@@ -182,27 +182,41 @@ impl Scene<'_> {
         first <= second
     }
 
-    /// Whether of two who go straight on one follows the other and keeps its distance, as most pairs do: they are settled
-    /// before anything is laid out that the others need.
+    /// Whether two who go straight on, the same way, surely pass beside each other, or one follows the other and keeps its
+    /// distance, as most pairs do: they are settled before anything is laid out that the others need. Where it is a matter
+    /// of less than the tolerance, no.
     #[inline(always)]
     fn keeps_distance(&self, slots: [u32; 2]) -> bool {
-        let users = slots.map(|slot| self.user(slot));
-        let lengths = users.map(|user| self.stop(user) + self.profile(user).length);
-        // As most pairs that cross do not: that is known before anything is laid out.
-        if !accurate::lead_alike(users.map(|user| &user.axis), lengths)
+        let [a, b] = slots.map(|slot| self.user(slot));
+        let (of_a, of_b) = (self.profile(a), self.profile(b));
+        let lead_alike = |lengths| accurate::lead_alike([&a.axis, &b.axis], lengths);
+        // Most pairs that cross do not, however far they go.
+        if !lead_alike([of_a.length, of_b.length])
+            || a.axis.dot(&b.axis) <= 0.0
             || slots.iter().any(|slot| self.is_obstacle(*slot))
         {
             return false;
         }
-        let (a, b) = (&self.mover(slots[0]), &self.mover(slots[1]));
-        if accurate::drive_opposed(a, b) || !exact::are_far_apart(&a.rectangle, &b.rectangle) {
+        let (state_a, state_b) = (self.state(a), self.state(b));
+        let stops = [look::stop(state_a, of_a), look::stop(state_b, of_b)];
+        if !lead_alike([stops[0] + of_a.length, stops[1] + of_b.length]) {
             return false;
         }
-        let Some((a_is_ego, meeting)) = accurate::meet_in_one_dimension(a, b, &|| true) else { return true };
-        let (ego, foe) = if a_is_ego { (a, b) } else { (b, a) };
-        let sigma = accurate::sigma(meeting.angle());
-        let mu = accurate::mu(self.mu_model(), ego, foe, sigma, self.options.epsilon);
-        accurate::gap(meeting.ego_way, meeting.foe_way, sigma) >= mu
+        let between = state_b.front() - state_a.front();
+        if cross(&a.axis, &between).abs() > (of_a.width + of_b.width) / 2.0 + TOLERANCE {
+            return true;
+        }
+        let along = between.dot(&a.axis);
+        let a = Braking { speed: state_a.speed, brakes: &of_a.brakes };
+        let b = Braking { speed: state_b.speed, brakes: &of_b.brakes };
+        let is_behind = 2.0 * along > of_b.length - of_a.length;
+        let (ahead, stop, ego, foe) = match is_behind {
+            true => (along - of_b.length, stops[0], a, b),
+            false => (-along - of_a.length, stops[1], b, a),
+        };
+        let enough = |way: Metre| ahead > way.max(0.0) + TOLERANCE;
+        let epsilon = self.options.epsilon;
+        enough(stop + epsilon) || enough(braking::mu(self.mu_model(), ego, foe, 1.0, epsilon))
     }
 
     /// Whether the narrow boxes around both ways do not meet.

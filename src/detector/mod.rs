@@ -12,6 +12,7 @@ mod order;
 mod ways;
 mod worker;
 
+use std::iter::repeat_n;
 use std::sync::Arc;
 
 use crate::braking::stopping_distance;
@@ -25,7 +26,7 @@ use crate::path::lanes::{LanePath, Start};
 use crate::precollision::Search;
 use crate::profile::{Category, Profile};
 use crate::scene::Exclusions;
-use crate::team::Team;
+use crate::team::{Team, share};
 use crate::units::{Metre, Radian};
 use look::{Paths, Reach, Sight};
 use order::Order;
@@ -101,6 +102,8 @@ pub struct Detector {
     who_was_there: (u64, usize),
     order: Order,
     unplaced: Vec<u32>,
+    /// Slots of two whose areas meet, those that each thread has found.
+    pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
     team: Team,
 }
@@ -184,6 +187,7 @@ impl Detector {
             who_was_there: (0, 0),
             order: Order::default(),
             unplaced: Vec::new(),
+            pairs: vec![Vec::new()],
             workers: vec![Worker::default()],
             team: Team::default(),
         }
@@ -192,6 +196,7 @@ impl Detector {
     /// Looks at the pairs of a step with so many threads, at least one; the results are the same.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = Team::new(threads);
+        self.pairs.resize_with(self.team.threads(), Vec::new);
         self.workers.resize_with(self.team.threads(), Worker::default);
     }
 
@@ -285,8 +290,10 @@ impl Detector {
             worker.ways.begin(self.search.slots().len());
         }
         let scene = self.scene(frame, roster);
-        let busy = workers.iter_mut().filter(|worker| !worker.pairs.is_empty());
-        self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.meet_all(worker));
+        let busy = self.team.busy(frame.len());
+        let share = share(busy, self.pairs.iter().map(Vec::len).sum());
+        let parts = self.pairs.iter().flat_map(|pairs| pairs.chunks(share));
+        self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs));
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
                 let user = self.search.slots()[slot as usize];
@@ -297,8 +304,10 @@ impl Detector {
             }
         }
         let scene = self.scene(frame, roster);
-        let busy = workers.iter_mut().filter(|worker| !worker.found.unmeasured.is_empty());
-        self.team.each(busy, std::iter::repeat(()), |worker, ()| scene.measure_all(worker));
+        let has_more = |worker: &Worker| !worker.found.unmeasured.is_empty();
+        let busy = workers.iter().filter(|worker| has_more(worker)).count();
+        let parts = workers.iter_mut().filter(|worker| has_more(worker));
+        self.team.each(repeat_n((), busy), parts, |(), worker| scene.measure_all(worker));
         self.order.sort(frame.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);

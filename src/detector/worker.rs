@@ -7,12 +7,10 @@ use crate::encounter::Encounter;
 use crate::geometry::halves::Halves;
 use crate::path::Pose;
 
-/// One thread, its part of the pairs and what it finds among them.
+/// One thread, and what it finds among the pairs that it looks at.
 #[derive(Default)]
 pub(super) struct Worker {
     pub work: Work,
-    /// Slots of two whose areas meet.
-    pub pairs: Vec<(u32, u32)>,
     pub ways: Ways,
     pub found: Found,
 }

@@ -16,6 +16,7 @@ mod part;
 mod place;
 mod slot;
 
+use std::iter::repeat_n;
 use std::ops::Range;
 
 pub use area::{Area, Circle};
@@ -26,7 +27,7 @@ pub use slot::Slot;
 
 use crate::geometry::{Bounds, Vector};
 use crate::table::{fill, make_room};
-use crate::team::Team;
+use crate::team::{Team, share};
 use crate::units::Metre;
 
 /// A box larger than this many mean ones is compared with everybody: it would make all strips high.
@@ -44,9 +45,9 @@ const SPARE_HEIGHT: f64 = 2.0;
 /// many moves per road user.
 const MOVES: usize = 32;
 
-/// For so many steps everybody stays in its slot, as long as they are as many: who has moved meanwhile is hardly further
-/// from those next to it in memory, and what its slot knows of it holds.
-const STAY: u32 = 16;
+/// Until road users have changed places so often, on average, everybody stays in its slot, as long as they are as many: who
+/// has moved meanwhile is hardly further from those next to it in memory, and what its slot knows of it holds.
+const STAY: usize = 128;
 
 /// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
 const BLOCK: usize = 64;
@@ -61,8 +62,8 @@ pub struct Search<S> {
     /// Whether any area is smaller than its box.
     has_round: bool,
     slots: Vec<S>,
-    /// For so many steps everybody has had its slot.
-    since: u32,
+    /// How often any two have changed places since slots were given.
+    moved: usize,
     /// Which items have a slot, a bit each; only while slots are given.
     given: Vec<u64>,
     in_strips: usize,
@@ -112,15 +113,15 @@ impl<S: Slot> Search<S> {
         see: impl Fn(u32) -> Seen + Sync,
         area: impl Fn(&Seen, &mut S) -> Area + Sync,
     ) {
-        if self.places.len() != count || self.since >= STAY || !are_same {
+        if self.places.len() != count || self.moved >= STAY * count || !are_same {
             self.hold(count, item_of);
         }
-        self.since += 1;
+        let busy = team.busy(count);
+        let share = share(busy, count);
         self.parts.clear();
-        self.parts.resize(team.threads(), Part::EMPTY);
-        let share = team.share(count);
-        let parts = self.boxes.chunks_mut(share).zip(self.slots.chunks_mut(share));
-        team.each(&mut self.parts, parts, |part, (boxes, slots)| {
+        self.parts.resize(count.div_ceil(share), Part::EMPTY);
+        let parts = self.parts.iter_mut().zip(self.boxes.chunks_mut(share)).zip(self.slots.chunks_mut(share));
+        team.each(repeat_n((), busy), parts, |(), ((part, boxes), slots)| {
             let mut all = Part::EMPTY;
             let mut block = [Seen::default(); BLOCK];
             for (boxes, slots) in boxes.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
@@ -162,7 +163,7 @@ impl<S: Slot> Search<S> {
             slot.give(place.slot);
             place.slot = number;
         }
-        self.since = 0;
+        self.moved = 0;
     }
 
     /// Sorts the areas of now.
@@ -217,19 +218,27 @@ impl<S: Slot> Search<S> {
             self.places.iter_mut().for_each(|place| place.follow(&self.boxes, per_metre));
         }
         // In another order the slots would be anywhere.
-        self.since = STAY;
+        self.moved = usize::MAX;
         self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
     /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
     /// few moves; whether it did.
     fn is_nearly_sorted(&mut self, team: &Team) -> bool {
-        let (boxes, per_metre, share) = (&self.boxes, 1.0 / self.strip_height, team.share(self.places.len()));
-        team.each(&mut self.parts, self.places.chunks_mut(share), |part, places| {
+        let (boxes, per_metre, count) = (&self.boxes, 1.0 / self.strip_height, self.places.len());
+        let busy = team.busy(count);
+        let share = share(busy, count);
+        self.parts.clear();
+        self.parts.resize(count.div_ceil(share), Part::EMPTY);
+        let parts = self.parts.iter_mut().zip(self.places.chunks_mut(share));
+        team.each(repeat_n((), busy), parts, |(), (part, places)| {
             places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
-            let mut moves = MOVES * places.len();
+            let most = MOVES * places.len();
+            let mut moves = most;
             part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
+            part.moved = most - moves;
         });
+        self.moved += self.parts.iter().map(|part| part.moved).sum::<usize>();
         if self.parts.iter().any(|part| !part.sorted) {
             return false;
         }

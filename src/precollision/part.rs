@@ -16,10 +16,13 @@ pub(super) struct Part {
     /// Whether one is smaller than its box.
     pub round: bool,
     pub sorted: bool,
+    /// How often two changed places while they were sorted.
+    pub moved: usize,
 }
 
 impl Part {
-    pub const EMPTY: Self = Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true };
+    pub const EMPTY: Self =
+        Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true, moved: 0 };
 
     pub fn include(&mut self, area: &Area) {
         let size = area.bounds.size();
@@ -36,6 +39,7 @@ impl Part {
             far: self.far || other.far,
             round: self.round || other.round,
             sorted: self.sorted && other.sorted,
+            moved: self.moved + other.moved,
         }
     }
 }
