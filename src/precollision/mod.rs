@@ -11,39 +11,27 @@
 //! compares it with all pairs, a grid, a plain sweep, parry2d's and rstar's trees.
 
 mod area;
+mod coarse;
 mod near;
 mod part;
 mod place;
 mod slot;
+mod strips;
 
 use std::iter::repeat_n;
 use std::ops::Range;
 
 pub use area::{Area, Circle};
+use coarse::Coarse;
 use near::Near;
-use part::{Part, is_far};
-use place::{Place, insert, length};
+use part::Part;
+use place::{Place, length};
 pub use slot::Slot;
 
-use crate::geometry::{Bounds, Vector};
+use crate::geometry::Vector;
 use crate::table::{fill, make_room};
 use crate::team::{Team, share};
 use crate::units::Metre;
-
-/// A box larger than this many mean ones is compared with everybody: it would make all strips high.
-const LARGE: f64 = 2.5;
-/// No more than one in so many is: that would be all pairs again. Where more are that large, strips are higher.
-const SHARE_OF_LARGE: usize = 1000;
-/// Who is further from the origin than this is compared with everybody, in m; SUMO's own invalid value is −2³⁰.
-const FAR: Metre = 1e9;
-/// No strip is lower than this, in m.
-const LOWEST_STRIP: Metre = 1.0;
-
-/// Strips stay as they are as long as they are at most this many times as high as they have to be.
-const SPARE_HEIGHT: f64 = 2.0;
-/// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
-/// many moves per road user.
-const MOVES: usize = 32;
 
 /// Until road users have changed places so often, on average, everybody stays in its slot, as long as they are as many: who
 /// has moved meanwhile is hardly further from those next to it in memory, and what its slot knows of it holds.
@@ -57,8 +45,8 @@ const BLOCK: usize = 64;
 pub struct Search<S> {
     /// Those in strips, sorted; then the large ones.
     places: Vec<Place>,
-    /// By slot, the box around its area.
-    boxes: Vec<Bounds>,
+    /// By slot, a box around its area.
+    boxes: Vec<Coarse>,
     /// Whether any area is smaller than its box.
     has_round: bool,
     slots: Vec<S>,
@@ -82,7 +70,7 @@ impl Search<u32> {
         self.lay(areas.len(), &Team::default(), true, item_of, |_| (), |(), item| areas[*item as usize]);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (self.slots[a as usize], self.slots[b as usize]);
-            if areas[a as usize].circles_meet(&areas[b as usize]) {
+            if areas[a as usize].meets(&areas[b as usize]) {
                 pairs.push((a.min(b), a.max(b)));
             }
         });
@@ -128,8 +116,9 @@ impl<S: Slot> Search<S> {
                 block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));
                 for ((seen, slot), laid) in block.iter().zip(slots).zip(boxes) {
                     let area = area(seen, slot);
-                    all.include(&area);
-                    *laid = area.bounds;
+                    *laid = Coarse::from(&area.bounds);
+                    all.include(laid);
+                    all.round |= area.is_round();
                 }
             }
             *part = all;
@@ -158,7 +147,7 @@ impl<S: Slot> Search<S> {
         let others = (0..count as u32).filter(|item| is_first(*item));
         places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
         fill(slots, count, S::default());
-        fill(boxes, count, Bounds::EMPTY);
+        fill(boxes, count, Coarse::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
             slot.give(place.slot);
             place.slot = number;
@@ -166,123 +155,33 @@ impl<S: Slot> Search<S> {
         self.moved = 0;
     }
 
-    /// Sorts the areas of now.
-    fn sort(&mut self, team: &Team) {
-        let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
-        (self.largest, self.has_round) = (all.largest, all.round);
-        let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
-        while limit < all.largest.max().min(FAR) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
-            limit *= 2.0;
-        }
-        if all.far || all.largest.max() > limit {
-            self.part_large(limit);
-        }
-        self.sort_in_strips(team);
-        self.in_strips = self.places.len();
-        self.places.append(&mut self.large);
-    }
-
-    /// Whether so many are larger than this.
-    fn are_large(&self, limit: Metre, many: usize) -> bool {
-        self.boxes.iter().filter(|bounds| bounds.size().max() > limit).nth(many - 1).is_some()
-    }
-
-    /// Sets aside what is larger than this, and what is too far away for a strip. The others stay in their order.
-    fn part_large(&mut self, limit: Metre) {
-        let mut largest = Vector::zeros();
-        let Self { places, boxes, large, .. } = self;
-        places.retain(|place| {
-            let bounds = &boxes[place.slot as usize];
-            let size = bounds.size();
-            if size.max() <= limit && !is_far(bounds) {
-                largest = size.sup(&largest);
-                return true;
-            }
-            large.push(*place);
-            false
-        });
-        self.largest = largest;
-    }
-
-    /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
-    /// ones.
-    fn sort_in_strips(&mut self, team: &Team) {
-        let least = self.largest.y.max(LOWEST_STRIP);
-        if (least..=SPARE_HEIGHT * least).contains(&self.strip_height) {
-            if self.is_nearly_sorted(team) {
-                return;
-            }
-        } else {
-            self.strip_height = SPARE_HEIGHT.sqrt() * least;
-            let per_metre = 1.0 / self.strip_height;
-            self.places.iter_mut().for_each(|place| place.follow(&self.boxes, per_metre));
-        }
-        // In another order the slots would be anywhere.
-        self.moved = usize::MAX;
-        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
-    }
-
-    /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
-    /// few moves; whether it did.
-    fn is_nearly_sorted(&mut self, team: &Team) -> bool {
-        let (boxes, per_metre, count) = (&self.boxes, 1.0 / self.strip_height, self.places.len());
-        let busy = team.busy(count);
-        let share = share(busy, count);
-        self.parts.clear();
-        self.parts.resize(count.div_ceil(share), Part::EMPTY);
-        let parts = self.parts.iter_mut().zip(self.places.chunks_mut(share));
-        team.each(repeat_n((), busy), parts, |(), (part, places)| {
-            places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
-            let most = MOVES * places.len();
-            let mut moves = most;
-            part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
-            part.moved = most - moves;
-        });
-        self.moved += self.parts.iter().map(|part| part.moved).sum::<usize>();
-        if self.parts.iter().any(|part| !part.sorted) {
-            return false;
-        }
-        let mut moves = MOVES * share;
-        for bound in (share..self.places.len()).step_by(share) {
-            // Of a sorted part only its beginning may belong before it.
-            let mut place = bound;
-            while place < self.places.len() && self.places[place].is_before(&self.places[place - 1]) {
-                if !insert(&mut self.places, place, &mut moves) {
-                    return false;
-                }
-                place += 1;
-            }
-        }
-        true
-    }
-
     /// From each of these of the sorted places ahead in its own strip, and to both sides in the next; from a large one
     /// at everybody before it. `found` gets the slots of two whose boxes meet.
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
-        let bounds = |place: &Place| &self.boxes[place.slot as usize];
+        let laid = |place: &Place| &self.boxes[place.slot as usize];
         let mut near = Near::new(&self.boxes);
         let mut start = from.start;
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
             let (own, others) = in_strips.split_at(start + length(&in_strips[start..], strip));
             let above = &others[..length(others, strip + 1)];
-            let reaches = |a: &Place| bounds(a).low.x - self.largest.x;
-            let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
+            let reaches = |a: &Place| f64::from(a.begin) - self.largest.x;
+            let mut behind = above.partition_point(|b| f64::from(b.begin) < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
-                let Bounds { high, .. } = *bounds(a);
-                near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= high.x), &mut found);
+                let [end, _] = laid(a).high();
+                near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
                 let begin = reaches(a);
-                behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
-                near.note(a, above[behind..].iter().take_while(|b| b.begin <= high.x), &mut found);
+                behind += above[behind..].iter().take_while(|b| f64::from(b.begin) < begin).count();
+                near.note(a, above[behind..].iter().take_while(|b| b.begin <= end), &mut found);
             }
             start = own.len();
         }
         near.tell(&mut found);
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
-            let meets = |b: &&Place| bounds(a).meet(bounds(b));
+            let meets = |b: &&Place| laid(a).meets(laid(b));
             self.places[..place].iter().filter(meets).for_each(|b| found(a.slot, b.slot));
         }
     }
@@ -291,7 +190,7 @@ impl<S: Slot> Search<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Point;
+    use crate::geometry::{Bounds, Point};
     use proptest::prelude::*;
 
     fn all_pairs(areas: &[Area]) -> Vec<(u32, u32)> {

@@ -1,21 +1,21 @@
 //! Notes of pairs that are near each other: whose boxes meet is a matter of chance, and a processor that had to guess it would
 //! guess wrong for each road user. So nothing depends on it before there are many.
 
+use super::coarse::Coarse;
 use super::place::Place;
-use crate::geometry::Bounds;
 
 /// So many pairs are noted before they are told.
 const NOTED: usize = 64;
 
 /// Slots of two whose boxes meet.
 pub(super) struct Near<'a> {
-    boxes: &'a [Bounds],
+    boxes: &'a [Coarse],
     pairs: [(u32, u32); NOTED],
     count: usize,
 }
 
 impl<'a> Near<'a> {
-    pub(super) fn new(boxes: &'a [Bounds]) -> Self {
+    pub(super) fn new(boxes: &'a [Coarse]) -> Self {
         Self { boxes, pairs: [(0, 0); NOTED], count: 0 }
     }
 
@@ -27,13 +27,13 @@ impl<'a> Near<'a> {
         others: impl Iterator<Item = &'b Place>,
         found: &mut impl FnMut(u32, u32),
     ) {
-        let bounds = &self.boxes[a.slot as usize];
+        let laid = self.boxes[a.slot as usize];
         for b in others {
             if self.count == NOTED {
                 self.tell(found);
             }
             self.pairs[self.count] = (a.slot, b.slot);
-            self.count += usize::from(bounds.meet(&self.boxes[b.slot as usize]));
+            self.count += usize::from(laid.meets(&self.boxes[b.slot as usize]));
         }
     }
 

@@ -1,7 +1,8 @@
 //! What threads learn of the areas while they lay them, each of its part: how large, how far away, whether round.
 
-use super::{Area, FAR};
-use crate::geometry::{Bounds, Vector};
+use super::coarse::Coarse;
+use super::strips::FAR;
+use crate::geometry::Vector;
 use crate::units::Metre;
 
 /// What one thread knows of its part of the places.
@@ -24,12 +25,16 @@ impl Part {
     pub const EMPTY: Self =
         Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true, moved: 0 };
 
-    pub fn include(&mut self, area: &Area) {
-        let size = area.bounds.size();
+    /// Takes a box in; of one too far away only that is known.
+    #[inline(always)]
+    pub fn include(&mut self, laid: &Coarse) {
+        if laid.is_beyond(FAR) {
+            self.far = true;
+            return;
+        }
+        let size = laid.size();
         self.sum += size.max().clamp(0.0, 1e3);
         self.largest = self.largest.sup(&size);
-        self.far |= is_far(&area.bounds);
-        self.round |= area.is_round();
     }
 
     pub fn join(self, other: &Self) -> Self {
@@ -42,9 +47,4 @@ impl Part {
             moved: self.moved + other.moved,
         }
     }
-}
-
-/// Whether a box is too far away for a strip.
-pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
-    low.x.min(low.y) <= -FAR || high.x.max(high.y) >= FAR
 }

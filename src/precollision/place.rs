@@ -1,26 +1,26 @@
 //! Places along x, in strips: what is sorted.
 
-use crate::geometry::Bounds;
-use crate::units::Metre;
+use super::coarse::Coarse;
 
 /// Where a box begins: what is sorted, while the boxes stay in their slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// Its lowest x.
-    pub begin: Metre,
+    /// Its lowest x, in m.
+    pub begin: f32,
     pub strip: i32,
     pub slot: u32,
 }
 
 impl Place {
     /// Where the box of its slot is now, and in which strip.
-    pub fn follow(&mut self, boxes: &[Bounds], per_metre: f64) {
-        let Bounds { low, high } = boxes[self.slot as usize];
-        let strips = (low.y + high.y) * 0.5 * per_metre;
+    pub fn follow(&mut self, boxes: &[Coarse], per_metre: f64) {
+        let laid = &boxes[self.slot as usize];
+        let ([begin, low], [_, high]) = (laid.low(), laid.high());
+        let strips = (f64::from(low) + f64::from(high)) * 0.5 * per_metre;
         // What `floor` says, without a call where the processor has no instruction for it.
         let towards_0 = strips as i32;
         self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
-        self.begin = low.x;
+        self.begin = begin;
     }
 
     pub fn is_before(&self, other: &Self) -> bool {
