@@ -145,7 +145,7 @@ impl<S: Slot> Search<S> {
         });
         make_room(places, count - places.len());
         let others = (0..count as u32).filter(|item| is_first(*item));
-        places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
+        places.extend(others.map(|item| Place { begin: 0, strip: 0, slot: item }));
         fill(slots, count, S::default());
         fill(boxes, count, Coarse::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
@@ -166,14 +166,14 @@ impl<S: Slot> Search<S> {
             let strip = in_strips[start].strip;
             let (own, others) = in_strips.split_at(start + length(&in_strips[start..], strip));
             let above = &others[..length(others, strip + 1)];
-            let reaches = |a: &Place| f64::from(a.begin) - self.largest.x;
-            let mut behind = above.partition_point(|b| f64::from(b.begin) < reaches(&own[start]));
+            let reaches = |a: &Place| Coarse::before(a.begin, self.largest.x);
+            let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
                 let [end, _] = laid(a).high();
                 near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
                 let begin = reaches(a);
-                behind += above[behind..].iter().take_while(|b| f64::from(b.begin) < begin).count();
+                behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
                 near.note(a, above[behind..].iter().take_while(|b| b.begin <= end), &mut found);
             }
             start = own.len();

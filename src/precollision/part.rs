@@ -1,7 +1,6 @@
 //! What threads learn of the areas while they lay them, each of its part: how large, how far away, whether round.
 
 use super::coarse::Coarse;
-use super::strips::FAR;
 use crate::geometry::Vector;
 use crate::units::Metre;
 
@@ -28,7 +27,7 @@ impl Part {
     /// Takes a box in; of one too far away only that is known.
     #[inline(always)]
     pub fn include(&mut self, laid: &Coarse) {
-        if laid.is_beyond(FAR) {
+        if laid.is_far() {
             self.far = true;
             return;
         }

@@ -5,8 +5,8 @@ use super::coarse::Coarse;
 /// Where a box begins: what is sorted, while the boxes stay in their slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// Its lowest x, in m.
-    pub begin: f32,
+    /// Its lowest x, in its own unit.
+    pub begin: i32,
     pub strip: i32,
     pub slot: u32,
 }
@@ -15,12 +15,11 @@ impl Place {
     /// Where the box of its slot is now, and in which strip.
     pub fn follow(&mut self, boxes: &[Coarse], per_metre: f64) {
         let laid = &boxes[self.slot as usize];
-        let ([begin, low], [_, high]) = (laid.low(), laid.high());
-        let strips = (f64::from(low) + f64::from(high)) * 0.5 * per_metre;
+        let strips = laid.middle() * per_metre;
         // What `floor` says, without a call where the processor has no instruction for it.
         let towards_0 = strips as i32;
         self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
-        self.begin = begin;
+        [self.begin, _] = laid.low();
     }
 
     pub fn is_before(&self, other: &Self) -> bool {

@@ -3,6 +3,7 @@
 
 use std::iter::repeat_n;
 
+use super::coarse::FURTHEST;
 use super::part::Part;
 use super::place::insert;
 use super::{Search, Slot};
@@ -14,8 +15,6 @@ use crate::units::Metre;
 const LARGE: f64 = 2.5;
 /// No more than one in so many is: that would be all pairs again. Where more are that large, strips are higher.
 const SHARE_OF_LARGE: usize = 1000;
-/// Who is further from the origin than this is compared with everybody, in m; SUMO's own invalid value is −2³⁰.
-pub(super) const FAR: Metre = 1e9;
 /// No strip is lower than this, in m.
 const LOWEST_STRIP: Metre = 1.0;
 
@@ -31,7 +30,7 @@ impl<S: Slot> Search<S> {
         let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
         (self.largest, self.has_round) = (all.largest, all.round);
         let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
-        while limit < all.largest.max().min(FAR) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
+        while limit < all.largest.max().min(FURTHEST) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
             limit *= 2.0;
         }
         if all.far || all.largest.max() > limit {
@@ -54,7 +53,7 @@ impl<S: Slot> Search<S> {
         places.retain(|place| {
             let laid = &boxes[place.slot as usize];
             let size = laid.size();
-            if size.max() <= limit && !laid.is_beyond(FAR) {
+            if size.max() <= limit && !laid.is_far() {
                 largest = size.sup(&largest);
                 return true;
             }
@@ -79,7 +78,7 @@ impl<S: Slot> Search<S> {
         }
         // In another order the slots would be anywhere.
         self.moved = usize::MAX;
-        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
+        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.cmp(&b.begin)));
     }
 
     /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
