@@ -8,9 +8,9 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// A part with fewer road users than this is not worth waking a thread for: of 5,000 in a jam two threads save a tenth of
-/// the step, of 5,000 in platoons two fifths.
-const LEAST_SHARE: usize = 2000;
+/// Fewer road users than this are not worth waking a thread for: of 5,000 in a jam two threads save nothing of the step, of
+/// 5,000 in platoons a quarter, of 5,000 anywhere two fifths.
+const LEAST_SHARE: usize = 2500;
 
 /// So many parts the work has for each thread: who has to wake, or has a slower core, does fewer of them.
 const PARTS: usize = 8;

@@ -6,7 +6,7 @@ use crate::units::Metre;
 /// So fine that a box is hardly larger than without, so coarse that any projection of the earth has room.
 const PER_METRE: f64 = 64.0;
 
-/// What is further from the origin along x or y, is taken for as far as this, in m; nothing on earth is.
+/// What is further from the origin than this, along x or y, counts as being there, in m; nothing on earth is.
 pub(super) const FURTHEST: Metre = 3.3e7;
 
 /// A box that holds another one, and is larger by less than 1.6 cm on each side.
@@ -42,9 +42,9 @@ impl Coarse {
         Vector::new(high[0] - low[0], high[1] - low[1]) / PER_METRE
     }
 
-    /// What lies so much before a place along an axis, both in the box's own unit but for the way.
+    /// The place so far before another one along an axis, both in a box's own unit; none is before the first there is.
     pub fn before(place: i32, way: Metre) -> i32 {
-        place.saturating_sub((way * PER_METRE) as i32)
+        (f64::from(place) - way * PER_METRE) as i32
     }
 
     /// Whether a side is as far from the origin as sides get.

@@ -1,10 +1,10 @@
-//! What threads learn of the areas while they lay them, each of its part: how large, how far away, whether round.
+//! What is learnt of a part of the areas while they are laid, and sorted: how large, how far away, whether round.
 
 use super::coarse::Coarse;
 use crate::geometry::Vector;
 use crate::units::Metre;
 
-/// What one thread knows of its part of the places.
+/// What is known of a part of the places.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     /// Sum of the sizes.
