@@ -224,7 +224,7 @@ fn a_kind_of_which_no_two_come_within_reach_is_left_out_and_said() {
 fn any_number_of_threads_finds_the_same() {
     let (options, mut roster, mut frame) = (options(), Roster::default(), Frame::default());
     let profile = roster.profile(car(&options)).unwrap();
-    let users = (0..9000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
+    let users = (0..21_000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detectors = [1, 2, 3, 8].map(|threads| {
         let mut detector = Detector::new(&options, None);
         detector.set_threads(threads);
@@ -234,9 +234,9 @@ fn any_number_of_threads_finds_the_same() {
         frame.begin(f64::from(step));
         // Prime numbers, so that everybody goes another way and the rows are in no order of place.
         for (number, user) in (0_u32..).zip(&users) {
-            let of = |prime: u32| f64::from(number * prime % 8999) / 8999.0;
+            let of = |prime: u32| f64::from(number * prime % 20_983) / 20_983.0;
             let way = f64::from(step) * 10.0;
-            let (x, y) = (of(1709) * 2000.0 + way * of(7), of(2903) * 2000.0);
+            let (x, y) = (of(1709) * 3000.0 + way * of(7), of(2903) * 3000.0);
             frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
         }
         let [alone, others @ ..] = &mut detectors;

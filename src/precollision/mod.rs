@@ -298,6 +298,13 @@ mod tests {
     }
 
     #[test]
+    fn however_long_boxes_are_none_is_too_far_ahead_to_meet() {
+        let [long, short] = [(0.0, 0.0, 3e7), (2.9e7, -1.0, 1.0)].map(|(x, y, radius)| Circle { x, y, radius }.into());
+        let areas = [long, long, long, short];
+        assert_eq!(found(&mut Search::default(), &areas, &[0, 1, 2, 3], 1), all_pairs(&areas));
+    }
+
+    #[test]
     fn an_absurd_radius_costs_no_memory() {
         let areas = [Circle { x: 0.0, y: 0.0, radius: 1e300 }, Circle { x: 1e9, y: 0.0, radius: 1.0 }].map(Area::from);
         assert_eq!(found(&mut Search::default(), &areas, &[0, 1], 1), [(0, 1)]);

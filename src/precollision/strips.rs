@@ -27,7 +27,7 @@ const MOVES: usize = 32;
 impl<S: Slot> Search<S> {
     /// Sorts the areas of now.
     pub(super) fn sort(&mut self, team: &Team) {
-        let (all, count) = (self.parts.iter().fold(Part::EMPTY, Part::join), self.places.len());
+        let (all, count) = (self.all_parts(), self.places.len());
         (self.largest, self.has_round) = (all.largest, all.round);
         let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
         while limit < all.largest.max().min(FURTHEST) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
@@ -39,6 +39,10 @@ impl<S: Slot> Search<S> {
         self.sort_in_strips(team);
         self.in_strips = self.places.len();
         self.places.append(&mut self.large);
+    }
+
+    fn all_parts(&self) -> Part {
+        self.parts.iter().fold(Part::EMPTY, Part::join)
     }
 
     /// Whether so many are larger than this.
@@ -97,8 +101,9 @@ impl<S: Slot> Search<S> {
             part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
             part.moved = most - moves;
         });
-        self.moved += self.parts.iter().map(|part| part.moved).sum::<usize>();
-        if self.parts.iter().any(|part| !part.sorted) {
+        let all = self.all_parts();
+        self.moved += all.moved;
+        if !all.sorted {
             return false;
         }
         let mut moves = MOVES * share;
