@@ -17,12 +17,14 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use closecall::detector::Detector;
-use closecall::frame::{Frame, Roster, State, UserIndex};
+use closecall::exclusion::Exclusion;
+use closecall::frame::{Frame, State};
 use closecall::options::Options;
 use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
-use closecall::scene::Exclusion;
+use closecall::roster::{Roster, UserIndex};
 use closecall::team::Team;
+
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 
 /// With more road users than this parry2d and all pairs are not asked.

@@ -6,9 +6,10 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use closecall::geometry::contact::{distance, plainly_touches, touches};
 use closecall::geometry::outline::Outline;
-use closecall::geometry::rectangle::{Rectangle, distance, plainly_touches, touches};
-use closecall::geometry::sweep::{slide, translation};
+use closecall::geometry::rectangle::Rectangle;
+use closecall::geometry::separating_axes::{slide, translation};
 use closecall::geometry::{Point, Vector};
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::query::{self, ShapeCastOptions};

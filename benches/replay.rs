@@ -18,7 +18,8 @@ use std::time::Instant;
 use closecall::net::Net;
 use closecall::options::Options;
 use closecall::replay::Replay;
-use closecall::replay::recording::{Recording, Step};
+use closecall::replay::recording::Recording;
+use closecall::replay::rows::Step;
 use closecall::run::Run;
 
 /// Parallel roads, so far apart that their traffic never meets.

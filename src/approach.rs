@@ -3,7 +3,8 @@
 use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::{Step, TOLERANCE, slide};
+use crate::geometry::separating_axes::slide;
+use crate::geometry::sweep::{Step, TOLERANCE};
 use crate::geometry::{Point, Vector};
 use crate::path::Pose;
 use crate::units::{Metre, MetrePerSecond, Second};

@@ -4,7 +4,8 @@ use crate::approach::{Course, HORIZON};
 use crate::geometry::Vector;
 use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::{TOLERANCE, normals};
+use crate::geometry::separating_axes::normals;
+use crate::geometry::sweep::TOLERANCE;
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// At so many moments the foe is looked at before the worst is narrowed down: before they would touch, and from then on.

@@ -4,48 +4,9 @@ use std::path::{Path, PathBuf};
 
 use quick_xml::Reader;
 use quick_xml::events::Event;
-use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 
 use crate::net::Net;
 use crate::{Error, Result};
-
-/// One input file.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Input {
-    /// Its path as it was given.
-    pub path: PathBuf,
-    /// Its SHA-256 in hexadecimal digits.
-    pub sha256: String,
-}
-
-impl Input {
-    /// Reads a file for its hash.
-    ///
-    /// # Errors
-    /// [`Error::File`] where it cannot be read.
-    pub fn of(path: &Path) -> Result<Self> {
-        let fail = |source| Error::file(path, source);
-        let mut file = std::fs::File::open(path).map_err(fail)?;
-        let mut hasher = Sha256::new();
-        std::io::copy(&mut file, &mut HashWriter(&mut hasher)).map_err(fail)?;
-        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        Ok(Self { path: path.to_owned(), sha256 })
-    }
-}
-
-struct HashWriter<'a>(&'a mut Sha256);
-
-impl std::io::Write for HashWriter<'_> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        self.0.update(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
-}
 
 /// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only in
 /// mid-run.
@@ -53,7 +14,7 @@ impl std::io::Write for HashWriter<'_> {
 /// # Errors
 /// An error that names the file, the line and what is wrong.
 pub fn check_xml(path: &Path) -> Result<()> {
-    let mut reader = Reader::from_reader(crate::net::open(path)?);
+    let mut reader = Reader::from_reader(crate::input_file::open(path)?);
     reader.config_mut().check_end_names = true;
     let mut buffer = Vec::new();
     let mut depth = 0_i64;
@@ -107,7 +68,7 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
         ("a", "additional-files"),
     ];
     let folder = configuration.parent().unwrap_or(Path::new(""));
-    let mut reader = Reader::from_reader(crate::net::open(configuration)?);
+    let mut reader = Reader::from_reader(crate::input_file::open(configuration)?);
     let mut buffer = Vec::new();
     let mut files = Vec::new();
     loop {
@@ -130,7 +91,7 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
 
 fn line_of(path: &Path, position: u64) -> Result<u64> {
     use std::io::Read;
-    let before = crate::net::open(path)?.take(position).bytes();
+    let before = crate::input_file::open(path)?.take(position).bytes();
     Ok(1 + before.filter(|byte| matches!(byte, Ok(b'\n'))).count() as u64)
 }
 
@@ -144,12 +105,6 @@ mod tests {
         let result = action(&path);
         std::fs::remove_file(&path).unwrap();
         result
-    }
-
-    #[test]
-    fn the_hash_is_that_of_sha256sum() {
-        let hash = with_file("hash", "abc", |path| Input::of(path).unwrap().sha256);
-        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
     }
 
     #[test]

@@ -10,10 +10,10 @@ use std::path::{Path, PathBuf};
 
 use crate::conflict::Conflict;
 use crate::encounter::Encounter;
-use crate::frame::Roster;
 use crate::geometry::Point;
 use crate::net::Net;
 use crate::record::RunRecord;
+use crate::roster::Roster;
 use crate::units::{Metre, Second};
 use crate::{Error, Result, decimal};
 

@@ -1,7 +1,7 @@
 //! Surrogate safety measures of a pair in one step: ΔV, severity. TTC is in [`crate::approach`], DRAC in
 //! [`crate::avoidance`], PET in [`crate::conflict`].
 
-use crate::encounter::Severity;
+use crate::kind::Severity;
 use crate::options::Options;
 use crate::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 

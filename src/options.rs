@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use crate::braking::MuModel;
-use crate::scene::Exclusion;
+use crate::exclusion::Exclusion;
 use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 

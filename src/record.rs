@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::inputs::Input;
+use crate::input_hash::Input;
 use crate::options::Options;
 use crate::summary::Summary;
 use crate::units::Second;

@@ -5,24 +5,10 @@
 
 use std::fmt;
 
-use clap::ValueEnum;
 use serde::Serialize;
 
-use crate::detector::Detector;
+use crate::exclusion::Exclusion;
 use crate::options::Options;
-
-/// Something that a scene may not need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Exclusion {
-    /// Pairs whose areas do not meet: phase 1. Kept, every pair goes on to phase 2.
-    CirclesApart,
-    /// Accurate tests of pairs whose ways lie in boxes that do not meet.
-    WaysApart,
-    /// Sweeps of pairs that drive in line, for which one dimension is enough.
-    InLine,
-    /// Asking for the lane of who is still on the path laid before.
-    KnownPaths,
-}
 
 /// What is left out of a run where the scene does not need it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -76,26 +62,4 @@ impl fmt::Display for LeftOut {
             None => write!(f, "{what}: left out ({why})"),
         }
     }
-}
-
-/// What the detector did without.
-pub fn left_out(detector: &Detector) -> Vec<LeftOut> {
-    let work = detector.work();
-    let tests = [
-        ("frontal", "no opposing ways within reach", work.frontal == 0),
-        ("side", "no crossing or bending ways within reach", work.side + work.swept == 0),
-    ];
-    let unneeded = tests.into_iter().filter(|(.., unneeded)| *unneeded && detector.leaves_out().in_line);
-    let counted = [
-        ("pairs", "too far apart to meet before both stand", work.circles_apart),
-        ("pairs", "both stand", work.both_stand),
-        ("pairs", "more than 2.5 m apart in height", work.other_level),
-        ("pairs", "both are persons", work.both_persons),
-        ("accurate tests", "the boxes around both ways do not meet", work.ways_apart),
-        ("sweeps", "both drive straight on in parallel: one dimension is enough", work.in_line),
-        ("lanes asked for", "still on the path laid before, and nobody's route changes", work.known_paths),
-    ];
-    let done_without = counted.into_iter().filter(|(_, _, times)| *times > 0);
-    let done_without = done_without.map(|(what, why, times)| LeftOut { what, why, times: Some(times) });
-    unneeded.map(|(what, why, _)| LeftOut::altogether(what, why)).chain(done_without).collect()
 }

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::conflict::Conflict;
-use crate::encounter::{Kind, Severity};
+use crate::kind::{Kind, Severity};
 use crate::scene::LeftOut;
 use crate::units::Second;
 

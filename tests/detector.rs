@@ -3,12 +3,13 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
 use closecall::detector::Detector;
-use closecall::encounter::{Encounter, Kind};
-use closecall::frame::{Frame, Roster, State, UserIndex};
+use closecall::encounter::Encounter;
+use closecall::exclusion::Exclusion;
+use closecall::frame::{Frame, State};
+use closecall::kind::Kind;
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::profile::Profile;
-use closecall::scene;
-use closecall::scene::Exclusion;
+use closecall::roster::{Roster, UserIndex};
 use closecall::sumo_type::SumoType;
 use proptest::prelude::*;
 
@@ -206,7 +207,7 @@ fn a_kind_of_which_no_two_come_within_reach_is_left_out_and_said() {
     let left_out = |options: &Options, foe| {
         let mut detector = Detector::new(options, None);
         look(&mut detector, &[(0.0, 0.0, 0.0, 20.0), foe]);
-        let altogether = scene::left_out(&detector).into_iter().filter(|entry| entry.times.is_none());
+        let altogether = detector.left_out().into_iter().filter(|entry| entry.times.is_none());
         altogether.map(|entry| entry.to_string()).collect::<Vec<_>>()
     };
     let frontal = "frontal: left out (no opposing ways within reach)";

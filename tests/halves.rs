@@ -4,7 +4,8 @@ use closecall::geometry::halves::{Halves, Touch};
 use closecall::geometry::outline::Outline;
 use closecall::geometry::polygon::Polygon;
 use closecall::geometry::rectangle::{Rectangle, direction};
-use closecall::geometry::sweep::{Step, TOLERANCE, translation};
+use closecall::geometry::separating_axes::translation;
+use closecall::geometry::sweep::{Step, TOLERANCE};
 use closecall::geometry::{Bounds, Point, Vector};
 use proptest::prelude::*;
 

@@ -9,11 +9,13 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::detector::Detector;
-use closecall::encounter::Placement;
-use closecall::frame::{Frame, Roster, State};
+use closecall::frame::{Frame, State};
 use closecall::geometry::Point;
 use closecall::net::Net;
 use closecall::options::Options;
+use closecall::placement::Placement;
+use closecall::roster::Roster;
+
 use street::street;
 
 /// Whether a car on the lane to the west, headed this way, is taken to drive to the west, on this route.

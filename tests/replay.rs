@@ -7,8 +7,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use closecall::net::{EdgeIndex, Net};
-use closecall::replay::recording::{Recording, Step};
+use closecall::replay::recording::Recording;
 use closecall::replay::routes::Routes;
+use closecall::replay::rows::Step;
 use proptest::prelude::*;
 
 /// One row, in full.

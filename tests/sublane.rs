@@ -8,9 +8,11 @@ mod street;
 use std::sync::Arc;
 
 use closecall::detector::Detector;
-use closecall::encounter::Placement;
-use closecall::frame::{Frame, Roster, State};
+use closecall::frame::{Frame, State};
 use closecall::options::Options;
+use closecall::placement::Placement;
+use closecall::roster::Roster;
+
 use street::street;
 
 /// How many pairs meet when the car to the east drives at y and drifts to the left.

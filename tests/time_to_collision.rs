@@ -4,7 +4,8 @@
 
 use closecall::approach::{Course, HORIZON, time_to_collision};
 use closecall::geometry::Point;
-use closecall::geometry::rectangle::{Rectangle, direction, distance};
+use closecall::geometry::contact::distance;
+use closecall::geometry::rectangle::{Rectangle, direction};
 use closecall::path::Pose;
 use parry2d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry2d_f64::query::{ShapeCastOptions, cast_shapes};

@@ -1,8 +1,9 @@
 //! Plain frames from Python: arrays of states, for those who have trajectories and no SUMO.
 
-use closecall::frame::{ProfileIndex, State, UserIndex};
+use closecall::frame::State;
 use closecall::options::Options;
 use closecall::profile::Profile;
+use closecall::roster::{ProfileIndex, UserIndex};
 use closecall::run::Run;
 use closecall::sumo_type::SumoType;
 use numpy::{AllowTypeChange, PyArrayLike1};

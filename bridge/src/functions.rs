@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use closecall::braking::{self, Brakes, Braking, MuModel};
-use closecall::encounter::Kind;
-use closecall::geometry::rectangle::{self, Rectangle};
-use closecall::geometry::{Point, Vector};
+use closecall::geometry::rectangle::Rectangle;
+use closecall::geometry::{Point, Vector, contact};
+use closecall::kind::Kind;
 use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
 use closecall::sumo_type::SumoType;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
@@ -130,7 +130,7 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 #[pyfunction]
 pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| rectangle::touches(a, b)).collect::<Vec<_>>());
+    let found = py.detach(|| pairs.iter().map(|(a, b)| contact::touches(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
@@ -140,7 +140,7 @@ pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
 #[pyfunction]
 pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| rectangle::distance(a, b)).collect::<Vec<_>>());
+    let found = py.detach(|| pairs.iter().map(|(a, b)| contact::distance(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 

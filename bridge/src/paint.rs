@@ -4,9 +4,9 @@
 use std::collections::hash_map::Entry;
 
 use closecall::conflict::Alarm;
-use closecall::encounter::{Kind, Severity};
-use closecall::frame::{Roster, UserIndex};
+use closecall::kind::{Kind, Severity};
 use closecall::profile::Category;
+use closecall::roster::{Roster, UserIndex};
 use closecall::run::Run;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;

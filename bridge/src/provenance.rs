@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::inputs::Input;
+use closecall::input_hash::Input;
 use closecall::options::Options;
 use closecall::record::{RunRecord, Versions};
 use closecall::run::Run;

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
-use closecall::inputs::{self, Input};
+use closecall::input_hash::Input;
 use closecall::log::Log;
 use closecall::outputs::Outputs;
 use closecall::progress::Progress;
@@ -16,17 +16,16 @@ use closecall::scene::LeftOut;
 use closecall::summary::Summary;
 use closecall::sweep::Task;
 use closecall::team::Helper;
-use closecall::{Error, Result};
+use closecall::{Error, Result, inputs};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 use crate::interrupts::Interrupts;
 use crate::paint::Painter;
-use crate::provenance;
 use crate::pull::{self, Source};
 use crate::start::{self, NetAhead};
-use crate::sweep;
+use crate::{provenance, sweep};
 
 /// Least time that sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);

@@ -6,9 +6,8 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use closecall::cli::RunRequest;
-use closecall::inputs;
 use closecall::net::Net;
-use closecall::{Error, Result};
+use closecall::{Error, Result, inputs};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 

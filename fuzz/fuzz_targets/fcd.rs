@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use closecall::replay::recording::{Recording, Step};
+use closecall::replay::recording::Recording;
+use closecall::replay::rows::Step;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

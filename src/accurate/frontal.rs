@@ -1,7 +1,7 @@
 //! Frontal on one straight line: the two paths meet where the areas that both need to stop meet.
 
-use super::Mover;
-use crate::accurate::Meeting;
+use super::conflict_point::Meeting;
+use super::participant::Mover;
 use crate::geometry::rectangle::Rectangle;
 use crate::units::Metre;
 

@@ -4,10 +4,11 @@
 //! It exists to be compared with. `Dis_P` is the distance of the two centres, a1 and a2 are half the lengths, L2 is
 //! the foe's length.
 
-use super::{Meeting, Mover, angle_between, kind_at};
-use crate::encounter::Kind;
+use super::conflict_point::Meeting;
+use super::participant::Mover;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::{Point, left_of};
+use crate::geometry::{Point, angle_between, left_of};
+use crate::kind::{Kind, kind_at};
 use crate::options::Options;
 use crate::units::{Metre, Radian};
 

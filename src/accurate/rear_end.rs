@@ -1,6 +1,7 @@
 //! Rear-end in one lane: one-dimensional.
 
-use super::{Meeting, Mover};
+use super::conflict_point::Meeting;
+use super::participant::Mover;
 use crate::geometry::rectangle::Rectangle;
 use crate::units::Metre;
 

@@ -1,12 +1,14 @@
 //! Side, and whatever else is not in line: swept rectangles.
 
-use super::{Cover, Meeting, Mover};
-use crate::geometry::Vector;
-use crate::geometry::exact;
+use super::conflict_point::Meeting;
+use super::participant::Mover;
+use super::swept_bounds::Cover;
 use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::outline::Outline;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::{Step, TOLERANCE, translation};
+use crate::geometry::separating_axes::translation;
+use crate::geometry::sweep::{Step, TOLERANCE};
+use crate::geometry::{Vector, exact};
 use crate::path::Pose;
 use crate::units::Metre;
 

@@ -7,55 +7,16 @@
 //! Published μ must hold its 15 digits also where S − Si cancels, so [`mu`] computes the same formulas in plain f64
 //! first and only where the result is much smaller than its terms in twice the precision ([`double_double`]).
 
+mod brakes;
 pub mod double_double;
 mod narrowest;
+mod needed;
 
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::units::{Metre, MetrePerSecond};
 use double_double::{DoubleDouble, Number};
+use needed::Needed;
 
-/// How one road user brakes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Brakes {
-    /// Response time t1 + t2 in s: full speed until it is over.
-    pub response: Second,
-    /// Build-up time t3 in s, in which the deceleration rises linearly.
-    pub build_up: Second,
-    /// Deceleration in m/s² from then on; above 0.
-    pub deceleration: MetrePerSecondSquared,
-}
-
-impl Brakes {
-    /// The same brakes in the paper's worst case: at once and fully.
-    pub fn at_once(&self) -> Self {
-        Self { response: 0.0, build_up: 0.0, ..*self }
-    }
-}
-
-/// Which model of the minimal collision distance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MuModel {
-    /// The narrowest moment on the way to rest.
-    Minimal,
-    /// Both at rest.
-    AtRest,
-    /// Eq. 19 and 21 as printed: always a minus sign, no floor.
-    Paper,
-}
-
-impl MuModel {
-    /// All models, in the order of tables.
-    pub const ALL: [Self; 3] = [Self::Minimal, Self::AtRest, Self::Paper];
-}
-
-/// One road user's part in μ: its speed in m/s, 0 or more, and its brakes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Braking<'a> {
-    /// Speed in m/s.
-    pub speed: MetrePerSecond,
-    /// Its brakes.
-    pub brakes: &'a Brakes,
-}
+pub use brakes::{Brakes, Braking, MuModel};
 
 /// The stopping distance in m, exactly, with V₃ = V − a·t3/2:
 ///
@@ -108,24 +69,6 @@ pub fn mu(model: MuModel, ego: Braking, foe: Braking, sigma: f64, epsilon: Metre
 
 fn add_epsilon(model: MuModel, distance: Metre, epsilon: Metre) -> Metre {
     if model == MuModel::Paper { distance + epsilon } else { distance.max(0.0) + epsilon }
-}
-
-/// A difference of ways, and how large the terms were that it was formed from.
-#[derive(Clone, Copy, Debug)]
-struct Needed<N> {
-    distance: N,
-    scale: f64,
-}
-
-impl Needed<f64> {
-    /// Whether so little cancelled in this sum of the terms that plain f64 has kept 13 digits.
-    ///
-    /// A clearly negative distance is the floor ε for the models that have one, and needs no digits.
-    fn trusted(&self, sum: Metre) -> bool {
-        /// Each of some ten operations may err by half a unit in the last place of the largest term.
-        const KEPT: f64 = 1.0 / 64.0;
-        sum.abs() > KEPT * self.scale || self.scale == 0.0
-    }
 }
 
 /// What the ego needs more than the foe, before ε and floor.

@@ -24,12 +24,12 @@ use std::path::{Path, PathBuf};
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-pub use run::{RunRequest, Simulate};
-pub use sweep::{Distribute, Ended, Workers};
-
 use crate::options::Options;
 use crate::regress::Scenario;
 use crate::{Error, Result};
+
+pub use run::{RunRequest, Simulate};
+pub use sweep::{Distribute, Ended, Workers};
 
 #[derive(Parser)]
 #[command(name = "closecall", version, about, args_override_self = true)]

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::{Sumo, kept, say};
-use crate::inputs::Input;
+use crate::input_hash::Input;
 use crate::log::Log;
 use crate::net::Net;
 use crate::options::Options;

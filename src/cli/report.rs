@@ -5,9 +5,8 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::say;
-use crate::Result;
-use crate::report;
 use crate::units::counted;
+use crate::{Result, report};
 
 /// Which logs, and where the page goes.
 #[derive(Args)]

@@ -5,11 +5,12 @@ use serde::Serialize;
 
 use super::Stance;
 use super::extremes::{Extremes, Worst};
+use super::moment::Moment;
 use super::pet::Pet;
-use crate::encounter::{Kind, Severity};
-use crate::frame::{ProfileIndex, Roster};
+use crate::kind::{Kind, Severity};
 use crate::measures;
 use crate::net::LaneIndex;
+use crate::roster::{ProfileIndex, Roster};
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// One conflict: a pair and a run of steps with margin < 0.
@@ -78,19 +79,6 @@ pub struct Conflict {
     /// When and where `ttc`, `drac` and `pet` were found; where nobody wanted to know it (`Tracker::want_moments`), none.
     #[serde(skip)]
     pub found: Option<[Option<Moment>; 3]>,
-}
-
-/// When and where an extreme was found.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Moment {
-    /// The time, in s; for the PET, when the second enters the conflict area.
-    pub time: Second,
-    /// The ego's front-bumper centre at the meeting place of that step, x in m.
-    pub x: Metre,
-    /// The same, y in m.
-    pub y: Metre,
-    /// Speed of the ego in that step, in m/s; for the PET, in the step with the smallest margin.
-    pub speed: MetrePerSecond,
 }
 
 impl Conflict {

@@ -1,11 +1,13 @@
 //! What is known of an event under way: the step with the smallest margin, and the extremes of all its steps.
 
-use super::event::Moment;
+use super::moment::Moment;
 use super::stance::Stood;
-use crate::encounter::{Encounter, Kind, Severity};
-use crate::frame::{Frame, UserIndex};
+use crate::encounter::Encounter;
+use crate::frame::Frame;
 use crate::geometry::Point;
+use crate::kind::{Kind, Severity};
 use crate::net::LaneIndex;
+use crate::roster::UserIndex;
 use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.

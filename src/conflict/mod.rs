@@ -5,20 +5,23 @@
 
 mod event;
 mod extremes;
+mod moment;
 pub mod pet;
 mod stance;
 
-pub use event::{Conflict, Moment};
+pub use event::Conflict;
+pub use moment::Moment;
 
-use extremes::{Extremes, Seen};
-
-use crate::encounter::{Encounter, Kind, Severity};
-use crate::frame::{Frame, Roster, UserIndex};
+use crate::encounter::Encounter;
+use crate::frame::Frame;
 use crate::geometry::Point;
 use crate::geometry::halves::Halves;
+use crate::kind::{Kind, Severity};
 use crate::profile::Category;
+use crate::roster::{Roster, UserIndex};
 use crate::table::make_room;
 use crate::units::Second;
+use extremes::{Extremes, Seen};
 
 pub use stance::Stance;
 

@@ -1,16 +1,17 @@
 //! Phase 2, second half: the gap of a pair whose foe has to come and go first; of a pair in conflict clearance, TTC, DRAC,
 //! severity.
 
+use super::reach::User;
+use super::step::Scene;
 use super::worker::{Found, Met, Scratch, Worker};
-use super::{Scene, User};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::approach::{self, Course};
-use crate::avoidance;
-use crate::encounter::{Encounter, Kind, Nearness};
-use crate::geometry::{polygon, rectangle};
-use crate::measures;
+use crate::encounter::{Encounter, Nearness};
+use crate::geometry::{contact, polygon};
+use crate::kind::Kind;
 use crate::options::Mode;
 use crate::units::{Metre, MetrePerSecondSquared, Second};
+use crate::{avoidance, measures};
 
 impl Scene<'_> {
     /// How far ahead somebody's path has to be known to measure a pair that it is in.
@@ -61,7 +62,7 @@ impl Scene<'_> {
         let clearance = if encounter.collision {
             0.0
         } else if foe.shape.is_empty() {
-            rectangle::room(&ego.rectangle, &foe.rectangle)
+            contact::room(&ego.rectangle, &foe.rectangle)
         } else {
             polygon::distance(foe.shape, &ego.rectangle)
         };

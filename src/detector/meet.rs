@@ -2,19 +2,26 @@
 
 use std::hint::black_box;
 
+use super::reach;
+use super::reach::User;
+use super::step::Scene;
 use super::ways::Ways;
+use super::work::Work;
 use super::worker::{Found, Met, Worker};
-use super::{LEVEL, Scene, User, Work, look};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, Braking, MuModel};
-use crate::encounter::{Encounter, Kind};
+use crate::encounter::Encounter;
 use crate::frame::State;
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{cross, rectangle};
+use crate::geometry::{contact, cross};
+use crate::kind::{Kind, kind_at};
 use crate::options::Mode;
 use crate::profile::Category;
 use crate::table::add;
 use crate::units::{Metre, Radian};
+
+/// Two road users further apart in height than this are no pair, in m: one is on a bridge.
+const LEVEL: Metre = 2.5;
 
 /// So many pairs are fetched before the first of them is looked at: the processor waits for memory once.
 const BLOCK: usize = 32;
@@ -198,7 +205,7 @@ impl Scene<'_> {
             return false;
         }
         let (state_a, state_b) = (self.state(a), self.state(b));
-        let stops = [look::stop(state_a, of_a), look::stop(state_b, of_b)];
+        let stops = [reach::stop(state_a, of_a), reach::stop(state_b, of_b)];
         if !lead_alike([stops[0] + of_a.length, stops[1] + of_b.length]) {
             return false;
         }
@@ -245,7 +252,7 @@ impl Scene<'_> {
         if between - foe.rectangle.half_length > radius || !measured.distance.is_finite() {
             return;
         }
-        let collision = rectangle::touches(&ego.rectangle, &foe.rectangle);
+        let collision = contact::touches(&ego.rectangle, &foe.rectangle);
         let angle = measured.meeting.angle();
         let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, collision };
         self.add(found, &roles, &measured.meeting, how);
@@ -255,7 +262,7 @@ impl Scene<'_> {
         let angle = meeting.angle();
         let sigma = accurate::sigma(angle);
         let gap = if collision { 0.0 } else { accurate::gap(meeting.ego_way, meeting.foe_way, sigma) };
-        let how = How { kind: accurate::kind_at(angle, self.options), angle, sigma, gap, collision };
+        let how = How { kind: kind_at(angle, self.options), angle, sigma, gap, collision };
         match how.kind {
             Kind::Frontal => work.frontal += 1,
             Kind::Side => work.side += 1,

@@ -4,82 +4,41 @@
 //! step changes in what is remembered is done by one thread, in `look` and here; what only reads it (`ways`, `meet`,
 //! `measure`) by as many as the caller wants, each on its part of the pairs. The results are the same.
 
+mod left_out;
 mod look;
 mod measure;
 mod meet;
 mod onward;
 mod order;
+mod reach;
+mod step;
 mod ways;
+mod work;
 mod worker;
 
 use std::iter::repeat_n;
 use std::sync::Arc;
 
 use crate::braking::stopping_distance;
-use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, ProfileIndex, Roster, Row, State, UserIndex};
+use crate::encounter::Encounter;
+use crate::frame::{Frame, Row};
+use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
-use crate::geometry::{Point, Vector};
 use crate::net::Net;
 use crate::options::Options;
 use crate::path::lanes::{LanePath, Start};
+use crate::placement::Placement;
 use crate::precollision::Search;
-use crate::profile::{Category, Profile};
+use crate::roster::{Roster, UserIndex};
 use crate::scene::Exclusions;
 use crate::team::{Team, share};
-use crate::units::{Metre, Radian};
-use look::{Paths, Reach, Sight};
+use crate::units::Metre;
 use order::Order;
+use reach::{Paths, Reach, Sight, Turning, User};
+use step::Scene;
 use worker::Worker;
 
-/// Two road users further apart in height than this are no pair, in m: one is on a bridge.
-pub const LEVEL: Metre = 2.5;
-
-/// How much each part of the detector had to do since the run began, and what it could leave out.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-pub struct Work {
-    /// Road users, counted in every step.
-    pub rows: u64,
-    /// Pairs that phase 1 lets through.
-    pub pairs: u64,
-    /// Pairs left out because they are too far apart to meet before both stand.
-    pub circles_apart: u64,
-    /// Of the others, left out because both stand.
-    pub both_stand: u64,
-    /// Left out because one is on a bridge above the other.
-    pub other_level: u64,
-    /// Left out because both are persons.
-    pub both_persons: u64,
-    /// Left out because the boxes around both ways do not meet.
-    pub ways_apart: u64,
-    /// Settled in one dimension.
-    pub in_line: u64,
-    /// Swept.
-    pub swept: u64,
-    /// Looked at for a frontal encounter: in one dimension and opposed, or met at such an angle.
-    pub frontal: u64,
-    /// Met at an angle of a side encounter.
-    pub side: u64,
-    /// Road users that were still on the path laid before.
-    pub known_paths: u64,
-}
-
-impl std::ops::AddAssign for Work {
-    fn add_assign(&mut self, other: Self) {
-        self.rows += other.rows;
-        self.pairs += other.pairs;
-        self.circles_apart += other.circles_apart;
-        self.both_stand += other.both_stand;
-        self.other_level += other.other_level;
-        self.both_persons += other.both_persons;
-        self.ways_apart += other.ways_apart;
-        self.in_line += other.in_line;
-        self.swept += other.swept;
-        self.frontal += other.frontal;
-        self.side += other.side;
-        self.known_paths += other.known_paths;
-    }
-}
+pub use work::Work;
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
@@ -106,67 +65,6 @@ pub struct Detector {
     pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
     team: Team,
-}
-
-/// How a road user turns, as far as the last two steps tell.
-#[derive(Clone, Debug, Default)]
-struct Turning {
-    last: Option<(Point, Vector)>,
-    curvature: f64,
-}
-
-/// What the phases know of a road user in the step under way, besides its row of the frame.
-#[derive(Clone, Copy, Debug)]
-struct User {
-    heading: Radian,
-    /// Where that leads.
-    axis: Vector,
-    /// Which row of the frame.
-    row: u32,
-    index: UserIndex,
-    profile: ProfileIndex,
-    category: Category,
-    /// Whether it goes straight on until it stands: it has no lanes and no arc, or its lane leads straight on.
-    ahead: bool,
-    on_lanes: bool,
-}
-
-/// What phase 2 reads of the step under way.
-#[derive(Clone, Copy)]
-struct Scene<'a> {
-    options: &'a Options,
-    leaves_out: Exclusions,
-    conflicts_only: bool,
-    frame: &'a Frame,
-    roster: &'a Roster,
-    paths: Paths<'a>,
-    turnings: &'a [Turning],
-    reach: Reach<'a>,
-    users: &'a [User],
-}
-
-impl Scene<'_> {
-    fn user(&self, slot: u32) -> &User {
-        &self.users[slot as usize]
-    }
-
-    fn state(&self, user: &User) -> &State {
-        self.frame.state(user.row)
-    }
-
-    /// How far somebody still moves.
-    #[inline(always)]
-    fn stop(&self, user: &User) -> Metre {
-        look::stop(self.state(user), self.profile(user))
-    }
-
-    fn is_obstacle(&self, slot: u32) -> bool {
-        self.user(slot).category == Category::Obstacle
-    }
-
-    fn profile(&self, user: &User) -> &Profile {
-        self.roster.profile_at(user.profile)
-    }
 }
 
 impl Detector {

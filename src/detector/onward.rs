@@ -1,11 +1,13 @@
 //! Two that go straight on along their headings, on no lanes: what they cover is two rectangles, and to lay these for each
 //! pair takes less than to keep them.
 
+use super::reach::User;
+use super::step::Scene;
+use super::work::Work;
 use super::worker::Found;
-use super::{Scene, User, Work};
 use crate::accurate::Mover;
 use crate::geometry::Point;
-use crate::geometry::rectangle::plainly_touches;
+use crate::geometry::contact::plainly_touches;
 use crate::geometry::sweep::TOLERANCE;
 use crate::path::{Pose, straight};
 use crate::profile::Category;

@@ -1,7 +1,8 @@
 //! Where the road users of a step will go: their poses, and the boxes around what they cover on the way. Laid when
 //! somebody asks, then kept until the step ends.
 
-use super::{Scene, User};
+use super::reach::User;
+use super::step::Scene;
 use crate::accurate::{Cover, Mover};
 use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;

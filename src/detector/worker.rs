@@ -1,7 +1,7 @@
 //! What one thread needs for its part of a step, and what it finds.
 
-use super::Work;
 use super::ways::{MOST_POSES, Ways};
+use super::work::Work;
 use crate::accurate::Meeting;
 use crate::encounter::Encounter;
 use crate::geometry::halves::Halves;

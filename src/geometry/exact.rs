@@ -199,7 +199,7 @@ mod tests {
             let a = Rectangle::new(Point::new(0.3, 0.2), heading, 5.0, 1.8);
             let b = nearly_touching(&a, heading * 3.0, 4.0, 2.0, 0);
             assert_eq!(touches(&a, &b), reference(&a, &b));
-            crate::geometry::rectangle::plainly_touches(&a, &b) != reference(&a, &b)
+            crate::geometry::contact::plainly_touches(&a, &b) != reference(&a, &b)
         });
         assert!(wrong.count() > 100);
     }

@@ -10,7 +10,8 @@
 use super::outline::Outline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
-use super::sweep::{Contact, Step, TOLERANCE, translation};
+use super::separating_axes::{Contact, outlines_touch, translation};
+use super::sweep::{Step, TOLERANCE};
 use super::{Bounds, Vector};
 use crate::table::{add, make_room};
 use crate::units::Metre;
@@ -284,7 +285,7 @@ impl Halves {
             }
             return part.slide_to(&fixed.outline).map(|contact| which.of(contact));
         }
-        if !part.bounds.meet(&fixed.bounds) || !part.hull(&mut self.hulls).outline.overlaps(&fixed.outline) {
+        if !part.bounds.meet(&fixed.bounds) || !outlines_touch(&part.hull(&mut self.hulls).outline, &fixed.outline) {
             return None;
         }
         let first = self.halve(of);

@@ -3,6 +3,7 @@
 //! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`polygon::distance`],
 //! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
+pub mod contact;
 pub mod exact;
 pub mod halves;
 pub mod lines;
@@ -10,11 +11,12 @@ pub mod outline;
 pub(crate) mod parry;
 pub mod polygon;
 pub mod rectangle;
+pub mod separating_axes;
 pub mod sweep;
 
 use nalgebra::{Point2, Vector2};
 
-use crate::units::Metre;
+use crate::units::{Metre, Radian};
 
 /// A place in the plane, in m.
 pub type Point = Point2<Metre>;
@@ -84,4 +86,11 @@ pub fn cross(a: &Vector, b: &Vector) -> f64 {
 /// The direction a quarter turn to the left.
 pub fn left_of(direction: &Vector) -> Vector {
     Vector::new(-direction.y, direction.x)
+}
+
+/// The angle between two directions, 0 to π.
+pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
+    let (across, along) = (cross(a, b).abs(), a.dot(b));
+    // What atan2 says of 0, without asking it: most who follow each other head exactly the same way.
+    if across == 0.0 && along > 0.0 { 0.0 } else { across.atan2(along) }
 }

@@ -1,7 +1,6 @@
 //! A convex outline of a few corners, kept on the stack: the shape that sweeping works on.
 
 use super::rectangle::Rectangle;
-use super::sweep::translation;
 use super::{Bounds, Point, Vector, cross};
 use crate::units::Metre;
 
@@ -9,7 +8,7 @@ use crate::units::Metre;
 const MOST_CORNERS: usize = 8;
 
 /// Room and overlap of less than this may be rounding's, in m.
-const UNSURE: Metre = 1e-6;
+pub(super) const UNSURE: Metre = 1e-6;
 
 /// A convex polygon with up to eight corners, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
@@ -83,15 +82,6 @@ impl Outline {
         (low, high)
     }
 
-    /// Whether it shares a point with another; touching counts.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        let room = self.room_to(other, -UNSURE, UNSURE);
-        if room.abs() > UNSURE {
-            return room < 0.0;
-        }
-        translation(self, &Vector::zeros(), other).is_some()
-    }
-
     /// Whether another surely is further away than that, in m: beside an edge of one of the two.
     pub fn is_further_than(&self, room: Metre, other: &Self) -> bool {
         self.room_to(other, room, room) > room
@@ -99,7 +89,7 @@ impl Outline {
 
     /// How far another surely is away, in m: the widest room between one's edge and the other, or the first that is more
     /// than `enough`. Negative where the two overlap by so much; −∞ where it is less than `little`.
-    fn room_to(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
+    pub(super) fn room_to(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
         let room = self.room_beside_edges(other, little, enough);
         if room > enough { room } else { room.max(other.room_beside_edges(self, little, enough)) }
     }

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 
 use super::parquet::PARQUET;
 use crate::log::CONFLICTS;
-use crate::regress::outcome::SUMMARY;
 use crate::{Error, Result};
 
 /// How deep a sweep's folders may lie below the one that was named: a guard against links that lead upwards.
@@ -87,3 +86,6 @@ mod tests {
         fs::remove_dir_all(top).unwrap();
     }
 }
+
+/// The name of the file of counts.
+pub const SUMMARY: &str = "summary.json";

@@ -10,10 +10,12 @@ mod fields;
 mod folders;
 mod pack;
 mod parquet;
+mod reader;
 mod run;
 
-pub use conflicts::{ConflictReader, LoggedConflict, LoggedStance};
-pub use folders::log_folders;
+pub use conflicts::{LoggedConflict, LoggedStance};
+pub use folders::{SUMMARY, log_folders};
 pub use pack::{Label, LabelValue, pack};
 pub use parquet::{PARQUET, Packed};
+pub use reader::ConflictReader;
 pub use run::{LoggedRun, LoggedSummary, LoggedVersions, record};

@@ -13,9 +13,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::conflicts::{ConflictReader, LoggedConflict};
+use super::conflicts::LoggedConflict;
 use super::fields::{FIELDS, Field};
 use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, unreadable};
+use super::reader::ConflictReader;
 use super::run::record;
 use crate::log::CONFLICT_COLUMNS;
 use crate::{Error, Result};

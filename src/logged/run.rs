@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::parquet::{PARQUET, Packed};
-use crate::inputs::Input;
+use crate::input_hash::Input;
 use crate::log::RUN;
 use crate::summary::{Count, Exposure};
 use crate::units::Second;

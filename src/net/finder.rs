@@ -5,7 +5,7 @@
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
-use super::{Lane, LaneIndex};
+use super::elements::{Lane, LaneIndex};
 use crate::geometry::{Bounds, Point, parry};
 use crate::units::Metre;
 

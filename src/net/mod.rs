@@ -2,156 +2,21 @@
 //!
 //! Only what paths, obstacles of the scene and places in the log need: lane shapes, what leads where, junctions.
 
+mod elements;
 mod finder;
+mod network;
 mod reader;
 
-use std::path::Path;
-
-use nalgebra::Point2;
-use rustc_hash::FxHashMap;
-
-use crate::Result;
-use crate::geometry::lines::Lines;
-use crate::units::Metre;
-
-pub(crate) use reader::{LineCounter, open};
-
-/// SUMO's default width of a lane in m.
-const LANE_WIDTH: Metre = 3.2;
-
-/// Which lane of a [`Net`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct LaneIndex(pub u32);
-
-/// Which edge of a [`Net`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct EdgeIndex(pub u32);
-
-/// What an edge is for (SUMO's attribute `function`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum EdgeFunction {
-    /// A road between junctions.
-    Normal,
-    /// Lanes within a junction.
-    Internal,
-    /// A pedestrian crossing.
-    Crossing,
-    /// Where pedestrians get from one to another.
-    WalkingArea,
-    /// A macroscopic connector.
-    Connector,
-}
-
-/// One edge.
-#[derive(Clone, Debug)]
-pub struct Edge {
-    /// SUMO's id.
-    pub id: String,
-    /// What it is for.
-    pub function: EdgeFunction,
-    /// Its lanes, from right to left.
-    pub lanes: Vec<LaneIndex>,
-    /// The junction that it belongs to (internal edges, crossings, walking areas) or leads to.
-    pub junction: String,
-}
-
-/// Where a lane leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Link {
-    /// The lane of the next normal edge that is reached in the end.
-    pub to: LaneIndex,
-    /// The first junction lane on the way there; none where lanes join directly.
-    pub via: Option<LaneIndex>,
-}
-
-/// One lane.
-#[derive(Clone, Debug)]
-pub struct Lane {
-    /// SUMO's id.
-    pub id: String,
-    /// Its edge.
-    pub edge: EdgeIndex,
-    /// Its place on the edge, 0 at the right.
-    pub index: u32,
-    /// Length in SUMO's terms, in m; a lane position is measured in these.
-    pub length: Metre,
-    /// Width in m.
-    pub width: Metre,
-    /// The centre line, two points at least.
-    pub shape: Vec<Point2<Metre>>,
-    /// Where it leads. A junction lane in two parts leads to its second part (`via`), then to the edge.
-    pub links: Vec<Link>,
-    /// The lanes from which one gets here directly (for a lane behind a junction: the junction lanes).
-    pub from: Vec<LaneIndex>,
-}
-
-/// One junction.
-#[derive(Clone, Debug)]
-pub struct Junction {
-    /// SUMO's id.
-    pub id: String,
-    /// Its outline.
-    pub shape: Vec<Point2<Metre>>,
-}
-
-/// A road network.
-#[derive(Clone, Debug, Default)]
-pub struct Net {
-    /// All lanes, by [`LaneIndex`].
-    pub lanes: Vec<Lane>,
-    /// All edges, by [`EdgeIndex`].
-    pub edges: Vec<Edge>,
-    /// All junctions.
-    pub junctions: Vec<Junction>,
-    /// The lanes' centre lines, by lane.
-    pub lines: Lines,
-    lane_ids: FxHashMap<String, LaneIndex>,
-    edge_ids: FxHashMap<String, EdgeIndex>,
-    finder: finder::Finder,
-}
-
-impl Net {
-    /// The lane of this id.
-    pub fn lane(&self, id: &str) -> Option<LaneIndex> {
-        self.lane_ids.get(id).copied()
-    }
-
-    /// The edge of this id.
-    pub fn edge(&self, id: &str) -> Option<EdgeIndex> {
-        self.edge_ids.get(id).copied()
-    }
-
-    /// The lane whose centre line is nearest to a place; none where that is far off.
-    pub fn lane_at(&self, place: Point2<Metre>) -> Option<LaneIndex> {
-        self.finder.lane_at(&self.lanes, place)
-    }
-
-    /// The id of a lane.
-    pub fn lane_id(&self, lane: LaneIndex) -> &str {
-        &self.lanes[lane.0 as usize].id
-    }
-
-    /// Reads a net file.
-    ///
-    /// # Errors
-    /// An error that names the file, line and what is wrong: unreadable, no SUMO net, a lane without geometry, a
-    /// connection to nowhere.
-    pub fn read(path: &Path) -> Result<Self> {
-        reader::read(path, reader::open(path)?)
-    }
-
-    /// The net in a text; `path` is what errors call it.
-    ///
-    /// # Errors
-    /// As [`Net::read`] has them.
-    pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
-        reader::read(path, Box::new(std::io::Cursor::new(text.into())))
-    }
-}
+pub use elements::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link};
+pub use network::Net;
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
+    use crate::Result;
+    use crate::geometry::Point;
 
     fn net(text: &str) -> Result<Net> {
         Net::parse(Path::new("corner.net.xml"), text)
@@ -179,9 +44,9 @@ mod tests {
     #[test]
     fn a_place_is_on_the_nearest_lane() {
         let net = net(CORNER).unwrap();
-        assert_eq!(net.lane_at(Point2::new(40.0, 1.0)), net.lane("ab_0"));
-        assert_eq!(net.lane_at(Point2::new(103.0, 30.0)), net.lane("bc_0"));
-        assert_eq!(net.lane_at(Point2::new(40.0, 30.0)), None);
+        assert_eq!(net.lane_at(Point::new(40.0, 1.0)), net.lane("ab_0"));
+        assert_eq!(net.lane_at(Point::new(103.0, 30.0)), net.lane("bc_0"));
+        assert_eq!(net.lane_at(Point::new(40.0, 30.0)), None);
     }
 
     #[test]

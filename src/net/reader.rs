@@ -1,45 +1,45 @@
 //! Reading a SUMO net: XML as netconvert writes it, plain or gzipped.
 
 use std::borrow::Cow;
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek, SeekFrom};
+use std::io::BufRead;
 use std::path::Path;
 
-use flate2::bufread::MultiGzDecoder;
 use quick_xml::Reader;
 use quick_xml::escape::unescape;
 use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 
+use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, LANE_WIDTH, Lane, LaneIndex, Link};
 use super::finder::Finder;
-use super::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link, Net};
+use super::network::Net;
 use crate::geometry::Point;
+use crate::input_file::{LineCounter, open, xml_message};
 use crate::{Error, Result};
 
 /// Beyond this a coordinate is no place on earth, in m; SUMO's invalid value is larger.
 const FURTHEST: f64 = 1e9;
 
-/// A file that may be gzipped, to be read from its beginning; a pipe is refused.
-pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
-    let is_regular = std::fs::metadata(path).map(|it| it.is_file() || it.is_dir());
-    if !is_regular.map_err(|source| Error::file(path, source))? {
-        // Not opened before: that would wait for who writes into it.
-        return Err(Error::content(path, "a pipe or device; it is read more than once, so it has to be a file"));
+impl Net {
+    /// Reads a net file.
+    ///
+    /// # Errors
+    /// An error that names the file, line and what is wrong: unreadable, no SUMO net, a lane without geometry, a
+    /// connection to nowhere.
+    pub fn read(path: &Path) -> Result<Self> {
+        read(path, open(path)?)
     }
-    let mut file = File::open(path).map_err(|source| Error::file(path, source))?;
-    let mut magic = [0; 2];
-    let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;
-    file.seek(SeekFrom::Start(0)).map_err(|source| Error::file(path, source))?;
-    let file = BufReader::with_capacity(1 << 16, file);
-    Ok(if magic[..length] == [0x1f, 0x8b] {
-        Box::new(BufReader::with_capacity(1 << 16, MultiGzDecoder::new(file)))
-    } else {
-        Box::new(file)
-    })
+
+    /// The net in a text; `path` is what errors call it.
+    ///
+    /// # Errors
+    /// As [`Net::read`] has them.
+    pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
+        read(path, Box::new(std::io::Cursor::new(text.into())))
+    }
 }
 
 /// Reads a net; `path` is what errors call it.
-pub fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
+fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
     NetReader { path, line: 1, net: Net::default(), connections: Vec::new() }.read(source)
 }
 
@@ -128,7 +128,7 @@ impl NetReader<'_> {
         if !(length.is_finite() && length >= 0.0) {
             return Err(self.wrong(format!("lane \"{id}\": its length must be given, 0 m or more")));
         }
-        let width = self.number(attributes, "width", super::LANE_WIDTH)?;
+        let width = self.number(attributes, "width", LANE_WIDTH)?;
         if !(width.is_finite() && width >= 0.0) {
             return Err(self.wrong(format!("lane \"{id}\": its width must be 0 m or more")));
         }
@@ -276,52 +276,4 @@ impl Attributes<'_> {
 fn junction_of_internal(edge: &str) -> &str {
     let name = edge.strip_prefix(':').unwrap_or(edge);
     name.rsplit_once('_').map_or(name, |(junction, _)| junction)
-}
-
-/// What quick-xml says, in one line.
-pub fn xml_message(error: &quick_xml::Error) -> String {
-    error.to_string().replace('\n', " ")
-}
-
-/// Counts lines as they are read: messages name them.
-pub struct LineCounter {
-    source: Box<dyn BufRead>,
-    lines: u64,
-}
-
-impl LineCounter {
-    /// Counts from 1.
-    pub fn new(source: Box<dyn BufRead>) -> Self {
-        Self { source, lines: 1 }
-    }
-
-    /// The line that is read next.
-    pub fn line(&self) -> u64 {
-        self.lines
-    }
-}
-
-impl Read for LineCounter {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let length = self.source.read(buffer)?;
-        self.lines += count_lines(&buffer[..length]);
-        Ok(length)
-    }
-}
-
-impl BufRead for LineCounter {
-    fn fill_buf(&mut self) -> std::io::Result<&[u8]> {
-        self.source.fill_buf()
-    }
-
-    fn consume(&mut self, amount: usize) {
-        if let Ok(buffer) = self.source.fill_buf() {
-            self.lines += count_lines(&buffer[..amount.min(buffer.len())]);
-        }
-        self.source.consume(amount);
-    }
-}
-
-fn count_lines(bytes: &[u8]) -> u64 {
-    bytes.iter().filter(|byte| **byte == b'\n').count() as u64
 }

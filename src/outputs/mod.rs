@@ -12,10 +12,11 @@ use clap::Args;
 use self::ssm::Ssm;
 use self::trajectories::Trajectories;
 use crate::conflict::Conflict;
-use crate::encounter::Placement;
-use crate::frame::{Frame, Roster, UserIndex};
-use crate::inputs::Input;
+use crate::frame::Frame;
+use crate::input_hash::Input;
 use crate::net::Net;
+use crate::placement::Placement;
+use crate::roster::{Roster, UserIndex};
 use crate::{Error, Result};
 
 /// Files to write besides the log.

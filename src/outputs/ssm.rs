@@ -12,7 +12,7 @@ use super::OutputFile;
 use crate::Result;
 use crate::conflict::{Conflict, Moment};
 use crate::decimal::shortest;
-use crate::encounter::Kind;
+use crate::kind::Kind;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;

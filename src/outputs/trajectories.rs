@@ -10,11 +10,12 @@ use rustc_hash::FxHashMap;
 
 use super::OutputFile;
 use crate::Result;
-use crate::frame::{Frame, Roster, Row, UserIndex};
+use crate::frame::{Frame, Row};
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::net::{LaneIndex, Net};
 use crate::profile::Category;
+use crate::roster::{Roster, UserIndex};
 use crate::units::{MetrePerSecond, Second};
 
 /// The first byte of each record.

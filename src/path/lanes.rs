@@ -11,10 +11,10 @@ use super::beside::{Beside, Offset};
 use super::own::Own;
 use super::track::Track;
 use super::turns::Turns;
-use crate::encounter::Placement;
 use crate::geometry::lines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::placement::Placement;
 use crate::units::{Metre, MetrePerSecond};
 
 /// A path is laid this much further than it is needed, so that it is lengthened now and then, not in every step; m.

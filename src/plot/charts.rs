@@ -6,7 +6,7 @@ use plotters::prelude::{Color, DashedLineSeries, DrawingArea, DrawingBackend, Re
 use plotters::style::{IntoFont, TextStyle};
 
 use super::{Chart, INK, colour, font, said};
-use crate::encounter::Severity;
+use crate::kind::Severity;
 use crate::report::Conflicts;
 use crate::units::Second;
 

@@ -7,8 +7,8 @@ use plotters::prelude::{
 use plotters::style::{IntoFont, TextStyle};
 
 use super::{Chart, INK, colour, font, said};
-use crate::encounter::{Kind, Severity};
 use crate::geometry::{Bounds, Point, Vector};
+use crate::kind::{Kind, Severity};
 use crate::net::{EdgeFunction, Net};
 use crate::report::Conflicts;
 

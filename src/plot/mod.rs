@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor, WHITE};
 
-use crate::encounter::Severity;
+use crate::kind::Severity;
 use crate::report::{self, Conflicts};
 use crate::{Error, Result};
 

@@ -21,17 +21,17 @@ mod strips;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-pub use area::{Area, Circle};
-use coarse::Coarse;
-use near::Near;
-use part::Part;
-use place::{Place, length};
-pub use slot::Slot;
-
 use crate::geometry::Vector;
 use crate::table::{fill, make_room};
 use crate::team::{Team, share};
 use crate::units::Metre;
+use coarse::Coarse;
+use near::Near;
+use part::Part;
+use place::{Place, length};
+
+pub use area::{Area, Circle};
+pub use slot::Slot;
 
 /// Until road users have changed places so often, on average, everybody stays in its slot, as long as they are as many: who
 /// has moved meanwhile is hardly further from those next to it in memory, and what its slot knows of it holds.

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::inputs::Input;
+use crate::input_hash::Input;
 
 /// More parts of one sort than this are not kept: what is expected should stay smaller than the net.
 const MOST_PARTS: usize = 1000;
@@ -71,7 +71,7 @@ fn attribute_changes(old: &Attributes, new: &Attributes) -> Option<String> {
 }
 
 fn parts(path: &Path) -> Result<BTreeMap<String, Attributes>> {
-    let mut reader = Reader::from_reader(crate::net::open(path)?);
+    let mut reader = Reader::from_reader(crate::input_file::open(path)?);
     let mut buffer = Vec::new();
     let mut parts = BTreeMap::new();
     let mut count: BTreeMap<String, usize> = BTreeMap::new();

@@ -18,16 +18,16 @@ pub mod statistics;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use crate::{Error, Result};
 use exact::Differences;
 use outcome::Outcome;
 use permutation::{fewest_seeds, smallest_p};
-pub use report::{Report, Verdict, summary};
 use running::Job;
-pub use running::Runner;
-pub use scenario::{Level, Scenario};
 use statistics::{Comparison, comparisons};
 
-use crate::{Error, Result};
+pub use report::{Report, Verdict, summary};
+pub use running::Runner;
+pub use scenario::{Level, Scenario};
 
 /// How two outcomes were compared, and what differs.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,15 +9,11 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::fingerprint::Fingerprint;
-use crate::encounter::{Kind, Severity};
-use crate::log;
-use crate::logged::LoggedRun;
+use crate::kind::{Kind, Severity};
+use crate::logged::{LoggedRun, SUMMARY};
 use crate::summary::{Count, Exposure};
 use crate::units::Second;
-use crate::{Error, Result};
-
-/// The name of the file of counts.
-pub const SUMMARY: &str = "summary.json";
+use crate::{Error, Result, log};
 
 /// What a scenario's runs gave.
 #[derive(Clone, Debug, PartialEq)]

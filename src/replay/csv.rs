@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use super::names::Users;
 use super::number::number;
-use super::recording::{Attribute, Extent, Fields, Step, cut_short, in_order};
+use super::rows::{Attribute, Extent, Fields, Step, cut_short, in_order};
 use super::source::{Source, find_all};
 use crate::units::Second;
 use crate::{Error, Result};

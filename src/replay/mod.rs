@@ -8,6 +8,7 @@ mod names;
 mod number;
 pub mod recording;
 pub mod routes;
+pub mod rows;
 mod source;
 pub mod types;
 mod xml;
@@ -18,18 +19,20 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use crate::encounter::Placement;
-use crate::frame::{State, UserIndex};
+use crate::frame::State;
 use crate::geometry::{Bounds, Point};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::options::{Options, PathModel};
+use crate::placement::Placement;
 use crate::profile::{Category, Profile};
+use crate::roster::UserIndex;
 use crate::run::Run;
 use crate::units::{Metre, Second};
 use crate::{Error, Result};
 use lanes::Lanes;
-use recording::{Recording, Row, Step};
+use recording::Recording;
 use routes::Routes;
+use rows::{Row, Step};
 use types::Types;
 
 /// Who is further than this from where its lane is, in m, is on another net, or in degrees.

@@ -12,7 +12,8 @@ use rustc_hash::FxHashMap;
 use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use super::lanes::Lanes;
-use super::recording::{Recording, Row, Step};
+use super::recording::Recording;
+use super::rows::{Row, Step};
 use crate::net::{EdgeIndex, Net};
 use crate::units::Second;
 use crate::{Error, Result};

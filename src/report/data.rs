@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::conflicts::Conflicts;
 use super::roads;
 use super::rows::{NUMBERS, Row, Stance};
-use crate::encounter::{Kind, Severity};
+use crate::kind::{Kind, Severity};
 use crate::net::{EdgeFunction, Net};
 use crate::options::Options;
 

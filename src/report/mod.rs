@@ -13,9 +13,9 @@ mod rows;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-pub use conflicts::{Conflicts, read};
-
 use crate::{Error, Result};
+
+pub use conflicts::{Conflicts, read};
 
 /// The page, with a mark for each part.
 const PAGE: &str = include_str!("page.html");

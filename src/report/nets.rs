@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::inputs::Input;
-use crate::net::{self, Net};
+use crate::input_file::open;
+use crate::input_hash::Input;
+use crate::net::Net;
 use crate::{Error, Result};
 
 /// The root element of a net stands within so many bytes; netconvert writes its options before it.
@@ -100,6 +101,6 @@ fn named(log: &Path, record: &Value) -> Option<Named> {
 /// Whether a file has a net's root element.
 fn is_net(path: &Path) -> bool {
     let mut head = Vec::new();
-    let read = net::open(path).map(|file| file.take(HEAD).read_to_end(&mut head).is_ok());
+    let read = open(path).map(|file| file.take(HEAD).read_to_end(&mut head).is_ok());
     matches!(read, Ok(true)) && String::from_utf8_lossy(&head).contains("<net ")
 }

@@ -19,6 +19,9 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::logged::LoggedRun;
+use crate::{Error, Result};
+
 pub use collect::{Collection, Columns, Counts, Group, LeftOutLog, MEASURES, Spot};
 pub use compare::{Comparison, MeasureDifference, RateDifference, Significance, compare};
 pub use extremes::{Crashes, Extrapolation, Tails, crashes};
@@ -28,9 +31,6 @@ pub use permutation::Test;
 pub use quantiles::{Quantiles, cliffs_delta, quantile};
 pub use rate::{Method, Rate, Ratio, rate, rate_ratio};
 pub use worst::{Worst, WorstOf};
-
-use crate::logged::LoggedRun;
-use crate::{Error, Result};
 
 /// What statistics are wanted.
 #[derive(Clone, Debug)]

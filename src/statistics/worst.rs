@@ -177,7 +177,8 @@ fn zoom(run: &LoggedRun) -> Option<f64> {
 /// The same of this net; none where the file is no net.
 fn zoom_on(net: &Path) -> Option<f64> {
     let mut head = Vec::new();
-    std::io::Read::read_to_end(&mut std::io::Read::take(crate::net::open(net).ok()?, 1 << 16), &mut head).ok()?;
+    std::io::Read::read_to_end(&mut std::io::Read::take(crate::input_file::open(net).ok()?, 1 << 16), &mut head)
+        .ok()?;
     let head = String::from_utf8_lossy(&head);
     let (_, bounds) = head.split_once("convBoundary=\"")?;
     let bounds = bounds.split_once('"')?.0.split(',').map(|number| number.parse::<f64>().ok());

@@ -2,13 +2,15 @@
 
 use super::tally::{Property, Tally, Unit};
 use super::{Case, Group, scene};
-use crate::frame::{Frame, SUMO_INVALID, State, UserIndex};
-use crate::geometry::rectangle::{Rectangle, distance, touches};
+use crate::frame::{Frame, SUMO_INVALID, State};
+use crate::geometry::contact::{distance, touches};
+use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector};
 use crate::path::rotated;
 use crate::reference::chance::Chance;
 use crate::reference::contact as reference;
 use crate::reference::pairs::{self, against, beside, car};
+use crate::roster::UserIndex;
 use crate::units::Metre;
 
 const DECIDED: Property = Property::always("contact as in exact arithmetic");

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use crate::braking::Brakes;
 use crate::conflict::Conflict;
 use crate::detector::Detector;
-use crate::encounter::{Encounter, Placement};
-use crate::frame::{Frame, ProfileIndex, Roster, State, UserIndex};
+use crate::encounter::Encounter;
+use crate::frame::{Frame, State};
 use crate::net::Net;
 use crate::options::Options;
+use crate::placement::Placement;
 use crate::profile::{Category, Profile};
+use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::run::Run;
 use crate::units::{Metre, MetrePerSecond, Radian, Second};
 

@@ -6,12 +6,12 @@ use super::{Case, Group};
 use crate::approach::{Course, HORIZON, time_to_collision};
 use crate::conflict::CLOSES_AFTER;
 use crate::frame::State;
-use crate::geometry::rectangle::{Rectangle, direction, distance};
+use crate::geometry::contact::distance;
+use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};
 use crate::path::Pose;
 use crate::reference::chance::Chance;
-use crate::reference::contact as reference;
-use crate::reference::{nearest, precise};
+use crate::reference::{contact as reference, nearest, precise};
 use crate::units::{Metre, MetrePerSecond, Second};
 
 const LENGTH: f64 = 5.0;

@@ -11,14 +11,16 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
-use crate::frame::{Frame, Roster, Row, State, UserIndex};
+use crate::frame::{Frame, Row, State};
 use crate::geometry::halves::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;
 use crate::path::Pose;
 use crate::precollision::{Area, Circle, Search};
-use crate::replay::recording::{Recording, Step};
+use crate::replay::recording::Recording;
+use crate::replay::rows::Step;
+use crate::roster::{Roster, UserIndex};
 use crate::units::{Metre, MetrePerSecond, Second};
 
 /// Two within this of the limit are left aside: steps and sizes are rounded in a recording.

@@ -5,7 +5,8 @@ use nalgebra::{RealField, Vector2, convert};
 use super::decisions::{self, Method, Pair};
 use super::{Axis, Measurement, Plan};
 use crate::geometry::Vector;
-use crate::geometry::rectangle::{Rectangle, touches};
+use crate::geometry::contact::touches;
+use crate::geometry::rectangle::Rectangle;
 use crate::reference::chance::Chance;
 use crate::reference::pairs;
 

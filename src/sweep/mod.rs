@@ -14,12 +14,12 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-pub use seeds::Seeds;
-pub use vary::Vary;
-
 use crate::log::ENCOUNTERS;
 use crate::logged::{self, Label, LabelValue, LoggedRun, PARQUET};
 use crate::{Error, Result};
+
+pub use seeds::Seeds;
+pub use vary::Vary;
 
 /// The folder of the data set in a sweep's folder.
 const CONFLICTS: &str = "conflicts";

@@ -10,10 +10,9 @@ use rustc_hash::FxHashMap;
 use sha2::{Digest, Sha256};
 
 use super::{RUN, Sweep, Task};
-use crate::inputs::Input;
-use crate::log;
+use crate::input_hash::Input;
 use crate::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
-use crate::{Error, Result};
+use crate::{Error, Result, log};
 
 /// The hashes of files that are read besides what SUMO reads.
 pub(super) fn contents(files: &[PathBuf]) -> Result<Vec<String>> {

@@ -6,13 +6,14 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::encounter::Placement;
-use closecall::frame::{ProfileIndex, State, UserIndex};
+use closecall::frame::State;
 use closecall::geometry::Point;
 use closecall::log::Log;
 use closecall::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use closecall::options::Options;
+use closecall::placement::Placement;
 use closecall::profile::Profile;
+use closecall::roster::{ProfileIndex, UserIndex};
 use closecall::run::Run;
 
 /// Steps of 1 s that a car needs from one end of its way to the other.

@@ -12,7 +12,7 @@ use std::os::raw::c_char;
 use std::path::Path;
 use std::ptr::null_mut;
 
-use super::getters::{Domain, Reading};
+use super::reading::{Domain, Reading};
 
 /// A function pointer that only compiled.cpp calls; its real type stands there.
 type Function = Option<unsafe extern "C" fn()>;

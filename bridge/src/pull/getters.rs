@@ -7,28 +7,14 @@ use closecall::frame::{SUMO_INVALID, State};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
+use super::reading::{Domain, Reading};
+use super::sumo;
+
 #[cfg(compiled_getters)]
 pub use super::compiled::Kept;
 
 #[cfg(compiled_getters)]
 use super::compiled::Compiled;
-use super::sumo;
-
-/// Vehicles or persons.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Domain {
-    Vehicle,
-    Person,
-}
-
-/// What libsumo says of a road user.
-#[derive(Clone, Copy)]
-pub enum Reading {
-    /// It is inside a vehicle: no road user of its own.
-    Inside,
-    /// Position in m, angle in degrees as SUMO has it, speed in m/s.
-    At { x: f64, y: f64, z: f64, angle: f64, speed: f64 },
-}
 
 /// The getters of one domain.
 pub struct Getters {

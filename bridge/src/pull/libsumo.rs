@@ -5,9 +5,10 @@
 
 use std::ops::RangeFrom;
 
-use closecall::encounter::Placement;
-use closecall::frame::{Roster, State, UserIndex};
+use closecall::frame::State;
 use closecall::options::Options;
+use closecall::placement::Placement;
+use closecall::roster::{Roster, UserIndex};
 use closecall::run::Run;
 use closecall::table::make_room;
 use closecall::units::Second;
@@ -15,7 +16,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::getters::{self, Getters, Kept};
+use super::getters::{Getters, Kept};
+use super::reading;
 use super::sumo::{self, Types};
 
 /// libsumo's functions and who is in the scene.
@@ -68,7 +70,7 @@ impl Libsumo {
     pub fn new(module: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
         let compiled = module.getattr("_libsumo")?;
         let function = |name: &str| compiled.getattr(name).map(Bound::unbind);
-        let domain = |name: &str, infix: &str, domain: getters::Domain| -> PyResult<Domain> {
+        let domain = |name: &str, infix: &str, domain: reading::Domain| -> PyResult<Domain> {
             Ok(Domain {
                 departed: function(&format!("simulation_getDeparted{infix}IDList"))?,
                 arrived: function(&format!("simulation_getArrived{infix}IDList"))?,
@@ -85,8 +87,8 @@ impl Libsumo {
         };
         Ok(Self {
             time: function("simulation_getTime")?,
-            vehicles: domain("vehicle", "", getters::Domain::Vehicle)?,
-            persons: domain("person", "Person", getters::Domain::Person)?,
+            vehicles: domain("vehicle", "", reading::Domain::Vehicle)?,
+            persons: domain("person", "Person", reading::Domain::Person)?,
             parking: [
                 function("simulation_getParkingStartingVehiclesIDList")?,
                 function("simulation_getParkingEndingVehiclesIDList")?,
@@ -227,7 +229,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         jumped: bool,
-        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::frame::ProfileIndex>,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
     ) -> PyResult<RangeFrom<usize>> {
         if jumped {
             let now = self.ids.bind(py).call0()?;
@@ -260,7 +262,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         id: Bound<PyString>,
-        profile: &mut impl FnMut(&mut Run, &str) -> PyResult<closecall::frame::ProfileIndex>,
+        profile: &mut impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
     ) -> PyResult<()> {
         let name = id.extract::<&str>()?;
         let Err(rank) = self.rank(&run.roster, name) else { return Ok(()) };

@@ -4,6 +4,7 @@
 mod compiled;
 mod getters;
 mod libsumo;
+mod reading;
 mod sumo;
 mod traci;
 
@@ -13,10 +14,10 @@ use closecall::units::Second;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-pub use sumo::{add_obstacles, net_of, option};
-
 use self::libsumo::Libsumo;
 use self::traci::Traci;
+
+pub use sumo::{add_obstacles, net_of, option};
 
 /// Where road users come from.
 pub enum Source {

@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::frame::ProfileIndex;
 use closecall::geometry::Point;
 use closecall::net::{EdgeIndex, Net};
 use closecall::options::Options;
 use closecall::profile::Profile;
+use closecall::roster::ProfileIndex;
 use closecall::run::Run;
 use closecall::sumo_type::SumoType;
 use closecall::units::Second;

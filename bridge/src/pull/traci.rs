@@ -3,9 +3,10 @@
 //! The names of its functions are interned: whatever name Python is asked for anew in every step stays in its cache of
 //! attributes.
 
-use closecall::encounter::Placement;
-use closecall::frame::{State, UserIndex};
+use closecall::frame::State;
 use closecall::options::Options;
+use closecall::placement::Placement;
+use closecall::roster::UserIndex;
 use closecall::run::Run;
 use closecall::units::Second;
 use pyo3::intern;
@@ -146,7 +147,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         variable: &Variables,
-        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::frame::ProfileIndex>,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
     ) -> PyResult<()> {
         let domain = self.domain.bind(py);
         for live in self.live.values_mut() {

@@ -1,0 +1,47 @@
+//! What the braking model knows of a road user, and which models of μ there are.
+
+use crate::units::{MetrePerSecond, MetrePerSecondSquared, Second};
+
+/// How one road user brakes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Brakes {
+    /// Response time t1 + t2 in s: full speed until it is over.
+    pub response: Second,
+    /// Build-up time t3 in s, in which the deceleration rises linearly.
+    pub build_up: Second,
+    /// Deceleration in m/s² from then on; above 0.
+    pub deceleration: MetrePerSecondSquared,
+}
+
+impl Brakes {
+    /// The same brakes in the paper's worst case: at once and fully.
+    pub fn at_once(&self) -> Self {
+        Self { response: 0.0, build_up: 0.0, ..*self }
+    }
+}
+
+/// Which model of the minimal collision distance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MuModel {
+    /// The narrowest moment on the way to rest.
+    Minimal,
+    /// Both at rest.
+    AtRest,
+    /// Eq. 19 and 21 as printed: always a minus sign, no floor.
+    Paper,
+}
+
+impl MuModel {
+    /// All models, in the order of tables.
+    pub const ALL: [Self; 3] = [Self::Minimal, Self::AtRest, Self::Paper];
+}
+
+/// One road user's part in μ: its speed in m/s, 0 or more, and its brakes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Braking<'a> {
+    /// Speed in m/s.
+    pub speed: MetrePerSecond,
+    /// Its brakes.
+    pub brakes: &'a Brakes,
+}

@@ -1,0 +1,21 @@
+//! Where on the net a road user is, and where it is going.
+
+use std::sync::Arc;
+
+use crate::net::{EdgeIndex, LaneIndex};
+use crate::units::{Metre, MetrePerSecond};
+
+/// Where on the net a road user is, and where it is going: what the path along the lanes starts from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placement {
+    /// The lane that its front bumper is on.
+    pub lane: LaneIndex,
+    /// Its front bumper's way from the lane's beginning, in SUMO's lane length, in m.
+    pub position: Metre,
+    /// Its route, where that is new or may have changed; none where it has not, or nobody knows one.
+    pub route: Option<Arc<[EdgeIndex]>>,
+    /// Which edge of the route it is on, or left last when it is within a junction.
+    pub route_position: usize,
+    /// Speed to the left across the lane, in m/s; other than 0 while a lane change is under way.
+    pub lateral_speed: MetrePerSecond,
+}
