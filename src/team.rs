@@ -139,6 +139,11 @@ fn wait_for<T>(from: &Receiver<T>) -> Option<T> {
     }
 }
 
+/// How many processors this process may use; 1 where that is not known.
+pub fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

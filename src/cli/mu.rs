@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::say;
+use super::say::say;
 use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::kind::Kind;

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::say;
+use super::say::say;
 use crate::Result;
 use crate::plot::{self, Format};
 

@@ -5,9 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, absolute, no_sumo, processors, say, value};
+use super::files::absolute;
+use super::say::{say, value};
+use super::sumo::{Sumo, no_sumo};
 use crate::Result;
 use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
+use crate::team::processors;
 
 /// Scenarios and how to compare them.
 #[derive(Args)]

@@ -5,7 +5,9 @@ use std::sync::Arc;
 
 use clap::Args;
 
-use super::{Sumo, kept, say};
+use super::files::kept;
+use super::say::say;
+use super::sumo::Sumo;
 use crate::input_hash::Input;
 use crate::log::Log;
 use crate::net::Net;

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::{Sumo, kept, no_sumo, say};
+use super::files::kept;
+use super::say::say;
+use super::sumo::{RunRequest, Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
 use crate::outputs::OutputFiles;
-use crate::summary::Summary;
 use crate::units::Second;
 use crate::{Error, Result};
 
@@ -56,30 +57,6 @@ pub struct RunArgs {
     #[arg(last = true, value_name = "SUMO OPTIONS")]
     sumo_options: Vec<String>,
 }
-
-/// What `closecall run` was asked to do.
-#[derive(Clone, Debug)]
-pub struct RunRequest {
-    /// The SUMO configuration file.
-    pub scenario: PathBuf,
-    /// Whether to show the run in sumo-gui.
-    pub gui: bool,
-    /// Folder of the log.
-    pub out: PathBuf,
-    /// How many threads to use, SUMO's own included: the results are the same.
-    pub threads: u8,
-    /// Whether to print nothing but errors.
-    pub quiet: bool,
-    /// Files to write besides the log.
-    pub outputs: OutputFiles,
-    /// The detector's options.
-    pub options: Options,
-    /// Words for SUMO, after the program's name.
-    pub sumo_words: Vec<String>,
-}
-
-/// Runs SUMO with the checker attached.
-pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
 
 /// Runs the scenario and prints its summary.
 pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{say, value};
+use super::say::{say, value};
 use crate::Result;
 use crate::statistics::{By, Request, Statistics, table};
 

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::say;
+use super::say::say;
 use crate::stress::{self, Group};
 use crate::{Error, Result};
 

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::run::RunRequest;
-use super::{Sumo, say};
+use super::say::say;
+use super::sumo::{RunRequest, Sumo};
 use crate::Result;
 use crate::options::Options;
 use crate::outputs::OutputFiles;

@@ -8,9 +8,12 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::files::absolute;
 use super::run::{RunArgs, request};
-use super::{Command, Stop, Sumo, absolute, no_sumo, parse, processors, say, usage, value};
+use super::say::{say, value};
+use super::sumo::{Sumo, Workers, no_sumo};
 use crate::sweep::{Seeds, Sweep, Task, Vary};
+use crate::team::processors;
 use crate::units::counted;
 use crate::{Error, Result};
 
@@ -42,20 +45,8 @@ pub struct SweepArgs {
     passed: Passed,
 }
 
-/// Who does the runs.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Workers {
-    /// So many processes of this machine.
-    Local(usize),
-    /// Those of the Dask scheduler at this address.
-    Scheduler(String),
-}
-
-/// Takes the name of a task that has ended, and why it failed if it did.
-pub type Ended<'a> = dyn FnMut(&str, Option<&str>) + 'a;
-
-/// Does the tasks, in a working folder, and tells of each one's end.
-pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut Ended) -> Result<()> + 'a;
+/// Parses the words of `closecall run`, those of its TOML file included.
+pub type ParseRun = dyn Fn(Vec<OsString>) -> Result<RunArgs>;
 
 /// The arguments of `closecall run` that are the same in all runs, as they were typed.
 #[derive(Debug, Default)]
@@ -125,7 +116,7 @@ impl FromArgMatches for Passed {
 }
 
 /// Does the runs that are missing; returns the exit status: 1 where some failed.
-pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
+pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
     let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
     let beside = arguments.scenario.parent().unwrap_or(Path::new("")).join("closecall-sweep");
     let out = absolute(arguments.out.as_deref().unwrap_or(&beside))?;
@@ -142,7 +133,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>) -> Result<u8> {
     let named = files.iter().filter_map(|file| filter_in(file)).collect::<Vec<_>>();
     files.extend(named);
     let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
-    check_runs(&plan, &arguments.seeds, &arguments.vary)?;
+    check_runs(&plan, &arguments.seeds, &arguments.vary, parse_run)?;
     let missing = plan.missing()?;
     let there = plan.tasks.len() - missing.len();
     let workers = match arguments.scheduler {
@@ -235,19 +226,11 @@ fn check(vary: &Vary) -> Result<()> {
 }
 
 /// Whether `closecall run` will take the words: each variant with the first seed.
-fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary]) -> Result<()> {
+fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary], parse_run: &ParseRun) -> Result<()> {
     let variants = varied.iter().map(|vary| vary.values.len()).product::<usize>().min(plan.tasks.len() / seeds.0.len());
     for task in &plan.tasks[..variants] {
         let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
-        match parse(words.map(OsString::from).collect()) {
-            Ok(cli) => {
-                if let Command::Run(arguments) = cli.command {
-                    request(*arguments)?;
-                }
-            }
-            Err(Stop::Clap(error)) => return Err(usage(&error)),
-            Err(Stop::Error(error)) => return Err(error),
-        }
+        request(parse_run(words.map(OsString::from).collect())?)?;
     }
     Ok(())
 }
@@ -262,10 +245,9 @@ mod tests {
     use super::*;
 
     fn passed_of(words: &[&str]) -> Passed {
-        let words = ["closecall", "sweep", "a.sumocfg", "--seeds", "1"].iter().chain(words);
-        let Ok(cli) = parse(words.map(OsString::from).collect()) else { panic!() };
-        let Command::Sweep(arguments) = cli.command else { panic!() };
-        arguments.passed
+        let words = ["closecall", "a.sumocfg", "--seeds", "1"].iter().chain(words);
+        let command = SweepArgs::augment_args(clap::Command::new("closecall").args_override_self(true));
+        SweepArgs::from_arg_matches(&command.try_get_matches_from(words).unwrap()).unwrap().passed
     }
 
     #[test]

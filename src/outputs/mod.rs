@@ -1,10 +1,9 @@
 //! Files in the formats of other tools, written beside the log: SUMO's SSM device, FHWA's SSAM.
 
+mod file;
 mod ssm;
 mod trajectories;
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -141,27 +140,5 @@ impl Outputs {
             // What cannot be removed stays: the error that led here is the one to be told.
             let _ = std::fs::remove_file(file.path);
         }
-    }
-}
-
-/// A file under way.
-#[derive(Debug)]
-struct OutputFile {
-    path: PathBuf,
-    writer: BufWriter<File>,
-}
-
-impl OutputFile {
-    fn create(path: &Path) -> Result<Self> {
-        let file = File::create(path).map_err(|source| Error::file(path, source))?;
-        Ok(Self { path: path.to_owned(), writer: BufWriter::new(file) })
-    }
-
-    fn write(&mut self, bytes: &[u8]) -> Result<()> {
-        self.writer.write_all(bytes).map_err(|source| Error::file(&self.path, source))
-    }
-
-    fn flush(&mut self) -> Result<()> {
-        self.writer.flush().map_err(|source| Error::file(&self.path, source))
     }
 }

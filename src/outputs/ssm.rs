@@ -8,7 +8,7 @@ use std::path::Path;
 
 use quick_xml::escape::escape;
 
-use super::OutputFile;
+use super::file::OutputFile;
 use crate::Result;
 use crate::conflict::{Conflict, Moment};
 use crate::decimal::shortest;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::OutputFile;
+use super::file::OutputFile;
 use crate::Result;
 use crate::frame::{Frame, Row};
 use crate::geometry::Point;

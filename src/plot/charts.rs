@@ -5,7 +5,8 @@ use plotters::coord::Shift;
 use plotters::prelude::{Color, DashedLineSeries, DrawingArea, DrawingBackend, Rectangle, Text, WHITE};
 use plotters::style::{IntoFont, TextStyle};
 
-use super::{Chart, INK, colour, font, said};
+use super::chart::{Chart, INK, colour, said};
+use super::font;
 use crate::kind::Severity;
 use crate::report::Conflicts;
 use crate::units::Second;

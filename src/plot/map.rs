@@ -6,7 +6,8 @@ use plotters::prelude::{
 };
 use plotters::style::{IntoFont, TextStyle};
 
-use super::{Chart, INK, colour, font, said};
+use super::chart::{Chart, INK, colour, said};
+use super::font;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::kind::{Kind, Severity};
 use crate::net::{EdgeFunction, Net};

@@ -3,6 +3,7 @@
 //! Map, time line and distributions, each a file, with the colours of the report's light page. The font is within the
 //! crate: the same pictures on every machine.
 
+mod chart;
 mod charts;
 pub(crate) mod file;
 pub(crate) mod font;
@@ -12,18 +13,16 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use plotters::coord::Shift;
-use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor, WHITE};
+use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
-use crate::kind::Severity;
 use crate::report::{self, Conflicts};
 use crate::{Error, Result};
+use chart::{Chart, said};
 
 /// Width and height of a map.
 const MAP_SIZE: (u32, u32) = (1600, 1200);
 /// Width and height of any other chart.
 const CHART_SIZE: (u32, u32) = (1200, 700);
-/// What stands around a chart.
-const INK: RGBColor = RGBColor(28, 33, 40);
 
 /// What sort of picture to write.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -32,15 +31,6 @@ pub enum Format {
     Png,
     /// Lines and text.
     Svg,
-}
-
-/// The colour of a severity, as on the report's light page.
-fn colour(severity: Severity) -> RGBColor {
-    match severity {
-        Severity::Caution => RGBColor(0xc4, 0x8a, 0x00),
-        Severity::Serious => RGBColor(0xd1, 0x43, 0x1f),
-        Severity::Critical => RGBColor(0x6a, 0x1b, 0x9a),
-    }
 }
 
 /// Draws the charts of the logs in `folders` into `out`, which is made where it is not there; returns the files.
@@ -57,16 +47,6 @@ pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: Format
         files.push(picture(out, measure.name, format, CHART_SIZE, &conflicts, charts::Distribution(measure))?);
     }
     Ok(files)
-}
-
-/// What can be drawn on any backend.
-trait Chart {
-    /// Draws it.
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        conflicts: &Conflicts,
-    ) -> std::result::Result<(), String>;
 }
 
 /// Draws one chart into a file of its name.
@@ -97,9 +77,4 @@ fn on<B: DrawingBackend>(
     area.fill(&WHITE).map_err(said)?;
     chart.draw(area, conflicts)?;
     area.present().map_err(said)
-}
-
-/// A backend's error in words.
-fn said(error: impl std::fmt::Display) -> String {
-    error.to_string()
 }

@@ -3,6 +3,7 @@
 //! [`scenario`] → [`running`] (a process per scenario and seed) → [`outcome`] → [`exact`] or [`statistics`] → [`Report`],
 //! printed by its `Display` and by [`junit`].
 
+mod compared;
 pub mod exact;
 mod fingerprint;
 pub mod junit;
@@ -19,34 +20,15 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::{Error, Result};
-use exact::Differences;
 use outcome::Outcome;
 use permutation::{fewest_seeds, smallest_p};
 use running::Job;
-use statistics::{Comparison, comparisons};
+use statistics::comparisons;
 
+pub use compared::Compared;
 pub use report::{Report, Verdict, summary};
 pub use running::Runner;
 pub use scenario::{Level, Scenario};
-
-/// How two outcomes were compared, and what differs.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Compared {
-    /// Byte for byte.
-    Exactly(Differences),
-    /// By the statistical test, and why not exactly, where that was asked for.
-    Statistically(Vec<Comparison>, Option<String>),
-}
-
-impl Compared {
-    /// Whether nothing differs.
-    pub fn is_same(&self) -> bool {
-        match self {
-            Self::Exactly(differences) => differences.is_empty(),
-            Self::Statistically(comparisons, _) => comparisons.iter().all(|comparison| !comparison.differs),
-        }
-    }
-}
 
 /// Runs the scenarios and compares each with what is expected, or makes what was found the new expectation.
 ///

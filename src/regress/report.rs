@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use super::scenario::Scenario;
-use super::{Compared, Differences, Level};
+use super::compared::Compared;
+use super::exact::Differences;
+use super::scenario::{Level, Scenario};
 use crate::units::counted;
 use crate::{Error, Result};
 

@@ -1,7 +1,7 @@
 //! Stiff brakes: stopping distance and μ where terms are of very different size, cancel, or are hardly numbers.
 
-use super::tally::{Property, Tally, Unit};
-use super::{Case, Group};
+use super::case::Case;
+use super::tally::{Group, Property, Tally, Unit};
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::reference::braking as reference;
 use crate::reference::chance::Chance;

@@ -1,7 +1,8 @@
 //! Rectangles that hardly touch, hardly differ, are hardly there, or are far away.
 
-use super::tally::{Property, Tally, Unit};
-use super::{Case, Group, scene};
+use super::case::Case;
+use super::scene;
+use super::tally::{Group, Property, Tally, Unit};
 use crate::frame::{Frame, SUMO_INVALID, State};
 use crate::geometry::contact::{distance, touches};
 use crate::geometry::rectangle::Rectangle;

@@ -4,6 +4,7 @@
 //! gets a row with the worst that was seen and the inputs that led there.
 
 mod braking;
+mod case;
 mod geometry;
 mod paths;
 mod scene;
@@ -12,43 +13,10 @@ mod tally;
 mod time;
 
 pub use scene::car;
-pub use tally::{Property, Row, Unit};
+pub use tally::{Group, Property, Row, Unit};
 
 use crate::reference::chance::Chance;
 use tally::Tally;
-
-/// What a case is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Group {
-    /// Stopping distance and μ.
-    Braking,
-    /// Contact and distance of rectangles.
-    Geometry,
-    /// Time to collision, steps, events.
-    Time,
-    /// Lines on the ground and the poses along them.
-    Paths,
-}
-
-/// One named case.
-struct Case {
-    group: Group,
-    name: &'static str,
-    /// How many inputs of the others' one of this costs.
-    cost: u64,
-    check: fn(&mut Chance, &mut Tally),
-}
-
-impl Case {
-    const fn new(group: Group, name: &'static str, check: fn(&mut Chance, &mut Tally)) -> Self {
-        Self { group, name, cost: 1, check }
-    }
-
-    const fn costing(mut self, cost: u64) -> Self {
-        self.cost = cost;
-        self
-    }
-}
 
 /// Draws `count` inputs in all, shared out to all cases (or those of one group), and says what was seen of each.
 ///

@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use super::case::Case;
 use super::scene::Scene;
-use super::tally::{Property, Tally, Unit};
-use super::{Case, Group};
+use super::tally::{Group, Property, Tally, Unit};
 use crate::frame::State;
 use crate::geometry::lines::Lines;
 use crate::geometry::{Point, Vector};

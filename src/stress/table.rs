@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{Row, Unit};
+use super::tally::{Row, Unit};
 
 pub(super) fn of(rows: &[Row]) -> String {
     let mut text = String::new();

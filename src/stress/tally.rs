@@ -2,8 +2,20 @@
 
 use std::fmt;
 
-use super::Group;
 use crate::reference::{Deviation, Number, deviation};
+
+/// What a case is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Group {
+    /// Stopping distance and μ.
+    Braking,
+    /// Contact and distance of rectangles.
+    Geometry,
+    /// Time to collision, steps, events.
+    Time,
+    /// Lines on the ground and the poses along them.
+    Paths,
+}
 
 /// How a property's error is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Times that go to infinity or to nothing, contacts that only graze, and road users that do what none should.
 
+use super::case::Case;
 use super::scene::Scene;
-use super::tally::{Property, Tally, Unit};
-use super::{Case, Group};
+use super::tally::{Group, Property, Tally, Unit};
 use crate::approach::{Course, HORIZON, time_to_collision};
 use crate::conflict::CLOSES_AFTER;
 use crate::frame::State;

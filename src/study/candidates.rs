@@ -12,7 +12,7 @@ use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 
 use super::clock::{Timed, interleaved};
-use super::{Axis, Measurement, Plan};
+use super::measurement::{Axis, Measurement, Plan};
 use crate::precollision::{Area, Circle, Search};
 use crate::reference::chance::Chance;
 use crate::units::Second;

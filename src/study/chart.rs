@@ -6,7 +6,7 @@ use std::path::Path;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::{Axis, Measurement, scenes};
+use super::measurement::{Axis, Measurement, scenes};
 use crate::Result;
 use crate::plot::{file, font};
 

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use super::clock::{Timed, interleaved};
-use super::{Axis, Measurement, Plan};
+use super::measurement::{Axis, Measurement, Plan};
 use crate::geometry::rectangle::Rectangle;
 use crate::reference::chance::Chance;
 use crate::reference::contact;

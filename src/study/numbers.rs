@@ -3,7 +3,7 @@
 use nalgebra::{RealField, Vector2, convert};
 
 use super::decisions::{self, Method, Pair};
-use super::{Axis, Measurement, Plan};
+use super::measurement::{Axis, Measurement, Plan};
 use crate::geometry::Vector;
 use crate::geometry::contact::touches;
 use crate::geometry::rectangle::Rectangle;

@@ -2,7 +2,8 @@
 
 use std::fmt::Write;
 
-use super::{Axis, Measurement, machine, scenes};
+use super::clock::machine;
+use super::measurement::{Axis, Measurement, scenes};
 
 /// What an axis asks, and against what its errors are.
 fn question(axis: Axis) -> [&'static str; 2] {

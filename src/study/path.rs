@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 
 use super::clock::median;
 use super::driven::{Driven, Pair, Truth, pair};
-use super::{Axis, Measurement, Plan, Record};
+use super::measurement::{Axis, Measurement, Plan, Record};
 use crate::net::Net;
 use crate::options::{Mode, Options, PathModel};
 use crate::replay::Replay;

@@ -3,7 +3,7 @@
 use std::hint::black_box;
 
 use super::clock::{Timed, interleaved};
-use super::{Axis, Measurement, Plan};
+use super::measurement::{Axis, Measurement, Plan};
 use crate::approach::{Course, HORIZON, time_to_collision};
 use crate::geometry::Point;
 use crate::geometry::contact::touches;

@@ -3,7 +3,7 @@
 use parry2d_f64::query;
 
 use super::decisions::{self, Method, Pair};
-use super::{Axis, Measurement, Plan};
+use super::measurement::{Axis, Measurement, Plan};
 use crate::accurate::paper::a_vertex_touches_a_side;
 use crate::geometry::contact::{plainly_touches, touches};
 use crate::geometry::rectangle::Rectangle;

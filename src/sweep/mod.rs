@@ -6,71 +6,21 @@
 
 mod seeds;
 mod standing;
+mod task;
 mod vary;
 
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use serde::{Deserialize, Serialize};
-
-use crate::log::ENCOUNTERS;
-use crate::logged::{self, Label, LabelValue, LoggedRun, PARQUET};
+use crate::logged::{Label, LabelValue};
 use crate::{Error, Result};
 
 pub use seeds::Seeds;
+pub use task::Task;
 pub use vary::Vary;
 
-/// The folder of the data set in a sweep's folder.
-const CONFLICTS: &str = "conflicts";
-/// What the folder of a run in it begins with, as partitions of a data set do.
-const RUN: &str = "run=";
 /// More runs than this are a slip of the finger.
 const MOST: usize = 1_000_000;
-
-/// One run of a sweep; as JSON it travels to whoever does it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Task {
-    /// Its name: what was varied, and the seed.
-    pub name: String,
-    /// The words of `closecall run`, without those that say where the log goes.
-    pub words: Vec<String>,
-    /// The sweep's folder.
-    pub out: PathBuf,
-    /// What tells it from the other runs, as columns.
-    labels: Vec<Label>,
-    /// The hash of what was asked for.
-    fingerprint: String,
-}
-
-impl Task {
-    /// Makes the run's log a part of the data set; encounters, where there are any, come to lie beside it.
-    ///
-    /// # Errors
-    /// [`Error::Content`] where the run did not come to its end; those of [`logged::pack`].
-    pub fn finish(&self, log: &Path) -> Result<()> {
-        if !LoggedRun::read(log)?.complete {
-            return Err(Error::content(log, "the run did not come to its end"));
-        }
-        let encounters = log.join(ENCOUNTERS);
-        let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
-        let fault = |source| Error::file(&folder, source);
-        if folder.exists() {
-            // Those of the run that this one takes the place of.
-            fs::remove_dir_all(&folder).map_err(fault)?;
-        }
-        if encounters.is_file() {
-            fs::create_dir_all(&folder).map_err(fault)?;
-            fs::rename(encounters, folder.join(ENCOUNTERS)).map_err(fault)?;
-        }
-        logged::pack(log, &self.labels, &self.fingerprint, &self.file())
-    }
-
-    /// The file that it becomes.
-    fn file(&self) -> PathBuf {
-        self.out.join(CONFLICTS).join(format!("{RUN}{}", self.name)).join(PARQUET)
-    }
-}
 
 /// All runs of a sweep.
 #[derive(Clone, Debug)]
@@ -139,11 +89,11 @@ impl Sweep {
     /// [`Error::Content`] where the folder holds runs of a sweep that varied something else (their columns differ), or a
     /// run's own log.
     pub fn missing(&self) -> Result<Vec<&Task>> {
-        standing::missing(self)
+        standing::missing(&self.out, &self.tasks)
     }
 
     /// The folder of the data set.
     pub fn data_set(&self) -> PathBuf {
-        self.out.join(CONFLICTS)
+        task::data_set(&self.out)
     }
 }

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashMap;
 use sha2::{Digest, Sha256};
 
-use super::{RUN, Sweep, Task};
+use super::task::{RUN, Task, data_set};
 use crate::input_hash::Input;
 use crate::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
 use crate::{Error, Result, log};
@@ -30,15 +30,15 @@ pub(super) fn fingerprint(words: &[String], labels: &[Label], read: &[String]) -
     hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-pub(super) fn missing(sweep: &Sweep) -> Result<Vec<&Task>> {
-    let log = sweep.out.join(log::CONFLICTS);
+pub(super) fn missing<'a>(out: &Path, tasks: &'a [Task]) -> Result<Vec<&'a Task>> {
+    let log = out.join(log::CONFLICTS);
     if log.exists() {
         let message = "this is a single run's, which would count as one of the sweep's: choose another --out";
         return Err(Error::content(&log, message));
     }
-    check_columns(sweep)?;
+    check_columns(out, tasks)?;
     let mut hashes = FxHashMap::default();
-    Ok(sweep.tasks.iter().filter(|task| !is_done(task, &mut hashes)).collect())
+    Ok(tasks.iter().filter(|task| !is_done(task, &mut hashes)).collect())
 }
 
 /// The input files with the hashes that they have now, each read once; none where one is gone.
@@ -57,11 +57,11 @@ fn is_done(task: &Task, hashes: &mut Hashes) -> bool {
 }
 
 /// All files of a data set have the same columns, those of runs before included.
-fn check_columns(sweep: &Sweep) -> Result<()> {
-    let Some(first) = sweep.tasks.first() else { return Ok(()) };
+fn check_columns(out: &Path, tasks: &[Task]) -> Result<()> {
+    let Some(first) = tasks.first() else { return Ok(()) };
     let is_number = |value: &LabelValue| !matches!(value, LabelValue::Text(_));
     let own = first.labels.iter().map(|label| (label.name.clone(), is_number(&label.value))).collect::<Vec<_>>();
-    for folder in runs_in(&sweep.data_set()) {
+    for folder in runs_in(&data_set(out)) {
         let Ok(packed) = Packed::of(&folder.join(PARQUET)) else { continue };
         if packed.labels != own {
             let names =

@@ -1,6 +1,6 @@
 //! What stands in the tables.
 
-use super::{Cell, Table};
+use super::cells::{Cell, Table};
 use crate::statistics::{
     Comparison, Extrapolation, GroupStatistics, HotSpot, Method, Quantiles, Rate, Significance, Statistics, Test,
     Traffic, Worst,

@@ -1,6 +1,6 @@
 //! Tables for a spreadsheet or a script: a line per value, with every digit.
 
-use super::Table;
+use super::cells::{Cell, Table};
 use crate::{Error, Result};
 
 /// The tables as CSV: `table,row,name,column,value`; `row` counts from 1, `name` is the row's first cell.
@@ -14,7 +14,7 @@ pub fn csv(tables: &[Table]) -> Result<String> {
     line(["table", "row", "name", "column", "value"])?;
     for table in tables {
         for (number, row) in table.rows.iter().enumerate() {
-            let name = row.first().map(super::Cell::exact).unwrap_or_default();
+            let name = row.first().map(Cell::exact).unwrap_or_default();
             let mut of = "";
             for (column, cell) in table.columns.iter().zip(row) {
                 // An interval's ends are named after what they are of.

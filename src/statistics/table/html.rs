@@ -2,7 +2,7 @@
 
 use quick_xml::escape::escape;
 
-use super::{Cell, Table};
+use super::cells::{Cell, Table};
 
 const STYLE: &str = "body{font:14px sans-serif;margin:2em;color-scheme:light dark}table{border-collapse:collapse}\
     div{overflow-x:auto}th,td{padding:.2em .6em;text-align:left;border-bottom:1px solid #8888}\

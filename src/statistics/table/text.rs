@@ -1,6 +1,6 @@
 //! Tables for a terminal.
 
-use super::{Cell, Table};
+use super::cells::{Cell, Table};
 
 /// The tables with aligned columns: words to the left, numbers to the right.
 pub fn text(tables: &[Table]) -> String {

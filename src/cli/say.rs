@@ -1,0 +1,20 @@
+//! How a command prints its results, and how it reports a wrong value.
+
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
+
+use crate::{Error, Result};
+
+/// Prints results. A reader that has seen enough is no error.
+pub(super) fn say(text: impl Display) -> Result<()> {
+    let mut output = std::io::stdout();
+    match write!(output, "{text}").and_then(|()| output.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(value(format!("standard output: {error}"))),
+        _ => Ok(()),
+    }
+}
+
+/// One line for a value that is out of its range.
+pub(super) fn value(message: impl Into<String>) -> Error {
+    Error::Value(message.into())
+}
