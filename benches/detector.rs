@@ -23,7 +23,7 @@ use closecall::options::Options;
 use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
 use closecall::roster::{Roster, UserIndex};
-use closecall::team::Team;
+use closecall::util::threads::Team;
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 

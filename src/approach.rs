@@ -7,7 +7,7 @@ use crate::geometry::separating_axes::slide;
 use crate::geometry::sweep::{Step, TOLERANCE};
 use crate::geometry::{Point, Vector};
 use crate::path::Pose;
-use crate::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// Contact that is later than this is none: paths are not laid further; s.
 pub const HORIZON: Second = 10.0;

@@ -6,7 +6,7 @@ use crate::geometry::halves::{Halves, Touch};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::normals;
 use crate::geometry::sweep::TOLERANCE;
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// At so many moments the foe is looked at before the worst is narrowed down: before they would touch, and from then on.
 const BEFORE: i32 = 6;

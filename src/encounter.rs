@@ -3,7 +3,7 @@
 use crate::kind::{Kind, Severity};
 use crate::net::LaneIndex;
 use crate::roster::UserIndex;
-use crate::units::{Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 
 /// A pair that would meet, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]

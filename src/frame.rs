@@ -6,8 +6,8 @@
 
 use crate::geometry::Point;
 use crate::roster::UserIndex;
-use crate::table::{self, add, make_room};
-use crate::units::{Metre, MetrePerSecond, Radian, Second};
+use crate::util::tight_vec::{self, add, make_room};
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
 pub const SUMO_INVALID: f64 = -1_073_741_824.0;
@@ -105,7 +105,7 @@ impl Frame {
         fill: impl FnOnce(&mut [State]) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let first = self.len();
-        table::fill(&mut self.states, first + users.len(), State::NOWHERE);
+        tight_vec::fill(&mut self.states, first + users.len(), State::NOWHERE);
         make_room(&mut self.users, users.len());
         self.users.extend(users);
         let filled = fill(&mut self.states[first..]);
@@ -130,7 +130,7 @@ impl Frame {
         for (row, UserIndex(user)) in (first as u32..).zip(&self.users[first..]) {
             let place = *user as usize;
             if place >= self.rows.len() {
-                table::fill(&mut self.rows, place + 1, ABSENT);
+                tight_vec::fill(&mut self.rows, place + 1, ABSENT);
             }
             self.rows[place] = row;
         }

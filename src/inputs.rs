@@ -14,7 +14,7 @@ use crate::{Error, Result};
 /// # Errors
 /// An error that names the file, the line and what is wrong.
 pub fn check_xml(path: &Path) -> Result<()> {
-    let mut reader = Reader::from_reader(crate::input_file::open(path)?);
+    let mut reader = Reader::from_reader(crate::util::input_file::open(path)?);
     reader.config_mut().check_end_names = true;
     let mut buffer = Vec::new();
     let mut depth = 0_i64;
@@ -68,7 +68,7 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
         ("a", "additional-files"),
     ];
     let folder = configuration.parent().unwrap_or(Path::new(""));
-    let mut reader = Reader::from_reader(crate::input_file::open(configuration)?);
+    let mut reader = Reader::from_reader(crate::util::input_file::open(configuration)?);
     let mut buffer = Vec::new();
     let mut files = Vec::new();
     loop {
@@ -91,7 +91,7 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
 
 fn line_of(path: &Path, position: u64) -> Result<u64> {
     use std::io::Read;
-    let before = crate::input_file::open(path)?.take(position).bytes();
+    let before = crate::util::input_file::open(path)?.take(position).bytes();
     Ok(1 + before.filter(|byte| matches!(byte, Ok(b'\n'))).count() as u64)
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::options::Options;
-use crate::units::Radian;
+use crate::util::units::Radian;
 
 /// How the two would meet, by the angle between their headings at the meeting place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, clap::ValueEnum)]

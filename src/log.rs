@@ -14,8 +14,9 @@ use crate::geometry::Point;
 use crate::net::Net;
 use crate::record::RunRecord;
 use crate::roster::Roster;
-use crate::units::{Metre, Second};
-use crate::{Error, Result, decimal};
+use crate::util::decimal;
+use crate::util::units::{Metre, Second};
+use crate::{Error, Result};
 
 /// The name of the conflicts' file.
 pub const CONFLICTS: &str = "conflicts.csv";

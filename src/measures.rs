@@ -3,7 +3,7 @@
 
 use crate::kind::Severity;
 use crate::options::Options;
-use crate::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// How bad a conflict is, from what is known of it in one step.
 pub fn severity(

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::braking::MuModel;
 use crate::exclusion::Exclusion;
-use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 
 /// Which method finds the conflicts.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::net::{EdgeIndex, LaneIndex};
-use crate::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// Where on the net a road user is, and where it is going: what the path along the lanes starts from.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
 use crate::sumo_type::SumoType;
-use crate::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
+use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
 /// What sort of road user it is, as far as the model distinguishes.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// How often the bar is drawn anew.
 const PERIOD: Duration = Duration::from_millis(100);

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::input_hash::Input;
 use crate::options::Options;
 use crate::summary::Summary;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// How a run was made and what it found.
 #[derive(Clone, Debug, Serialize)]

@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::geometry::polygon::Polygon;
 use crate::profile::{Category, Profile, origins};
-use crate::table::add;
+use crate::util::tight_vec::add;
 
 /// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -23,7 +23,7 @@ use crate::profile::{Category, Profile, obstacle_name};
 use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::scene::{Exclusions, LeftOut};
 use crate::summary::Summary;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// One run.
 pub struct Run {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::conflict::Conflict;
 use crate::kind::{Kind, Severity};
 use crate::scene::LeftOut;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -1,6 +1,6 @@
 //! What SUMO says of a type of road users; of one that says nothing itself, SUMO's defaults by vehicle class.
 
-use crate::units::{Kilogram, Metre, MetrePerSecondSquared};
+use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared};
 
 /// What SUMO says of a vehicle or person type.
 #[derive(Clone, Debug, PartialEq)]

@@ -15,7 +15,7 @@ use closecall::run::Run;
 use closecall::scene::LeftOut;
 use closecall::summary::Summary;
 use closecall::sweep::Task;
-use closecall::team::Helper;
+use closecall::util::threads::Helper;
 use closecall::{Error, Result, inputs};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;

@@ -2,7 +2,7 @@
 
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector, angle_between};
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// Where an ego meets a foe.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::conflict_point::Meeting;
 use super::participant::Mover;
 use crate::geometry::rectangle::Rectangle;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The meeting of two that drive towards each other with `ahead` m between their fronts. Each one's way ends where
 /// the area that the other needs to stop begins; the ego is the one with the longer way.

@@ -19,7 +19,7 @@ pub use swept_bounds::Cover;
 use crate::braking::{self, MuModel};
 use crate::geometry::halves::Halves;
 use crate::geometry::{Vector, cross};
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// Two straight paths are parallel where they deviate by less than this over their length, in m.
 const PARALLEL: Metre = 1e-3;

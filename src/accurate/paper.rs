@@ -10,7 +10,7 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, angle_between, left_of};
 use crate::kind::{Kind, kind_at};
 use crate::options::Options;
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// What the paper's flow chart says of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]

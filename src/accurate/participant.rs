@@ -5,7 +5,7 @@ use crate::braking::{Brakes, Braking};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::path::Pose;
-use crate::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// One road user of a pair: what phase 2 needs to know of it.
 #[derive(Clone, Copy, Debug)]

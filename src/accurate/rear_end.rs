@@ -3,7 +3,7 @@
 use super::conflict_point::Meeting;
 use super::participant::Mover;
 use crate::geometry::rectangle::Rectangle;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The meeting of a follower with its leader, `ahead` m in front of it on the same straight line; none where the
 /// follower does not get there.

@@ -10,7 +10,7 @@ use crate::geometry::separating_axes::translation;
 use crate::geometry::sweep::{Step, TOLERANCE};
 use crate::geometry::{Vector, exact};
 use crate::path::Pose;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// How far from each other two may be, after both were swept, where they touch, in m.
 const INEXACT: Metre = 2.0 * TOLERANCE;

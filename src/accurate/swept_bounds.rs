@@ -5,7 +5,7 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::path::Pose;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// What a road user covers between two poses, in boxes that decide quickly where nothing meets.
 #[derive(Clone, Copy, Debug)]

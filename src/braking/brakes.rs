@@ -1,6 +1,6 @@
 //! What the braking model knows of a road user, and which models of μ there are.
 
-use crate::units::{MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::util::units::{MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// How one road user brakes.
 #[derive(Clone, Copy, Debug, PartialEq)]

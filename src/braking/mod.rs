@@ -5,15 +5,14 @@
 //! both can brake without contact. Three models of it, chosen by name: [`MuModel`].
 //!
 //! Published μ must hold its 15 digits also where S − Si cancels, so [`mu`] computes the same formulas in plain f64
-//! first and only where the result is much smaller than its terms in twice the precision ([`double_double`]).
+//! first and only where the result is much smaller than its terms in twice the precision ([`crate::util::double_double`]).
 
 mod brakes;
-pub mod double_double;
 mod narrowest;
 mod needed;
 
-use crate::units::{Metre, MetrePerSecond};
-use double_double::{DoubleDouble, Number};
+use crate::util::double_double::{DoubleDouble, Number};
+use crate::util::units::{Metre, MetrePerSecond};
 use needed::Needed;
 
 pub use brakes::{Brakes, Braking, MuModel};

@@ -10,9 +10,9 @@
 //! f at the crossing is summed up from the relative speed g0 = V − σ Vi, so that what both have in common never enters.
 
 use super::brakes::{Brakes, Braking};
-use super::double_double::Number;
 use super::needed::Needed;
-use crate::units::MetrePerSecond;
+use crate::util::double_double::Number;
+use crate::util::units::MetrePerSecond;
 
 /// S(V), for any kind of number.
 pub fn stopping_distance<N: Number>(speed: MetrePerSecond, brakes: &Brakes) -> N {

@@ -1,6 +1,6 @@
 //! A difference of distances with the size of its terms: whether plain f64 has kept enough digits of it.
 
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// A difference of ways, and how large the terms were that it was formed from.
 #[derive(Clone, Copy, Debug)]

@@ -10,7 +10,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use crate::Result;
 use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
-use crate::team::processors;
+use crate::util::threads::processors;
 
 /// Scenarios and how to compare them.
 #[derive(Args)]

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::say::say;
-use crate::units::counted;
+use crate::util::units::counted;
 use crate::{Result, report};
 
 /// Which logs, and where the page goes.

@@ -9,7 +9,7 @@ use super::say::say;
 use super::sumo::{RunRequest, Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
 use crate::outputs::OutputFiles;
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// A SUMO scenario and how to run it.

@@ -10,7 +10,7 @@ use crate::Result;
 use crate::options::Options;
 use crate::outputs::OutputFiles;
 use crate::study::{self, Axis, Plan};
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// What to measure, and where to write it.
 #[derive(Args)]

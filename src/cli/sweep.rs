@@ -13,8 +13,8 @@ use super::run::{RunArgs, request};
 use super::say::{say, value};
 use super::sumo::{Sumo, Workers, no_sumo};
 use crate::sweep::{Seeds, Sweep, Task, Vary};
-use crate::team::processors;
-use crate::units::counted;
+use crate::util::threads::processors;
+use crate::util::units::counted;
 use crate::{Error, Result};
 
 /// A SUMO scenario, its seeds, and what is varied.

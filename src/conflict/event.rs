@@ -11,7 +11,7 @@ use crate::kind::{Kind, Severity};
 use crate::measures;
 use crate::net::LaneIndex;
 use crate::roster::{ProfileIndex, Roster};
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// One conflict: a pair and a run of steps with margin < 0.
 ///

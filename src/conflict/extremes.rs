@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::kind::{Kind, Severity};
 use crate::net::LaneIndex;
 use crate::roster::UserIndex;
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
 const SAME_MARGIN: Metre = 1e-9;

@@ -19,8 +19,8 @@ use crate::geometry::halves::Halves;
 use crate::kind::{Kind, Severity};
 use crate::profile::Category;
 use crate::roster::{Roster, UserIndex};
-use crate::table::make_room;
-use crate::units::Second;
+use crate::util::tight_vec::make_room;
+use crate::util::units::Second;
 use extremes::{Extremes, Seen};
 
 pub use stance::Stance;

@@ -1,6 +1,6 @@
 //! When and where an extreme of a conflict was found.
 
-use crate::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// When and where an extreme was found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -10,8 +10,8 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
 use crate::path::Pose;
-use crate::table::add;
-use crate::units::{Metre, Radian, Second};
+use crate::util::tight_vec::add;
+use crate::util::units::{Metre, Radian, Second};
 
 /// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
 pub const WAIT: Second = 5.0;

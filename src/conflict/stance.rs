@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 use crate::frame::State;
 use crate::geometry::Point;
 use crate::profile::Profile;
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// A point of a path that lies nearer than this to the line between its neighbours is left out, in m: less than a
 /// drawing shows.

@@ -11,8 +11,8 @@ use crate::path::lanes::LanePath;
 use crate::path::{arc, turn};
 use crate::profile::Category;
 use crate::roster::{Roster, UserIndex};
-use crate::table::{add, fill};
-use crate::team::share;
+use crate::util::threads::share;
+use crate::util::tight_vec::{add, fill};
 
 impl Detector {
     /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller

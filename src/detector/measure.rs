@@ -10,7 +10,7 @@ use crate::encounter::{Encounter, Nearness};
 use crate::geometry::{contact, polygon};
 use crate::kind::Kind;
 use crate::options::Mode;
-use crate::units::{Metre, MetrePerSecondSquared, Second};
+use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 use crate::{avoidance, measures};
 
 impl Scene<'_> {

@@ -17,8 +17,8 @@ use crate::geometry::{contact, cross};
 use crate::kind::{Kind, kind_at};
 use crate::options::Mode;
 use crate::profile::Category;
-use crate::table::add;
-use crate::units::{Metre, Radian};
+use crate::util::tight_vec::add;
+use crate::util::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
 const LEVEL: Metre = 2.5;

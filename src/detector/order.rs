@@ -2,7 +2,7 @@
 
 use super::worker::Worker;
 use crate::encounter::Encounter;
-use crate::table::fill;
+use crate::util::tight_vec::fill;
 
 /// Counted together: so many rows have hardly more than a few encounters.
 const TOGETHER: u32 = 16;

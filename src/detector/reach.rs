@@ -14,7 +14,7 @@ use crate::precollision::{Area, Circle, Slot};
 use crate::profile::{Category, Profile};
 use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::scene::Exclusions;
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// How a road user turns, as far as the last two steps tell.
 #[derive(Clone, Debug, Default)]

@@ -7,7 +7,7 @@ use crate::options::Options;
 use crate::profile::{Category, Profile};
 use crate::roster::Roster;
 use crate::scene::Exclusions;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// What phase 2 reads of the step under way.
 #[derive(Clone, Copy)]

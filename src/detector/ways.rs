@@ -10,8 +10,8 @@ use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
 use crate::path::{Pose, arc, straight};
 use crate::profile::Category;
-use crate::table::{add, fill, make_room};
-use crate::units::Metre;
+use crate::util::tight_vec::{add, fill, make_room};
+use crate::util::units::Metre;
 
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
 pub(super) const MOST_POSES: usize = 64;

@@ -3,7 +3,7 @@
 use super::rectangle::Rectangle;
 use super::separating_axes::normals;
 use super::{Point, Vector, cross, exact};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// Whether two rectangles share a point; touching counts. No decision is wrong: see [`super::exact`].
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {

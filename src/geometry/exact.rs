@@ -6,7 +6,7 @@
 
 use super::rectangle::Rectangle;
 use super::{Vector, cross, left_of};
-use crate::braking::double_double::{two_product, two_sum};
+use crate::util::double_double::{two_product, two_sum};
 
 /// Rounding of the f64 form errs by less than this part of the largest term: some twenty operations, each by 2⁻⁵³.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;

@@ -13,8 +13,8 @@ use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, outlines_touch, translation};
 use super::sweep::{Step, TOLERANCE};
 use super::{Bounds, Vector};
-use crate::table::{add, make_room};
-use crate::units::Metre;
+use crate::util::tight_vec::{add, make_room};
+use crate::util::units::Metre;
 
 /// More than rounding can move anything, in m.
 const ROUNDING: Metre = 1e-6;

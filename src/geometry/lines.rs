@@ -1,7 +1,7 @@
 //! Lines on the ground, all in one table: the points of each, and the way to them from where their line begins.
 
 use super::{Point, Vector};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// What is nearer than this to a line is on it, in m.
 pub(crate) const ON_THE_LINE: Metre = 1e-3;

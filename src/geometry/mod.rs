@@ -16,7 +16,7 @@ pub mod sweep;
 
 use nalgebra::{Point2, Vector2};
 
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// A place in the plane, in m.
 pub type Point = Point2<Metre>;

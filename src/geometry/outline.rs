@@ -2,7 +2,7 @@
 
 use super::rectangle::Rectangle;
 use super::{Bounds, Point, Vector, cross};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The hull of two rectangles has eight corners at most.
 const MOST_CORNERS: usize = 8;

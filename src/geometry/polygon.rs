@@ -8,7 +8,7 @@ use parry2d_f64::transformation::{convex_hull, hertel_mehlhorn};
 use super::outline::Outline;
 use super::rectangle::Rectangle;
 use super::{Bounds, Point, parry};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// A convex polygon with three to eight corners.
 #[derive(Clone, Copy, Debug)]

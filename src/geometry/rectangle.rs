@@ -3,7 +3,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Bounds, Point, Vector, cross, left_of};
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// A rectangle that may stand at any angle.
 #[derive(Clone, Copy, Debug, PartialEq)]

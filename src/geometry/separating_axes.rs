@@ -7,7 +7,7 @@
 use super::outline::{Outline, UNSURE};
 use super::rectangle::Rectangle;
 use super::{Vector, cross, left_of};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The part of a movement, 0 at its beginning and 1 at its end, during which two outlines touch.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -12,7 +12,7 @@ use super::outline::Outline;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, slide};
 use super::{Point, Vector, cross};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// How far a corner of a sweeping rectangle may be from where it really goes, in m.
 pub const TOLERANCE: Metre = 0.01;

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::kind::{Kind, Severity};
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// A row of `conflicts.csv`; docs/log.md says what each column is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use super::parquet::{PARQUET, Packed};
 use crate::input_hash::Input;
 use crate::log::RUN;
 use crate::summary::{Count, Exposure};
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// How a run was made: what statistics need of `run.json`.

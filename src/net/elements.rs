@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// SUMO's default width of a lane in m.
 pub(super) const LANE_WIDTH: Metre = 3.2;

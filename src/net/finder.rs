@@ -7,7 +7,7 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
 
 use super::elements::{Lane, LaneIndex};
 use crate::geometry::{Bounds, Point, parry};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// A place further than this from any lane's centre line is on none, in m.
 const REACH: Metre = 10.0;

@@ -6,7 +6,7 @@ use rustc_hash::FxHashMap;
 use super::elements::{Edge, EdgeIndex, Junction, Lane, LaneIndex};
 use super::finder::Finder;
 use crate::geometry::lines::Lines;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// A road network.
 #[derive(Clone, Debug, Default)]

@@ -13,7 +13,7 @@ use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, LANE_WIDTH, Lane,
 use super::finder::Finder;
 use super::network::Net;
 use crate::geometry::Point;
-use crate::input_file::{LineCounter, open, xml_message};
+use crate::util::input_file::{LineCounter, open, xml_message};
 use crate::{Error, Result};
 
 /// Beyond this a coordinate is no place on earth, in m; SUMO's invalid value is larger.

@@ -11,8 +11,8 @@ use quick_xml::escape::escape;
 use super::file::OutputFile;
 use crate::Result;
 use crate::conflict::{Conflict, Moment};
-use crate::decimal::shortest;
 use crate::kind::Kind;
+use crate::util::decimal::shortest;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;

@@ -16,7 +16,7 @@ use crate::geometry::rectangle::direction;
 use crate::net::{LaneIndex, Net};
 use crate::profile::Category;
 use crate::roster::{Roster, UserIndex};
-use crate::units::{MetrePerSecond, Second};
+use crate::util::units::{MetrePerSecond, Second};
 
 /// The first byte of each record.
 const FORMAT: u8 = 0;

@@ -2,7 +2,7 @@
 
 use super::{Pose, largest_turn, rotated};
 use crate::geometry::{Point, Vector, left_of};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// Below this curvature, in 1/m, the path is straight: a lateral deviation of 1 mm after 450 m.
 const STRAIGHT: f64 = 1e-8;

@@ -2,7 +2,7 @@
 
 use crate::geometry::lines::Lines;
 use crate::geometry::{Point, Vector, left_of};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// Lateral offset from the centre line, to the left: `now` at way 0, changing evenly to `target` over `over`.
 #[derive(Clone, Copy, Debug, Default)]

@@ -15,7 +15,7 @@ use crate::geometry::lines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::placement::Placement;
-use crate::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// A path is laid this much further than it is needed, so that it is lengthened now and then, not in every step; m.
 const SPARE: Metre = 30.0;

@@ -15,7 +15,7 @@ mod turns;
 
 use crate::geometry::sweep::Step;
 use crate::geometry::{Point, Vector};
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// A place on a path and how the road user stands there.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use super::track::Track;
 use crate::geometry::Point;
 use crate::geometry::lines::{Corner, Lines};
 use crate::net::{LaneIndex, Net};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The line, and which lanes it follows.
 #[derive(Clone, Debug, Default)]

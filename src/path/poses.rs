@@ -4,7 +4,7 @@ use super::track::{Cursor, Track};
 use super::{Pose, largest_turn, rotated, turn};
 use crate::geometry::lines::{Lines, ON_THE_LINE};
 use crate::geometry::{Point, Vector, cross};
-use crate::units::{Metre, Radian};
+use crate::util::units::{Metre, Radian};
 
 /// A heading that differs by less than this from the line's chord is the chord, in rad.
 const SAME_HEADING: Radian = 1e-6;

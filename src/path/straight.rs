@@ -2,7 +2,7 @@
 
 use super::Pose;
 use crate::geometry::{Point, Vector};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// The pose at a way.
 pub fn pose(front: Point, axis: Vector, way: Metre) -> Pose {

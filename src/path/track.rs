@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 
 use crate::geometry::lines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// A way along the line is at most this many times as long as the straight line between its ends, where a road user
 /// drives on it for one step: a turn right back.

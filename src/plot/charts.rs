@@ -9,7 +9,7 @@ use super::chart::{Chart, INK, colour, said};
 use super::font;
 use crate::kind::Severity;
 use crate::report::Conflicts;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// Bars of a distribution.
 const BARS: f64 = 30.0;

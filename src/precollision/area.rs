@@ -1,7 +1,7 @@
 //! What a road user may cover until it stands.
 
 use crate::geometry::{Bounds, Point, Vector};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// What a road user may cover until it stands, whichever way it turns.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Boxes in whole 64ths of a metre, half the memory: what the search keeps of areas, and compares four sides at once.
 
 use crate::geometry::{Bounds, Vector};
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// So fine that a box is hardly larger than without, so coarse that any projection of the earth has room.
 const PER_METRE: f64 = 64.0;

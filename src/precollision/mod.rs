@@ -22,9 +22,9 @@ use std::iter::repeat_n;
 use std::ops::Range;
 
 use crate::geometry::Vector;
-use crate::table::{fill, make_room};
-use crate::team::{Team, share};
-use crate::units::Metre;
+use crate::util::threads::{Team, share};
+use crate::util::tight_vec::{fill, make_room};
+use crate::util::units::Metre;
 use coarse::Coarse;
 use near::Near;
 use part::Part;

@@ -2,7 +2,7 @@
 
 use super::coarse::Coarse;
 use crate::geometry::Vector;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 /// What is known of a part of the places.
 #[derive(Clone, Copy, Debug)]

@@ -8,8 +8,8 @@ use super::part::Part;
 use super::place::insert;
 use super::{Search, Slot};
 use crate::geometry::Vector;
-use crate::team::{Team, share};
-use crate::units::Metre;
+use crate::util::threads::{Team, share};
+use crate::util::units::Metre;
 
 /// A box larger than this many mean ones is compared with everybody: it would make all strips high.
 const LARGE: f64 = 2.5;

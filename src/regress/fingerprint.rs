@@ -71,7 +71,7 @@ fn attribute_changes(old: &Attributes, new: &Attributes) -> Option<String> {
 }
 
 fn parts(path: &Path) -> Result<BTreeMap<String, Attributes>> {
-    let mut reader = Reader::from_reader(crate::input_file::open(path)?);
+    let mut reader = Reader::from_reader(crate::util::input_file::open(path)?);
     let mut buffer = Vec::new();
     let mut parts = BTreeMap::new();
     let mut count: BTreeMap<String, usize> = BTreeMap::new();

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::outcome::Row;
 use crate::conflict::CLOSES_AFTER;
 use crate::kind::Kind;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// The conflicts of two outcomes, side by side.
 #[derive(Debug, Default)]

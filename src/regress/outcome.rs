@@ -12,7 +12,7 @@ use super::fingerprint::Fingerprint;
 use crate::kind::{Kind, Severity};
 use crate::logged::{LoggedRun, SUMMARY};
 use crate::summary::{Count, Exposure};
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result, log};
 
 /// What a scenario's runs gave.

@@ -5,7 +5,7 @@ use std::fmt;
 use super::compared::Compared;
 use super::exact::Differences;
 use super::scenario::{Level, Scenario};
-use crate::units::counted;
+use crate::util::units::counted;
 use crate::{Error, Result};
 
 /// So many differences of one sort are shown.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::options::OptionsFile;
-use crate::units::{Metre, Second};
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 
 /// The name of a scenario's file of settings.

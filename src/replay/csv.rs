@@ -9,7 +9,7 @@ use super::names::Users;
 use super::number::number;
 use super::rows::{Attribute, Extent, Fields, Step, cut_short, in_order};
 use super::source::{Source, find_all};
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// A CSV recording that is being read.

@@ -27,7 +27,7 @@ use crate::placement::Placement;
 use crate::profile::{Category, Profile};
 use crate::roster::UserIndex;
 use crate::run::Run;
-use crate::units::{Metre, Second};
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 use lanes::Lanes;
 use recording::Recording;

@@ -27,13 +27,13 @@ impl Recording {
     /// # Errors
     /// An error that names the file: unreadable, empty, no fcd-output, a column that is missing.
     pub fn open(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::input_file::open(path)?, Extent::All)
+        Self::from_source(path, crate::util::input_file::open(path)?, Extent::All)
     }
 
     /// Opens a recording for its lanes only: a step has rows of those who came into the scene or onto another lane, and
     /// all types and numbers in them are empty.
     pub(super) fn open_for_lanes(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::input_file::open(path)?, Extent::Lanes)
+        Self::from_source(path, crate::util::input_file::open(path)?, Extent::Lanes)
     }
 
     /// The recording in a text; `path` is what errors call it.

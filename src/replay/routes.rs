@@ -15,7 +15,7 @@ use super::lanes::Lanes;
 use super::recording::Recording;
 use super::rows::{Row, Step};
 use crate::net::{EdgeIndex, Net};
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// Who comes back within this time drives on, in s: SUMO takes a vehicle that is stuck off the net, and puts it back

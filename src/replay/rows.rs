@@ -5,7 +5,7 @@ use std::path::Path;
 use super::names::Users;
 use super::number::number;
 use crate::Error;
-use crate::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// What a recording says of one road user in one step, in SUMO's own terms.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,9 +6,9 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
-use crate::input_file::LineCounter;
 use crate::profile::origins;
 use crate::sumo_type::SumoType;
+use crate::util::input_file::LineCounter;
 use crate::{Error, Result};
 
 /// Types by their id.
@@ -29,7 +29,7 @@ impl Types {
     }
 
     fn add(&mut self, path: &Path) -> Result<()> {
-        let mut reader = Reader::from_reader(LineCounter::new(crate::input_file::open(path)?));
+        let mut reader = Reader::from_reader(LineCounter::new(crate::util::input_file::open(path)?));
         let mut buffer = Vec::new();
         loop {
             buffer.clear();

@@ -9,7 +9,7 @@ use super::names::Users;
 use super::number::number;
 use super::rows::{Attribute, Extent, Step, cut_short, in_order};
 use super::source::{Source, find};
-use crate::units::Second;
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// An `<fcd-export>` that is being read.

@@ -13,7 +13,7 @@ use crate::kind::{Kind, Severity};
 use crate::logged::log_folders;
 use crate::net::Net;
 use crate::options::Options;
-use crate::units::Second;
+use crate::util::units::Second;
 
 /// The conflicts of several logs; of very many the worst (300,000).
 #[derive(Debug)]

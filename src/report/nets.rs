@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::input_file::open;
 use crate::input_hash::Input;
 use crate::net::Net;
+use crate::util::input_file::open;
 use crate::{Error, Result};
 
 /// The root element of a net stands within so many bytes; netconvert writes its options before it.

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::logged::{LoggedConflict, LoggedRun};
-use crate::units::{Metre, Second};
+use crate::util::units::{Metre, Second};
 
 /// How long before a conflict sumo-gui halts, and how long after it the run ends, in s.
 const AROUND: Second = 5.0;
@@ -177,7 +177,7 @@ fn zoom(run: &LoggedRun) -> Option<f64> {
 /// The same of this net; none where the file is no net.
 fn zoom_on(net: &Path) -> Option<f64> {
     let mut head = Vec::new();
-    std::io::Read::read_to_end(&mut std::io::Read::take(crate::input_file::open(net).ok()?, 1 << 16), &mut head)
+    std::io::Read::read_to_end(&mut std::io::Read::take(crate::util::input_file::open(net).ok()?, 1 << 16), &mut head)
         .ok()?;
     let head = String::from_utf8_lossy(&head);
     let (_, bounds) = head.split_once("convBoundary=\"")?;

@@ -5,7 +5,7 @@ use super::tally::{Group, Property, Tally, Unit};
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::reference::braking as reference;
 use crate::reference::chance::Chance;
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// The largest relative error of a published μ (issue: "≤ 1e-12 over the whole stress domain").
 const BOUND: f64 = 1e-12;

@@ -12,7 +12,7 @@ use crate::reference::chance::Chance;
 use crate::reference::contact as reference;
 use crate::reference::pairs::{self, against, beside, car};
 use crate::roster::UserIndex;
-use crate::units::Metre;
+use crate::util::units::Metre;
 
 const DECIDED: Property = Property::always("contact as in exact arithmetic");
 const EXCHANGED: Property = Property::always("the same for foe and ego");

@@ -16,7 +16,7 @@ use crate::placement::Placement;
 use crate::reference::chance::Chance;
 use crate::reference::contact::distance_to_line;
 use crate::reference::nearest;
-use crate::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond};
 
 const UNIT: Property = Property::within("axis a unit vector", 1e-12, Unit::Metre);
 const ASCENDING: Property = Property::always("ways ascend to where they should");

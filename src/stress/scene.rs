@@ -13,7 +13,7 @@ use crate::placement::Placement;
 use crate::profile::{Category, Profile};
 use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::run::Run;
-use crate::units::{Metre, MetrePerSecond, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// A car of 5 m by 2 m, as the cases and the tests have it.
 pub fn car() -> Profile {

@@ -12,7 +12,7 @@ use crate::geometry::{Point, left_of};
 use crate::path::Pose;
 use crate::reference::chance::Chance;
 use crate::reference::{contact as reference, nearest, precise};
-use crate::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 const LENGTH: f64 = 5.0;
 const WIDTH: f64 = 2.0;

@@ -7,7 +7,7 @@ use super::measurement::{Axis, Measurement, Plan};
 use crate::braking::{Brakes, Braking, MuModel, mu};
 use crate::reference::chance::Chance;
 use crate::reference::{braking, deviation};
-use crate::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 const DEFAULT: &str = "minimal";
 /// σ of the three kinds.

@@ -15,7 +15,7 @@ use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
 use crate::precollision::{Area, Circle, Search};
 use crate::reference::chance::Chance;
-use crate::units::Second;
+use crate::util::units::Second;
 
 type Pairs = Vec<(u32, u32)>;
 type Method = (&'static str, fn(&[Circle], &mut Search<u32>, &mut Pairs));

@@ -21,7 +21,7 @@ use crate::precollision::{Area, Circle, Search};
 use crate::replay::recording::Recording;
 use crate::replay::rows::Step;
 use crate::roster::{Roster, UserIndex};
-use crate::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// Two within this of the limit are left aside: steps and sizes are rounded in a recording.
 const NEAR: Metre = 0.75;

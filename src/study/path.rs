@@ -13,7 +13,7 @@ use crate::net::Net;
 use crate::options::{Mode, Options, PathModel};
 use crate::replay::Replay;
 use crate::run::Run;
-use crate::units::{Metre, Second};
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 
 const DEFAULT: &str = "lanes";

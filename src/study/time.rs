@@ -11,7 +11,7 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::path::Pose;
 use crate::reference::chance::Chance;
 use crate::reference::{contact, nearest};
-use crate::units::{MetrePerSecond, Radian, Second};
+use crate::util::units::{MetrePerSecond, Radian, Second};
 
 const LENGTH: f64 = 4.6;
 const WIDTH: f64 = 1.8;

@@ -10,7 +10,7 @@ mod traci;
 
 use closecall::options::Options;
 use closecall::run::Run;
-use closecall::units::Second;
+use closecall::util::units::Second;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

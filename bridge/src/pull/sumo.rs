@@ -10,7 +10,7 @@ use closecall::profile::Profile;
 use closecall::roster::ProfileIndex;
 use closecall::run::Run;
 use closecall::sumo_type::SumoType;
-use closecall::units::Second;
+use closecall::util::units::Second;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;

@@ -8,7 +8,7 @@ use closecall::options::Options;
 use closecall::placement::Placement;
 use closecall::roster::UserIndex;
 use closecall::run::Run;
-use closecall::units::Second;
+use closecall::util::units::Second;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};

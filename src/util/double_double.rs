@@ -132,7 +132,7 @@ impl Number for DoubleDouble {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::util::double_double::*;
 
     fn of(value: f64) -> DoubleDouble {
         DoubleDouble::from(value)

@@ -146,7 +146,7 @@ pub fn processors() -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::util::threads::*;
 
     #[test]
     fn there_are_as_many_threads_as_asked_for_and_never_none() {

@@ -59,7 +59,7 @@ pub fn shortest(value: f64, text: &mut String) -> &str {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::util::decimal::*;
     use proptest::prelude::*;
 
     fn fixed(value: f64, decimals: usize) -> String {

@@ -1,0 +1,8 @@
+//! What has nothing to do with traffic: units, numbers, memory, threads, files.
+
+pub(crate) mod decimal;
+pub mod double_double;
+pub(crate) mod input_file;
+pub mod threads;
+pub mod tight_vec;
+pub mod units;
