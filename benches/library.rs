@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::geometry::contact::{distance, plainly_touches, touches};
-use closecall::geometry::outline::Outline;
+use closecall::geometry::convex::Outline;
 use closecall::geometry::rectangle::Rectangle;
 use closecall::geometry::separating_axes::{slide, translation};
 use closecall::geometry::{Point, Vector};

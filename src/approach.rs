@@ -1,6 +1,6 @@
 //! Time to collision: when two rectangles touch if both keep their speed along their paths.
 
-use crate::geometry::halves::{Halves, Touch};
+use crate::geometry::bisection::{Halves, Touch};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::slide;

@@ -2,7 +2,7 @@
 
 use crate::approach::{Course, HORIZON};
 use crate::geometry::Vector;
-use crate::geometry::halves::{Halves, Touch};
+use crate::geometry::bisection::{Halves, Touch};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::normals;
 use crate::geometry::sweep::TOLERANCE;

@@ -1,7 +1,7 @@
 //! Where steps touch, against trying all parts of both: the same to the last bit.
 
-use closecall::geometry::halves::{Halves, Touch};
-use closecall::geometry::outline::Outline;
+use closecall::geometry::bisection::{Halves, Touch};
+use closecall::geometry::convex::Outline;
 use closecall::geometry::polygon::Polygon;
 use closecall::geometry::rectangle::{Rectangle, direction};
 use closecall::geometry::separating_axes::translation;

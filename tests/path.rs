@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use closecall::geometry::lines::Lines;
+use closecall::geometry::polylines::Lines;
 use closecall::geometry::{Point, Vector};
 use closecall::path::track::Track;
 use proptest::prelude::*;

@@ -17,7 +17,7 @@ pub use participant::Mover;
 pub use swept_bounds::Cover;
 
 use crate::braking::{self, MuModel};
-use crate::geometry::halves::Halves;
+use crate::geometry::bisection::Halves;
 use crate::geometry::{Vector, cross};
 use crate::util::units::{Metre, Radian};
 

@@ -3,8 +3,8 @@
 use super::conflict_point::Meeting;
 use super::participant::Mover;
 use super::swept_bounds::Cover;
-use crate::geometry::halves::{Halves, Touch};
-use crate::geometry::outline::Outline;
+use crate::geometry::bisection::{Halves, Touch};
+use crate::geometry::convex::Outline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::translation;
 use crate::geometry::sweep::{Step, TOLERANCE};

@@ -15,7 +15,7 @@ pub use moment::Moment;
 use crate::encounter::Encounter;
 use crate::frame::Frame;
 use crate::geometry::Point;
-use crate::geometry::halves::Halves;
+use crate::geometry::bisection::Halves;
 use crate::kind::{Kind, Severity};
 use crate::profile::Category;
 use crate::roster::{Roster, UserIndex};

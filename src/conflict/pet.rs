@@ -5,7 +5,7 @@
 //! second enters it when its rectangle touches the first's corridor for the first time. As long as the second is in that
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
-use crate::geometry::halves::{Halves, Part, Touch};
+use crate::geometry::bisection::{Halves, Part, Touch};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};

@@ -2,7 +2,7 @@
 
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::frame::{Frame, Row, State};
-use crate::geometry::lines::Lines;
+use crate::geometry::polylines::Lines;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};

@@ -4,7 +4,7 @@ use super::ways::{MOST_POSES, Ways};
 use super::work::Work;
 use crate::accurate::Meeting;
 use crate::encounter::Encounter;
-use crate::geometry::halves::Halves;
+use crate::geometry::bisection::Halves;
 use crate::path::Pose;
 
 /// One thread, and what it finds among the pairs that it looks at.

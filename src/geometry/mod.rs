@@ -3,13 +3,13 @@
 //! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`polygon::distance`],
 //! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
 
+pub mod bisection;
 pub mod contact;
+pub mod convex;
 pub mod exact;
-pub mod halves;
-pub mod lines;
-pub mod outline;
 pub(crate) mod parry;
 pub mod polygon;
+pub mod polylines;
 pub mod rectangle;
 pub mod separating_axes;
 pub mod sweep;

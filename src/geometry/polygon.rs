@@ -5,7 +5,7 @@ use parry2d_f64::query;
 use parry2d_f64::shape::{ConvexPolygon, TriMesh};
 use parry2d_f64::transformation::{convex_hull, hertel_mehlhorn};
 
-use super::outline::Outline;
+use super::convex::Outline;
 use super::rectangle::Rectangle;
 use super::{Bounds, Point, parry};
 use crate::util::units::Metre;

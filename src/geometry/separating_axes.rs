@@ -4,7 +4,7 @@
 //! intervals overlap (the swept form of the separating-axes test; Eberly, "Dynamic collision detection using oriented
 //! bounding boxes").
 
-use super::outline::{Outline, UNSURE};
+use super::convex::{Outline, UNSURE};
 use super::rectangle::Rectangle;
 use super::{Vector, cross, left_of};
 use crate::util::units::Metre;

@@ -3,12 +3,12 @@
 //! Closed form for a translation: on each edge normal the two projections overlap during one interval of the way;
 //! they touch where all intervals do (the swept form of the separating-axes test; Eberly, "Dynamic collision
 //! detection using oriented bounding boxes"). A turn is cut into translations short enough for [`TOLERANCE`], by
-//! [`super::halves`].
+//! [`super::bisection`].
 //!
 //! Measured (`cargo bench --bench library`): 58 ns for a pair of rectangles, parry2d's `cast_shapes` 226 ns; its
 //! `cast_shapes_nonlinear`, which would turn too, has no cap on its iterations and was seen not to return.
 
-use super::outline::Outline;
+use super::convex::Outline;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, slide};
 use super::{Point, Vector, cross};
@@ -78,8 +78,8 @@ impl Step {
 
 #[cfg(test)]
 mod tests {
-    use super::super::halves::{Halves, Touch};
     use super::*;
+    use crate::geometry::bisection::{Halves, Touch};
     use crate::geometry::separating_axes::translation;
 
     #[test]

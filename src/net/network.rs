@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 
 use super::elements::{Edge, EdgeIndex, Junction, Lane, LaneIndex};
 use super::finder::Finder;
-use crate::geometry::lines::Lines;
+use crate::geometry::polylines::Lines;
 use crate::util::units::Metre;
 
 /// A road network.

@@ -1,6 +1,6 @@
 //! The line beside the centre line of lanes: where somebody drives who keeps to one side, or changes to another.
 
-use crate::geometry::lines::Lines;
+use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector, left_of};
 use crate::util::units::Metre;
 

@@ -11,7 +11,7 @@ use super::beside::{Beside, Offset};
 use super::own::Own;
 use super::track::Track;
 use super::turns::Turns;
-use crate::geometry::lines::{Corner, Lines};
+use crate::geometry::polylines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
 use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::placement::Placement;

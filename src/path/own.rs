@@ -4,7 +4,7 @@
 use super::beside::Beside;
 use super::track::Track;
 use crate::geometry::Point;
-use crate::geometry::lines::{Corner, Lines};
+use crate::geometry::polylines::{Corner, Lines};
 use crate::net::{LaneIndex, Net};
 use crate::util::units::Metre;
 

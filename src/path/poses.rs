@@ -2,7 +2,7 @@
 
 use super::track::{Cursor, Track};
 use super::{Pose, largest_turn, rotated, turn};
-use crate::geometry::lines::{Lines, ON_THE_LINE};
+use crate::geometry::polylines::{Lines, ON_THE_LINE};
 use crate::geometry::{Point, Vector, cross};
 use crate::util::units::{Metre, Radian};
 

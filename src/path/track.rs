@@ -5,7 +5,7 @@
 
 use smallvec::SmallVec;
 
-use crate::geometry::lines::{Lines, ON_THE_LINE, Segment};
+use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point};
 use crate::util::units::Metre;
 

@@ -7,7 +7,7 @@ use super::case::Case;
 use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::frame::State;
-use crate::geometry::lines::Lines;
+use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector};
 use crate::net::Net;
 use crate::path::Pose;

@@ -12,7 +12,7 @@ use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
 use crate::frame::{Frame, Row, State};
-use crate::geometry::halves::Halves;
+use crate::geometry::bisection::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;

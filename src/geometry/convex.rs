@@ -144,7 +144,7 @@ impl TryFrom<&[Point]> for Outline {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::geometry::convex::*;
 
     #[test]
     fn the_hull_of_a_rectangle_and_its_shifted_self_is_the_swept_area() {

@@ -7,7 +7,7 @@
 //! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. So what has been found leaves out
 //! only what stays clear of it by more than that, and the result is that of trying all parts, to the last bit.
 
-use super::outline::Outline;
+use super::convex::Outline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, outlines_touch, translation};
