@@ -17,9 +17,9 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use closecall::detector::Detector;
-use closecall::exclusion::Exclusion;
 use closecall::frame::{Frame, State};
 use closecall::options::Options;
+use closecall::options::exclusion::Exclusion;
 use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
 use closecall::roster::{Roster, UserIndex};

@@ -14,7 +14,6 @@ pub mod conflict;
 pub mod detector;
 pub mod encounter;
 mod error;
-pub mod exclusion;
 pub mod filter;
 pub mod frame;
 pub mod geometry;

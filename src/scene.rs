@@ -7,8 +7,8 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::exclusion::Exclusion;
 use crate::options::Options;
+use crate::options::exclusion::Exclusion;
 
 /// What is left out of a run where the scene does not need it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

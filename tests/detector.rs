@@ -4,9 +4,9 @@
 
 use closecall::detector::Detector;
 use closecall::encounter::Encounter;
-use closecall::exclusion::Exclusion;
 use closecall::frame::{Frame, State};
 use closecall::kind::Kind;
+use closecall::options::exclusion::Exclusion;
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::profile::Profile;
 use closecall::roster::{Roster, UserIndex};

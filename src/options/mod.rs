@@ -3,6 +3,8 @@
 //! One struct serves the command line (clap), the TOML file and Python: a TOML key or a Python keyword is the long
 //! option with underscores, and all three end in the same parser ([`Options::from_settings`]).
 
+pub mod exclusion;
+
 use std::path::{Path, PathBuf};
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
@@ -10,9 +12,9 @@ use rustc_hash::FxHashMap;
 use serde::{Deserialize, Serialize};
 
 use crate::braking::MuModel;
-use crate::exclusion::Exclusion;
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
+use exclusion::Exclusion;
 
 /// Which method finds the conflicts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
