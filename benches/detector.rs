@@ -17,12 +17,12 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use closecall::detector::Detector;
-use closecall::frame::{Frame, State};
 use closecall::options::Options;
 use closecall::options::exclusion::Exclusion;
-use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
-use closecall::roster::{Roster, UserIndex};
+use closecall::traffic::frame::{Frame, State};
+use closecall::traffic::profile::Profile;
+use closecall::traffic::roster::{Roster, UserIndex};
 use closecall::util::threads::Team;
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};

@@ -15,12 +15,12 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
-use closecall::net::Net;
 use closecall::options::Options;
 use closecall::replay::Replay;
 use closecall::replay::recording::Recording;
 use closecall::replay::rows::Step;
 use closecall::run::Run;
+use closecall::traffic::net::Net;
 
 /// Parallel roads, so far apart that their traffic never meets.
 const ROADS: usize = 20;

@@ -1,8 +1,8 @@
 //! What the detector finds in one step: pairs that would meet, measured.
 
 use crate::kind::{Kind, Severity};
-use crate::net::LaneIndex;
-use crate::roster::UserIndex;
+use crate::traffic::net::LaneIndex;
+use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 
 /// A pair that would meet, in one step.

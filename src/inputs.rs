@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
-use crate::net::Net;
+use crate::traffic::net::Net;
 use crate::{Error, Result};
 
 /// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only in

@@ -10,19 +10,19 @@ use crate::Result;
 use crate::conflict::{Alarm, Conflict, Tracker};
 use crate::detector::Detector;
 use crate::encounter::Encounter;
-use crate::filter::Filter;
-use crate::frame::{Frame, Row, State};
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
-use crate::net::Net;
 use crate::options::Options;
 use crate::outputs::Outputs;
-use crate::placement::Placement;
-use crate::profile::{Category, Profile, obstacle_name};
-use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::scene::{Exclusions, LeftOut};
 use crate::summary::Summary;
+use crate::traffic::frame::{Frame, Row, State};
+use crate::traffic::net::Net;
+use crate::traffic::net::filter::Filter;
+use crate::traffic::placement::Placement;
+use crate::traffic::profile::{Category, Profile, obstacle_name};
+use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
 
 /// One run.

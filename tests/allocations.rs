@@ -6,9 +6,9 @@
 mod counting;
 
 use closecall::detector::Detector;
-use closecall::frame::{Frame, State};
 use closecall::options::{Options, PathModel};
-use closecall::roster::{Roster, UserIndex};
+use closecall::traffic::frame::{Frame, State};
+use closecall::traffic::roster::{Roster, UserIndex};
 
 /// Four lanes of cars that close up and spread again; every tenth crosses.
 fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {

@@ -4,13 +4,13 @@
 
 use closecall::detector::Detector;
 use closecall::encounter::Encounter;
-use closecall::frame::{Frame, State};
 use closecall::kind::Kind;
 use closecall::options::exclusion::Exclusion;
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
-use closecall::profile::Profile;
-use closecall::roster::{Roster, UserIndex};
-use closecall::sumo_type::SumoType;
+use closecall::traffic::frame::{Frame, State};
+use closecall::traffic::profile::Profile;
+use closecall::traffic::roster::{Roster, UserIndex};
+use closecall::traffic::sumo_type::SumoType;
 use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.

@@ -9,12 +9,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::detector::Detector;
-use closecall::frame::{Frame, State};
 use closecall::geometry::Point;
-use closecall::net::Net;
 use closecall::options::Options;
-use closecall::placement::Placement;
-use closecall::roster::Roster;
+use closecall::traffic::frame::{Frame, State};
+use closecall::traffic::net::Net;
+use closecall::traffic::placement::Placement;
+use closecall::traffic::roster::Roster;
 
 use street::street;
 

@@ -6,10 +6,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::net::{EdgeIndex, Net};
 use closecall::replay::recording::Recording;
 use closecall::replay::routes::Routes;
 use closecall::replay::rows::Step;
+use closecall::traffic::net::{EdgeIndex, Net};
 use proptest::prelude::*;
 
 /// One row, in full.

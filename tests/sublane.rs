@@ -8,10 +8,10 @@ mod street;
 use std::sync::Arc;
 
 use closecall::detector::Detector;
-use closecall::frame::{Frame, State};
 use closecall::options::Options;
-use closecall::placement::Placement;
-use closecall::roster::Roster;
+use closecall::traffic::frame::{Frame, State};
+use closecall::traffic::placement::Placement;
+use closecall::traffic::roster::Roster;
 
 use street::street;
 

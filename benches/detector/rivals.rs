@@ -1,9 +1,9 @@
 //! What one would build instead of the detector. Both say only who might meet: no way along a path, no kind, no μ.
 
 use closecall::braking::stopping_distance;
-use closecall::frame::State;
 use closecall::geometry::rectangle::direction;
-use closecall::profile::Profile;
+use closecall::traffic::frame::State;
+use closecall::traffic::profile::Profile;
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};

@@ -3,11 +3,11 @@
 use std::io::Write;
 use std::path::Path;
 
-use closecall::frame::State;
 use closecall::options::Options;
-use closecall::profile::Profile;
 use closecall::reference::chance::Chance;
-use closecall::sumo_type::SumoType;
+use closecall::traffic::frame::State;
+use closecall::traffic::profile::Profile;
+use closecall::traffic::sumo_type::SumoType;
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 

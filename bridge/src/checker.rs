@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 
 use closecall::log::Log;
-use closecall::net::Net;
 use closecall::options::Options;
 use closecall::record::RunRecord;
 use closecall::run::Run;
+use closecall::traffic::net::Net;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

@@ -1,11 +1,11 @@
 //! Plain frames from Python: arrays of states, for those who have trajectories and no SUMO.
 
-use closecall::frame::State;
 use closecall::options::Options;
-use closecall::profile::Profile;
-use closecall::roster::{ProfileIndex, UserIndex};
 use closecall::run::Run;
-use closecall::sumo_type::SumoType;
+use closecall::traffic::frame::State;
+use closecall::traffic::profile::Profile;
+use closecall::traffic::roster::{ProfileIndex, UserIndex};
+use closecall::traffic::sumo_type::SumoType;
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -6,7 +6,7 @@ use closecall::geometry::rectangle::Rectangle;
 use closecall::geometry::{Point, Vector, contact};
 use closecall::kind::Kind;
 use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
-use closecall::sumo_type::SumoType;
+use closecall::traffic::sumo_type::SumoType;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
 use pyo3::exceptions::PyValueError;

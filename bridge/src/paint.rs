@@ -5,9 +5,9 @@ use std::collections::hash_map::Entry;
 
 use closecall::conflict::Alarm;
 use closecall::kind::{Kind, Severity};
-use closecall::profile::Category;
-use closecall::roster::{Roster, UserIndex};
 use closecall::run::Run;
+use closecall::traffic::profile::Category;
+use closecall::traffic::roster::{Roster, UserIndex};
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 

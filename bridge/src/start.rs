@@ -6,7 +6,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use closecall::cli::RunRequest;
-use closecall::net::Net;
+use closecall::traffic::net::Net;
 use closecall::{Error, Result, inputs};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;

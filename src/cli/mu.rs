@@ -7,7 +7,7 @@ use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::kind::Kind;
 use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, not_negative, positive};
-use crate::sumo_type::SumoType;
+use crate::traffic::sumo_type::SumoType;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Two road users that brake.

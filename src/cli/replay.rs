@@ -10,7 +10,6 @@ use super::say::say;
 use super::sumo::Sumo;
 use crate::input_hash::Input;
 use crate::log::Log;
-use crate::net::Net;
 use crate::options::Options;
 use crate::outputs::{OutputFiles, Outputs};
 use crate::progress::Progress;
@@ -18,6 +17,7 @@ use crate::record::{RunRecord, Versions};
 use crate::replay::Replay;
 use crate::run::Run;
 use crate::summary::Summary;
+use crate::traffic::net::Net;
 use crate::{Error, Result};
 
 /// A recording and how to check it.

@@ -9,8 +9,8 @@ use super::moment::Moment;
 use super::pet::Pet;
 use crate::kind::{Kind, Severity};
 use crate::measures;
-use crate::net::LaneIndex;
-use crate::roster::{ProfileIndex, Roster};
+use crate::traffic::net::LaneIndex;
+use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// One conflict: a pair and a run of steps with margin < 0.

@@ -3,11 +3,11 @@
 use super::moment::Moment;
 use super::stance::Stood;
 use crate::encounter::Encounter;
-use crate::frame::Frame;
 use crate::geometry::Point;
 use crate::kind::{Kind, Severity};
-use crate::net::LaneIndex;
-use crate::roster::UserIndex;
+use crate::traffic::frame::Frame;
+use crate::traffic::net::LaneIndex;
+use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.

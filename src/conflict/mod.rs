@@ -13,12 +13,12 @@ pub use event::Conflict;
 pub use moment::Moment;
 
 use crate::encounter::Encounter;
-use crate::frame::Frame;
 use crate::geometry::Point;
 use crate::geometry::bisection::Halves;
 use crate::kind::{Kind, Severity};
-use crate::profile::Category;
-use crate::roster::{Roster, UserIndex};
+use crate::traffic::frame::Frame;
+use crate::traffic::profile::Category;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::tight_vec::make_room;
 use crate::util::units::Second;
 use extremes::{Extremes, Seen};
@@ -224,10 +224,10 @@ fn sort(conflicts: &mut [Conflict]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::frame::State;
     use crate::options::Options;
-    use crate::profile::Profile;
-    use crate::sumo_type::SumoType;
+    use crate::traffic::frame::State;
+    use crate::traffic::profile::Profile;
+    use crate::traffic::sumo_type::SumoType;
 
     struct Scene {
         tracker: Tracker,

@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use smallvec::SmallVec;
 
-use crate::frame::State;
 use crate::geometry::Point;
-use crate::profile::Profile;
+use crate::traffic::frame::State;
+use crate::traffic::profile::Profile;
 use crate::util::units::{Metre, Radian};
 
 /// A point of a path that lies nearer than this to the line between its neighbours is left out, in m: less than a

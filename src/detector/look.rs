@@ -4,13 +4,13 @@ use std::ops::Range;
 
 use super::Detector;
 use super::reach::{Paths, Reach, Sight, Turning, Turns, lines_of};
-use crate::frame::{Frame, Row};
 use crate::geometry::Point;
 use crate::options::{Mode, PathModel};
 use crate::path::lanes::LanePath;
 use crate::path::{arc, turn};
-use crate::profile::Category;
-use crate::roster::{Roster, UserIndex};
+use crate::traffic::frame::{Frame, Row};
+use crate::traffic::profile::Category;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::share;
 use crate::util::tight_vec::{add, fill};
 

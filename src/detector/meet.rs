@@ -11,12 +11,12 @@ use super::worker::{Found, Met, Worker};
 use crate::accurate::{self, Meeting, Mover, side};
 use crate::braking::{self, Braking, MuModel};
 use crate::encounter::Encounter;
-use crate::frame::State;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{contact, cross};
 use crate::kind::{Kind, kind_at};
 use crate::options::Mode;
-use crate::profile::Category;
+use crate::traffic::frame::State;
+use crate::traffic::profile::Category;
 use crate::util::tight_vec::add;
 use crate::util::units::{Metre, Radian};
 

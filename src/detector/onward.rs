@@ -10,7 +10,7 @@ use crate::geometry::Point;
 use crate::geometry::contact::plainly_touches;
 use crate::geometry::sweep::TOLERANCE;
 use crate::path::{Pose, straight};
-use crate::profile::Category;
+use crate::traffic::profile::Category;
 use crate::util::units::Metre;
 
 /// Poses where somebody is now, where it stands and ε further; who stands has fewer.

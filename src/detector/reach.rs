@@ -1,19 +1,19 @@
 //! What both phases know of each road user in the current step, and how far it reaches until it stands.
 
 use crate::braking::{stopping_distance, stopping_distance_paper};
-use crate::frame::{Frame, Row, State};
 use crate::geometry::polylines::Lines;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
-use crate::net::{LaneIndex, Net};
 use crate::options::{Mode, Options, PathModel};
 use crate::path::lanes::LanePath;
 use crate::path::track::Track;
 use crate::precollision::{Area, Circle, Slot};
-use crate::profile::{Category, Profile};
-use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::scene::Exclusions;
+use crate::traffic::frame::{Frame, Row, State};
+use crate::traffic::net::{LaneIndex, Net};
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, Radian};
 
 /// How a road user turns, as far as the last two steps tell.

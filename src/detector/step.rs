@@ -2,11 +2,11 @@
 
 use super::reach;
 use super::reach::{Paths, Reach, Turning, User};
-use crate::frame::{Frame, State};
 use crate::options::Options;
-use crate::profile::{Category, Profile};
-use crate::roster::Roster;
 use crate::scene::Exclusions;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::Roster;
 use crate::util::units::Metre;
 
 /// What phase 2 reads of the step under way.

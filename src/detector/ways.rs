@@ -9,7 +9,7 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
 use crate::path::{Pose, arc, straight};
-use crate::profile::Category;
+use crate::traffic::profile::Category;
 use crate::util::tight_vec::{add, fill, make_room};
 use crate::util::units::Metre;
 

@@ -11,11 +11,11 @@ use clap::Args;
 use self::ssm::Ssm;
 use self::trajectories::Trajectories;
 use crate::conflict::Conflict;
-use crate::frame::Frame;
 use crate::input_hash::Input;
-use crate::net::Net;
-use crate::placement::Placement;
-use crate::roster::{Roster, UserIndex};
+use crate::traffic::frame::Frame;
+use crate::traffic::net::Net;
+use crate::traffic::placement::Placement;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::{Error, Result};
 
 /// Files to write besides the log.

@@ -10,12 +10,12 @@ use rustc_hash::FxHashMap;
 
 use super::file::OutputFile;
 use crate::Result;
-use crate::frame::{Frame, Row};
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
-use crate::net::{LaneIndex, Net};
-use crate::profile::Category;
-use crate::roster::{Roster, UserIndex};
+use crate::traffic::frame::{Frame, Row};
+use crate::traffic::net::{LaneIndex, Net};
+use crate::traffic::profile::Category;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{MetrePerSecond, Second};
 
 /// The first byte of each record.

@@ -13,8 +13,8 @@ use super::track::Track;
 use super::turns::Turns;
 use crate::geometry::polylines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
-use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
-use crate::placement::Placement;
+use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::traffic::placement::Placement;
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// A path is laid this much further than it is needed, so that it is lengthened now and then, not in every step; m.
@@ -185,23 +185,25 @@ impl LanePath {
         let lane = &net.lanes[last.0 as usize];
         let inside = net.edges[lane.edge.0 as usize].function == EdgeFunction::Internal;
         let wanted = ahead.next();
-        let leads = |link: &&crate::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
+        let leads =
+            |link: &&crate::traffic::net::Link| inside || wanted.is_none_or(|edge| edge_of(net, link.to) == edge);
         if wanted.is_none() && !inside && !self.route.are_free() {
             return None;
         }
         // Where there is no choice nobody asks how far each leads.
         let further = ahead.take(if lane.links.len() < 2 { 0 } else { EDGES_AHEAD });
         let ahead = wanted.into_iter().chain(further).collect::<SmallVec<[_; EDGES_AHEAD + 1]>>();
-        let link = lane.links.iter().filter(leads).fold(None, |best: Option<(&crate::net::Link, Metre)>, link| {
-            let worth = if lane.links.len() < 2 {
-                0.0
-            } else if wanted.is_some() {
-                continuation(net, &ahead, link.to)
-            } else {
-                straightness(net, last, link.via.unwrap_or(link.to))
-            };
-            if best.is_some_and(|(_, most)| most >= worth) { best } else { Some((link, worth)) }
-        })?;
+        let link =
+            lane.links.iter().filter(leads).fold(None, |best: Option<(&crate::traffic::net::Link, Metre)>, link| {
+                let worth = if lane.links.len() < 2 {
+                    0.0
+                } else if wanted.is_some() {
+                    continuation(net, &ahead, link.to)
+                } else {
+                    straightness(net, last, link.via.unwrap_or(link.to))
+                };
+                if best.is_some_and(|(_, most)| most >= worth) { best } else { Some((link, worth)) }
+            })?;
         let (link, _) = link;
         Some(match link.via {
             Some(via) => (via, position),
@@ -212,7 +214,7 @@ impl LanePath {
 
 /// Whether a lane is one of the route, where the road user is now. Who is on such a lane drives along it, whatever its
 /// heading says: after a sharp turn the rear stands across for as long as the road user.
-fn leads_along(net: &Net, lane: &crate::net::Lane, route: &Turns) -> bool {
+fn leads_along(net: &Net, lane: &crate::traffic::net::Lane, route: &Turns) -> bool {
     let on_route = |further: usize| route.edges(net).nth(further);
     if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
         return on_route(0) == Some(lane.edge);

@@ -5,7 +5,7 @@ use super::beside::Beside;
 use super::track::Track;
 use crate::geometry::Point;
 use crate::geometry::polylines::{Corner, Lines};
-use crate::net::{LaneIndex, Net};
+use crate::traffic::net::{LaneIndex, Net};
 use crate::util::units::Metre;
 
 /// The line, and which lanes it follows.

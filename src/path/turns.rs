@@ -3,7 +3,7 @@
 
 use smallvec::SmallVec;
 
-use crate::net::{EdgeIndex, Link, Net};
+use crate::traffic::net::{EdgeIndex, Link, Net};
 
 /// So many edges hardly a route goes on over, counted from where its path was laid last; of more the rest has memory of its
 /// own.

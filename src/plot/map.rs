@@ -10,8 +10,8 @@ use super::chart::{Chart, INK, colour, said};
 use super::font;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::kind::{Kind, Severity};
-use crate::net::{EdgeFunction, Net};
 use crate::report::Conflicts;
+use crate::traffic::net::{EdgeFunction, Net};
 
 const ROAD: RGBColor = RGBColor(0xc3, 0xc9, 0xd0);
 const JUNCTION: RGBColor = RGBColor(0xb9, 0xbf, 0xc6);

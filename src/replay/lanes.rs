@@ -1,7 +1,7 @@
 //! The recording's lanes in the net.
 
 use super::recording::Recording;
-use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 
 /// Which lane of the net each of a recording's lanes is; looked up once.
 #[derive(Debug, Default)]

@@ -19,14 +19,14 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use crate::frame::State;
 use crate::geometry::{Bounds, Point};
-use crate::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use crate::options::{Options, PathModel};
-use crate::placement::Placement;
-use crate::profile::{Category, Profile};
-use crate::roster::UserIndex;
 use crate::run::Run;
+use crate::traffic::frame::State;
+use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::traffic::placement::Placement;
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 use lanes::Lanes;

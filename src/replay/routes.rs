@@ -14,7 +14,7 @@ use tempfile::{SpooledTempFile, spooled_tempfile};
 use super::lanes::Lanes;
 use super::recording::Recording;
 use super::rows::{Row, Step};
-use crate::net::{EdgeIndex, Net};
+use crate::traffic::net::{EdgeIndex, Net};
 use crate::util::units::Second;
 use crate::{Error, Result};
 

@@ -6,8 +6,8 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
-use crate::profile::origins;
-use crate::sumo_type::SumoType;
+use crate::traffic::profile::origins;
+use crate::traffic::sumo_type::SumoType;
 use crate::util::input_file::LineCounter;
 use crate::{Error, Result};
 

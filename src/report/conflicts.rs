@@ -11,8 +11,8 @@ use crate::Result;
 use crate::geometry::Point;
 use crate::kind::{Kind, Severity};
 use crate::logged::log_folders;
-use crate::net::Net;
 use crate::options::Options;
+use crate::traffic::net::Net;
 use crate::util::units::Second;
 
 /// The conflicts of several logs; of very many the worst (300,000).

@@ -9,8 +9,8 @@ use super::conflicts::Conflicts;
 use super::roads;
 use super::rows::{NUMBERS, Row, Stance};
 use crate::kind::{Kind, Severity};
-use crate::net::{EdgeFunction, Net};
 use crate::options::Options;
+use crate::traffic::net::{EdgeFunction, Net};
 
 /// So many of the worst conflicts can be drawn, with both rectangles and paths.
 const DRAWN: usize = 2_000;

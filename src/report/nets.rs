@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use crate::input_hash::Input;
-use crate::net::Net;
+use crate::traffic::net::Net;
 use crate::util::input_file::open;
 use crate::{Error, Result};
 

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use serde_json::{Value, json};
 
 use crate::geometry::Point;
-use crate::net::{EdgeFunction, Net};
+use crate::traffic::net::{EdgeFunction, Net};
 
 /// Centimetres in a metre: a coordinate takes few digits, and a lane is where it is.
 const SCALE: f64 = 100.0;

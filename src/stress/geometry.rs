@@ -3,7 +3,6 @@
 use super::case::Case;
 use super::scene;
 use super::tally::{Group, Property, Tally, Unit};
-use crate::frame::{Frame, SUMO_INVALID, State};
 use crate::geometry::contact::{distance, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector};
@@ -11,7 +10,8 @@ use crate::path::rotated;
 use crate::reference::chance::Chance;
 use crate::reference::contact as reference;
 use crate::reference::pairs::{self, against, beside, car};
-use crate::roster::UserIndex;
+use crate::traffic::frame::{Frame, SUMO_INVALID, State};
+use crate::traffic::roster::UserIndex;
 use crate::util::units::Metre;
 
 const DECIDED: Property = Property::always("contact as in exact arithmetic");

@@ -6,13 +6,13 @@ use crate::braking::Brakes;
 use crate::conflict::Conflict;
 use crate::detector::Detector;
 use crate::encounter::Encounter;
-use crate::frame::{Frame, State};
-use crate::net::Net;
 use crate::options::Options;
-use crate::placement::Placement;
-use crate::profile::{Category, Profile};
-use crate::roster::{ProfileIndex, Roster, UserIndex};
 use crate::run::Run;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::net::Net;
+use crate::traffic::placement::Placement;
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// A car of 5 m by 2 m, as the cases and the tests have it.

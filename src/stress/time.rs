@@ -5,13 +5,13 @@ use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::approach::{Course, HORIZON, time_to_collision};
 use crate::conflict::CLOSES_AFTER;
-use crate::frame::State;
 use crate::geometry::contact::distance;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};
 use crate::path::Pose;
 use crate::reference::chance::Chance;
 use crate::reference::{contact as reference, nearest, precise};
+use crate::traffic::frame::State;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
 const LENGTH: f64 = 5.0;

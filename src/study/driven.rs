@@ -11,7 +11,6 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
-use crate::frame::{Frame, Row, State};
 use crate::geometry::bisection::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
@@ -20,7 +19,8 @@ use crate::path::Pose;
 use crate::precollision::{Area, Circle, Search};
 use crate::replay::recording::Recording;
 use crate::replay::rows::Step;
-use crate::roster::{Roster, UserIndex};
+use crate::traffic::frame::{Frame, Row, State};
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// Two within this of the limit are left aside: steps and sizes are rounded in a recording.

@@ -9,10 +9,10 @@ use rustc_hash::FxHashMap;
 use super::clock::median;
 use super::driven::{Driven, Pair, Truth, pair};
 use super::measurement::{Axis, Measurement, Plan, Record};
-use crate::net::Net;
 use crate::options::{Mode, Options, PathModel};
 use crate::replay::Replay;
 use crate::run::Run;
+use crate::traffic::net::Net;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 

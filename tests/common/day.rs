@@ -6,15 +6,15 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::frame::State;
 use closecall::geometry::Point;
 use closecall::log::Log;
-use closecall::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 use closecall::options::Options;
-use closecall::placement::Placement;
-use closecall::profile::Profile;
-use closecall::roster::{ProfileIndex, UserIndex};
 use closecall::run::Run;
+use closecall::traffic::frame::State;
+use closecall::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use closecall::traffic::placement::Placement;
+use closecall::traffic::profile::Profile;
+use closecall::traffic::roster::{ProfileIndex, UserIndex};
 
 /// Steps of 1 s that a car needs from one end of its way to the other.
 const PERIOD: usize = 60;

@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use closecall::frame::{SUMO_INVALID, State};
+use closecall::traffic::frame::{SUMO_INVALID, State};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 

@@ -5,11 +5,11 @@
 
 use std::ops::RangeFrom;
 
-use closecall::frame::State;
 use closecall::options::Options;
-use closecall::placement::Placement;
-use closecall::roster::{Roster, UserIndex};
 use closecall::run::Run;
+use closecall::traffic::frame::State;
+use closecall::traffic::placement::Placement;
+use closecall::traffic::roster::{Roster, UserIndex};
 use closecall::util::tight_vec::make_room;
 use closecall::util::units::Second;
 use pyo3::prelude::*;
@@ -229,7 +229,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         jumped: bool,
-        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::traffic::roster::ProfileIndex>,
     ) -> PyResult<RangeFrom<usize>> {
         if jumped {
             let now = self.ids.bind(py).call0()?;
@@ -262,7 +262,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         id: Bound<PyString>,
-        profile: &mut impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
+        profile: &mut impl FnMut(&mut Run, &str) -> PyResult<closecall::traffic::roster::ProfileIndex>,
     ) -> PyResult<()> {
         let name = id.extract::<&str>()?;
         let Err(rank) = self.rank(&run.roster, name) else { return Ok(()) };

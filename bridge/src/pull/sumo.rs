@@ -4,12 +4,12 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use closecall::geometry::Point;
-use closecall::net::{EdgeIndex, Net};
 use closecall::options::Options;
-use closecall::profile::Profile;
-use closecall::roster::ProfileIndex;
 use closecall::run::Run;
-use closecall::sumo_type::SumoType;
+use closecall::traffic::net::{EdgeIndex, Net};
+use closecall::traffic::profile::Profile;
+use closecall::traffic::roster::ProfileIndex;
+use closecall::traffic::sumo_type::SumoType;
 use closecall::util::units::Second;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;

@@ -3,11 +3,11 @@
 //! The names of its functions are interned: whatever name Python is asked for anew in every step stays in its cache of
 //! attributes.
 
-use closecall::frame::State;
 use closecall::options::Options;
-use closecall::placement::Placement;
-use closecall::roster::UserIndex;
 use closecall::run::Run;
+use closecall::traffic::frame::State;
+use closecall::traffic::placement::Placement;
+use closecall::traffic::roster::UserIndex;
 use closecall::util::units::Second;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -147,7 +147,7 @@ impl Domain {
         py: Python,
         run: &mut Run,
         variable: &Variables,
-        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::roster::ProfileIndex>,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::traffic::roster::ProfileIndex>,
     ) -> PyResult<()> {
         let domain = self.domain.bind(py);
         for live in self.live.values_mut() {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::net::{EdgeFunction, LaneIndex, Net};
+use super::{EdgeFunction, LaneIndex, Net};
 use crate::{Error, Result};
 
 /// A part of the net.

@@ -56,9 +56,9 @@ fn distance(lane: &Lane, place: Point) -> Metre {
 mod tests {
     use std::path::Path;
 
-    use super::*;
     use crate::geometry::Vector;
-    use crate::net::Net;
+    use crate::traffic::net::Net;
+    use crate::traffic::net::finder::*;
 
     #[test]
     fn the_lane_found_is_the_nearest_of_all_lanes() {

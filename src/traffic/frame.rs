@@ -4,8 +4,8 @@
 //! holds what changes in every step. Both are filled by whoever has the data (the bridge from libsumo, replay
 //! from a file, a caller from arrays) and only read by the detector.
 
+use super::roster::UserIndex;
 use crate::geometry::Point;
-use crate::roster::UserIndex;
 use crate::util::tight_vec::{self, add, make_room};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
@@ -174,7 +174,7 @@ impl Frame {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::traffic::frame::*;
 
     const HERE: State = State { x: 1.0, y: 2.0, z: 0.0, heading: 0.5, speed: 3.0 };
 

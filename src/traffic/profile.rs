@@ -1,8 +1,8 @@
 //! What all road users of one type have in common, from what SUMO says of the type and what the options set.
 
+use super::sumo_type::SumoType;
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
-use crate::sumo_type::SumoType;
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
@@ -162,7 +162,7 @@ impl Profile {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::traffic::profile::*;
 
     #[test]
     fn a_type_made_for_one_vehicle_has_the_settings_of_what_it_was_made_from_unless_it_has_its_own() {

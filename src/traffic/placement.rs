@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::net::{EdgeIndex, LaneIndex};
+use super::net::{EdgeIndex, LaneIndex};
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// Where on the net a road user is, and where it is going: what the path along the lanes starts from.

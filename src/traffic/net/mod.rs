@@ -3,6 +3,7 @@
 //! Only what paths, obstacles of the scene and places in the log need: lane shapes, what leads where, junctions.
 
 mod elements;
+pub mod filter;
 mod finder;
 mod network;
 mod reader;
@@ -14,9 +15,9 @@ pub use network::Net;
 mod tests {
     use std::path::Path;
 
-    use super::*;
     use crate::Result;
     use crate::geometry::Point;
+    use crate::traffic::net::*;
 
     fn net(text: &str) -> Result<Net> {
         Net::parse(Path::new("corner.net.xml"), text)

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use ecow::EcoString;
 use rustc_hash::FxHashMap;
 
+use super::profile::{Category, Profile, origins};
 use crate::Result;
 use crate::geometry::polygon::Polygon;
-use crate::profile::{Category, Profile, origins};
 use crate::util::tight_vec::add;
 
 /// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.

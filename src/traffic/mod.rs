@@ -1,0 +1,8 @@
+//! The road users of a scene, step by step, and the net on which they move.
+
+pub mod frame;
+pub mod net;
+pub mod placement;
+pub mod profile;
+pub mod roster;
+pub mod sumo_type;
