@@ -16,7 +16,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use closecall::detector::Detector;
+use closecall::detection::detector::Detector;
 use closecall::options::Options;
 use closecall::options::exclusion::Exclusion;
 use closecall::reference::chance::Chance;

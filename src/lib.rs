@@ -5,27 +5,19 @@
 //! ([`braking`]): first cheaply, over circles ([`precollision`]), then accurately, along the [`path`]s of both
 //! ([`accurate`]). What stays in conflict over several steps becomes one [`conflict::Conflict`], a row of the [`log`].
 
-pub mod accurate;
-pub mod approach;
-pub mod avoidance;
 pub mod braking;
 pub mod cli;
 pub mod conflict;
-pub mod detector;
-pub mod encounter;
+pub mod detection;
 mod error;
 pub mod geometry;
 pub mod input_hash;
 pub mod inputs;
-pub mod kind;
 pub mod log;
 pub mod logged;
-pub mod measures;
 pub mod options;
 pub mod outputs;
-pub mod path;
 pub mod plot;
-pub mod precollision;
 pub mod progress;
 pub mod record;
 #[cfg(feature = "study")]
@@ -34,7 +26,6 @@ pub mod regress;
 pub mod replay;
 pub mod report;
 pub mod run;
-pub mod scene;
 pub mod statistics;
 #[cfg(feature = "study")]
 pub mod stress;

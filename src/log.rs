@@ -9,7 +9,7 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use crate::conflict::Conflict;
-use crate::encounter::Encounter;
+use crate::detection::encounter::Encounter;
 use crate::geometry::Point;
 use crate::record::RunRecord;
 use crate::traffic::net::Net;

@@ -8,14 +8,14 @@ use std::sync::Arc;
 
 use crate::Result;
 use crate::conflict::{Alarm, Conflict, Tracker};
-use crate::detector::Detector;
-use crate::encounter::Encounter;
+use crate::detection::detector::Detector;
+use crate::detection::detector::exclusions::{Exclusions, LeftOut};
+use crate::detection::encounter::Encounter;
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;
 use crate::options::Options;
 use crate::outputs::Outputs;
-use crate::scene::{Exclusions, LeftOut};
 use crate::summary::Summary;
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::net::Net;

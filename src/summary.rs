@@ -5,8 +5,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use crate::conflict::Conflict;
-use crate::kind::{Kind, Severity};
-use crate::scene::LeftOut;
+use crate::detection::detector::exclusions::LeftOut;
+use crate::detection::kind::{Kind, Severity};
 use crate::util::units::Second;
 
 /// What a run found.

@@ -5,7 +5,7 @@
 #[path = "common/counting.rs"]
 mod counting;
 
-use closecall::detector::Detector;
+use closecall::detection::detector::Detector;
 use closecall::options::{Options, PathModel};
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::roster::{Roster, UserIndex};

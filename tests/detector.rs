@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
-use closecall::detector::Detector;
-use closecall::encounter::Encounter;
-use closecall::kind::Kind;
+use closecall::detection::detector::Detector;
+use closecall::detection::encounter::Encounter;
+use closecall::detection::kind::Kind;
 use closecall::options::exclusion::Exclusion;
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::traffic::frame::{Frame, State};

@@ -8,7 +8,7 @@ mod street;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::detector::Detector;
+use closecall::detection::detector::Detector;
 use closecall::geometry::Point;
 use closecall::options::Options;
 use closecall::traffic::frame::{Frame, State};

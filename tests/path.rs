@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
+use closecall::detection::path::track::Track;
 use closecall::geometry::polylines::Lines;
 use closecall::geometry::{Point, Vector};
-use closecall::path::track::Track;
 use proptest::prelude::*;
 
 /// How far from the line a front bumper may be found and still be on it, in m.

@@ -7,7 +7,7 @@ mod street;
 
 use std::sync::Arc;
 
-use closecall::detector::Detector;
+use closecall::detection::detector::Detector;
 use closecall::options::Options;
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::placement::Placement;

@@ -2,11 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use closecall::approach::{Course, HORIZON, time_to_collision};
+use closecall::detection::measures::ttc::{Course, HORIZON, time_to_collision};
+use closecall::detection::path::Pose;
 use closecall::geometry::Point;
 use closecall::geometry::contact::distance;
 use closecall::geometry::rectangle::{Rectangle, direction};
-use closecall::path::Pose;
 use parry2d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry2d_f64::query::{ShapeCastOptions, cast_shapes};
 use parry2d_f64::shape::Cuboid;

@@ -2,9 +2,9 @@
 
 use clap::ValueEnum;
 use closecall::braking::{self, Brakes, Braking, MuModel};
+use closecall::detection::kind::Kind;
 use closecall::geometry::rectangle::Rectangle;
 use closecall::geometry::{Point, Vector, contact};
-use closecall::kind::Kind;
 use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
 use closecall::traffic::sumo_type::SumoType;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};

@@ -4,7 +4,7 @@
 use std::collections::hash_map::Entry;
 
 use closecall::conflict::Alarm;
-use closecall::kind::{Kind, Severity};
+use closecall::detection::kind::{Kind, Severity};
 use closecall::run::Run;
 use closecall::traffic::profile::Category;
 use closecall::traffic::roster::{Roster, UserIndex};

@@ -6,13 +6,13 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
+use closecall::detection::detector::exclusions::LeftOut;
 use closecall::input_hash::Input;
 use closecall::log::Log;
 use closecall::outputs::Outputs;
 use closecall::progress::Progress;
 use closecall::record::RunRecord;
 use closecall::run::Run;
-use closecall::scene::LeftOut;
 use closecall::summary::Summary;
 use closecall::sweep::Task;
 use closecall::util::threads::Helper;

@@ -5,7 +5,7 @@ use clap::{Args, ValueEnum};
 use super::say::say;
 use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
-use crate::kind::Kind;
+use crate::detection::kind::Kind;
 use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, not_negative, positive};
 use crate::traffic::sumo_type::SumoType;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};

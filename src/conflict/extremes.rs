@@ -2,9 +2,9 @@
 
 use super::moment::Moment;
 use super::stance::Stood;
-use crate::encounter::Encounter;
+use crate::detection::encounter::Encounter;
+use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
-use crate::kind::{Kind, Severity};
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;

@@ -12,10 +12,10 @@ mod stance;
 pub use event::Conflict;
 pub use moment::Moment;
 
-use crate::encounter::Encounter;
+use crate::detection::encounter::Encounter;
+use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::geometry::bisection::Halves;
-use crate::kind::{Kind, Severity};
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};

@@ -5,11 +5,11 @@
 //! second enters it when its rectangle touches the first's corridor for the first time. As long as the second is in that
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
+use crate::detection::path::Pose;
 use crate::geometry::bisection::{Halves, Part, Touch};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
-use crate::path::Pose;
 use crate::util::tight_vec::add;
 use crate::util::units::{Metre, Radian, Second};
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// A row of `conflicts.csv`; docs/log.md says what each column is.

@@ -154,7 +154,7 @@ mod tests {
     use std::fs;
 
     use super::super::ConflictReader;
-    use crate::kind::Kind;
+    use crate::detection::kind::Kind;
     use crate::log::CONFLICTS;
 
     const ROW: &str = concat!(

@@ -11,7 +11,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::conflicts::{LoggedConflict, LoggedStance};
 use super::fields::{FIELDS, WITHOUT_STANCES};
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::log::CONFLICT_COLUMNS;
 use crate::{Error, Result};
 

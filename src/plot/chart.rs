@@ -3,7 +3,7 @@
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor};
 
-use crate::kind::Severity;
+use crate::detection::kind::Severity;
 use crate::report::Conflicts;
 
 /// What stands around a chart.

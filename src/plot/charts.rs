@@ -7,7 +7,7 @@ use plotters::style::{IntoFont, TextStyle};
 
 use super::chart::{Chart, INK, colour, said};
 use super::font;
-use crate::kind::Severity;
+use crate::detection::kind::Severity;
 use crate::report::Conflicts;
 use crate::util::units::Second;
 

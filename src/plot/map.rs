@@ -8,8 +8,8 @@ use plotters::style::{IntoFont, TextStyle};
 
 use super::chart::{Chart, INK, colour, said};
 use super::font;
+use crate::detection::kind::{Kind, Severity};
 use crate::geometry::{Bounds, Point, Vector};
-use crate::kind::{Kind, Severity};
 use crate::report::Conflicts;
 use crate::traffic::net::{EdgeFunction, Net};
 

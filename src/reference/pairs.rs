@@ -1,9 +1,9 @@
 //! Pairs of rectangles that are hard to decide on.
 
 use super::chance::Chance;
+use crate::detection::path::rotated;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, left_of};
-use crate::path::rotated;
 
 /// Any road user within 100 m of the origin.
 pub fn car(chance: &mut Chance) -> Rectangle {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::outcome::Row;
 use crate::conflict::CLOSES_AFTER;
-use crate::kind::Kind;
+use crate::detection::kind::Kind;
 use crate::util::units::Second;
 
 /// The conflicts of two outcomes, side by side.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::fingerprint::Fingerprint;
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::logged::{LoggedRun, SUMMARY};
 use crate::summary::{Count, Exposure};
 use crate::util::units::Second;

@@ -6,7 +6,7 @@
 use super::outcome::{Outcome, Row, SeedSummary};
 use super::permutation::adjusted_p;
 use super::scenario::{Settings, Tolerance};
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::statistics::quantile;
 
 /// The percentiles of a distribution that are compared.

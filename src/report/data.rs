@@ -8,7 +8,7 @@ use serde_json::{Map, Value, json};
 use super::conflicts::Conflicts;
 use super::roads;
 use super::rows::{NUMBERS, Row, Stance};
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::options::Options;
 use crate::traffic::net::{EdgeFunction, Net};
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::rows::{Row, Stance};
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::log::RUN;
 use crate::logged::{self, ConflictReader, LoggedConflict, LoggedStance, PARQUET};
 use crate::{Error, Result};

@@ -12,7 +12,7 @@ use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::quantile;
 use super::worst::WorstOf;
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::logged::{ConflictReader, LoggedConflict, LoggedRun, log_folders};
 use crate::{Error, Result};
 

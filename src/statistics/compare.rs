@@ -6,7 +6,7 @@ use super::collect::{Collection, MEASURES};
 use super::permutation::{DRAWS, Test, holm, p_value, smallest_p};
 use super::quantiles::{cliffs_delta, quantile};
 use super::rate::{Ratio, rate_ratio};
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::logged::LoggedRun;
 
 /// How two sets of runs differ.

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::Serialize;
 
-use crate::kind::{Kind, Severity};
+use crate::detection::kind::{Kind, Severity};
 use crate::logged::LoggedConflict;
 
 /// By what conflicts are grouped.

@@ -3,10 +3,10 @@
 use super::case::Case;
 use super::scene;
 use super::tally::{Group, Property, Tally, Unit};
+use crate::detection::path::rotated;
 use crate::geometry::contact::{distance, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector};
-use crate::path::rotated;
 use crate::reference::chance::Chance;
 use crate::reference::contact as reference;
 use crate::reference::pairs::{self, against, beside, car};

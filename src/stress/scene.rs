@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use crate::braking::Brakes;
 use crate::conflict::Conflict;
-use crate::detector::Detector;
-use crate::encounter::Encounter;
+use crate::detection::detector::Detector;
+use crate::detection::encounter::Encounter;
 use crate::options::Options;
 use crate::run::Run;
 use crate::traffic::frame::{Frame, State};

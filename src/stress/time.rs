@@ -3,12 +3,12 @@
 use super::case::Case;
 use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
-use crate::approach::{Course, HORIZON, time_to_collision};
 use crate::conflict::CLOSES_AFTER;
+use crate::detection::measures::ttc::{Course, HORIZON, time_to_collision};
+use crate::detection::path::Pose;
 use crate::geometry::contact::distance;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};
-use crate::path::Pose;
 use crate::reference::chance::Chance;
 use crate::reference::{contact as reference, nearest, precise};
 use crate::traffic::frame::State;

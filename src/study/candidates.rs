@@ -13,7 +13,7 @@ use rstar::{AABB, RTree};
 
 use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
-use crate::precollision::{Area, Circle, Search};
+use crate::detection::broad_phase::{Area, Circle, Search};
 use crate::reference::chance::Chance;
 use crate::util::units::Second;
 

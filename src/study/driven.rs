@@ -9,14 +9,14 @@ use ecow::EcoString;
 use rustc_hash::FxHashMap;
 
 use crate::Result;
-use crate::accurate::{self, Cover, Meeting, Mover, side};
 use crate::braking::{Brakes, MuModel, stopping_distance};
+use crate::detection::broad_phase::{Area, Circle, Search};
+use crate::detection::narrow_phase::{self, Cover, Meeting, Mover, side};
+use crate::detection::path::Pose;
 use crate::geometry::bisection::Halves;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::options::Options;
-use crate::path::Pose;
-use crate::precollision::{Area, Circle, Search};
 use crate::replay::recording::Recording;
 use crate::replay::rows::Step;
 use crate::traffic::frame::{Frame, Row, State};
@@ -182,12 +182,12 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
     if side::touch_now(&first, &second) {
         return Truth::Conflict(0.0);
     }
-    let Some((ego_is_a, meeting)) = accurate::meet(&first, &second, &|| true) else { return Truth::None };
+    let Some((ego_is_a, meeting)) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
     let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
     let sigma = meeting.angle().cos();
     let foe_way = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_way };
-    let gap = accurate::gap(meeting.ego_way, foe_way, sigma);
-    let margin = gap - accurate::mu(MuModel::Minimal, &ego.mover(), &foe.mover(), sigma, options.epsilon);
+    let gap = narrow_phase::gap(meeting.ego_way, foe_way, sigma);
+    let margin = gap - narrow_phase::mu(MuModel::Minimal, &ego.mover(), &foe.mover(), sigma, options.epsilon);
     match margin {
         _ if margin.abs() < NEAR => Truth::Aside,
         _ if margin < 0.0 => Truth::Conflict(gap),

@@ -4,7 +4,7 @@ use parry2d_f64::query;
 
 use super::decisions::{self, Method, Pair};
 use super::measurement::{Axis, Measurement, Plan};
-use crate::accurate::paper::a_vertex_touches_a_side;
+use crate::detection::narrow_phase::paper::a_vertex_touches_a_side;
 use crate::geometry::contact::{plainly_touches, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Vector, parry};

@@ -1,0 +1,122 @@
+//! The order of the boxes: in strips along x, each as high as the highest of them, and within a strip by x. What is
+//! larger than most, or too far away, comes after all strips and is compared with everybody.
+
+use std::iter::repeat_n;
+
+use super::extent::Part;
+use super::fixed_box::FURTHEST;
+use super::place::insert;
+use super::{Search, Slot};
+use crate::geometry::Vector;
+use crate::util::threads::{Team, share};
+use crate::util::units::Metre;
+
+/// A box larger than this many mean ones is compared with everybody: it would make all strips high.
+const LARGE: f64 = 2.5;
+/// No more than one in so many is: that would be all pairs again. Where more are that large, strips are higher.
+const SHARE_OF_LARGE: usize = 1000;
+/// No strip is lower than this, in m.
+const LOWEST_STRIP: Metre = 1.0;
+
+/// Strips stay as they are as long as they are at most this many times as high as they have to be.
+const SPARE_HEIGHT: f64 = 2.0;
+/// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
+/// many moves per road user.
+const MOVES: usize = 32;
+
+impl<S: Slot> Search<S> {
+    /// Sorts the areas of now.
+    pub(super) fn sort(&mut self, team: &Team) {
+        let (all, count) = (self.all_parts(), self.places.len());
+        (self.largest, self.has_round) = (all.largest, all.round);
+        let mut limit = LARGE * (all.sum / count.max(1) as f64).max(LOWEST_STRIP);
+        while limit < all.largest.max().min(FURTHEST) && self.are_large(limit, count / SHARE_OF_LARGE + 2) {
+            limit *= 2.0;
+        }
+        if all.far || all.largest.max() > limit {
+            self.part_large(limit);
+        }
+        self.sort_in_strips(team);
+        self.in_strips = self.places.len();
+        self.places.append(&mut self.large);
+    }
+
+    fn all_parts(&self) -> Part {
+        self.parts.iter().fold(Part::EMPTY, Part::join)
+    }
+
+    /// Whether so many are larger than this.
+    fn are_large(&self, limit: Metre, many: usize) -> bool {
+        self.boxes.iter().filter(|laid| laid.size().max() > limit).nth(many - 1).is_some()
+    }
+
+    /// Sets aside what is larger than this, and what is too far away for a strip. The others stay in their order.
+    fn part_large(&mut self, limit: Metre) {
+        let mut largest = Vector::zeros();
+        let Self { places, boxes, large, .. } = self;
+        places.retain(|place| {
+            let laid = &boxes[place.slot as usize];
+            let size = laid.size();
+            if size.max() <= limit && !laid.is_far() {
+                largest = size.sup(&largest);
+                return true;
+            }
+            large.push(*place);
+            false
+        });
+        self.largest = largest;
+    }
+
+    /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
+    /// ones.
+    fn sort_in_strips(&mut self, team: &Team) {
+        let least = self.largest.y.max(LOWEST_STRIP);
+        if (least..=SPARE_HEIGHT * least).contains(&self.strip_height) {
+            if self.is_nearly_sorted(team) {
+                return;
+            }
+        } else {
+            self.strip_height = SPARE_HEIGHT.sqrt() * least;
+            let per_metre = 1.0 / self.strip_height;
+            self.places.iter_mut().for_each(|place| place.follow(&self.boxes, per_metre));
+        }
+        // In another order the slots would be anywhere.
+        self.moved = usize::MAX;
+        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.cmp(&b.begin)));
+    }
+
+    /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
+    /// few moves; whether it did.
+    fn is_nearly_sorted(&mut self, team: &Team) -> bool {
+        let (boxes, per_metre, count) = (&self.boxes, 1.0 / self.strip_height, self.places.len());
+        let busy = team.busy(count);
+        let share = share(busy, count);
+        self.parts.clear();
+        self.parts.resize(count.div_ceil(share), Part::EMPTY);
+        let parts = self.parts.iter_mut().zip(self.places.chunks_mut(share));
+        team.each(repeat_n((), busy), parts, |(), (part, places)| {
+            places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
+            let most = MOVES * places.len();
+            let mut moves = most;
+            part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
+            part.moved = most - moves;
+        });
+        let all = self.all_parts();
+        self.moved += all.moved;
+        if !all.sorted {
+            return false;
+        }
+        let mut moves = MOVES * share;
+        for bound in (share..self.places.len()).step_by(share) {
+            // Of a sorted part only its beginning may belong before it.
+            let mut place = bound;
+            while place < self.places.len() && self.places[place].is_before(&self.places[place - 1]) {
+                if !insert(&mut self.places, place, &mut moves) {
+                    return false;
+                }
+                place += 1;
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,145 @@
+//! Who is where and how far each needs to stand; phase 1: which pairs may meet before they do.
+
+use std::ops::Range;
+
+use super::Detector;
+use super::reach::{Paths, Reach, Sight, Turning, Turns, lines_of};
+use crate::detection::path::lanes::LanePath;
+use crate::detection::path::{arc, turn};
+use crate::geometry::Point;
+use crate::options::{Mode, PathModel};
+use crate::traffic::frame::{Frame, Row};
+use crate::traffic::profile::Category;
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::threads::share;
+use crate::util::tight_vec::{add, fill};
+
+impl Detector {
+    /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller
+    /// says it with [`Detector::place`], and leaves out whom it cannot place.
+    ///
+    /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
+    /// followed, in a pair or not, and what phase 1 leaves out changes no path.
+    pub fn follow(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
+        if self.paths.len() < roster.len() {
+            fill(&mut self.paths, roster.len(), LanePath::default());
+        }
+        self.work.rows += frame.len() as u64;
+        self.unplaced.clear();
+        self.on_lanes.clear();
+        fill(&mut self.on_lanes, frame.len(), false);
+        if self.turns() == Turns::ByLanes {
+            for (row, Row { user, state }) in frame.rows().enumerate() {
+                if state.moves() && roster.profile_of(user).category == Category::Vehicle {
+                    self.keep_on_path(row, user, state.front());
+                }
+            }
+        }
+        &self.unplaced
+    }
+
+    /// Phase 1: which pairs may meet.
+    pub fn approach(&mut self, frame: &Frame, roster: &Roster) {
+        self.lengthen_all(frame, roster);
+        self.look(frame, roster);
+        if self.turns() == Turns::ByArcs {
+            fill(&mut self.turnings, self.paths.len(), Turning::default());
+            self.turn(frame);
+        }
+        self.find_pairs(frame, roster);
+    }
+
+    /// What makes road users turn.
+    pub(super) fn turns(&self) -> Turns {
+        match self.options.path {
+            _ if self.options.mode == Mode::Paper => Turns::Not,
+            PathModel::Arc => Turns::ByArcs,
+            PathModel::Lanes if self.net.is_some() => Turns::ByLanes,
+            PathModel::Lanes | PathModel::Straight => Turns::Not,
+        }
+    }
+
+    /// Everybody in its slot, with the area of now.
+    fn look(&mut self, frame: &Frame, roster: &Roster) {
+        let (turns, epsilon) = (self.turns(), self.options.epsilon);
+        let paths = Paths::new(&self.paths, self.net.as_deref());
+        let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
+        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
+        let who_is_there = (roster.changes(), frame.len());
+        let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
+        self.search.lay(
+            frame.len(),
+            &self.team,
+            are_same,
+            |user| frame.row_of(UserIndex(user)),
+            |row| sight.see(row),
+            |seen, user| {
+                *user = sight.user(user.row, seen, user);
+                reach.area_of(user, &seen.row.state)
+            },
+        );
+    }
+
+    /// How the paths of now turn, where they are arcs.
+    fn turn(&mut self, frame: &Frame) {
+        for user in self.search.slots() {
+            let front = frame.state(user.row).front();
+            let turning = &mut self.turnings[user.index.0 as usize];
+            if let Some((last, last_axis)) = turning.last {
+                turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (front - last).norm());
+            }
+            turning.last = Some((front, user.axis));
+        }
+    }
+
+    /// The pairs whose areas meet, those that each thread has found.
+    fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
+        let paths = Paths::new(&self.paths, self.net.as_deref());
+        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
+        let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
+        let busy = self.team.busy(count);
+        let share = share(busy, count);
+        let parts = (0..count.div_ceil(share)).map(|part| part * share..count.min((part + 1) * share));
+        self.pairs.iter_mut().for_each(Vec::clear);
+        self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
+            let mut found = |a: u32, b: u32| add(pairs, (a, b));
+            let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
+            match (all, search.has_round()) {
+                (true, _) => every_pair(part, &mut found),
+                (false, false) => search.sweep(part, &mut found),
+                (false, true) => search.sweep(part, |a, b| {
+                    if area(a).circles_meet(&area(b)) {
+                        found(a, b);
+                    }
+                }),
+            }
+        });
+        let found = self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
+        self.work.circles_apart += all_pairs(count) - found;
+        self.work.pairs += found;
+    }
+
+    /// Follows a row's path along the lanes, or asks for its lane.
+    fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
+        let of_net = lines_of(self.net.as_deref());
+        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, front);
+        if self.leaves_out.known_paths && !self.routes_may_change && self.on_lanes[row] {
+            self.work.known_paths += 1;
+        } else {
+            self.unplaced.push(row as u32);
+        }
+    }
+}
+
+/// Each of these slots with all before it.
+fn every_pair(slots: Range<usize>, mut found: impl FnMut(u32, u32)) {
+    for slot in slots {
+        (0..slot).for_each(|other| found(other as u32, slot as u32));
+    }
+}
+
+/// How many pairs so many road users are.
+fn all_pairs(count: usize) -> u64 {
+    let count = count as u64;
+    count * count.saturating_sub(1) / 2
+}

@@ -1,0 +1,337 @@
+//! Phase 2, first half: where a pair would meet, what gap and μ are there.
+
+use std::hint::black_box;
+
+use super::occupancy::Ways;
+use super::reach;
+use super::reach::User;
+use super::step::Scene;
+use super::work::Work;
+use super::worker::{Found, Met, Worker};
+use crate::braking::{self, Braking, MuModel};
+use crate::detection::encounter::Encounter;
+use crate::detection::kind::{Kind, kind_at};
+use crate::detection::narrow_phase::{self, Meeting, Mover, side};
+use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::{contact, cross};
+use crate::options::Mode;
+use crate::traffic::frame::State;
+use crate::traffic::profile::Category;
+use crate::util::tight_vec::add;
+use crate::util::units::{Metre, Radian};
+
+/// Two road users further apart in height than this are no pair, in m: one is on a bridge.
+const LEVEL: Metre = 2.5;
+
+/// So many pairs are fetched before the first of them is looked at: the processor waits for memory once.
+const BLOCK: usize = 32;
+
+/// Who of a pair meets whom.
+struct Roles<'a> {
+    /// The ego's slot and the foe's.
+    slots: [u32; 2],
+    ego: &'a Mover<'a>,
+    foe: &'a Mover<'a>,
+}
+
+impl<'a> Roles<'a> {
+    fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Mover<'a>; 2]) -> Self {
+        match ego_is_first {
+            true => Self { slots: [first, second], ego: a, foe: b },
+            false => Self { slots: [second, first], ego: b, foe: a },
+        }
+    }
+}
+
+/// How a pair would meet.
+struct How {
+    kind: Kind,
+    angle: Radian,
+    /// cos α.
+    sigma: f64,
+    gap: Metre,
+    collision: bool,
+}
+
+/// Whether two road users near each other are a pair at all.
+fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], work: &mut Work) -> bool {
+    if !a_state.moves() && !b_state.moves() {
+        work.both_stand += 1;
+        return false;
+    }
+    if (a_state.z - b_state.z).abs() > LEVEL && a.category != Category::Obstacle && b.category != Category::Obstacle {
+        work.other_level += 1;
+        return false;
+    }
+    if a.category == Category::Person && b.category == Category::Person {
+        work.both_persons += 1;
+        return false;
+    }
+    true
+}
+
+impl Scene<'_> {
+    /// Those of these pairs that would meet.
+    pub(super) fn meet_all(&self, worker: &mut Worker, pairs: &[(u32, u32)]) {
+        let Worker { work, ways, found } = worker;
+        for block in pairs.chunks(BLOCK) {
+            self.fetch(block);
+            for &(a, b) in block {
+                let users = [a, b].map(|slot| self.user(slot));
+                if !is_pair(users.map(|user| (user, self.state(user))), work) {
+                    continue;
+                }
+                let slots = if users[0].row < users[1].row { [a, b] } else { [b, a] };
+                match self.options.mode {
+                    Mode::Closecall => self.meet(ways, work, slots, found),
+                    Mode::Paper => self.meet_on_paper(work, slots, found),
+                }
+            }
+        }
+    }
+
+    /// Reads what is far apart in memory, and does nothing with it: what stands in the slots of these pairs, then in the rows
+    /// that those name.
+    fn fetch(&self, pairs: &[(u32, u32)]) {
+        let mut rows = [0; 2 * BLOCK];
+        for (rows, &(a, b)) in rows.chunks_exact_mut(2).zip(pairs) {
+            rows[0] = black_box(self.user(a)).row;
+            rows[1] = black_box(self.user(b)).row;
+        }
+        for row in &rows[..2 * pairs.len()] {
+            let state = self.frame.state(*row);
+            black_box((state.x, state.speed));
+        }
+    }
+
+    fn meet(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+        let [a, b] = slots;
+        let both_ahead = self.user(a).ahead && self.user(b).ahead;
+        // Of two that can only go straight on phase 1 has compared the boxes.
+        let is_known = self.leaves_out.circles_apart && both_ahead;
+        if is_known && self.leaves_out.in_line && self.conflicts_only && self.keeps_distance(slots) {
+            work.in_line += 1;
+            return;
+        }
+        if self.go_onward(slots) {
+            return self.meet_onward(work, slots, found);
+        }
+        ways.begin_pair();
+        slots.iter().for_each(|slot| ways.see(self, *slot));
+        if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
+            work.ways_apart += 1;
+            return;
+        }
+        // The narrow boxes of who turns: the sweep needs them anyway.
+        if !both_ahead && self.are_apart(ways, work, slots) {
+            return;
+        }
+        // An obstacle is nobody's ego.
+        let slots = if self.is_obstacle(a) { [b, a] } else { slots };
+        let (first, second) = (ways.mover(self, slots[0]), ways.mover(self, slots[1]));
+        let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
+        if both_ahead && self.are_apart(ways, work, slots) {
+            return;
+        }
+        let (first, second) = (ways.covered(self, slots[0]), ways.covered(self, slots[1]));
+        self.sweep(work, slots, [&first, &second], in_line, found);
+    }
+
+    /// Settles a pair that touches now, or that drives in line. Of any other, whether it drives in line all the same.
+    pub(super) fn settle(
+        &self,
+        work: &mut Work,
+        slots: [u32; 2],
+        [first, second]: [&Mover; 2],
+        found: &mut Found,
+    ) -> Option<bool> {
+        if side::touch_now(first, second) {
+            let first_is_ego = !second.shape.is_empty() || self.has_smaller_id(slots);
+            let roles = Roles::new(first_is_ego, slots, [first, second]);
+            let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
+            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
+            self.met(work, found, &roles, &meeting, true);
+            return None;
+        }
+        let in_line = narrow_phase::drive_in_line(first, second);
+        if !in_line || !self.leaves_out.in_line {
+            return Some(in_line);
+        }
+        work.in_line += 1;
+        work.frontal += u64::from(narrow_phase::drive_opposed(first, second));
+        let met = narrow_phase::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
+        if let Some((first_is_ego, meeting)) = met {
+            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
+        }
+        None
+    }
+
+    /// Where two whose ways are covered would meet.
+    pub(super) fn sweep(
+        &self,
+        work: &mut Work,
+        slots: [u32; 2],
+        [first, second]: [&Mover; 2],
+        in_line: bool,
+        found: &mut Found,
+    ) {
+        work.swept += 1;
+        let halves = &mut found.scratch.halves;
+        let met = side::meet(halves, first, second, in_line, &|| self.has_smaller_id(slots));
+        if let Some((first_is_ego, meeting)) = met {
+            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
+        }
+    }
+
+    /// Whether the first of two has the smaller id.
+    fn has_smaller_id(&self, slots: [u32; 2]) -> bool {
+        let [first, second] = slots.map(|slot| self.roster.id(self.user(slot).index));
+        first <= second
+    }
+
+    /// Whether two who go straight on, the same way, surely pass beside each other, or one follows the other and keeps its
+    /// distance, as most pairs do: they are settled before anything is laid out that the others need. Where it is a matter
+    /// of less than the tolerance, no.
+    #[inline(always)]
+    fn keeps_distance(&self, slots: [u32; 2]) -> bool {
+        let [a, b] = slots.map(|slot| self.user(slot));
+        let (of_a, of_b) = (self.profile(a), self.profile(b));
+        let lead_alike = |lengths| narrow_phase::lead_alike([&a.axis, &b.axis], lengths);
+        // Most pairs that cross do not, however far they go.
+        if !lead_alike([of_a.length, of_b.length])
+            || a.axis.dot(&b.axis) <= 0.0
+            || slots.iter().any(|slot| self.is_obstacle(*slot))
+        {
+            return false;
+        }
+        let (state_a, state_b) = (self.state(a), self.state(b));
+        let stops = [reach::stop(state_a, of_a), reach::stop(state_b, of_b)];
+        if !lead_alike([stops[0] + of_a.length, stops[1] + of_b.length]) {
+            return false;
+        }
+        let between = state_b.front() - state_a.front();
+        if cross(&a.axis, &between).abs() > (of_a.width + of_b.width) / 2.0 + TOLERANCE {
+            return true;
+        }
+        let along = between.dot(&a.axis);
+        let a = Braking { speed: state_a.speed, brakes: &of_a.brakes };
+        let b = Braking { speed: state_b.speed, brakes: &of_b.brakes };
+        let is_behind = 2.0 * along > of_b.length - of_a.length;
+        let (ahead, stop, ego, foe) = match is_behind {
+            true => (along - of_b.length, stops[0], a, b),
+            false => (-along - of_a.length, stops[1], b, a),
+        };
+        let enough = |way: Metre| ahead > way.max(0.0) + TOLERANCE;
+        let epsilon = self.options.epsilon;
+        enough(stop + epsilon) || enough(braking::mu(self.mu_model(), ego, foe, 1.0, epsilon))
+    }
+
+    /// Whether the narrow boxes around both ways do not meet.
+    fn are_apart(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2]) -> bool {
+        slots.iter().for_each(|slot| ways.cover(self, *slot));
+        let [a, b] = slots.map(|slot| ways.cover_of(slot));
+        let apart = !a.meets(b);
+        work.ways_apart += u64::from(apart);
+        apart
+    }
+
+    fn meet_on_paper(&self, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+        if slots.iter().any(|slot| self.is_obstacle(*slot)) {
+            return;
+        }
+        // Its flow chart asks for the kind first: none is left out.
+        work.frontal += 1;
+        work.side += 1;
+        let (first, second) = (self.mover(slots[0]), self.mover(slots[1]));
+        let measured = narrow_phase::paper::measure(&first, &second, self.options);
+        let roles = Roles::new(measured.ego_is_a, slots, [&first, &second]);
+        let (ego, foe) = (roles.ego, roles.foe);
+        let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
+        let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
+        // Eq. 4: the ego's detection radius reaches the foe's front.
+        if between - foe.rectangle.half_length > radius || !measured.distance.is_finite() {
+            return;
+        }
+        let collision = contact::touches(&ego.rectangle, &foe.rectangle);
+        let angle = measured.meeting.angle();
+        let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, collision };
+        self.add(found, &roles, &measured.meeting, how);
+    }
+
+    fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
+        let angle = meeting.angle();
+        let sigma = narrow_phase::sigma(angle);
+        let gap = if collision { 0.0 } else { narrow_phase::gap(meeting.ego_way, meeting.foe_way, sigma) };
+        let how = How { kind: kind_at(angle, self.options), angle, sigma, gap, collision };
+        match how.kind {
+            Kind::Frontal => work.frontal += 1,
+            Kind::Side => work.side += 1,
+            Kind::RearEnd => {}
+        }
+        self.add(found, roles, meeting, how);
+    }
+
+    /// Adds a pair that would meet, and measures it; later where a path may have to be laid further for that.
+    fn add(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, how: How) {
+        let How { kind, angle, sigma, gap, collision } = how;
+        let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
+        let margin = gap - mu;
+        // Of a foe that has to come and go first the gap is not known yet.
+        let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
+        if self.conflicts_only && margin >= 0.0 && !(leaves && self.may_leave_late(roles, meeting, sigma, mu)) {
+            return;
+        }
+        let at = meeting.place();
+        let [ego, foe] = roles.slots.map(|slot| self.user(slot));
+        let encounter = Encounter {
+            ego: ego.index,
+            foe: foe.index,
+            ego_row: ego.row,
+            foe_row: foe.row,
+            kind,
+            angle,
+            gap,
+            mu,
+            margin,
+            ego_way: meeting.ego_way,
+            foe_way: meeting.foe_way,
+            x: at.x,
+            y: at.y,
+            lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_way) } else { None },
+            collision,
+            nearness: None,
+        };
+        add(&mut found.encounters, encounter);
+        let Found { encounters, unmeasured, scratch, .. } = found;
+        let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
+        if leaves || encounter.in_conflict() {
+            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
+            if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
+                self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
+                if self.conflicts_only && !encounter.in_conflict() {
+                    encounters.pop();
+                }
+            } else {
+                add(unmeasured, (number, met));
+            }
+        }
+    }
+
+    /// Whether somebody's path is laid so far ahead, if it has one that may have to be.
+    fn reaches(&self, user: &User, way: Metre) -> bool {
+        !user.on_lanes || self.paths.track(user.index).0.ahead() >= way
+    }
+
+    /// Whether a pair is in conflict if its foe leaves the meeting place as late as it can.
+    fn may_leave_late(&self, roles: &Roles, meeting: &Meeting, sigma: f64, mu: Metre) -> bool {
+        let foe_way = self.furthest_way_out(self.user(roles.slots[1]), meeting);
+        narrow_phase::gap(meeting.ego_way, foe_way, sigma) < mu + TOLERANCE
+    }
+
+    fn mu_model(&self) -> MuModel {
+        match self.options.mode {
+            Mode::Closecall => self.options.mu,
+            Mode::Paper => MuModel::Paper,
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! Phase 2, second half: the gap of a pair whose foe has to come and go first; of a pair in conflict clearance, TTC, DRAC,
+//! severity.
+
+use super::reach::User;
+use super::step::Scene;
+use super::worker::{Found, Met, Scratch, Worker};
+use crate::detection::encounter::{Encounter, Nearness};
+use crate::detection::kind::Kind;
+use crate::detection::measures;
+use crate::detection::measures::drac;
+use crate::detection::measures::ttc::{self, Course};
+use crate::detection::narrow_phase::{self, Meeting, Mover, side};
+use crate::geometry::{contact, polygon};
+use crate::options::Mode;
+use crate::util::units::{Metre, MetrePerSecondSquared, Second};
+
+impl Scene<'_> {
+    /// How far ahead somebody's path has to be known to measure a pair that it is in.
+    pub(super) fn way_to_measure(&self, user: &User, meeting: &Meeting) -> Metre {
+        (self.state(user).speed * ttc::HORIZON).max(self.furthest_way_out(user, meeting))
+    }
+
+    /// Measures what a worker could not measure at once.
+    pub(super) fn measure_all(&self, worker: &mut Worker) {
+        let Found { encounters, unmeasured, scratch, .. } = &mut worker.found;
+        for (index, met) in unmeasured {
+            let (ego, foe) = (self.mover(met.slots[0]), self.mover(met.slots[1]));
+            self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
+        }
+    }
+
+    /// Completes what is known of a pair that would meet: the ego and its foe.
+    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &mut Encounter) {
+        if met.leaves {
+            encounter.foe_way = self.way_out(scratch, pair[1], met);
+            if self.options.mode == Mode::Closecall {
+                encounter.gap = narrow_phase::gap(encounter.ego_way, encounter.foe_way, met.sigma);
+                encounter.margin = encounter.gap - encounter.mu;
+            }
+        }
+        if encounter.in_conflict() {
+            encounter.nearness = Some(self.nearness(scratch, pair, met, encounter));
+        }
+    }
+
+    /// The way that holds the one at which the foe is out of the way.
+    pub(super) fn furthest_way_out(&self, foe: &User, meeting: &Meeting) -> Metre {
+        let profile = self.profile(foe);
+        // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
+        meeting.foe_way + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width
+    }
+
+    /// The foe's way until it has left the ego's meeting place.
+    fn way_out(&self, scratch: &mut Scratch, foe: &Mover, met: &Met) -> Metre {
+        let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
+        poses.clear();
+        self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
+        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego, met.meeting.foe_way)
+    }
+
+    fn nearness(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &Encounter) -> Nearness {
+        let [ego, foe] = pair;
+        let clearance = if encounter.collision {
+            0.0
+        } else if foe.shape.is_empty() {
+            contact::room(&ego.rectangle, &foe.rectangle)
+        } else {
+            polygon::distance(foe.shape, &ego.rectangle)
+        };
+        let (ttc, drac) =
+            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, met, encounter) };
+        let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, self.options);
+        Nearness { clearance, ttc, drac, severity }
+    }
+
+    /// The time to collision; where there is one, the deceleration that avoids it.
+    fn ttc_and_drac(
+        &self,
+        scratch: &mut Scratch,
+        met: &Met,
+        encounter: &Encounter,
+    ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
+        let users = met.slots.map(|slot| self.user(slot));
+        for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
+            poses.clear();
+            self.course(user, &[self.state(user).speed * ttc::HORIZON], true, poses);
+        }
+        let course = |user: &User, poses| {
+            let profile = self.profile(user);
+            Course { poses, speed: self.state(user).speed, length: profile.length, width: profile.width }
+        };
+        let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
+        let is_obstacle = self.is_obstacle(met.slots[1]);
+        let ttc = if is_obstacle {
+            ttc::time_to_fixed(&mut scratch.halves, &ego, self.roster.shape(encounter.foe))
+        } else {
+            ttc::time_to_collision(&ego, &foe)
+        };
+        let Some(time) = ttc else { return (None, None) };
+        let in_line = drac::drac_in_line(ego.speed - met.sigma * foe.speed, time);
+        if met.meeting.leads || is_obstacle || encounter.kind == Kind::Frontal {
+            return (ttc, in_line);
+        }
+        let drac = drac::drac(&mut scratch.halves, &ego, &foe, time);
+        (ttc, if drac.is_finite() { Some(drac).filter(|drac| *drac > 0.0) } else { in_line })
+    }
+}

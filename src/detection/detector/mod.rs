@@ -1,0 +1,280 @@
+//! Frame in, encounters out: both phases, one after the other.
+//!
+//! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output. What a
+//! step changes in what is remembered is done by one thread, in `look` and here; what only reads it (`ways`, `meet`,
+//! `measure`) by as many as the caller wants, each on its part of the pairs. The results are the same.
+
+mod candidates;
+mod encounters;
+pub mod exclusions;
+mod left_out;
+mod measure;
+mod occupancy;
+mod reach;
+mod row_order;
+mod step;
+mod straight_pair;
+mod work;
+mod worker;
+
+use std::iter::repeat_n;
+use std::sync::Arc;
+
+use super::broad_phase::Search;
+use super::encounter::Encounter;
+use super::path::lanes::{LanePath, Start};
+use crate::braking::stopping_distance;
+use crate::geometry::Point;
+use crate::geometry::rectangle::direction;
+use crate::options::Options;
+use crate::traffic::frame::{Frame, Row};
+use crate::traffic::net::Net;
+use crate::traffic::placement::Placement;
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::threads::{Team, share};
+use crate::util::units::Metre;
+use exclusions::Exclusions;
+use reach::{Paths, Reach, Sight, Turning, User};
+use row_order::Order;
+use step::Scene;
+use worker::Worker;
+
+pub use work::Work;
+
+/// Finds the encounters of one step after the other.
+pub struct Detector {
+    work: Work,
+    options: Options,
+    leaves_out: Exclusions,
+    net: Option<Arc<Net>>,
+    routes_may_change: bool,
+    sublane: bool,
+    conflicts_only: bool,
+    /// By [`UserIndex`], as long as the road user is in the scene.
+    paths: Vec<LanePath>,
+    /// The same; empty where paths are no arcs.
+    turnings: Vec<Turning>,
+    /// Who is on its path along lanes, by row of the frame.
+    on_lanes: Vec<bool>,
+    /// Everybody in the step in a slot: who meets is near in memory too.
+    search: Search<User>,
+    /// How often anybody had entered or left until the last step, and how many were in it.
+    who_was_there: (u64, usize),
+    order: Order,
+    unplaced: Vec<u32>,
+    /// Slots of two whose areas meet, those that each thread has found.
+    pairs: Vec<Vec<(u32, u32)>>,
+    workers: Vec<Worker>,
+    team: Team,
+}
+
+impl Detector {
+    /// A detector for a scene; without a net every path is straight (or an arc, if so chosen).
+    pub fn new(options: &Options, net: Option<Arc<Net>>) -> Self {
+        Self {
+            work: Work::default(),
+            options: options.clone(),
+            leaves_out: Exclusions::of(options),
+            net,
+            routes_may_change: true,
+            sublane: false,
+            conflicts_only: false,
+            paths: Vec::new(),
+            turnings: Vec::new(),
+            on_lanes: Vec::new(),
+            search: Search::default(),
+            who_was_there: (0, 0),
+            order: Order::default(),
+            unplaced: Vec::new(),
+            pairs: vec![Vec::new()],
+            workers: vec![Worker::default()],
+            team: Team::default(),
+        }
+    }
+
+    /// Looks at the pairs of a step with so many threads, at least one; the results are the same.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.team = Team::new(threads);
+        self.pairs.resize_with(self.team.threads(), Vec::new);
+        self.workers.resize_with(self.team.threads(), Worker::default);
+    }
+
+    /// Says whether no road user's route changes while it is in the scene, so that a path once laid holds until the
+    /// road user leaves it; without such word routes may change.
+    pub fn set_fixed_routes(&mut self, fixed: bool) {
+        self.routes_may_change = !fixed;
+    }
+
+    /// Whether no road user's route changes while it is in the scene.
+    pub fn has_fixed_routes(&self) -> bool {
+        !self.routes_may_change
+    }
+
+    /// Says whether road users move to the side without changing lanes (SUMO's sublane model).
+    pub fn set_sublane(&mut self, sublane: bool) {
+        self.sublane = sublane;
+    }
+
+    /// Whether they may.
+    pub fn sublane(&self) -> bool {
+        self.sublane
+    }
+
+    /// Says that encounters which are no conflict may be left out of what [`Detector::detect`] finds.
+    pub fn set_conflicts_only(&mut self, only: bool) {
+        self.conflicts_only = only;
+    }
+
+    /// Has the lane of everybody who drives asked for in every step: somebody else wants to know it.
+    pub fn ask_for_lanes(&mut self) {
+        self.leaves_out.known_paths = false;
+    }
+
+    /// What is left out.
+    pub fn leaves_out(&self) -> Exclusions {
+        self.leaves_out
+    }
+
+    /// What was done so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Forgets a road user that has left the scene: its index may be given to another.
+    pub fn forget(&mut self, user: UserIndex) {
+        if let Some(path) = self.paths.get_mut(user.0 as usize) {
+            path.clear();
+        }
+        if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
+            *turning = Turning::default();
+        }
+    }
+
+    /// Whether the road user of a row is still on the path that was laid before.
+    pub fn keeps_path(&self, row: u32) -> bool {
+        self.on_lanes[row as usize]
+    }
+
+    /// Whether the route that a road user was said to have is known from this place in it on.
+    pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
+        self.paths.get(user.0 as usize).is_some_and(|path| path.knows_route(position))
+    }
+
+    /// Where the road user of a row is on the net, if it is not on its path still or that is not that of its route.
+    pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
+        let Some(net) = &self.net else { return };
+        let Row { user, state } = frame.row(row);
+        let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
+        let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
+        if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
+            return;
+        }
+        let start = Start {
+            front: state.front(),
+            axis: direction(state.heading),
+            length: profile.chord,
+            width: profile.width,
+            speed: state.speed,
+            sublane: self.sublane,
+        };
+        path.lay(net, &start, placement);
+        self.on_lanes[row as usize] = path.track.is_laid();
+    }
+
+    /// Phase 2: the pairs that would meet, in the order of the frame's rows. The frame is that of [`Detector::approach`].
+    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
+        let mut workers = std::mem::take(&mut self.workers);
+        for worker in &mut workers {
+            worker.found.clear();
+            worker.ways.begin(self.search.slots().len());
+        }
+        let scene = self.scene(frame, roster);
+        let busy = self.team.busy(frame.len());
+        let share = share(busy, self.pairs.iter().map(Vec::len).sum());
+        let parts = self.pairs.iter().flat_map(|pairs| pairs.chunks(share));
+        self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs));
+        for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
+            for slot in met.slots {
+                let user = self.search.slots()[slot as usize];
+                if user.on_lanes {
+                    let way = self.scene(frame, roster).way_to_measure(&user, &met.meeting);
+                    self.lengthen(roster, &user, way);
+                }
+            }
+        }
+        let scene = self.scene(frame, roster);
+        let has_more = |worker: &Worker| !worker.found.unmeasured.is_empty();
+        let busy = workers.iter().filter(|worker| has_more(worker)).count();
+        let parts = workers.iter_mut().filter(|worker| has_more(worker));
+        self.team.each(repeat_n((), busy), parts, |(), worker| scene.measure_all(worker));
+        self.order.sort(frame.len(), &workers);
+        for worker in &mut workers {
+            self.work += std::mem::take(&mut worker.work);
+            worker.found.scratch.halves.shrink();
+        }
+        self.workers = workers;
+        self.encounters()
+    }
+
+    /// What [`Detector::detect`] has found in the last step, as far as it was retained.
+    pub fn encounters(&self) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
+        self.order.sorted(&self.workers)
+    }
+
+    /// Forgets those encounters that are not to be kept.
+    pub fn retain(&mut self, keep: impl FnMut(&mut Encounter) -> bool) {
+        self.order.retain(&mut self.workers, keep);
+    }
+
+    /// Sees to it that all paths reach as far as both phases look, in a pair or not: who came to the end of its path
+    /// would be given another one.
+    fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
+        let Some(net) = &self.net else { return };
+        for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
+            if *on_lanes {
+                let profile = roster.profile_of(user);
+                let way = stopping_distance(state.speed, &profile.brakes) + self.options.epsilon;
+                self.paths[user.0 as usize].reach(net, profile.chord, way);
+            }
+        }
+    }
+
+    /// Sees to it that somebody's path reaches so far ahead, if the route does.
+    fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
+        if let Some(net) = &self.net {
+            self.paths[user.index.0 as usize].reach(net, roster.profile_at(user.profile).chord, way);
+        }
+    }
+
+    fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Sight<'a> {
+        let (turns, epsilon) = (self.turns(), self.options.epsilon);
+        Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: self.all_paths() }
+    }
+
+    fn all_paths(&self) -> Paths<'_> {
+        Paths::new(&self.paths, self.net.as_deref())
+    }
+
+    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Scene<'a> {
+        Scene {
+            options: &self.options,
+            leaves_out: self.leaves_out,
+            conflicts_only: self.conflicts_only,
+            frame,
+            roster,
+            paths: self.all_paths(),
+            turnings: &self.turnings,
+            reach: Reach::new(frame, roster, &self.options, self.leaves_out, self.all_paths()),
+            users: self.search.slots(),
+        }
+    }
+
+    /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
+    pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
+        let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
+        let user = sight.user(row, &sight.see(row), &User::default());
+        let stop = self.scene(frame, roster).stop(&user);
+        self.scene(frame, roster).course(&user, &[stop, stop + self.options.epsilon], false, &mut poses);
+        poses.iter().map(|pose| pose.front).collect()
+    }
+}

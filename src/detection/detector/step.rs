@@ -1,0 +1,48 @@
+//! What the narrow phase reads of the current step.
+
+use super::exclusions::Exclusions;
+use super::reach;
+use super::reach::{Paths, Reach, Turning, User};
+use crate::options::Options;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::Roster;
+use crate::util::units::Metre;
+
+/// What phase 2 reads of the step under way.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub options: &'a Options,
+    pub leaves_out: Exclusions,
+    pub conflicts_only: bool,
+    pub frame: &'a Frame,
+    pub roster: &'a Roster,
+    pub paths: Paths<'a>,
+    pub turnings: &'a [Turning],
+    pub reach: Reach<'a>,
+    pub users: &'a [User],
+}
+
+impl Scene<'_> {
+    pub fn user(&self, slot: u32) -> &User {
+        &self.users[slot as usize]
+    }
+
+    pub fn state(&self, user: &User) -> &State {
+        self.frame.state(user.row)
+    }
+
+    /// How far somebody still moves.
+    #[inline(always)]
+    pub fn stop(&self, user: &User) -> Metre {
+        reach::stop(self.state(user), self.profile(user))
+    }
+
+    pub fn is_obstacle(&self, slot: u32) -> bool {
+        self.user(slot).category == Category::Obstacle
+    }
+
+    pub fn profile(&self, user: &User) -> &Profile {
+        self.roster.profile_at(user.profile)
+    }
+}

@@ -1,0 +1,50 @@
+//! Surrogate safety measures of a pair in one step: ΔV, severity. TTC is in [`crate::detection::measures::ttc`], DRAC in
+//! [`crate::detection::measures::drac`], PET in [`crate::conflict`].
+
+pub mod drac;
+pub mod ttc;
+
+use super::kind::Severity;
+use crate::options::Options;
+use crate::util::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+
+/// How bad a conflict is, from what is known of it in one step.
+pub fn severity(
+    ttc: Option<Second>,
+    drac: Option<MetrePerSecondSquared>,
+    ego_deceleration: MetrePerSecondSquared,
+    collision: bool,
+    options: &Options,
+) -> Severity {
+    if collision || drac.is_some_and(|drac| drac > ego_deceleration) {
+        Severity::Critical
+    } else if ttc.is_some_and(|ttc| ttc < options.serious_ttc) || drac.is_some_and(|drac| drac > options.serious_drac) {
+        Severity::Serious
+    } else {
+        Severity::Caution
+    }
+}
+
+/// ΔV in m/s: how much the ego's velocity changes in a fully inelastic collision of both masses, at the speeds of now
+/// and the angle α of the meeting place.
+///
+/// ```
+/// use closecall::detection::measures::delta_v;
+/// assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), 5.0);
+/// assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), 15.0);
+/// ```
+pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram), angle: Radian) -> MetrePerSecond {
+    let along = ego.0 - foe.0 * angle.cos();
+    let across = foe.0 * angle.sin();
+    along.hypot(across) / (1.0 + ego.1 / foe.1)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::detection::measures::*;
+
+    #[test]
+    fn a_wall_takes_all_of_the_speed() {
+        assert_eq!(delta_v((13.0, 1500.0), (0.0, f64::MAX), std::f64::consts::PI), 13.0);
+    }
+}

@@ -1,0 +1,11 @@
+//! Frames in, encounters out: which pairs come too close in a step, and how close.
+//!
+//! The broad phase finds the pairs that may meet, the narrow phase finds where, and the measures tell how close they are.
+
+pub mod broad_phase;
+pub mod detector;
+pub mod encounter;
+pub mod kind;
+pub mod measures;
+pub mod narrow_phase;
+pub mod path;
