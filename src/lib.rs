@@ -7,9 +7,9 @@
 
 pub mod braking;
 pub mod cli;
-pub mod conflict;
 pub mod detection;
 mod error;
+pub mod events;
 pub mod geometry;
 pub mod input_hash;
 pub mod inputs;

@@ -8,8 +8,8 @@ use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use crate::conflict::Conflict;
 use crate::detection::encounter::Encounter;
+use crate::events::Conflict;
 use crate::geometry::Point;
 use crate::record::RunRecord;
 use crate::traffic::net::Net;

@@ -7,10 +7,10 @@
 use std::sync::Arc;
 
 use crate::Result;
-use crate::conflict::{Alarm, Conflict, Tracker};
 use crate::detection::detector::Detector;
 use crate::detection::detector::exclusions::{Exclusions, LeftOut};
 use crate::detection::encounter::Encounter;
+use crate::events::{Alarm, Conflict, Tracker};
 use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::log::Log;

@@ -4,9 +4,9 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::conflict::Conflict;
 use crate::detection::detector::exclusions::LeftOut;
 use crate::detection::kind::{Kind, Severity};
+use crate::events::Conflict;
 use crate::util::units::Second;
 
 /// What a run found.

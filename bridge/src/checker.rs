@@ -236,7 +236,7 @@ pub struct Conflict {
 }
 
 impl Conflict {
-    fn new(from: closecall::conflict::Conflict, net: Option<&Net>) -> Self {
+    fn new(from: closecall::events::Conflict, net: Option<&Net>) -> Self {
         Self {
             ego: from.ego.to_string(),
             foe: from.foe.to_string(),

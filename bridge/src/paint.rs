@@ -3,8 +3,8 @@
 
 use std::collections::hash_map::Entry;
 
-use closecall::conflict::Alarm;
 use closecall::detection::kind::{Kind, Severity};
+use closecall::events::Alarm;
 use closecall::run::Run;
 use closecall::traffic::profile::Category;
 use closecall::traffic::roster::{Roster, UserIndex};

@@ -10,7 +10,7 @@ use clap::Args;
 
 use self::ssm::Ssm;
 use self::trajectories::Trajectories;
-use crate::conflict::Conflict;
+use crate::events::Conflict;
 use crate::input_hash::Input;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::Net;

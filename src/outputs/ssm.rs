@@ -10,8 +10,8 @@ use quick_xml::escape::escape;
 
 use super::file::OutputFile;
 use crate::Result;
-use crate::conflict::{Conflict, Moment};
 use crate::detection::kind::Kind;
+use crate::events::{Conflict, Moment};
 use crate::util::decimal::shortest;
 
 /// The device's code for an ego that follows its foe.

@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::outcome::Row;
-use crate::conflict::CLOSES_AFTER;
 use crate::detection::kind::Kind;
+use crate::events::CLOSES_AFTER;
 use crate::util::units::Second;
 
 /// The conflicts of two outcomes, side by side.

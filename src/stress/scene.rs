@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::braking::Brakes;
-use crate::conflict::Conflict;
 use crate::detection::detector::Detector;
 use crate::detection::encounter::Encounter;
+use crate::events::Conflict;
 use crate::options::Options;
 use crate::run::Run;
 use crate::traffic::frame::{Frame, State};

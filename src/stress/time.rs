@@ -3,9 +3,9 @@
 use super::case::Case;
 use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
-use crate::conflict::CLOSES_AFTER;
 use crate::detection::measures::ttc::{Course, HORIZON, time_to_collision};
 use crate::detection::path::Pose;
+use crate::events::CLOSES_AFTER;
 use crate::geometry::contact::distance;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};

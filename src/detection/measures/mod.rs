@@ -1,5 +1,5 @@
 //! Surrogate safety measures of a pair in one step: ΔV, severity. TTC is in [`crate::detection::measures::ttc`], DRAC in
-//! [`crate::detection::measures::drac`], PET in [`crate::conflict`].
+//! [`crate::detection::measures::drac`], PET in [`crate::events`].
 
 pub mod drac;
 pub mod ttc;

@@ -7,7 +7,7 @@ mod event;
 mod extremes;
 mod moment;
 pub mod pet;
-mod stance;
+mod situation;
 
 pub use event::Conflict;
 pub use moment::Moment;
@@ -23,7 +23,7 @@ use crate::util::tight_vec::make_room;
 use crate::util::units::Second;
 use extremes::{Extremes, Seen};
 
-pub use stance::Stance;
+pub use situation::Stance;
 
 /// How long the margin must be ≥ 0 before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
@@ -223,7 +223,7 @@ fn sort(conflicts: &mut [Conflict]) {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::events::*;
     use crate::options::Options;
     use crate::traffic::frame::State;
     use crate::traffic::profile::Profile;

@@ -157,7 +157,7 @@ pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Op
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::events::pet::*;
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
     fn course(heading: f64, arrives: f64) -> Course {

@@ -1,7 +1,7 @@
 //! What is known of an event under way: the step with the smallest margin, and the extremes of all its steps.
 
 use super::moment::Moment;
-use super::stance::Stood;
+use super::situation::Stood;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;

@@ -86,7 +86,7 @@ fn distance(point: &Point, from: &Point, to: &Point) -> Metre {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::events::situation::*;
 
     fn path(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();
