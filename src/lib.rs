@@ -11,15 +11,12 @@ pub mod detection;
 mod error;
 pub mod events;
 pub mod geometry;
-pub mod input_hash;
 pub mod inputs;
-pub mod log;
 pub mod logged;
 pub mod options;
-pub mod outputs;
+pub mod output;
 pub mod plot;
 pub mod progress;
-pub mod record;
 #[cfg(feature = "study")]
 pub mod reference;
 pub mod regress;
@@ -31,7 +28,6 @@ pub mod statistics;
 pub mod stress;
 #[cfg(feature = "study")]
 pub mod study;
-pub mod summary;
 pub mod sweep;
 pub mod traffic;
 pub mod util;

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use closecall::log::Log;
 use closecall::options::Options;
-use closecall::record::RunRecord;
+use closecall::output::log::Log;
+use closecall::output::record::RunRecord;
 use closecall::run::Run;
 use closecall::traffic::net::Net;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};

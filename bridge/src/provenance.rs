@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::input_hash::Input;
 use closecall::options::Options;
-use closecall::record::{RunRecord, Versions};
+use closecall::output::input_hash::Input;
+use closecall::output::record::{RunRecord, Versions};
+use closecall::output::summary::Summary;
 use closecall::run::Run;
-use closecall::summary::Summary;
 use pyo3::prelude::*;
 
 use crate::error::exception;

@@ -7,13 +7,13 @@ use std::time::{Duration, Instant};
 
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
 use closecall::detection::detector::exclusions::LeftOut;
-use closecall::input_hash::Input;
-use closecall::log::Log;
-use closecall::outputs::Outputs;
+use closecall::output::formats::Outputs;
+use closecall::output::input_hash::Input;
+use closecall::output::log::Log;
+use closecall::output::record::RunRecord;
+use closecall::output::summary::Summary;
 use closecall::progress::Progress;
-use closecall::record::RunRecord;
 use closecall::run::Run;
-use closecall::summary::Summary;
 use closecall::sweep::Task;
 use closecall::util::threads::Helper;
 use closecall::{Error, Result, inputs};

@@ -8,7 +8,7 @@ use super::files::kept;
 use super::say::say;
 use super::sumo::{RunRequest, Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
-use crate::outputs::OutputFiles;
+use crate::output::formats::OutputFiles;
 use crate::util::units::Second;
 use crate::{Error, Result};
 

@@ -8,7 +8,7 @@ use super::say::say;
 use super::sumo::{RunRequest, Sumo};
 use crate::Result;
 use crate::options::Options;
-use crate::outputs::OutputFiles;
+use crate::output::formats::OutputFiles;
 use crate::study::{self, Axis, Plan};
 use crate::util::units::Second;
 

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::say::value;
 use crate::Result;
 use crate::options::Options;
-use crate::outputs::OutputFiles;
-use crate::summary::Summary;
+use crate::output::formats::OutputFiles;
+use crate::output::summary::Summary;
 use crate::sweep::Task;
 
 /// What the commands that run SUMO need of whoever knows it.

@@ -111,7 +111,7 @@ impl CsvRows {
 
 /// The columns without which a row is no [`LoggedConflict`].
 const REQUIRED: [&str; 23] = {
-    let [required @ .., _, _, _, _, _, _, _, _, _, _, _, _, _, _] = crate::log::CONFLICT_COLUMNS;
+    let [required @ .., _, _, _, _, _, _, _, _, _, _, _, _, _, _] = crate::output::log::CONFLICT_COLUMNS;
     required
 };
 
@@ -139,7 +139,7 @@ fn unreadable(path: &Path, error: &csv::Error) -> Error {
             format!("the row has {len} cells, not {expected_len}")
         }
         csv::ErrorKind::Deserialize { err, .. } => {
-            let column = err.field().and_then(|field| crate::log::CONFLICT_COLUMNS.get(field as usize));
+            let column = err.field().and_then(|field| crate::output::log::CONFLICT_COLUMNS.get(field as usize));
             column.map_or_else(|| err.kind().to_string(), |column| format!("{column}: {}", err.kind()))
         }
         csv::ErrorKind::Utf8 { err, .. } => err.to_string(),
@@ -155,7 +155,7 @@ mod tests {
 
     use super::super::ConflictReader;
     use crate::detection::kind::Kind;
-    use crate::log::CONFLICTS;
+    use crate::output::log::CONFLICTS;
 
     const ROW: &str = concat!(
         "1,a,b,side,serious,0,1,0.5,1,3,-2,0.4,1.2,3.5,,2,10,5,1.57,7,8,:J_12_0_1,false,car,truck,",
@@ -172,7 +172,7 @@ mod tests {
     }
 
     fn header() -> String {
-        crate::log::CONFLICT_COLUMNS.join(",") + "\n"
+        crate::output::log::CONFLICT_COLUMNS.join(",") + "\n"
     }
 
     #[test]

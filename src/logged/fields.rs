@@ -3,7 +3,7 @@
 use parquet::basic::Type as Physical;
 
 use super::conflicts::{LoggedConflict, LoggedStance};
-use crate::log::CONFLICT_COLUMNS;
+use crate::output::log::CONFLICT_COLUMNS;
 
 /// A column: its type, and how a conflict fills it.
 #[derive(Clone, Copy, Debug)]

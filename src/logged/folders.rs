@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::parquet::PARQUET;
-use crate::log::CONFLICTS;
+use crate::output::log::CONFLICTS;
 use crate::{Error, Result};
 
 /// How deep a sweep's folders may lie below the one that was named: a guard against links that lead upwards.

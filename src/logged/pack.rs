@@ -18,7 +18,7 @@ use super::fields::{FIELDS, Field};
 use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, unreadable};
 use super::reader::ConflictReader;
 use super::run::record;
-use crate::log::CONFLICT_COLUMNS;
+use crate::output::log::CONFLICT_COLUMNS;
 use crate::{Error, Result};
 
 /// So many rows are a row group: what is in memory while one is written.
@@ -209,7 +209,7 @@ fn repeat(
 mod tests {
     use super::super::{PARQUET, Packed};
     use super::*;
-    use crate::log::{CONFLICTS, RUN};
+    use crate::output::log::{CONFLICTS, RUN};
 
     fn labels() -> [Label; 3] {
         [

@@ -12,7 +12,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use super::conflicts::{LoggedConflict, LoggedStance};
 use super::fields::{FIELDS, WITHOUT_STANCES};
 use crate::detection::kind::{Kind, Severity};
-use crate::log::CONFLICT_COLUMNS;
+use crate::output::log::CONFLICT_COLUMNS;
 use crate::{Error, Result};
 
 /// The name of the conflicts' file in a sweep.

@@ -7,7 +7,7 @@ use super::csv::CsvRows;
 use super::parquet::{PARQUET, ParquetRows};
 use super::run::LoggedRun;
 use crate::Result;
-use crate::log::CONFLICTS;
+use crate::output::log::CONFLICTS;
 
 /// The conflicts of one log folder, one by one, in the order of the file; memory is bounded however many there are.
 #[derive(Debug)]

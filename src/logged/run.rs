@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::parquet::{PARQUET, Packed};
-use crate::input_hash::Input;
-use crate::log::RUN;
-use crate::summary::{Count, Exposure};
+use crate::output::input_hash::Input;
+use crate::output::log::RUN;
+use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
 use crate::{Error, Result};
 

@@ -2,7 +2,7 @@
 
 use super::matching::matched;
 use super::outcome::{Outcome, Row, SeedSummary};
-use crate::log::CONFLICT_COLUMNS;
+use crate::output::log::CONFLICT_COLUMNS;
 
 /// The columns that say how bad a conflict was, and where.
 const TELLING: [&str; 12] =

@@ -8,7 +8,7 @@ use quick_xml::events::{BytesStart, Event};
 use serde::{Deserialize, Serialize};
 
 use crate::Result;
-use crate::input_hash::Input;
+use crate::output::input_hash::Input;
 
 /// More parts of one sort than this are not kept: what is expected should stay smaller than the net.
 const MOST_PARTS: usize = 1000;

@@ -11,9 +11,10 @@ use serde_json::Value;
 use super::fingerprint::Fingerprint;
 use crate::detection::kind::{Kind, Severity};
 use crate::logged::{LoggedRun, SUMMARY};
-use crate::summary::{Count, Exposure};
+use crate::output::log;
+use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
-use crate::{Error, Result, log};
+use crate::{Error, Result};
 
 /// What a scenario's runs gave.
 #[derive(Clone, Debug, PartialEq)]

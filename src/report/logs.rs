@@ -4,8 +4,8 @@ use std::path::Path;
 
 use super::rows::{Row, Stance};
 use crate::detection::kind::{Kind, Severity};
-use crate::log::RUN;
 use crate::logged::{self, ConflictReader, LoggedConflict, LoggedStance, PARQUET};
+use crate::output::log::RUN;
 use crate::{Error, Result};
 
 /// A log's `run.json`; null where there is none.

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use crate::input_hash::Input;
+use crate::output::input_hash::Input;
 use crate::traffic::net::Net;
 use crate::util::input_file::open;
 use crate::{Error, Result};

@@ -10,9 +10,10 @@ use rustc_hash::FxHashMap;
 use sha2::{Digest, Sha256};
 
 use super::task::{RUN, Task, data_set};
-use crate::input_hash::Input;
 use crate::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
-use crate::{Error, Result, log};
+use crate::output::input_hash::Input;
+use crate::output::log;
+use crate::{Error, Result};
 
 /// The hashes of files that are read besides what SUMO reads.
 pub(super) fn contents(files: &[PathBuf]) -> Result<Vec<String>> {

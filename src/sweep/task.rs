@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::log::ENCOUNTERS;
 use crate::logged::{self, Label, LoggedRun, PARQUET};
+use crate::output::log::ENCOUNTERS;
 use crate::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.

@@ -7,8 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::geometry::Point;
-use closecall::log::Log;
 use closecall::options::Options;
+use closecall::output::log::Log;
 use closecall::run::Run;
 use closecall::traffic::frame::State;
 use closecall::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};

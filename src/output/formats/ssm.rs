@@ -98,7 +98,7 @@ fn decimal(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::output::formats::ssm::*;
 
     #[test]
     fn numbers_have_two_decimals_at_least() {

@@ -4,9 +4,9 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::input_hash::Input;
+use super::input_hash::Input;
+use super::summary::Summary;
 use crate::options::Options;
-use crate::summary::Summary;
 use crate::util::units::Second;
 
 /// How a run was made and what it found.

@@ -8,15 +8,15 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use self::ssm::Ssm;
-use self::trajectories::Trajectories;
+use super::input_hash::Input;
 use crate::events::Conflict;
-use crate::input_hash::Input;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::{Error, Result};
+use ssm::Ssm;
+use trajectories::Trajectories;
 
 /// Files to write besides the log.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Args)]

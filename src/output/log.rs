@@ -8,10 +8,10 @@ use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::record::RunRecord;
 use crate::detection::encounter::Encounter;
 use crate::events::Conflict;
 use crate::geometry::Point;
-use crate::record::RunRecord;
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
 use crate::util::decimal;
@@ -333,7 +333,7 @@ impl WholeRows {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::output::log::*;
 
     #[test]
     fn after_a_row_that_the_disk_took_half_of_the_next_one_is_whole() {

@@ -46,7 +46,7 @@ impl std::io::Write for HashWriter<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::output::input_hash::*;
 
     #[test]
     fn the_hash_is_that_of_sha256sum() {
