@@ -15,10 +15,10 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
+use closecall::input::replay::Replay;
+use closecall::input::replay::recording::Recording;
+use closecall::input::replay::rows::Step;
 use closecall::options::Options;
-use closecall::replay::Replay;
-use closecall::replay::recording::Recording;
-use closecall::replay::rows::Step;
 use closecall::run::Run;
 use closecall::traffic::net::Net;
 

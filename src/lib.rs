@@ -11,7 +11,7 @@ pub mod detection;
 mod error;
 pub mod events;
 pub mod geometry;
-pub mod inputs;
+pub mod input;
 pub mod logged;
 pub mod options;
 pub mod output;
@@ -20,7 +20,6 @@ pub mod progress;
 #[cfg(feature = "study")]
 pub mod reference;
 pub mod regress;
-pub mod replay;
 pub mod report;
 pub mod run;
 pub mod statistics;

@@ -6,9 +6,9 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::replay::recording::Recording;
-use closecall::replay::routes::Routes;
-use closecall::replay::rows::Step;
+use closecall::input::replay::recording::Recording;
+use closecall::input::replay::routes::Routes;
+use closecall::input::replay::rows::Step;
 use closecall::traffic::net::{EdgeIndex, Net};
 use proptest::prelude::*;
 

@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
 use closecall::detection::detector::exclusions::LeftOut;
+use closecall::input::sumo_files;
 use closecall::output::formats::Outputs;
 use closecall::output::input_hash::Input;
 use closecall::output::log::Log;
@@ -16,7 +17,7 @@ use closecall::progress::Progress;
 use closecall::run::Run;
 use closecall::sweep::Task;
 use closecall::util::threads::Helper;
-use closecall::{Error, Result, inputs};
+use closecall::{Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
@@ -176,7 +177,7 @@ fn attach(
     };
     let files = provenance::files(sumo).map_err(said)?;
     for path in &files.others {
-        inputs::check_xml(path)?;
+        sumo_files::check_xml(path)?;
     }
     let net = files.net.as_deref().map(|path| NetAhead::finish(ahead, path)).transpose()?.map(Arc::new);
     let mut run = Run::new(&request.options, net)?;

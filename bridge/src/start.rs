@@ -6,8 +6,9 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use closecall::cli::RunRequest;
+use closecall::input::sumo_files;
 use closecall::traffic::net::Net;
-use closecall::{Error, Result, inputs};
+use closecall::{Error, Result};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 
@@ -23,7 +24,7 @@ impl NetAhead {
     /// Begins to read it, where there is a thread for that.
     pub fn begin(request: &RunRequest) -> Option<Self> {
         let configuration = request.scenario.clone();
-        let read = move || inputs::net_of(&configuration).map(|path| (path.clone(), Net::read(&path)));
+        let read = move || sumo_files::net_of(&configuration).map(|path| (path.clone(), Net::read(&path)));
         (usize::from(request.threads) > 1).then(|| Self(std::thread::spawn(read)))
     }
 
@@ -43,7 +44,7 @@ pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, Py
             Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
         } else {
             let refusal = Error::Refused { path: request.scenario.clone(), message: message(py, &error) };
-            inputs::fault(&request.scenario).unwrap_or(refusal)
+            sumo_files::fault(&request.scenario).unwrap_or(refusal)
         }
     };
     let starter = py.import("closecall._sumo").map_err(refused)?;

@@ -4,8 +4,8 @@
 
 use std::path::Path;
 
-use closecall::replay::recording::Recording;
-use closecall::replay::rows::Step;
+use closecall::input::replay::recording::Recording;
+use closecall::input::replay::rows::Step;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -97,7 +97,7 @@ fn line_of(path: &Path, position: u64) -> Result<u64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::input::sumo_files::*;
 
     fn with_file<T>(name: &str, text: &str, action: impl FnOnce(&Path) -> T) -> T {
         let path = std::env::temp_dir().join(format!("closecall-{}-{name}", std::process::id()));

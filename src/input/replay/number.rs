@@ -80,7 +80,7 @@ fn slowly(text: &[u8]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::input::replay::number::*;
     use proptest::prelude::*;
 
     fn is_what_std_says(text: &str) {

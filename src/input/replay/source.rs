@@ -147,7 +147,7 @@ fn places(block: &[u8; COMPARED], wanted: u8) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::input::replay::source::*;
     use proptest::prelude::*;
 
     proptest! {
