@@ -5,6 +5,7 @@
 //! ([`braking`]): first cheaply, over circles ([`precollision`]), then accurately, along the [`path`]s of both
 //! ([`accurate`]). What stays in conflict over several steps becomes one [`conflict::Conflict`], a row of the [`log`].
 
+pub mod analysis;
 pub mod braking;
 pub mod cli;
 pub mod detection;
@@ -12,17 +13,13 @@ mod error;
 pub mod events;
 pub mod geometry;
 pub mod input;
-pub mod logged;
 pub mod options;
 pub mod output;
-pub mod plot;
 pub mod progress;
 #[cfg(feature = "study")]
 pub mod reference;
 pub mod regress;
-pub mod report;
 pub mod run;
-pub mod statistics;
 #[cfg(feature = "study")]
 pub mod stress;
 #[cfg(feature = "study")]

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::say::say;
 use crate::Result;
-use crate::plot::{self, Format};
+use crate::analysis::plot::{self, Format};
 
 /// Which logs, and where the pictures go.
 #[derive(Args)]

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::say::say;
+use crate::Result;
+use crate::analysis::report;
 use crate::util::units::counted;
-use crate::{Result, report};
 
 /// Which logs, and where the page goes.
 #[derive(Args)]

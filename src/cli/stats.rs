@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::say::{say, value};
 use crate::Result;
-use crate::statistics::{By, Request, Statistics, table};
+use crate::analysis::statistics::{By, Request, Statistics, table};
 
 /// Log folders and what is wanted of them.
 #[derive(Args)]

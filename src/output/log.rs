@@ -2,7 +2,7 @@
 //!
 //! Rows are written as conflicts close, whole rows in one call each step, so that after a kill whatever closed before
 //! is there. A kill within that call may leave the last row half (Linux ends a write between two pages then):
-//! [`crate::logged`] leaves it out.
+//! [`crate::analysis::logged`] leaves it out.
 
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};

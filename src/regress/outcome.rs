@@ -9,8 +9,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use super::fingerprint::Fingerprint;
+use crate::analysis::logged::{LoggedRun, SUMMARY};
 use crate::detection::kind::{Kind, Severity};
-use crate::logged::{LoggedRun, SUMMARY};
 use crate::output::log;
 use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;

@@ -7,7 +7,7 @@
 //! 2.6). So the chance that any measure is at or below α where nothing has changed is at most α: exactly, for any
 //! distribution, any dependence between measures, and any number of runs.
 
-use crate::statistics::permutation;
+use crate::analysis::statistics::permutation;
 
 /// Up to this many splits are all gone through; of more, [`DRAWN`] are drawn.
 const ENUMERATED: u64 = 200_000;

@@ -6,8 +6,8 @@
 use super::outcome::{Outcome, Row, SeedSummary};
 use super::permutation::adjusted_p;
 use super::scenario::{Settings, Tolerance};
+use crate::analysis::statistics::quantile;
 use crate::detection::kind::{Kind, Severity};
-use crate::statistics::quantile;
 
 /// The percentiles of a distribution that are compared.
 const PERCENTILES: [(f64, &str); 3] = [(0.1, "10 %"), (0.5, "median"), (0.9, "90 %")];

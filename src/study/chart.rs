@@ -8,7 +8,7 @@ use plotters::prelude::*;
 
 use super::measurement::{Axis, Measurement, scenes};
 use crate::Result;
-use crate::plot::{file, font};
+use crate::analysis::plot::{file, font};
 
 const FONT: &str = font::NAME;
 

@@ -12,7 +12,7 @@ mod vary;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::logged::{Label, LabelValue};
+use crate::analysis::logged::{Label, LabelValue};
 use crate::{Error, Result};
 
 pub use seeds::Seeds;

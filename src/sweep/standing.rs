@@ -10,7 +10,7 @@ use rustc_hash::FxHashMap;
 use sha2::{Digest, Sha256};
 
 use super::task::{RUN, Task, data_set};
-use crate::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
+use crate::analysis::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
 use crate::output::input_hash::Input;
 use crate::output::log;
 use crate::{Error, Result};

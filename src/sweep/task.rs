@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::logged::{self, Label, LoggedRun, PARQUET};
+use crate::analysis::logged::{self, Label, LoggedRun, PARQUET};
 use crate::output::log::ENCOUNTERS;
 use crate::{Error, Result};
 

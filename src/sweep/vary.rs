@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::logged::{Label, LabelValue};
+use crate::analysis::logged::{Label, LabelValue};
 
 /// What stands before the name of an option of SUMO's.
 const SUMO: &str = "sumo:";

@@ -1,0 +1,91 @@
+//! Which folders are logs.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::parquet::PARQUET;
+use crate::output::log::CONFLICTS;
+use crate::{Error, Result};
+
+/// How deep a sweep's folders may lie below the one that was named: a guard against links that lead upwards.
+const DEEPEST: usize = 16;
+
+/// The log folders among these and below them, each once, in the order of their paths.
+///
+/// # Errors
+/// [`Error::File`] where a folder is missing or cannot be read; [`Error::Content`] where it holds no log.
+///
+/// # Examples
+/// ```no_run
+/// let logs = closecall::analysis::logged::log_folders(&["closecall-out".into()])?;
+/// # Ok::<(), closecall::Error>(())
+/// ```
+pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for folder in named {
+        let before = found.len();
+        search(folder, DEEPEST, &mut found)?;
+        if found.len() == before {
+            return Err(Error::content(
+                folder,
+                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at no depth"),
+            ));
+        }
+    }
+    let mut known = Vec::with_capacity(found.len());
+    for folder in found {
+        known.push((folder.canonicalize().map_err(|source| Error::file(&folder, source))?, folder));
+    }
+    known.sort();
+    known.dedup_by(|a, b| a.0 == b.0);
+    Ok(known.into_iter().map(|(_, folder)| folder).collect())
+}
+
+fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
+    let entries = fs::read_dir(folder).map_err(|source| Error::file(folder, source))?;
+    let (mut below, mut is_log, mut is_blessed) = (Vec::new(), false, false);
+    for entry in entries {
+        let path = entry.map_err(|source| Error::file(folder, source))?.path();
+        let name = path.file_name().unwrap_or_default();
+        // Hidden is what a sweep has not finished.
+        if path.is_dir() && !name.as_encoded_bytes().starts_with(b".") {
+            below.push(path);
+        } else {
+            is_log |= name == CONFLICTS || name == PARQUET;
+            is_blessed |= name == SUMMARY;
+        }
+    }
+    // What `closecall regress` has blessed lies beside the scenario's own log, and is none.
+    if is_log && !is_blessed {
+        found.push(folder.to_owned());
+    }
+    if depth > 0 {
+        below.iter().try_for_each(|path| search(path, depth - 1, found))?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::logged::folders::*;
+
+    #[test]
+    fn logs_are_found_at_any_depth_and_each_once() {
+        let top = std::env::temp_dir().join(format!("closecall-folders-{}", std::process::id()));
+        for run in ["a/seed=1", "a/seed=2", "b"] {
+            fs::create_dir_all(top.join(run)).unwrap();
+            fs::write(top.join(run).join(CONFLICTS), "").unwrap();
+        }
+        fs::create_dir_all(top.join("expected")).unwrap();
+        [CONFLICTS, SUMMARY].iter().for_each(|file| fs::write(top.join("expected").join(file), "").unwrap());
+        let found = log_folders(&[top.clone(), top.join("b")]).unwrap();
+        assert_eq!(found, [top.join("a/seed=1"), top.join("a/seed=2"), top.join("b")]);
+        fs::remove_file(top.join("b").join(CONFLICTS)).unwrap();
+        assert!(log_folders(&[top.join("b")]).unwrap_err().to_string().contains("there is no log in it"));
+        assert!(log_folders(&[top.join("c")]).unwrap_err().to_string().contains("/c: "));
+        fs::remove_dir_all(top).unwrap();
+    }
+}
+
+/// The name of the file of counts.
+pub const SUMMARY: &str = "summary.json";

@@ -1,0 +1,64 @@
+//! By what conflicts are grouped.
+
+use std::borrow::Cow;
+
+use serde::Serialize;
+
+use crate::analysis::logged::LoggedConflict;
+use crate::detection::kind::{Kind, Severity};
+
+/// By what conflicts are grouped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum By {
+    /// Rear-end, frontal, side.
+    Kind,
+    /// Caution, serious, critical.
+    Severity,
+    /// The edge of the meeting place.
+    Edge,
+    /// The junction of the meeting place; what is not within one is a group of its own.
+    Junction,
+    /// The vehicle types, the ego's first.
+    Type,
+    /// The simulated hour of the smallest margin.
+    Hour,
+}
+
+/// The group of what has no place of that sort.
+const NOWHERE: &str = "(none)";
+
+impl By {
+    /// The group of a conflict.
+    pub fn group<'a>(self, conflict: &'a LoggedConflict) -> Cow<'a, str> {
+        let place = |name: &'a str| if name.is_empty() { NOWHERE } else { name };
+        match self {
+            Self::Kind => conflict.kind.name().into(),
+            Self::Severity => conflict.severity.name().into(),
+            Self::Edge => place(conflict.edge()).into(),
+            Self::Junction => place(conflict.junction()).into(),
+            Self::Type => format!("{}/{}", plain(&conflict.ego_type), plain(&conflict.foe_type)).into(),
+            Self::Hour => ((conflict.time / 3600.0).floor() as i64).to_string().into(),
+        }
+    }
+
+    /// Puts groups of these names and counts in the order of tables: kinds, severities and hours in their own, the
+    /// others by their counts.
+    pub fn sort<T>(self, groups: &mut [T], name: impl Fn(&T) -> &str, count: impl Fn(&T) -> u64) {
+        let rank = |group: &T| -> i64 {
+            let of = |place: Option<usize>| place.map_or(i64::MAX, |place| place as i64);
+            match self {
+                Self::Kind => of(Kind::ALL.iter().position(|kind| kind.name() == name(group))),
+                Self::Severity => of(Severity::ALL.iter().position(|severity| severity.name() == name(group))),
+                Self::Hour => name(group).parse().unwrap_or(i64::MAX),
+                Self::Edge | Self::Junction | Self::Type => -(count(group) as i64),
+            }
+        };
+        groups.sort_by(|a, b| (rank(a), name(a)).cmp(&(rank(b), name(b))));
+    }
+}
+
+/// SUMO calls a type that was changed for one vehicle "type@vehicle".
+fn plain(type_name: &str) -> &str {
+    type_name.split_once('@').map_or(type_name, |(plain, _)| plain)
+}

@@ -1,0 +1,75 @@
+//! Quantiles of a measure, and how much two samples of it overlap.
+
+use serde::Serialize;
+
+/// Quantiles of one measure; none of them where no conflict has it.
+///
+/// Linear between order statistics, as in R's type 7 and numpy's default (Hyndman and Fan 1996).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Quantiles {
+    /// How many conflicts have the measure.
+    pub count: u64,
+    /// 5 % are below.
+    pub q05: Option<f64>,
+    /// 25 % are below.
+    pub q25: Option<f64>,
+    /// The median.
+    pub q50: Option<f64>,
+    /// 75 % are below.
+    pub q75: Option<f64>,
+    /// 95 % are below.
+    pub q95: Option<f64>,
+}
+
+impl Quantiles {
+    /// The quantiles of values in ascending order.
+    pub fn of_sorted(sorted: &[f64]) -> Self {
+        let at = |share| quantile(sorted, share);
+        Self { count: sorted.len() as u64, q05: at(0.05), q25: at(0.25), q50: at(0.5), q75: at(0.75), q95: at(0.95) }
+    }
+}
+
+/// The quantile of values in ascending order.
+pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
+    let place = share * (sorted.len().checked_sub(1)? as f64);
+    let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    Some(low + (high - low) * place.fract())
+}
+
+/// Cliff's delta of two samples in ascending order: P(a > b) − P(a < b), from −1 to 1 (Cliff 1993).
+pub fn cliffs_delta(a: &[f64], b: &[f64]) -> Option<f64> {
+    if a.is_empty() || b.is_empty() {
+        return None;
+    }
+    let (mut below, mut not_above, mut sum) = (0, 0, 0.0);
+    for value in a {
+        while below < b.len() && b[below] < *value {
+            below += 1;
+        }
+        while not_above < b.len() && b[not_above] <= *value {
+            not_above += 1;
+        }
+        sum += below as f64 - (b.len() - not_above) as f64;
+    }
+    Some(sum / a.len() as f64 / b.len() as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::statistics::quantiles::*;
+
+    #[test]
+    fn quantiles_lie_between_order_statistics() {
+        let found = Quantiles::of_sorted(&[1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((found.q25, found.q50, found.q95), (Some(1.75), Some(2.5), Some(3.8499999999999996)));
+        assert_eq!(Quantiles::of_sorted(&[]), Quantiles::default());
+        assert_eq!(quantile(&[7.0], 0.95), Some(7.0));
+    }
+
+    #[test]
+    fn cliffs_delta_counts_pairs() {
+        assert_eq!(cliffs_delta(&[1.0, 2.0], &[3.0, 4.0]), Some(-1.0));
+        assert_eq!(cliffs_delta(&[1.0, 2.0, 2.0], &[2.0, 2.0]), Some(-1.0 / 3.0));
+        assert_eq!(cliffs_delta(&[], &[1.0]), None);
+    }
+}

@@ -1,0 +1,47 @@
+//! Tables for a spreadsheet or a script: a line per value, with every digit.
+
+use super::cells::{Cell, Table};
+use crate::{Error, Result};
+
+/// The tables as CSV: `table,row,name,column,value`; `row` counts from 1, `name` is the row's first cell.
+///
+/// # Errors
+/// [`Error::Value`] where memory is out.
+pub fn csv(tables: &[Table]) -> Result<String> {
+    let failed = |error: String| Error::Value(error);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut line = |cells: [&str; 5]| writer.write_record(cells).map_err(|error| failed(error.to_string()));
+    line(["table", "row", "name", "column", "value"])?;
+    for table in tables {
+        for (number, row) in table.rows.iter().enumerate() {
+            let name = row.first().map(Cell::exact).unwrap_or_default();
+            let mut of = "";
+            for (column, cell) in table.columns.iter().zip(row) {
+                // An interval's ends are named after what they are of.
+                let column = if ["low", "high"].contains(column) {
+                    format!("{of} {column}")
+                } else {
+                    of = column;
+                    (*column).to_owned()
+                };
+                line([table.title, &(number + 1).to_string(), &name, &column, &cell.exact()])?;
+            }
+        }
+    }
+    let bytes = writer.into_inner().map_err(|error| failed(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| failed(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::statistics::table::Cell;
+    use crate::analysis::statistics::table::csv::*;
+
+    #[test]
+    fn an_end_of_an_interval_is_named_after_its_value() {
+        let rows = vec![vec!["a,b".into(), Cell::Number(0.1), Cell::None]];
+        let table = Table { title: "t", columns: vec!["group", "per hour", "low"], rows, notes: vec![] };
+        let wanted = "table,row,name,column,value\nt,1,\"a,b\",group,\"a,b\"\nt,1,\"a,b\",per hour,0.1\nt,1,\"a,b\",per hour low,\n";
+        assert_eq!(csv(&[table]).unwrap(), wanted);
+    }
+}

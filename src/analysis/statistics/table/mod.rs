@@ -1,0 +1,13 @@
+//! Statistics as tables, for people: each once, then printed as text, CSV or HTML.
+
+mod cells;
+mod contents;
+mod csv;
+mod html;
+mod text;
+
+pub use crate::analysis::statistics::table::csv::csv;
+pub use cells::{Cell, Table};
+pub use contents::tables;
+pub use html::html;
+pub use text::text;

@@ -1,0 +1,204 @@
+//! The worst conflicts, and the SUMO command that shows each.
+
+use std::collections::BinaryHeap;
+use std::path::Path;
+use std::sync::Arc;
+
+use serde::Serialize;
+
+use crate::analysis::logged::{LoggedConflict, LoggedRun};
+use crate::util::units::{Metre, Second};
+
+/// How long before a conflict sumo-gui halts, and how long after it the run ends, in s.
+const AROUND: Second = 5.0;
+/// How much of the net sumo-gui shows of a conflict, in m.
+const SHOWN: Metre = 80.0;
+/// The zoom in % where the net's extent is not known.
+const ZOOM: f64 = 1000.0;
+
+/// One of the worst conflicts.
+#[derive(Clone, Debug, Serialize)]
+pub struct Worst {
+    /// The log folder that it is in.
+    pub folder: Arc<Path>,
+    /// The seed of its run.
+    pub seed: Option<String>,
+    /// The edge of the meeting place.
+    pub edge: String,
+    /// The conflict.
+    #[serde(flatten)]
+    pub conflict: LoggedConflict,
+    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording, and where a script started SUMO.
+    pub command: Option<String>,
+    #[serde(skip)]
+    run: usize,
+}
+
+impl Worst {
+    /// Mildest first: collisions, then the severity, the TTC, the margin; then the first logged.
+    fn order(&self, other: &Self) -> std::cmp::Ordering {
+        let ttc = |worst: &Self| worst.conflict.ttc.unwrap_or(f64::INFINITY);
+        let rank = |worst: &Self| (worst.conflict.collision, worst.conflict.severity);
+        rank(self)
+            .cmp(&rank(other))
+            .then_with(|| ttc(other).total_cmp(&ttc(self)))
+            .then_with(|| other.conflict.margin.total_cmp(&self.conflict.margin))
+            .then_with(|| (other.run, other.conflict.id).cmp(&(self.run, self.conflict.id)))
+    }
+}
+
+/// The worst on top is the mildest of those kept: the next to go.
+#[derive(Debug)]
+struct Kept(Worst);
+
+impl Ord for Kept {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        other.0.order(&self.0)
+    }
+}
+impl PartialOrd for Kept {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl PartialEq for Kept {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+impl Eq for Kept {}
+
+/// Keeps the worst of all conflicts that it is given.
+#[derive(Debug, Default)]
+pub struct WorstOf {
+    wanted: usize,
+    kept: BinaryHeap<Kept>,
+}
+
+impl WorstOf {
+    /// Keeps at most this many.
+    pub fn new(wanted: usize) -> Self {
+        Self { wanted, kept: BinaryHeap::new() }
+    }
+
+    /// Takes the conflict of the run of this number.
+    pub fn take(&mut self, run: usize, folder: &Arc<Path>, conflict: &LoggedConflict) {
+        if self.wanted == 0 || (self.kept.len() == self.wanted && self.is_milder(run, conflict)) {
+            return;
+        }
+        let worst = Worst {
+            folder: folder.clone(),
+            seed: None,
+            edge: conflict.edge().to_owned(),
+            conflict: conflict.clone(),
+            command: None,
+            run,
+        };
+        self.kept.push(Kept(worst));
+        if self.kept.len() > self.wanted {
+            self.kept.pop();
+        }
+    }
+
+    /// Whether this conflict is surely none of the worst: decided without a copy, as it is for nearly all.
+    fn is_milder(&self, run: usize, conflict: &LoggedConflict) -> bool {
+        let Some(Kept(mildest)) = self.kept.peek() else { return false };
+        let known = &mildest.conflict;
+        let (now, then) = ((conflict.collision, conflict.severity), (known.collision, known.severity));
+        now < then
+            || (now == then
+                && conflict.ttc.unwrap_or(f64::INFINITY) > known.ttc.unwrap_or(f64::INFINITY)
+                && run >= mildest.run)
+    }
+
+    /// The worst first.
+    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<Worst> {
+        let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
+        for found in &mut worst {
+            let Some(run) = runs.get(found.run) else { continue };
+            found.seed.clone_from(&run.seed);
+            found.command = show(run, &found.conflict);
+        }
+        worst
+    }
+}
+
+/// The command that shows a conflict in sumo-gui.
+///
+/// The run begins where it began: who departed before a later `--begin` would not be there. sumo-gui runs without
+/// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place. It takes the place
+/// from a file only: the shell makes one.
+fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
+    if run.sumo_words.is_empty() {
+        return None;
+    }
+    let view = format!(
+        "<viewsettings><delay value=\"0\"/><viewport x=\"{:.1}\" y=\"{:.1}\" zoom=\"{:.0}\"/></viewsettings>",
+        conflict.x,
+        conflict.y,
+        zoom(run).unwrap_or(ZOOM)
+    );
+    let mut words = vec!["sumo-gui".to_owned()];
+    words.extend(kept(&run.sumo_words).map(|word| quoted(word)));
+    let begin = (conflict.begin - AROUND).max(run.summary.begin);
+    let around = [("--breakpoints", begin), ("--end", conflict.end + AROUND)];
+    words.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
+    words.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
+    Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), words.join(" ")))
+}
+
+/// A run's words but for the options that are set anew: SUMO takes each once only.
+fn kept(words: &[String]) -> impl Iterator<Item = &String> {
+    let mut is_value = false;
+    words.iter().filter(move |word| {
+        let (option, has_value) = word.split_once('=').map_or((word.as_str(), false), |(option, _)| (option, true));
+        let is_anew = ["--end", "-e", "--gui-settings-file", "-g", "--breakpoints"].contains(&option);
+        let is_left_out = is_value || is_anew;
+        is_value = !is_value && is_anew && !has_value;
+        !is_left_out
+    })
+}
+
+/// A word for a POSIX shell.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,@%+".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// sumo-gui's zoom in %, of the whole net, that shows a conflict; none where the net is not at hand any more.
+fn zoom(run: &LoggedRun) -> Option<f64> {
+    run.inputs.iter().find_map(|input| zoom_on(&input.path))
+}
+
+/// The same of this net; none where the file is no net.
+fn zoom_on(net: &Path) -> Option<f64> {
+    let mut head = Vec::new();
+    std::io::Read::read_to_end(&mut std::io::Read::take(crate::util::input_file::open(net).ok()?, 1 << 16), &mut head)
+        .ok()?;
+    let head = String::from_utf8_lossy(&head);
+    let (_, bounds) = head.split_once("convBoundary=\"")?;
+    let bounds = bounds.split_once('"')?.0.split(',').map(|number| number.parse::<f64>().ok());
+    let [left, low, right, high] = bounds.collect::<Option<Vec<_>>>()?[..] else { return None };
+    Some(((right - left).max(high - low) / SHOWN * 100.0).max(100.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analysis::statistics::worst::*;
+
+    #[test]
+    fn what_is_set_anew_is_left_out_however_it_was_written() {
+        let words = "-c a.sumocfg --end 9 --seed=3 --end=9 -e 9 -W".split(' ').map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(kept(&words).collect::<Vec<_>>(), ["-c", "a.sumocfg", "--seed=3", "-W"]);
+    }
+
+    #[test]
+    fn a_word_with_a_space_or_a_quote_is_quoted() {
+        assert_eq!(quoted("a/b.sumocfg"), "a/b.sumocfg");
+        assert_eq!(quoted("it's a;b"), r"'it'\''s a;b'");
+    }
+}
