@@ -5,9 +5,9 @@
 
 use std::path::PathBuf;
 
-use closecall::regress::outcome::Outcome;
-use closecall::regress::scenario::Settings;
-use closecall::regress::statistics::comparisons;
+use closecall::batch::regress::outcome::Outcome;
+use closecall::batch::regress::scenario::Settings;
+use closecall::batch::regress::statistics::comparisons;
 
 const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;

@@ -6,6 +6,7 @@
 //! ([`accurate`]). What stays in conflict over several steps becomes one [`conflict::Conflict`], a row of the [`log`].
 
 pub mod analysis;
+pub mod batch;
 pub mod braking;
 pub mod cli;
 pub mod detection;
@@ -18,13 +19,11 @@ pub mod output;
 pub mod progress;
 #[cfg(feature = "study")]
 pub mod reference;
-pub mod regress;
 pub mod run;
 #[cfg(feature = "study")]
 pub mod stress;
 #[cfg(feature = "study")]
 pub mod study;
-pub mod sweep;
 pub mod traffic;
 pub mod util;
 

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use closecall::batch::sweep::Task;
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
 use closecall::detection::detector::exclusions::LeftOut;
 use closecall::input::sumo_files;
@@ -15,7 +16,6 @@ use closecall::output::record::RunRecord;
 use closecall::output::summary::Summary;
 use closecall::progress::Progress;
 use closecall::run::Run;
-use closecall::sweep::Task;
 use closecall::util::threads::Helper;
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};

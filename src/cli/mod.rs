@@ -24,7 +24,7 @@ mod sweep;
 use std::ffi::OsString;
 use std::path::Path;
 
-use crate::regress::Scenario;
+use crate::batch::regress::Scenario;
 use crate::{Error, Result};
 use parse::{Command, Stop, command, parse, parse_run, usage};
 

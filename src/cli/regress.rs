@@ -9,7 +9,7 @@ use super::files::absolute;
 use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use crate::Result;
-use crate::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
+use crate::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
 use crate::util::threads::processors;
 
 /// Scenarios and how to compare them.

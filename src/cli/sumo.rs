@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use super::say::value;
 use crate::Result;
+use crate::batch::sweep::Task;
 use crate::options::Options;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
-use crate::sweep::Task;
 
 /// What the commands that run SUMO need of whoever knows it.
 pub struct Sumo<'a> {

@@ -12,7 +12,7 @@ use super::files::absolute;
 use super::run::{RunArgs, request};
 use super::say::{say, value};
 use super::sumo::{Sumo, Workers, no_sumo};
-use crate::sweep::{Seeds, Sweep, Task, Vary};
+use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
 use crate::util::threads::processors;
 use crate::util::units::counted;
 use crate::{Error, Result};

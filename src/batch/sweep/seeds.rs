@@ -34,7 +34,7 @@ impl FromStr for Seeds {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::sweep::seeds::*;
 
     #[test]
     fn seeds_are_numbers_and_ranges_each_once() {

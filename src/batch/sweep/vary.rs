@@ -99,7 +99,7 @@ pub(super) fn plain(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::sweep::vary::*;
 
     #[test]
     fn an_option_is_closecalls_or_sumos() {

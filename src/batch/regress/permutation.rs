@@ -111,7 +111,7 @@ fn possible_splits(expected: usize, found: usize) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::permutation::*;
 
     fn column(values: &[f64]) -> Vec<Vec<f64>> {
         values.iter().map(|value| vec![*value]).collect()

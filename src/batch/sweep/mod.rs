@@ -4,8 +4,8 @@
 //! `conflicts/run=NAME/conflicts.parquet` in the sweep's folder, whole or not at all. What is there and fits is not
 //! run again ([`Sweep::missing`]), so a sweep that was stopped continues with the same words.
 
+mod done;
 mod seeds;
-mod standing;
 mod task;
 mod vary;
 
@@ -54,7 +54,7 @@ impl Sweep {
         if runs.fold(1, usize::saturating_mul) > MOST {
             return Err(Error::Value(format!("that would be more than {MOST} runs")));
         }
-        let read = standing::contents(also_read)?;
+        let read = done::contents(also_read)?;
         let (mut tasks, mut names) = (Vec::new(), BTreeSet::new());
         for &seed in &seeds.0 {
             for chosen in vary::product(varied) {
@@ -76,7 +76,7 @@ impl Sweep {
                 if !names.insert(name.clone()) {
                     return Err(Error::Value(format!("two runs would both be called {name}")));
                 }
-                let fingerprint = standing::fingerprint(&own, &labels, &read);
+                let fingerprint = done::fingerprint(&own, &labels, &read);
                 tasks.push(Task { name, words: own, out: out.to_owned(), labels, fingerprint });
             }
         }
@@ -89,7 +89,7 @@ impl Sweep {
     /// [`Error::Content`] where the folder holds runs of a sweep that varied something else (their columns differ), or a
     /// run's own log.
     pub fn missing(&self) -> Result<Vec<&Task>> {
-        standing::missing(&self.out, &self.tasks)
+        done::missing(&self.out, &self.tasks)
     }
 
     /// The folder of the data set.

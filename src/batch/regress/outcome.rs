@@ -252,7 +252,7 @@ fn rounded(exposure: Exposure) -> Exposure {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::outcome::*;
 
     #[test]
     fn the_configuration_and_the_seed_are_no_options() {

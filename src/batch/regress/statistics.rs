@@ -166,7 +166,7 @@ fn percentile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::statistics::*;
 
     #[test]
     fn percentiles_lie_between_the_nearest_values() {

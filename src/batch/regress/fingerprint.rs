@@ -133,7 +133,7 @@ fn attributes(tag: &BytesStart) -> Attributes {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::fingerprint::*;
 
     fn fingerprint(text: &str) -> Fingerprint {
         let folder = tempfile::tempdir().unwrap();

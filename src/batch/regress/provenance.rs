@@ -60,7 +60,7 @@ fn sorted(options: &[String]) -> BTreeSet<&String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::provenance::*;
 
     #[test]
     fn a_changed_option_is_named_with_both_values() {

@@ -254,7 +254,7 @@ fn check(settings: &Settings) -> std::result::Result<(), String> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::batch::regress::scenario::*;
 
     fn read(toml: &str) -> Result<Scenario> {
         let folder = tempfile::tempdir().unwrap();
