@@ -19,7 +19,7 @@ use clap::ValueEnum;
 use closecall::detection::detector::Detector;
 use closecall::options::Options;
 use closecall::options::exclusion::Exclusion;
-use closecall::reference::chance::Chance;
+use closecall::study::reference::chance::Chance;
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::profile::Profile;
 use closecall::traffic::roster::{Roster, UserIndex};

@@ -17,8 +17,11 @@ const HOUR: usize = 3600;
 fn main() {
     let folder = tempfile::tempdir().unwrap();
     let before = counting::live_bytes();
-    let mut day =
-        day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), closecall::stress::car());
+    let mut day = day::Day::new(
+        Path::new("sumo_nets/left_turn/left_turn.net.xml"),
+        folder.path(),
+        closecall::study::stress::car(),
+    );
     println!("what,scene,method,size,value,unit");
     for hour in 1..=24 {
         (0..HOUR).for_each(|_| day.step());

@@ -17,11 +17,7 @@ pub mod input;
 pub mod options;
 pub mod output;
 pub mod progress;
-#[cfg(feature = "study")]
-pub mod reference;
 pub mod run;
-#[cfg(feature = "study")]
-pub mod stress;
 #[cfg(feature = "study")]
 pub mod study;
 pub mod traffic;

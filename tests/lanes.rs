@@ -22,7 +22,7 @@ use street::street;
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     let net = street();
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     frame.push(roster.enter("car", profile), State { x: 120.0, y: 1.6, z: 0.0, heading, speed: 12.0 });
@@ -65,7 +65,7 @@ const APART: &str = r#"<net>
 fn where_lanes_do_not_join_a_path_leads_straight_across() {
     let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_fixed_routes(true);
@@ -107,7 +107,7 @@ const FORK: &str = r#"<net>
 fn a_path_is_laid_anew_where_the_route_is_another_one_not_where_it_is_told_again() {
     let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     // Where its path ends; a step later it stands where it did.

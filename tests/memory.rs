@@ -14,8 +14,11 @@ const HOUR: usize = 3600;
 #[test]
 fn a_day_of_traffic_takes_no_more_memory_than_its_first_hour() {
     let folder = tempfile::tempdir().unwrap();
-    let mut day =
-        day::Day::new(Path::new("sumo_nets/left_turn/left_turn.net.xml"), folder.path(), closecall::stress::car());
+    let mut day = day::Day::new(
+        Path::new("sumo_nets/left_turn/left_turn.net.xml"),
+        folder.path(),
+        closecall::study::stress::car(),
+    );
     (0..HOUR).for_each(|_| day.step());
     let (live, conflicts) = (counting::live_bytes(), day.conflicts());
     (HOUR..24 * HOUR).for_each(|_| day.step());

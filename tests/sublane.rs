@@ -19,7 +19,7 @@ use street::street;
 fn encounters(y: f64, drift: f64) -> usize {
     let net = street();
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::stress::car()).unwrap();
+    let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     let states = [(80.0, y, 0.0), (120.0, 1.6, std::f64::consts::PI)];

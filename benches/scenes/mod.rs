@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::Path;
 
 use closecall::options::Options;
-use closecall::reference::chance::Chance;
+use closecall::study::reference::chance::Chance;
 use closecall::traffic::frame::State;
 use closecall::traffic::profile::Profile;
 use closecall::traffic::sumo_type::SumoType;

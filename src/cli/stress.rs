@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::say::say;
-use crate::stress::{self, Group};
+use crate::study::stress::{self, Group};
 use crate::{Error, Result};
 
 /// How many cases, and which.

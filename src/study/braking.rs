@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
+use super::reference::{braking, deviation};
 use crate::braking::{Brakes, Braking, MuModel, mu};
-use crate::reference::chance::Chance;
-use crate::reference::{braking, deviation};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 const DEFAULT: &str = "minimal";
@@ -153,7 +153,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
                 let off = deviation(found, truth).absolute;
                 worst = f64::max(worst, off);
                 if off > NOTICED {
-                    *(if found < crate::reference::nearest(truth) { &mut short } else { &mut long }) += 1;
+                    *(if found < crate::study::reference::nearest(truth) { &mut short } else { &mut long }) += 1;
                 }
             }
             rows.push(Measurement {

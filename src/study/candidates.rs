@@ -13,8 +13,8 @@ use rstar::{AABB, RTree};
 
 use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
 use crate::detection::broad_phase::{Area, Circle, Search};
-use crate::reference::chance::Chance;
 use crate::util::units::Second;
 
 type Pairs = Vec<(u32, u32)>;

@@ -4,9 +4,9 @@ use std::hint::black_box;
 
 use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
+use super::reference::contact;
 use crate::geometry::rectangle::Rectangle;
-use crate::reference::chance::Chance;
-use crate::reference::contact;
 
 pub(super) type Pair = (Rectangle, Rectangle);
 pub(super) type Method = (&'static str, fn(&Pair) -> bool);

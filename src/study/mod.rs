@@ -1,7 +1,7 @@
 //! Error against run time, for every choice that closecall makes: `closecall study`.
 //!
 //! Each axis is one choice. Its methods are run on the same items, in turns, in one process; what each gets wrong is
-//! found by a reference that knows none of them ([`crate::reference`], or where the vehicles really drove).
+//! found by a reference that knows none of them ([`crate::study::reference`], or where the vehicles really drove).
 
 mod braking;
 mod candidates;
@@ -13,6 +13,8 @@ mod measurement;
 mod numbers;
 mod page;
 mod path;
+pub mod reference;
+pub mod stress;
 mod time;
 mod volume;
 

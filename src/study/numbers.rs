@@ -4,11 +4,11 @@ use nalgebra::{RealField, Vector2, convert};
 
 use super::decisions::{self, Method, Pair};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
+use super::reference::pairs;
 use crate::geometry::Vector;
 use crate::geometry::contact::touches;
 use crate::geometry::rectangle::Rectangle;
-use crate::reference::chance::Chance;
-use crate::reference::pairs;
 
 const DEFAULT: &str = "f64, exact where it is close";
 const METHODS: [Method; 5] = [

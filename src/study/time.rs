@@ -4,13 +4,13 @@ use std::hint::black_box;
 
 use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
+use super::reference::{contact, nearest};
 use crate::detection::measures::ttc::{Course, HORIZON, time_to_collision};
 use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::contact::touches;
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::reference::chance::Chance;
-use crate::reference::{contact, nearest};
 use crate::util::units::{MetrePerSecond, Radian, Second};
 
 const LENGTH: f64 = 4.6;

@@ -4,12 +4,12 @@ use parry2d_f64::query;
 
 use super::decisions::{self, Method, Pair};
 use super::measurement::{Axis, Measurement, Plan};
+use super::reference::chance::Chance;
+use super::reference::pairs;
 use crate::detection::narrow_phase::paper::a_vertex_touches_a_side;
 use crate::geometry::contact::{plainly_touches, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Vector, parry};
-use crate::reference::chance::Chance;
-use crate::reference::pairs;
 
 type Family = (&'static str, fn(&mut Chance) -> Pair);
 

@@ -3,8 +3,8 @@
 use super::case::Case;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
-use crate::reference::braking as reference;
-use crate::reference::chance::Chance;
+use crate::study::reference::braking as reference;
+use crate::study::reference::chance::Chance;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// The largest relative error of a published μ (issue: "≤ 1e-12 over the whole stress domain").

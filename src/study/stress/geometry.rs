@@ -7,9 +7,9 @@ use crate::detection::path::rotated;
 use crate::geometry::contact::{distance, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector};
-use crate::reference::chance::Chance;
-use crate::reference::contact as reference;
-use crate::reference::pairs::{self, against, beside, car};
+use crate::study::reference::chance::Chance;
+use crate::study::reference::contact as reference;
+use crate::study::reference::pairs::{self, against, beside, car};
 use crate::traffic::frame::{Frame, SUMO_INVALID, State};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Metre;
@@ -114,7 +114,11 @@ fn check(chance: &mut Chance, inputs: (Rectangle, Rectangle), tally: &mut Tally)
     tally.holds(MIRRORED, touching == touches(&mirrored(&a), &mirrored(&b)), &inputs);
     tally.holds(AGREES, apart == 0.0 || !touching, &inputs);
     let ulp = |extra: Metre| largest(&a).max(largest(&b)).max(extra) * f64::EPSILON;
-    tally.error(APART, crate::reference::deviation(apart, &reference::distance(&a, &b)).absolute / ulp(0.0), &inputs);
+    tally.error(
+        APART,
+        crate::study::reference::deviation(apart, &reference::distance(&a, &b)).absolute / ulp(0.0),
+        &inputs,
+    );
     let by = Vector::new(chance.between(-1e4, 1e4), chance.between(-1e4, 1e4));
     let moved = |r: &Rectangle| Rectangle { centre: r.centre + by, ..*r };
     let change = (distance(&moved(&a), &moved(&b)) - apart).abs();

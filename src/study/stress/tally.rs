@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::reference::{Deviation, Number, deviation};
+use crate::study::reference::{Deviation, Number, deviation};
 
 /// What a case is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]

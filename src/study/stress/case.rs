@@ -1,7 +1,7 @@
 //! One stress case: what it is about, and how it is checked.
 
 use super::tally::{Group, Tally};
-use crate::reference::chance::Chance;
+use crate::study::reference::chance::Chance;
 
 /// One named case.
 pub(super) struct Case {

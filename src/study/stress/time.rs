@@ -9,8 +9,8 @@ use crate::events::CLOSES_AFTER;
 use crate::geometry::contact::distance;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};
-use crate::reference::chance::Chance;
-use crate::reference::{contact as reference, nearest, precise};
+use crate::study::reference::chance::Chance;
+use crate::study::reference::{contact as reference, nearest, precise};
 use crate::traffic::frame::State;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 

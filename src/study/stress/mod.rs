@@ -15,7 +15,7 @@ mod time;
 pub use scene::car;
 pub use tally::{Group, Property, Row, Unit};
 
-use crate::reference::chance::Chance;
+use super::reference::chance::Chance;
 use tally::Tally;
 
 /// Draws `count` inputs in all, shared out to all cases (or those of one group), and says what was seen of each.

@@ -1,5 +1,5 @@
 //! What closecall is judged by: the same definitions in exact and in high-precision arithmetic, written without a look
-//! at the formulas that they judge. For [`crate::study`] and [`crate::stress`]; the detector knows none of it.
+//! at the formulas that they judge. For [`crate::study`] and [`crate::study::stress`]; the detector knows none of it.
 
 pub mod braking;
 pub mod chance;
