@@ -16,7 +16,6 @@ pub mod geometry;
 pub mod input;
 pub mod options;
 pub mod output;
-pub mod progress;
 pub mod run;
 #[cfg(feature = "study")]
 pub mod study;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use closecall::batch::sweep::Task;
+use closecall::cli::progress::Progress;
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
 use closecall::detection::detector::exclusions::LeftOut;
 use closecall::input::sumo_files;
@@ -14,7 +15,6 @@ use closecall::output::input_hash::Input;
 use closecall::output::log::Log;
 use closecall::output::record::RunRecord;
 use closecall::output::summary::Summary;
-use closecall::progress::Progress;
 use closecall::run::Run;
 use closecall::util::threads::Helper;
 use closecall::{Error, Result};

@@ -7,6 +7,7 @@ mod files;
 mod mu;
 mod parse;
 mod plot;
+pub mod progress;
 mod regress;
 mod replay;
 mod report;

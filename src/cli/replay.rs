@@ -6,6 +6,7 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::files::kept;
+use super::progress::Progress;
 use super::say::say;
 use super::sumo::Sumo;
 use crate::input::replay::Replay;
@@ -15,7 +16,6 @@ use crate::output::input_hash::Input;
 use crate::output::log::Log;
 use crate::output::record::{RunRecord, Versions};
 use crate::output::summary::Summary;
-use crate::progress::Progress;
 use crate::run::Run;
 use crate::traffic::net::Net;
 use crate::{Error, Result};
