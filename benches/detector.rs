@@ -18,7 +18,7 @@ use std::time::Instant;
 use clap::ValueEnum;
 use closecall::detection::detector::Detector;
 use closecall::options::Options;
-use closecall::options::exclusion::Exclusion;
+use closecall::options::shortcut::Shortcut;
 use closecall::study::reference::chance::Chance;
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::profile::Profile;
@@ -176,10 +176,10 @@ impl Look for Phases {
     fn look(&mut self, Scene { frame, roster, .. }: &Scene) {
         let Self(detector, [both, first, second]) = self;
         first.add(|| {
-            detector.follow(frame, roster);
-            detector.approach(frame, roster);
+            detector.track_paths(frame, roster);
+            detector.broad_phase(frame, roster);
         });
-        second.add(|| detector.detect(frame, roster).len());
+        second.add(|| detector.narrow_phase(frame, roster).len());
         both.turn.extend(first.turn.last().zip(second.turn.last()).map(|(first, second)| first + second));
     }
 
@@ -203,9 +203,9 @@ impl Look for AtOnce {
         let Self(team, detectors, times) = self;
         times.add(|| {
             team.each([(), ()], detectors.iter_mut(), |(), detector| {
-                detector.follow(frame, roster);
-                detector.approach(frame, roster);
-                black_box(detector.detect(frame, roster).len());
+                detector.track_paths(frame, roster);
+                detector.broad_phase(frame, roster);
+                black_box(detector.narrow_phase(frame, roster).len());
             });
         });
     }
@@ -243,7 +243,7 @@ fn measure(name: &str, start: Vec<State>) {
     let mut others = vec![Phases::new("two threads", &options, 2)];
     let mut at_once = AtOnce::new(&options);
     if count == LARGE {
-        others.extend([Exclusion::WaysApart, Exclusion::InLine].map(|kept| {
+        others.extend([Shortcut::PathsApart, Shortcut::InLine].map(|kept| {
             let options = Options { keep: vec![kept], ..Options::default() };
             Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options, 1)
         }));

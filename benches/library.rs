@@ -7,7 +7,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::geometry::contact::{distance, plainly_touches, touches};
-use closecall::geometry::convex::Outline;
+use closecall::geometry::convex::ConvexOutline;
 use closecall::geometry::rectangle::Rectangle;
 use closecall::geometry::separating_axes::{slide, translation};
 use closecall::geometry::{Point, Vector};
@@ -62,7 +62,7 @@ fn contacts(chance: &mut Chance) {
     let ours = nanoseconds(PAIRS, || pairs.iter().for_each(|(a, b)| _ = black_box(slide(a, &by, b))));
     let outlines = nanoseconds(PAIRS, || {
         pairs.iter().for_each(|(a, b)| {
-            _ = black_box(translation(&Outline::rectangle(a), &by, &Outline::rectangle(b)));
+            _ = black_box(translation(&ConvexOutline::rectangle(a), &by, &ConvexOutline::rectangle(b)));
         });
     });
     let still = ParryVector::new(0.0, 0.0);

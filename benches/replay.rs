@@ -136,7 +136,7 @@ impl Measured {
         let seconds = seconds(|| {
             let mut replay = Replay::open(&self.path, &[], net, &options).unwrap();
             let mut run = Run::new(&options, Some(net.clone())).unwrap();
-            run.routes_are_fixed();
+            run.set_fixed_routes(true);
             while let Ok(Some(_)) = replay.next(&mut run) {}
         });
         self.replaying = self.replaying.min(seconds);

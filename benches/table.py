@@ -185,8 +185,8 @@ GOALS = [
             + " times one's work"
         ),
     ),
-    left_out("pairs too far apart", "circles-apart"),
-    left_out("tests where the boxes around both ways do not meet", "ways-apart"),
+    left_out("pairs too far apart", "areas-apart"),
+    left_out("tests where the boxes around both ways do not meet", "paths-apart"),
     left_out("sweeps of who drives in line", "in-line"),
     left_out("lanes of who is on the path laid before", "known-paths"),
     Goal(

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use crate::Result;
 use crate::detection::detector::Detector;
-use crate::detection::detector::exclusions::{Exclusions, LeftOut};
+use crate::detection::detector::{LeftOut, shortcuts::Shortcuts};
 use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Conflict, Tracker};
 use crate::geometry::Point;
@@ -86,17 +86,17 @@ impl Run {
     /// Writes other files too, besides the log.
     pub fn write_to(&mut self, outputs: Outputs) {
         if outputs.want_lanes() {
-            self.detector.ask_for_lanes();
+            self.detector.keep_asking_for_lanes();
         }
         if outputs.want_moments() {
-            self.tracker.want_moments();
+            self.tracker.record_moments();
         }
         self.outputs = outputs;
     }
 
     /// What is left out.
-    pub fn leaves_out(&self) -> Exclusions {
-        self.detector.leaves_out()
+    pub fn shortcuts(&self) -> Shortcuts {
+        self.detector.shortcuts()
     }
 
     /// Looks at each step with so many threads, at least one; the results are the same.
@@ -104,22 +104,17 @@ impl Run {
         self.detector.set_threads(threads);
     }
 
-    /// Says that no road user's route changes while it is in the scene.
-    pub fn routes_are_fixed(&mut self) {
-        self.detector.set_fixed_routes(true);
+    /// States whether every road user keeps its route while it is in the scene; by default routes may change.
+    pub fn set_fixed_routes(&mut self, fixed: bool) {
+        self.detector.set_fixed_routes(fixed);
     }
 
-    /// Takes that back.
-    pub fn routes_may_change(&mut self) {
-        self.detector.set_fixed_routes(false);
+    /// States whether road users move sideways without changing lanes (SUMO's sublane model).
+    pub fn set_sublane(&mut self, sublane: bool) {
+        self.detector.set_sublane(sublane);
     }
 
-    /// Says that road users move to the side without changing lanes (SUMO's sublane model).
-    pub fn has_sublanes(&mut self) {
-        self.detector.set_sublane(true);
-    }
-
-    /// Whether they may.
+    /// Whether road users move sideways without changing lanes.
     pub fn sublane(&self) -> bool {
         self.detector.sublane()
     }
@@ -190,8 +185,8 @@ impl Run {
     }
 
     /// Where everybody is now; returns the rows that have to be placed.
-    pub fn follow(&mut self) -> &[u32] {
-        self.detector.follow(&self.frame, &self.roster)
+    pub fn track_paths(&mut self) -> &[u32] {
+        self.detector.track_paths(&self.frame, &self.roster)
     }
 
     /// Whether the road user of a row, if it still has its route, is on the path laid before: nobody needs to know where it
@@ -206,8 +201,8 @@ impl Run {
     }
 
     /// Says where the road user of a row is on the net.
-    pub fn place(&mut self, row: u32, placement: &Placement) {
-        self.detector.place(&self.frame, &self.roster, row, placement);
+    pub fn set_placement(&mut self, row: u32, placement: &Placement) {
+        self.detector.set_placement(&self.frame, &self.roster, row, placement);
         self.outputs.place(row, placement);
     }
 
@@ -216,21 +211,21 @@ impl Run {
     /// # Errors
     /// As [`Run::write`].
     pub fn finish_step(&mut self) -> Result<()> {
-        self.approach();
-        self.detect();
+        self.broad_phase();
+        self.narrow_phase();
         self.close_conflicts();
         self.write()
     }
 
     /// Phase 1.
-    pub fn approach(&mut self) {
-        self.detector.approach(&self.frame, &self.roster);
+    pub fn broad_phase(&mut self) {
+        self.detector.broad_phase(&self.frame, &self.roster);
     }
 
     /// Phase 2.
-    pub fn detect(&mut self) {
+    pub fn narrow_phase(&mut self) {
         let Self { detector, net, filter, .. } = self;
-        _ = detector.detect(&self.frame, &self.roster);
+        _ = detector.narrow_phase(&self.frame, &self.roster);
         detector.retain(|found| {
             if let (true, None, Some(net)) = (found.in_conflict(), found.lane, &net) {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
@@ -255,9 +250,9 @@ impl Run {
         let closed = self.tracker.closed();
         if let Some(log) = &mut self.log {
             if !closed.is_empty() {
-                log.conflicts(closed, self.net.as_deref(), &self.roster)?;
+                log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
             }
-            log.encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
+            log.append_encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
         }
         self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.conflicts(closed)?;
@@ -312,7 +307,7 @@ impl Run {
     pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
         let closed = self.tracker.finish(&self.roster);
         if let Some(log) = &mut self.log {
-            log.conflicts(closed, self.net.as_deref(), &self.roster)?;
+            log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
         self.outputs.conflicts(closed)?;
         self.outputs.finish()?;

@@ -47,9 +47,9 @@ fn assert_warm_allocates_nothing(options: &Options, step: impl Fn(&mut Frame, &[
             before = counting::allocations();
         }
         step(&mut frame, &users, number);
-        detector.follow(&frame, &roster);
-        detector.approach(&frame, &roster);
-        found += detector.detect(&frame, &roster).len();
+        detector.track_paths(&frame, &roster);
+        detector.broad_phase(&frame, &roster);
+        found += detector.narrow_phase(&frame, &roster).len();
     }
     assert!(found > 1000, "{found}");
     assert_eq!(counting::allocations() - before, 0);

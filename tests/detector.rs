@@ -5,7 +5,7 @@
 use closecall::detection::detector::Detector;
 use closecall::detection::encounter::Encounter;
 use closecall::detection::kind::Kind;
-use closecall::options::exclusion::Exclusion;
+use closecall::options::shortcut::Shortcut;
 use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::profile::Profile;
@@ -61,9 +61,9 @@ fn look_at(detector: &mut Detector, options: &Options, cars: &[(f64, f64, f64, f
         let user = roster.enter(&char::from(b'a' + index as u8).to_string(), profile);
         frame.push(user, State { x, y, z: 0.0, heading, speed });
     }
-    detector.follow(&frame, &roster);
-    detector.approach(&frame, &roster);
-    let found = detector.detect(&frame, &roster).copied().collect::<Vec<_>>();
+    detector.track_paths(&frame, &roster);
+    detector.broad_phase(&frame, &roster);
+    let found = detector.narrow_phase(&frame, &roster).copied().collect::<Vec<_>>();
     found.into_iter().map(|found| (found, roster.id(found.ego).to_string())).collect()
 }
 
@@ -98,7 +98,7 @@ fn ordinary_opposite_traffic_is_no_encounter() {
 fn one_that_crosses_is_met_at_the_edge_of_its_way() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -11.0, NORTH, 10.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::Side, "a"));
-    assert!((found.ego_way - 19.0).abs() < 0.02, "{}", found.ego_way);
+    assert!((found.ego_distance - 19.0).abs() < 0.02, "{}", found.ego_distance);
     assert!((found.gap - 19.0).abs() < 0.02, "{}", found.gap);
 }
 
@@ -123,7 +123,7 @@ fn two_that_stand_are_no_pair() {
 fn in_a_merge_the_foe_first_has_to_come_and_go() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (20.0, -4.0, 0.3, 15.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
-    assert!(found.foe_way > 5.0 && found.foe_way < 15.0, "{}", found.foe_way);
+    assert!(found.foe_distance > 5.0 && found.foe_distance < 15.0, "{}", found.foe_distance);
 }
 
 /// All that meet, and those that are left of them where conflicts are asked for only; of each the conflicts.
@@ -172,7 +172,7 @@ proptest! {
     /// With these kept a way is laid, kept and covered as that of one who turns.
     #[test]
     fn who_goes_straight_on_meets_the_same_whatever_is_left_out(cars in some_cars()) {
-        let [left_out, kept] = [vec![], vec![Exclusion::CirclesApart, Exclusion::WaysApart]].map(|keep| {
+        let [left_out, kept] = [vec![], vec![Shortcut::AreasApart, Shortcut::PathsApart]].map(|keep| {
             let options = Options { keep, ..options() };
             look_at(&mut Detector::new(&options, None), &options, &cars)
         });
@@ -241,14 +241,14 @@ fn any_number_of_threads_finds_the_same() {
             frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
         }
         let [alone, others @ ..] = &mut detectors;
-        alone.follow(&frame, &roster);
-        alone.approach(&frame, &roster);
-        let found = alone.detect(&frame, &roster).copied().collect::<Vec<_>>();
+        alone.track_paths(&frame, &roster);
+        alone.broad_phase(&frame, &roster);
+        let found = alone.narrow_phase(&frame, &roster).copied().collect::<Vec<_>>();
         assert!(found.iter().filter(|found| found.in_conflict()).count() > 500, "{}", found.len());
         for detector in others {
-            detector.follow(&frame, &roster);
-            detector.approach(&frame, &roster);
-            assert!(detector.detect(&frame, &roster).eq(&found));
+            detector.track_paths(&frame, &roster);
+            detector.broad_phase(&frame, &roster);
+            assert!(detector.narrow_phase(&frame, &roster).eq(&found));
             assert_eq!(detector.work(), alone.work());
         }
     }
@@ -276,11 +276,11 @@ fn turned_by(
             let (x, y) = (x + speed * time * heading.cos(), y + speed * time * heading.sin());
             frame.push(UserIndex(number as u32), State { x, y, z: 0.0, heading: heading + turn * time / 0.1, speed });
         }
-        detector.follow(&frame, roster);
-        detector.approach(&frame, roster);
+        detector.track_paths(&frame, roster);
+        detector.broad_phase(&frame, roster);
     }
     let by_number = |found: &Encounter| Encounter { ego_row: found.ego.0, foe_row: found.foe.0, ..*found };
-    detector.detect(&frame, roster).map(by_number).collect()
+    detector.narrow_phase(&frame, roster).map(by_number).collect()
 }
 
 /// Of many the detector forgets ways, and lays them again.

@@ -1,7 +1,7 @@
 //! Where steps touch, against trying all parts of both: the same to the last bit.
 
-use closecall::geometry::bisection::{Halves, Touch};
-use closecall::geometry::convex::Outline;
+use closecall::geometry::bisection::{Bisection, Contact};
+use closecall::geometry::convex::ConvexOutline;
 use closecall::geometry::polygon::Polygon;
 use closecall::geometry::rectangle::{Rectangle, direction};
 use closecall::geometry::separating_axes::translation;
@@ -11,7 +11,7 @@ use proptest::prelude::*;
 
 /// The part of a step at which it touches another's area, by all hulls of the other that are not left out by one that
 /// they are a half of.
-fn touch(step: &Step, other: &Step, which: Touch) -> Option<f64> {
+fn touch(step: &Step, other: &Step, which: Contact) -> Option<f64> {
     if !bounds(step).meet(&bounds(other)) {
         return None;
     }
@@ -21,16 +21,16 @@ fn touch(step: &Step, other: &Step, which: Touch) -> Option<f64> {
         return Some(part);
     }
     let parts = halves(other).into_iter().filter_map(|half| touch(step, &half, which));
-    parts.reduce(if which == Touch::First { f64::min } else { f64::max })
+    parts.reduce(if which == Contact::Entry { f64::min } else { f64::max })
 }
 
 /// The part of a step at which it touches a fixed outline.
-fn meet(step: &Step, fixed: &Outline, box_around: &Bounds, which: Touch) -> Option<f64> {
+fn meet(step: &Step, fixed: &ConvexOutline, box_around: &Bounds, which: Contact) -> Option<f64> {
     if turn(step) * (step.length + step.width) / 2.0 <= TOLERANCE {
         let (middle, by) = (step.rectangle(0.5), step.to - step.from);
-        let start = Outline::rectangle(&Rectangle { centre: middle.centre - by * 0.5, ..middle });
+        let start = ConvexOutline::rectangle(&Rectangle { centre: middle.centre - by * 0.5, ..middle });
         let contact = translation(&start, &by, fixed)?;
-        return Some(if which == Touch::First { contact.enter } else { contact.leave });
+        return Some(if which == Contact::Entry { contact.enter } else { contact.leave });
     }
     if !bounds(step).meet(box_around) || translation(&step.hull(), &Vector::zeros(), fixed).is_none() {
         return None;
@@ -38,7 +38,7 @@ fn meet(step: &Step, fixed: &Outline, box_around: &Bounds, which: Touch) -> Opti
     let [first, second] = halves(step);
     let first = || meet(&first, fixed, box_around, which).map(|part| (part / 2.0).min(0.5));
     let second = || meet(&second, fixed, box_around, which).map(|part| 0.5 + part / 2.0);
-    if which == Touch::First { first().or_else(second) } else { second().or_else(first) }
+    if which == Contact::Entry { first().or_else(second) } else { second().or_else(first) }
 }
 
 fn turn(step: &Step) -> f64 {
@@ -85,12 +85,12 @@ proptest! {
 
     #[test]
     fn what_is_left_out_changes_no_touch(step in step(), others in prop::collection::vec(step(), 1..4)) {
-        let mut halves = Halves::default();
+        let mut halves = Bisection::default();
         let part = halves.add(step);
         let parts = others.iter().map(|other| halves.add(*other)).collect::<Vec<_>>();
-        for which in [Touch::First, Touch::Last] {
+        for which in [Contact::Entry, Contact::Exit] {
             let all = others.iter().filter_map(|other| touch(&step, other, which));
-            let all = all.reduce(if which == Touch::First { f64::min } else { f64::max });
+            let all = all.reduce(if which == Contact::Entry { f64::min } else { f64::max });
             let found = parts.iter().fold(which.none(), |known, other| halves.touch(part, *other, which, known));
             prop_assert_eq!(capped((found != which.none()).then_some(found)), capped(all));
         }
@@ -98,9 +98,9 @@ proptest! {
 
     #[test]
     fn a_fixed_outline_is_met_where_all_parts_say(step in step(), fixed in step()) {
-        let (mut halves, outline) = (Halves::default(), Outline::rectangle(&fixed.rectangle(0.0)));
+        let (mut halves, outline) = (Bisection::default(), ConvexOutline::rectangle(&fixed.rectangle(0.0)));
         let part = halves.add(step);
-        for which in [Touch::First, Touch::Last] {
+        for which in [Contact::Entry, Contact::Exit] {
             let found = halves.meet(part, &Polygon::from(outline), which);
             prop_assert_eq!(found, meet(&step, &outline, &outline.bounds(), which));
         }

@@ -27,7 +27,7 @@ fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     frame.begin(0.0);
     frame.push(roster.enter("car", profile), State { x: 120.0, y: 1.6, z: 0.0, heading, speed: 12.0 });
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
-    assert_eq!(detector.follow(&frame, &roster), [0]);
+    assert_eq!(detector.track_paths(&frame, &roster), [0]);
     let placement = Placement {
         lane: net.lane("west_0").unwrap(),
         position: 80.0,
@@ -35,8 +35,8 @@ fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
         route_position,
         lateral_speed: 0.0,
     };
-    detector.place(&frame, &roster, 0, &placement);
-    detector.approach(&frame, &roster);
+    detector.set_placement(&frame, &roster, 0, &placement);
+    detector.broad_phase(&frame, &roster);
     detector.path(&frame, &roster, 0).last().unwrap().x < 120.0
 }
 
@@ -73,7 +73,7 @@ fn where_lanes_do_not_join_a_path_leads_straight_across() {
     for (step, (x, y)) in way.into_iter().enumerate() {
         frame.begin(step as f64);
         frame.push(user, State { x, y, z: 0.0, heading: 0.0, speed: 25.0 });
-        let asked = detector.follow(&frame, &roster).to_vec();
+        let asked = detector.track_paths(&frame, &roster).to_vec();
         assert_eq!(asked.is_empty(), step > 0, "it has left its path at ({x}, {y})");
         for row in asked {
             let placement = Placement {
@@ -83,9 +83,9 @@ fn where_lanes_do_not_join_a_path_leads_straight_across() {
                 route_position: 0,
                 lateral_speed: 0.0,
             };
-            detector.place(&frame, &roster, row, &placement);
+            detector.set_placement(&frame, &roster, row, &placement);
         }
-        detector.approach(&frame, &roster);
+        detector.broad_phase(&frame, &roster);
         let path = detector.path(&frame, &roster, 0);
         let passes = |x: f64, y: f64| path.iter().any(|point| (point - Point::new(x, y)).norm() < 1e-9);
         assert!(x >= 100.0 || passes(100.0, 0.0), "{path:?}");
@@ -114,12 +114,12 @@ fn a_path_is_laid_anew_where_the_route_is_another_one_not_where_it_is_told_again
     let mut told = |route: Option<[&str; 2]>, lateral_speed: f64| {
         frame.begin(frame.time + 1.0);
         frame.push(user, State { x: 80.0, y: 0.0, z: 0.0, heading: 0.0, speed: 25.0 });
-        assert_eq!(detector.follow(&frame, &roster), [0]);
+        assert_eq!(detector.track_paths(&frame, &roster), [0]);
         let route = route.map(|edges| edges.iter().map(|edge| net.edge(edge).unwrap()).collect());
         let lane = net.lane("a_0").unwrap();
         let placement = Placement { lane, position: 80.0, route, route_position: 0, lateral_speed };
-        detector.place(&frame, &roster, 0, &placement);
-        detector.approach(&frame, &roster);
+        detector.set_placement(&frame, &roster, 0, &placement);
+        detector.broad_phase(&frame, &roster);
         detector.path(&frame, &roster, 0).pop().unwrap()
     };
     let drifts = told(Some(["a", "b"]), 1.0);

@@ -29,7 +29,7 @@ fn encounters(y: f64, drift: f64) -> usize {
     }
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_sublane(true);
-    for row in detector.follow(&frame, &roster).to_vec() {
+    for row in detector.track_paths(&frame, &roster).to_vec() {
         let name = ["east", "west"][row as usize];
         let placement = Placement {
             lane: net.lane(&format!("{name}_0")).unwrap(),
@@ -38,10 +38,10 @@ fn encounters(y: f64, drift: f64) -> usize {
             route_position: 0,
             lateral_speed: if row == 0 { drift } else { 0.0 },
         };
-        detector.place(&frame, &roster, row, &placement);
+        detector.set_placement(&frame, &roster, row, &placement);
     }
-    detector.approach(&frame, &roster);
-    detector.detect(&frame, &roster).len()
+    detector.broad_phase(&frame, &roster);
+    detector.narrow_phase(&frame, &roster).len()
 }
 
 #[test]

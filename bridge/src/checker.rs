@@ -78,7 +78,7 @@ impl Checker {
         if let Some(folder) = out {
             let begun = provenance::record_of_script(source, given, &run, &options)?;
             let log = Log::create(&folder, options.log_encounters).map_err(exception)?;
-            log.run(&begun).map_err(exception)?;
+            log.write_record(&begun).map_err(exception)?;
             run.log_to(log, true);
             record = Some(Box::new(begun));
         }
@@ -120,7 +120,7 @@ impl Checker {
                     return Ok(false);
                 }
                 source.pull(py, &mut self.run, time)?;
-                let rows = py.detach(|| self.run.follow().to_vec());
+                let rows = py.detach(|| self.run.track_paths().to_vec());
                 source.place(py, &mut self.run, &rows)?;
             }
             (Input::Frames(_), Some(_)) if self.is_closed => {
@@ -131,7 +131,7 @@ impl Checker {
                     return Err(PyValueError::new_err(format!("time is {time}, after {last}")));
                 }
                 frames.pull(&mut self.run, time, states)?;
-                py.detach(|| self.run.follow().len());
+                py.detach(|| self.run.track_paths().len());
             }
             (Input::Simulation(_), Some(_)) => {
                 return Err(PyTypeError::new_err("a checker with a simulation takes no states: it asks for them"));
@@ -160,7 +160,7 @@ impl Checker {
         }
         let summary = self.run.finish(Vec::new()).map_err(exception)?;
         if let (Some(log), Some(record)) = (self.run.take_log(), self.record.take()) {
-            log.run(&RunRecord { summary, complete: error.is_none(), error, ..*record }).map_err(exception)?;
+            log.write_record(&RunRecord { summary, complete: error.is_none(), error, ..*record }).map_err(exception)?;
         }
         match &mut self.painter {
             Some(painter) => painter.clear(py),

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use closecall::batch::sweep::Task;
 use closecall::cli::progress::Progress;
 use closecall::cli::{self, Ended, RunRequest, Sumo, Workers};
-use closecall::detection::detector::exclusions::LeftOut;
+use closecall::detection::detector::LeftOut;
 use closecall::input::sumo_files;
 use closecall::output::formats::Outputs;
 use closecall::output::input_hash::Input;
@@ -185,11 +185,11 @@ fn attach(
     pull::add_obstacles(sumo, &mut run, &request.options.obstacles).map_err(said)?;
     // Who looks at sumo-gui may do what they like there, add a rerouter too.
     if !request.gui && has_no_rerouters(sumo).map_err(said)? {
-        run.routes_are_fixed();
+        run.set_fixed_routes(true);
     }
     let mut source = Source::new(sumo, &mut run, &request.options).map_err(said)?;
     if !request.gui {
-        source.is_alone();
+        source.set_exclusive();
     }
     let painter = request.gui.then(|| Painter::new(sumo));
     let mut record = RunRecord {
@@ -206,7 +206,7 @@ fn attach(
     interrupts.tell();
     let outputs = Outputs::create(&request.outputs, run.net(), &record.inputs)?;
     let log = Log::create(&request.out, request.options.log_encounters)?;
-    log.run(&record)?;
+    log.write_record(&record)?;
     run.log_to(log, false);
     run.write_to(outputs);
     let mut session = Session {
@@ -243,7 +243,7 @@ fn attach(
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
     if let Some(log) = run.take_log() {
-        log.run(&record)?;
+        log.write_record(&record)?;
     }
     ended.map(|()| record.summary)
 }
@@ -295,7 +295,7 @@ impl Session<'_, '_> {
         *now = time + self.step_length;
         self.source.pull(py, run, time)?;
         self.spent.add(PULL, &mut since);
-        let rows = py.detach(|| run.follow().to_vec());
+        let rows = py.detach(|| run.track_paths().to_vec());
         self.source.place(py, run, &rows)?;
         self.is_unfinished = true;
         self.spent.add(PATHS, &mut since);
@@ -336,9 +336,9 @@ impl Session<'_, '_> {
 /// Phase 1, phase 2, events and log of a step; how long each took.
 fn finish(run: &mut Run) -> Finished {
     let mut ends = [Instant::now(); PARTS.len() - PHASE_1 + 1];
-    run.approach();
+    run.broad_phase();
     ends[1] = Instant::now();
-    run.detect();
+    run.narrow_phase();
     ends[2] = Instant::now();
     run.close_conflicts();
     ends[3] = Instant::now();

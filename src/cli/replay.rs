@@ -64,9 +64,9 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
     let mut run = Run::new(&options, Some(net.clone()))?;
     run.set_threads(arguments.threads.into());
-    run.routes_are_fixed();
+    run.set_fixed_routes(true);
     if arguments.sublane {
-        run.has_sublanes();
+        run.set_sublane(true);
     }
     let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
     let mut record = RunRecord {
@@ -87,7 +87,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let interrupted = sumo.map_or(&mut interrupted as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
     let outputs = Outputs::create(&arguments.outputs, Some(&net), &record.inputs)?;
     let log = Log::create(&out, arguments.options.log_encounters)?;
-    log.run(&record)?;
+    log.write_record(&record)?;
     run.log_to(log, false);
     run.write_to(outputs);
     let ended = steps(&mut replay, &mut run, interrupted, arguments.quiet);
@@ -96,7 +96,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     record.complete = ended.is_ok();
     record.error = ended.as_ref().err().map(ToString::to_string);
     if let Some(log) = run.take_log() {
-        log.run(&record)?;
+        log.write_record(&record)?;
     }
     if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
         say(format_args!("{}", record.summary))?;

@@ -27,9 +27,9 @@ pub struct Encounter {
     /// gap − μ: below 0 the pair is in conflict.
     pub margin: Metre,
     /// Way of the ego to the meeting place.
-    pub ego_way: Metre,
+    pub ego_distance: Metre,
     /// Way of the foe until it is at the meeting place or (cos α > 0) has left it.
-    pub foe_way: Metre,
+    pub foe_distance: Metre,
     /// The ego's front-bumper centre at the meeting place, x.
     pub x: Metre,
     /// The ego's front-bumper centre at the meeting place, y.

@@ -3,8 +3,8 @@
 use ecow::EcoString;
 use serde::Serialize;
 
-use super::Stance;
-use super::extremes::{Extremes, Worst};
+use super::Snapshot;
+use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
 use super::pet::Pet;
 use crate::detection::kind::{Kind, Severity};
@@ -72,11 +72,11 @@ pub struct Conflict {
     pub collision: bool,
     /// Where the ego stood and was about to go.
     #[serde(skip)]
-    pub ego_stance: Stance,
+    pub ego_snapshot: Snapshot,
     /// The same of the foe.
     #[serde(skip)]
-    pub foe_stance: Stance,
-    /// When and where `ttc`, `drac` and `pet` were found; where nobody wanted to know it (`Tracker::want_moments`), none.
+    pub foe_snapshot: Snapshot,
+    /// When and where `ttc`, `drac` and `pet` were found; where nobody wanted to know it (`Tracker::record_moments`), none.
     #[serde(skip)]
     pub found: Option<[Option<Moment>; 3]>,
 }
@@ -85,7 +85,7 @@ impl Conflict {
     /// What an event has come to so far, between two who are in the roster still, and its PET.
     pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
         let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref found, ref worst } = *extremes;
-        let Worst { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
+        let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let (of_ego, of_foe) = (roster.profile_of(ego), roster.profile_of(foe));
         let ([ego_speed, foe_speed], [ego_stood, foe_stood]) = (worst.speeds, &worst.stood);
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
@@ -114,8 +114,8 @@ impl Conflict {
             y,
             lane,
             collision,
-            ego_stance: Stance::of(ego_stood, of_ego),
-            foe_stance: Stance::of(foe_stood, of_foe),
+            ego_snapshot: Snapshot::of(ego_stood, of_ego),
+            foe_snapshot: Snapshot::of(foe_stood, of_foe),
             found: found.as_ref().map(|found| [found[0], found[1], entered]),
         }
     }

@@ -1,7 +1,7 @@
 //! What is known of an event under way: the step with the smallest margin, and the extremes of all its steps.
 
 use super::moment::Moment;
-use super::situation::Stood;
+use super::snapshot::Stood;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
@@ -15,7 +15,7 @@ const SAME_MARGIN: Metre = 1e-9;
 
 /// One step of a pair.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
+pub(super) struct Observation<'a> {
     pub frame: &'a Frame,
     pub found: &'a Encounter,
 }
@@ -32,12 +32,12 @@ pub(super) struct Extremes {
     pub drac: Option<MetrePerSecondSquared>,
     /// When and where these two were found, if anybody wants to know it.
     pub found: Option<Box<[Option<Moment>; 2]>>,
-    pub worst: Worst,
+    pub worst: WorstStep,
 }
 
 /// The step with the smallest margin.
 #[derive(Debug)]
-pub(super) struct Worst {
+pub(super) struct WorstStep {
     pub ego: UserIndex,
     pub foe: UserIndex,
     pub kind: Kind,
@@ -55,7 +55,7 @@ pub(super) struct Worst {
     pub stood: [Stood; 2],
 }
 
-impl Seen<'_> {
+impl Observation<'_> {
     /// The severity of this step.
     pub fn severity(&self) -> Severity {
         self.found.nearness.map_or(Severity::Caution, |near| near.severity)
@@ -79,9 +79,9 @@ impl Seen<'_> {
     }
 }
 
-impl Worst {
+impl WorstStep {
     /// This step; `path` has the path of a row's front bumper.
-    fn of(&Seen { frame, found }: &Seen, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    fn of(&Observation { frame, found }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let Encounter { ego, foe, kind, gap, mu, margin, angle, x, y, lane, .. } = *found;
         let rows = [found.ego_row, found.foe_row];
         let speeds = rows.map(|row| frame.state(row).speed);
@@ -92,7 +92,7 @@ impl Worst {
 
 impl Extremes {
     /// Those of a first step; `path` has the path of a row's front bumper, `moments` says whether they are to be known.
-    pub fn of(seen: &Seen, moments: bool, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    pub fn of(seen: &Observation, moments: bool, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let moment = |_| seen.moment();
         Self {
             begin: seen.frame.time,
@@ -103,15 +103,15 @@ impl Extremes {
             ttc: seen.ttc(),
             drac: seen.drac(),
             found: moments.then(|| Box::new([seen.ttc().map(moment), seen.drac().map(moment)])),
-            worst: Worst::of(seen, path),
+            worst: WorstStep::of(seen, path),
         }
     }
 
     /// Adds a later step of the same event.
-    pub fn take(&mut self, seen: &Seen, path: &impl Fn(u32) -> Vec<Point>) {
+    pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
         // Of margins that only rounding tells apart the first stays.
         if seen.found.margin < self.worst.margin - SAME_MARGIN {
-            self.worst = Worst::of(seen, path);
+            self.worst = WorstStep::of(seen, path);
         }
         self.end = seen.frame.time;
         self.severity = self.severity.max(seen.severity());

@@ -7,7 +7,7 @@ mod event;
 mod extremes;
 mod moment;
 pub mod pet;
-mod situation;
+mod snapshot;
 
 pub use event::Conflict;
 pub use moment::Moment;
@@ -15,15 +15,15 @@ pub use moment::Moment;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
-use crate::geometry::bisection::Halves;
+use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::tight_vec::make_room;
 use crate::util::units::Second;
-use extremes::{Extremes, Seen};
+use extremes::{Extremes, Observation};
 
-pub use situation::Stance;
+pub use snapshot::Snapshot;
 
 /// How long the margin must be ≥ 0 before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
@@ -51,7 +51,7 @@ pub struct Tracker {
     /// Closed, but its PET is not known yet.
     waiting: Vec<(Pair, Box<Event>)>,
     closed: Vec<Conflict>,
-    wants_moments: bool,
+    records_moments: bool,
 }
 
 /// Two road users, in their order.
@@ -80,8 +80,8 @@ impl Event {
 
 impl Tracker {
     /// Has conflicts say when and where their extremes were found.
-    pub fn want_moments(&mut self) {
-        self.wants_moments = true;
+    pub fn record_moments(&mut self) {
+        self.records_moments = true;
     }
 
     /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
@@ -98,7 +98,7 @@ impl Tracker {
             return &self.closed;
         }
         for found in encounters.filter(|found| found.in_conflict()) {
-            self.take(&Seen { frame, found }, roster, &path);
+            self.take(&Observation { frame, found }, roster, &path);
         }
         self.follow(frame, roster);
         self.close(frame);
@@ -139,7 +139,7 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, seen: &Seen, roster: &Roster, path: &impl Fn(u32) -> Vec<Point>) {
+    fn take(&mut self, seen: &Observation, roster: &Roster, path: &impl Fn(u32) -> Vec<Point>) {
         let Encounter { ego, foe, kind, .. } = *seen.found;
         let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
         let pair = [ego.min(foe), ego.max(foe)];
@@ -151,7 +151,7 @@ impl Tracker {
                 place
             }
             Err(place) => {
-                let extremes = Extremes::of(seen, self.wants_moments, path);
+                let extremes = Extremes::of(seen, self.records_moments, path);
                 make_room(&mut self.events, 1);
                 self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
                 place
@@ -196,7 +196,7 @@ impl Tracker {
     /// Passes on the closed events whose PET is known, or will not be.
     fn settle(&mut self, time: Second, at_once: bool, roster: &Roster) {
         // For all of the step, but no longer: what a long wait in small steps needs would be kept for the rest of the run.
-        let mut halves = Halves::default();
+        let mut halves = Bisection::default();
         let settled = self.waiting.extract_if(.., |(_, event)| {
             let since = time - event.extremes.end;
             if let (Some(driven), true) = (&mut event.driven, event.extremes.worst.kind != Kind::RearEnd) {
@@ -265,8 +265,8 @@ mod tests {
                 gap: 10.0 + margin,
                 mu: 10.0,
                 margin,
-                ego_way: 10.0,
-                foe_way: 0.0,
+                ego_distance: 10.0,
+                foe_distance: 0.0,
                 x: 0.0,
                 y: 0.0,
                 lane: None,

@@ -6,7 +6,7 @@
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
 use crate::detection::path::Pose;
-use crate::geometry::bisection::{Halves, Part, Touch};
+use crate::geometry::bisection::{Bisection, Contact, Part};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
@@ -80,7 +80,7 @@ impl Course {
     }
 
     /// The steps that may touch what lies within these bounds.
-    fn corridor(&self, near: &Bounds, halves: &mut Halves) -> Corridor {
+    fn corridor(&self, near: &Bounds, halves: &mut Bisection) -> Corridor {
         let steps = self.moments.windows(2).filter_map(|pair| {
             let [start, end] = [&pair[0], &pair[1]].map(|moment| self.pose(moment));
             let mut bounds = self.bounds_at(&start);
@@ -105,17 +105,17 @@ struct Corridor {
 impl Corridor {
     /// The first time at which it touches the other's corridor. Most of the time goes into the steps after that: they are
     /// not looked at.
-    fn enters(&self, other: &Self, halves: &mut Halves) -> Option<Second> {
+    fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
         self.steps.iter().find_map(|&(from, to, part)| {
-            let enters = other.touch(part, Touch::First, halves)?;
+            let enters = other.touch(part, Contact::Entry, halves)?;
             Some(from + (to - from) * enters)
         })
     }
 
     /// The last time; none where it still touches it at the end.
-    fn leaves(&self, other: &Self, halves: &mut Halves) -> Option<Second> {
+    fn leaves(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
         let (from, to, leaves) = self.steps.iter().rev().find_map(|&(from, to, part)| {
-            let leaves = other.touch(part, Touch::Last, halves)?;
+            let leaves = other.touch(part, Contact::Exit, halves)?;
             Some((from, to, leaves.min(1.0)))
         })?;
         let still = to == self.end && leaves >= 1.0;
@@ -123,7 +123,7 @@ impl Corridor {
     }
 
     /// The part of a step of the other at which that touches this corridor.
-    fn touch(&self, part: Part, which: Touch, halves: &mut Halves) -> Option<f64> {
+    fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<f64> {
         let touch = self.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
         (touch != which.none()).then_some(touch)
     }
@@ -142,7 +142,7 @@ pub struct Pet {
 
 /// The PET of two courses; none where the corridors do not overlap, or both are in the conflict area at once, as where one
 /// merges behind the other. Of `halves` only the memory is used.
-pub fn post_encroachment_time(halves: &mut Halves, a: &Course, b: &Course) -> Option<Pet> {
+pub fn post_encroachment_time(halves: &mut Bisection, a: &Course, b: &Course) -> Option<Pet> {
     let near = a.bounds().shared_with(&b.bounds())?;
     halves.clear();
     let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
@@ -176,7 +176,7 @@ mod tests {
         // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
         // enters the first's (1 m before the origin) at 5 − 0.1 s.
         let Pet { lasts, enters, is_final } = post_encroachment_time(
-            &mut Halves::default(),
+            &mut Bisection::default(),
             &course(0.0, 2.0),
             &course(std::f64::consts::FRAC_PI_2, 5.0),
         )
@@ -206,7 +206,7 @@ mod tests {
             for time in (0..=steps).map(|number| f64::from(number) * step) {
                 course.push(time, Point::new(10.0 * (time - 5.0), 5.0), 0.0);
             }
-            post_encroachment_time(&mut Halves::default(), &turn(step), &course).unwrap()
+            post_encroachment_time(&mut Bisection::default(), &turn(step), &course).unwrap()
         };
         let (long, short) = (crossing(0.2), crossing(0.01));
         assert!((long.lasts - short.lasts).abs() < 0.02, "{long:?} {short:?}");
@@ -222,7 +222,7 @@ mod tests {
             for time in (0..=80).map(|number| f64::from(number) * 0.1).take_while(|time| *time < until) {
                 course.push(time, Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), 2.6);
             }
-            post_encroachment_time(&mut Halves::default(), &first, &course)
+            post_encroachment_time(&mut Bisection::default(), &first, &course)
         };
         let all = second(8.1).unwrap();
         let found = (1..=80).filter_map(|step| second(f64::from(step) * 0.1)).collect::<Vec<_>>();
@@ -233,6 +233,6 @@ mod tests {
 
     #[test]
     fn who_follows_on_the_same_way_has_none() {
-        assert_eq!(post_encroachment_time(&mut Halves::default(), &course(0.0, 2.0), &course(0.0, 4.0)), None);
+        assert_eq!(post_encroachment_time(&mut Bisection::default(), &course(0.0, 2.0), &course(0.0, 4.0)), None);
     }
 }

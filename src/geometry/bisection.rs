@@ -7,10 +7,10 @@
 //! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. So what has been found leaves out
 //! only what stays clear of it by more than that, and the result is that of trying all parts, to the last bit.
 
-use super::convex::Outline;
+use super::convex::ConvexOutline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
-use super::separating_axes::{Contact, outlines_touch, translation};
+use super::separating_axes::{ContactInterval, outlines_touch, translation};
 use super::sweep::{Step, TOLERANCE};
 use super::{Bounds, Vector};
 use crate::util::tight_vec::{add, make_room};
@@ -25,62 +25,62 @@ const KEPT: usize = 256;
 
 /// Which touch is looked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Touch {
+pub enum Contact {
     /// Where two begin to touch.
-    First,
+    Entry,
     /// Where they touch last; 1 and more where they still do at the end.
-    Last,
+    Exit,
 }
 
-impl Touch {
+impl Contact {
     /// What every touch is better than.
     pub fn none(self) -> f64 {
         match self {
-            Self::First => f64::INFINITY,
-            Self::Last => f64::NEG_INFINITY,
+            Self::Entry => f64::INFINITY,
+            Self::Exit => f64::NEG_INFINITY,
         }
     }
 
     /// Where that is in a contact.
-    fn of(self, contact: Contact) -> f64 {
+    fn of(self, contact: ContactInterval) -> f64 {
         match self {
-            Self::First => contact.enter,
-            Self::Last => contact.leave,
+            Self::Entry => contact.enter,
+            Self::Exit => contact.leave,
         }
     }
 
     /// Whether no part of a step can be better than this.
     fn is_best(self, part: f64) -> bool {
         match self {
-            Self::First => part <= 0.0,
-            Self::Last => part >= 1.0,
+            Self::Entry => part <= 0.0,
+            Self::Exit => part >= 1.0,
         }
     }
 
     fn better(self, a: f64, b: f64) -> f64 {
         match self {
-            Self::First => a.min(b),
-            Self::Last => a.max(b),
+            Self::Entry => a.min(b),
+            Self::Exit => a.max(b),
         }
     }
 
     /// The halves of a step in the order in which they are searched.
     fn halves(self) -> [u32; 2] {
         match self {
-            Self::First => [0, 1],
-            Self::Last => [1, 0],
+            Self::Entry => [0, 1],
+            Self::Exit => [1, 0],
         }
     }
 }
 
-/// A step among [`Halves`].
+/// A step among [`Bisection`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part(u32);
 
 /// Steps, and the halves that they were cut in so far. Whoever has it keeps its memory; who asks forgets the steps of
 /// whoever asked before.
 #[derive(Clone, Debug, Default)]
-pub struct Halves {
+pub struct Bisection {
     parts: Vec<Swept>,
     /// Of those parts that were asked for theirs.
     hulls: Vec<Polygon>,
@@ -126,19 +126,19 @@ impl Swept {
     }
 
     /// Its contact with a convex area, as a translation of the rectangle in its middle.
-    fn slide_to(&mut self, fixed: &Outline) -> Option<Contact> {
+    fn slide_to(&mut self, fixed: &ConvexOutline) -> Option<ContactInterval> {
         let (axis, Step { from, to, length, width, .. }) = (self.middle(), self.step);
         let by = to - from;
         let middle = Rectangle::behind(from + by * 0.5, axis, length, width);
         let start = Rectangle { centre: middle.centre - by * 0.5, ..middle };
-        translation(&Outline::rectangle(&start), &by, fixed)
+        translation(&ConvexOutline::rectangle(&start), &by, fixed)
     }
 
     /// The part of that translation which is better than what is known.
-    fn slide_before(&mut self, which: Touch, known: f64) -> Self {
+    fn slide_before(&mut self, which: Contact, known: f64) -> Self {
         let (axis, Step { from, to, .. }) = (self.middle(), self.step);
         let at = from + (to - from) * known;
-        let (from, to) = if which == Touch::First { (from, at) } else { (at, to) };
+        let (from, to) = if which == Contact::Entry { (from, at) } else { (at, to) };
         Self::new(Step { from, from_axis: axis, to, to_axis: axis, ..self.step })
     }
 
@@ -167,7 +167,7 @@ impl Swept {
     }
 }
 
-impl Halves {
+impl Bisection {
     /// With all the memory that is kept from step to step, so that it does not grow with what is looked at.
     pub fn to_keep() -> Self {
         let room = Self { parts: Vec::with_capacity(KEPT), hulls: Vec::with_capacity(KEPT), ..Self::default() };
@@ -214,22 +214,22 @@ impl Halves {
     }
 
     /// The part of a step, 0 to 1, at which its rectangle touches a convex area; none if it does not.
-    pub fn meet(&mut self, of: Part, fixed: &Polygon, which: Touch) -> Option<f64> {
+    pub fn meet(&mut self, of: Part, fixed: &Polygon, which: Contact) -> Option<f64> {
         self.search(of.0, fixed, which, which.none())
     }
 
     /// The same of the step with this number and a rectangle; one that never turns needs no halves.
-    pub fn meet_rectangle(&mut self, (number, step): (usize, &Step), fixed: &Rectangle, which: Touch) -> Option<f64> {
+    pub fn meet_rectangle(&mut self, (number, step): (usize, &Step), fixed: &Rectangle, which: Contact) -> Option<f64> {
         if step.slides() {
             return step.slide_to(fixed).map(|contact| which.of(contact));
         }
         let part = self.numbered(number, || *step);
-        self.meet(part, &Outline::rectangle(fixed).into(), which)
+        self.meet(part, &ConvexOutline::rectangle(fixed).into(), which)
     }
 
     /// The part of a step at which its rectangle touches the area that another step covers, or `known` if that is
     /// better.
-    pub fn touch(&mut self, of: Part, other: Part, which: Touch, known: f64) -> f64 {
+    pub fn touch(&mut self, of: Part, other: Part, which: Contact, known: f64) -> f64 {
         self.search_swept(of.0, other.0, which, known)
     }
 
@@ -238,7 +238,7 @@ impl Halves {
         &mut self,
         (number, step): (usize, &Step),
         (of_other, other): (usize, &Step),
-        which: Touch,
+        which: Contact,
         known: f64,
     ) -> f64 {
         if let (true, Some(covered)) = (step.slides(), other.covered()) {
@@ -250,7 +250,7 @@ impl Halves {
     }
 
     /// The other's hull decides quickly where they do not touch; where they do, it is cut in halves until it fits.
-    fn search_swept(&mut self, of: u32, other: u32, which: Touch, known: f64) -> f64 {
+    fn search_swept(&mut self, of: u32, other: u32, which: Contact, known: f64) -> f64 {
         if which.is_best(known) || !self.bounds(Part(of)).meet(self.bounds(Part(other))) {
             return known;
         }
@@ -273,7 +273,7 @@ impl Halves {
     }
 
     /// Where a part touches a convex area, if that is better than what is known.
-    fn search(&mut self, of: u32, fixed: &Polygon, which: Touch, known: f64) -> Option<f64> {
+    fn search(&mut self, of: u32, fixed: &Polygon, which: Contact, known: f64) -> Option<f64> {
         if which.is_best(known) {
             return None;
         }
@@ -297,7 +297,7 @@ impl Halves {
 
     /// Whether all that is better than what is known stays so clear of a hull that it touches nothing which strays from
     /// that by so much.
-    fn is_clear(&mut self, of: u32, hull: &Polygon, stray: Metre, which: Touch, known: f64) -> bool {
+    fn is_clear(&mut self, of: u32, hull: &Polygon, stray: Metre, which: Contact, known: f64) -> bool {
         if which.is_best(known) {
             return true;
         }

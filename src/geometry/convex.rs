@@ -12,14 +12,14 @@ pub(super) const UNSURE: Metre = 1e-6;
 
 /// A convex polygon with up to eight corners, counter-clockwise.
 #[derive(Clone, Copy, Debug)]
-pub struct Outline {
+pub struct ConvexOutline {
     corners: [Point; MOST_CORNERS],
     count: usize,
     /// Edges whose normals have to be looked at: in a rectangle opposite ones share theirs.
     edges: usize,
 }
 
-impl Outline {
+impl ConvexOutline {
     /// The outline of a rectangle.
     pub fn rectangle(rectangle: &Rectangle) -> Self {
         let mut outline = Self { corners: [Point::origin(); MOST_CORNERS], count: 4, edges: 2 };
@@ -126,7 +126,7 @@ impl Outline {
     }
 }
 
-impl TryFrom<&[Point]> for Outline {
+impl TryFrom<&[Point]> for ConvexOutline {
     type Error = usize;
 
     /// The outline of a convex polygon, corners counter-clockwise; fails with the number of corners where these are
@@ -150,7 +150,7 @@ mod tests {
     fn the_hull_of_a_rectangle_and_its_shifted_self_is_the_swept_area() {
         let here = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
         let there = Rectangle::new(Point::new(10.0, 0.0), 0.0, 4.0, 2.0);
-        let hull = Outline::hull(&here, &there);
+        let hull = ConvexOutline::hull(&here, &there);
         assert_eq!(hull.corners().len(), 4);
         assert_eq!(hull.bounds(), Bounds { low: Point::new(-2.0, -1.0), high: Point::new(12.0, 1.0) });
     }
@@ -158,6 +158,6 @@ mod tests {
     #[test]
     fn the_hull_of_one_rectangle_twice_is_that_rectangle() {
         let here = Rectangle::new(Point::new(3.0, 4.0), 0.7, 4.0, 2.0);
-        assert_eq!(Outline::hull(&here, &here).corners().len(), 4);
+        assert_eq!(ConvexOutline::hull(&here, &here).corners().len(), 4);
     }
 }

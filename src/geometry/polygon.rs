@@ -5,7 +5,7 @@ use parry2d_f64::query;
 use parry2d_f64::shape::{ConvexPolygon, TriMesh};
 use parry2d_f64::transformation::{convex_hull, hertel_mehlhorn};
 
-use super::convex::Outline;
+use super::convex::ConvexOutline;
 use super::rectangle::Rectangle;
 use super::{Bounds, Point, parry};
 use crate::util::units::Metre;
@@ -14,19 +14,19 @@ use crate::util::units::Metre;
 #[derive(Clone, Copy, Debug)]
 pub struct Polygon {
     /// Its outline, counter-clockwise.
-    pub outline: Outline,
+    pub outline: ConvexOutline,
     /// The box around it.
     pub bounds: Bounds,
 }
 
 impl Polygon {
     fn new(corners: &[Point]) -> Option<Self> {
-        Outline::try_from(corners).ok().map(Self::from)
+        ConvexOutline::try_from(corners).ok().map(Self::from)
     }
 }
 
-impl From<Outline> for Polygon {
-    fn from(outline: Outline) -> Self {
+impl From<ConvexOutline> for Polygon {
+    fn from(outline: ConvexOutline) -> Self {
         Self { outline, bounds: outline.bounds() }
     }
 }

@@ -4,24 +4,24 @@
 //! intervals overlap (the swept form of the separating-axes test; Eberly, "Dynamic collision detection using oriented
 //! bounding boxes").
 
-use super::convex::{Outline, UNSURE};
+use super::convex::{ConvexOutline, UNSURE};
 use super::rectangle::Rectangle;
 use super::{Vector, cross, left_of};
 use crate::util::units::Metre;
 
 /// The part of a movement, 0 at its beginning and 1 at its end, during which two outlines touch.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct ContactInterval {
     /// Where they begin to touch.
     pub enter: f64,
     /// Where they touch last; above 1 where they still do at the end.
     pub leave: f64,
 }
 
-/// Contact of `moving`, displaced by `by`, with `fixed`; none if they do not touch on the way.
-pub fn translation(moving: &Outline, by: &Vector, fixed: &Outline) -> Option<Contact> {
-    let mut contact = Contact { enter: 0.0, leave: f64::INFINITY };
-    for normal in [moving, fixed].into_iter().flat_map(Outline::normals) {
+/// ContactInterval of `moving`, displaced by `by`, with `fixed`; none if they do not touch on the way.
+pub fn translation(moving: &ConvexOutline, by: &Vector, fixed: &ConvexOutline) -> Option<ContactInterval> {
+    let mut contact = ContactInterval { enter: 0.0, leave: f64::INFINITY };
+    for normal in [moving, fixed].into_iter().flat_map(ConvexOutline::normals) {
         let (low, high) = moving.extent(&normal);
         let (fixed_low, fixed_high) = fixed.extent(&normal);
         let speed = by.dot(&normal);
@@ -45,7 +45,7 @@ pub fn translation(moving: &Outline, by: &Vector, fixed: &Outline) -> Option<Con
 }
 
 /// Whether two outlines share a point; touching counts.
-pub fn outlines_touch(a: &Outline, b: &Outline) -> bool {
+pub fn outlines_touch(a: &ConvexOutline, b: &ConvexOutline) -> bool {
     let room = a.room_to(b, -UNSURE, UNSURE);
     if room.abs() > UNSURE {
         return room < 0.0;
@@ -57,7 +57,7 @@ pub fn outlines_touch(a: &Outline, b: &Outline) -> bool {
 ///
 /// All four normals are the axes of both, so that the products of these are all there is to know, as in
 /// [`super::exact`]. Measured (`cargo bench --bench library`): 21 ns, 58 by their outlines.
-pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Contact> {
+pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<ContactInterval> {
     let between = fixed.centre - moving.centre;
     // Where they enter and, negated, where they leave: the same operations, so that a processor does both at once.
     let mut last = [0.0, f64::NEG_INFINITY];
@@ -76,7 +76,7 @@ pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Conta
             *last = if at > *last { at } else { *last };
         }
     }
-    let contact = Contact { enter: last[0], leave: -last[1] };
+    let contact = ContactInterval { enter: last[0], leave: -last[1] };
     (contact.enter <= contact.leave && contact.enter <= 1.0).then_some(contact)
 }
 
@@ -95,8 +95,8 @@ mod tests {
     use super::*;
     use crate::geometry::Point;
 
-    fn rectangle(x: f64, y: f64, heading: f64) -> Outline {
-        Outline::rectangle(&Rectangle::new(Point::new(x, y), heading, 4.0, 2.0))
+    fn rectangle(x: f64, y: f64, heading: f64) -> ConvexOutline {
+        ConvexOutline::rectangle(&Rectangle::new(Point::new(x, y), heading, 4.0, 2.0))
     }
 
     #[test]
@@ -134,7 +134,7 @@ mod tests {
             let fixed = Rectangle::new(Point::new(3e3 + x, -4e3 + y), heading + turn, 12.0, 2.5);
             let by = moving.axis * along + left_of(&moving.axis) * across;
             let found = slide(&moving, &by, &fixed);
-            let outlines = translation(&Outline::rectangle(&moving), &by, &Outline::rectangle(&fixed));
+            let outlines = translation(&ConvexOutline::rectangle(&moving), &by, &ConvexOutline::rectangle(&fixed));
             match (found, outlines) {
                 (Some(found), Some(outlines)) => {
                     prop_assert!((found.enter - outlines.enter).abs() * by.norm() < 1e-9, "{found:?} {outlines:?}");

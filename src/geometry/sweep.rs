@@ -8,9 +8,9 @@
 //! Measured (`cargo bench --bench library`): 58 ns for a pair of rectangles, parry2d's `cast_shapes` 226 ns; its
 //! `cast_shapes_nonlinear`, which would turn too, has no cap on its iterations and was seen not to return.
 
-use super::convex::Outline;
+use super::convex::ConvexOutline;
 use super::rectangle::Rectangle;
-use super::separating_axes::{Contact, slide};
+use super::separating_axes::{ContactInterval, slide};
 use super::{Point, Vector, cross};
 use crate::util::units::Metre;
 
@@ -55,7 +55,7 @@ impl Step {
     }
 
     /// The contact of one that never turns with a rectangle that stands.
-    pub fn slide_to(&self, fixed: &Rectangle) -> Option<Contact> {
+    pub fn slide_to(&self, fixed: &Rectangle) -> Option<ContactInterval> {
         slide(&self.rectangle(0.0), &(self.to - self.from), fixed)
     }
 
@@ -68,10 +68,10 @@ impl Step {
     }
 
     /// A convex outline around the area that the step covers.
-    pub fn hull(&self) -> Outline {
+    pub fn hull(&self) -> ConvexOutline {
         match self.covered() {
-            Some(covered) => Outline::rectangle(&covered),
-            None => Outline::hull(&self.rectangle(0.0), &self.rectangle(1.0)),
+            Some(covered) => ConvexOutline::rectangle(&covered),
+            None => ConvexOutline::hull(&self.rectangle(0.0), &self.rectangle(1.0)),
         }
     }
 }
@@ -79,7 +79,7 @@ impl Step {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bisection::{Halves, Touch};
+    use crate::geometry::bisection::{Bisection, Contact};
     use crate::geometry::separating_axes::translation;
 
     #[test]
@@ -92,12 +92,12 @@ mod tests {
             length: 8.0,
             width: 2.0,
         };
-        let fixed = Outline::rectangle(&Rectangle::new(Point::new(-3.0, -2.5), 0.0, 1.0, 1.0));
-        let mut halves = Halves::default();
+        let fixed = ConvexOutline::rectangle(&Rectangle::new(Point::new(-3.0, -2.5), 0.0, 1.0, 1.0));
+        let mut halves = Bisection::default();
         let part = halves.add(step);
-        let found = halves.meet(part, &fixed.into(), Touch::First).unwrap();
+        let found = halves.meet(part, &fixed.into(), Contact::Entry).unwrap();
         let touching =
-            |part| translation(&Outline::rectangle(&step.rectangle(part)), &Vector::zeros(), &fixed).is_some();
+            |part| translation(&ConvexOutline::rectangle(&step.rectangle(part)), &Vector::zeros(), &fixed).is_some();
         let sampled = (0..=10_000).map(|i| f64::from(i) / 10_000.0).find(|&part| touching(part)).unwrap();
         assert!((found - sampled).abs() < 0.01, "{found} against {sampled}");
     }

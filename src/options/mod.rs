@@ -3,7 +3,7 @@
 //! One struct serves the command line (clap), the TOML file and Python: a TOML key or a Python keyword is the long
 //! option with underscores, and all three end in the same parser ([`Options::from_settings`]).
 
-pub mod exclusion;
+pub mod shortcut;
 
 use std::path::{Path, PathBuf};
 
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::braking::MuModel;
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
-use exclusion::Exclusion;
+use shortcut::Shortcut;
 
 /// Which method finds the conflicts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
@@ -126,7 +126,7 @@ pub struct Options {
     /// The same for single ones, to measure what each saves.
     #[arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true)]
     #[serde(skip)]
-    pub keep: Vec<Exclusion>,
+    pub keep: Vec<Shortcut>,
     /// Settings of single vehicle types (`[type.NAME]` in the TOML file).
     #[arg(skip)]
     pub types: FxHashMap<String, TypeOptions>,

@@ -114,10 +114,10 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where the disk takes no more.
-    pub fn conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
+    pub fn append_conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for conflict in conflicts {
             self.written += 1;
-            let (ego, foe) = (&conflict.ego_stance, &conflict.foe_stance);
+            let (ego, foe) = (&conflict.ego_snapshot, &conflict.foe_snapshot);
             self.conflicts.row(&[
                 Cell::Count(self.written),
                 Cell::Text(&conflict.ego),
@@ -168,7 +168,7 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where the disk takes no more.
-    pub fn encounters<'a>(
+    pub fn append_encounters<'a>(
         &mut self,
         time: Second,
         encounters: impl Iterator<Item = &'a Encounter>,
@@ -197,7 +197,7 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] where it cannot be written.
-    pub fn run(&self, record: &RunRecord) -> Result<()> {
+    pub fn write_record(&self, record: &RunRecord) -> Result<()> {
         let path = self.folder.join(RUN);
         let draft = self.folder.join(format!("{RUN}.tmp"));
         let text = serde_json::to_string_pretty(record).map_err(|error| Error::content(&path, error.to_string()))?;

@@ -4,7 +4,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::detection::detector::exclusions::LeftOut;
+use crate::detection::detector::LeftOut;
 use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;
 use crate::util::units::Second;

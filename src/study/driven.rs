@@ -11,9 +11,9 @@ use rustc_hash::FxHashMap;
 use crate::Result;
 use crate::braking::{Brakes, MuModel, stopping_distance};
 use crate::detection::broad_phase::{Area, Circle, Search};
-use crate::detection::narrow_phase::{self, Cover, Meeting, Mover, side};
+use crate::detection::narrow_phase::{self, ConflictPoint, Participant, SweptBounds, side};
 use crate::detection::path::Pose;
-use crate::geometry::bisection::Halves;
+use crate::geometry::bisection::Bisection;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::input::replay::recording::Recording;
@@ -148,8 +148,8 @@ impl Driven {
 struct Way<'a> {
     rectangle: Rectangle,
     poses: &'a [Pose],
-    cover: Cover,
-    covers: Vec<Cover>,
+    cover: SweptBounds,
+    covers: Vec<SweptBounds>,
     speed: MetrePerSecond,
     brakes: &'a Brakes,
     stop: Metre,
@@ -165,15 +165,15 @@ impl<'a> Way<'a> {
         let end = all.partition_point(|pose| pose.way <= stop + epsilon);
         let poses = &all[..end.max(1)];
         let (length, width) = (profile.length, profile.width);
-        let cover = Cover::of(poses, length, width).unwrap_or(Cover::NOWHERE);
-        let covers = poses.windows(2).filter_map(|pair| Cover::of(pair, length, width)).collect();
+        let cover = SweptBounds::of(poses, length, width).unwrap_or(SweptBounds::NOWHERE);
+        let covers = poses.windows(2).filter_map(|pair| SweptBounds::of(pair, length, width)).collect();
         Self { rectangle, poses, cover, covers, speed, brakes: &profile.brakes, stop, all }
     }
 
-    fn mover(&self) -> Mover<'_> {
+    fn mover(&self) -> Participant<'_> {
         let Self { rectangle, poses, ref cover, ref covers, speed, brakes, stop, .. } = *self;
         let reach = poses.last().map_or(0.0, |pose| pose.way);
-        Mover { rectangle, shape: &[], poses, straight: false, reach, cover, covers, speed, brakes, stop }
+        Participant { rectangle, shape: &[], poses, straight: false, reach, cover, covers, speed, brakes, stop }
     }
 }
 
@@ -185,8 +185,8 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
     let Some((ego_is_a, meeting)) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
     let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
     let sigma = meeting.angle().cos();
-    let foe_way = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_way };
-    let gap = narrow_phase::gap(meeting.ego_way, foe_way, sigma);
+    let foe_distance = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_distance };
+    let gap = narrow_phase::gap(meeting.ego_distance, foe_distance, sigma);
     let margin = gap - narrow_phase::mu(MuModel::Minimal, &ego.mover(), &foe.mover(), sigma, options.epsilon);
     match margin {
         _ if margin.abs() < NEAR => Truth::Aside,
@@ -196,10 +196,10 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
 }
 
 /// The foe's way until it has left the meeting place; a leader is there now.
-fn way_out(foe: &Way, meeting: &Meeting) -> Metre {
-    if meeting.foe_way <= 0.0 {
+fn way_out(foe: &Way, meeting: &ConflictPoint) -> Metre {
+    if meeting.foe_distance <= 0.0 {
         0.0
     } else {
-        side::departure(&mut Halves::default(), foe.all, &foe.mover(), &meeting.ego, meeting.foe_way)
+        side::departure(&mut Bisection::default(), foe.all, &foe.mover(), &meeting.ego, meeting.foe_distance)
     }
 }

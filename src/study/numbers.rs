@@ -1,4 +1,4 @@
-//! Contact decided in f32 and f64, near and far from the origin, with and without a local one.
+//! ContactInterval decided in f32 and f64, near and far from the origin, with and without a local one.
 
 use nalgebra::{RealField, Vector2, convert};
 

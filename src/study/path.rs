@@ -77,7 +77,7 @@ impl Scene {
                 let started = Instant::now();
                 let mut replay = Replay::open(&self.recording, &self.types, &self.net, &options)?;
                 let mut run = Run::new(&options, Some(self.net.clone()))?;
-                run.routes_are_fixed();
+                run.set_fixed_routes(true);
                 let (mut rows, mut steps, mut aside) = (0, 0_u64, 0.0);
                 while replay.next(&mut run)?.is_some() {
                     rows += run.frame.len();

@@ -1,4 +1,4 @@
-//! Contact of two that move: looked for now and then, or swept.
+//! ContactInterval of two that move: looked for now and then, or swept.
 
 use std::hint::black_box;
 

@@ -48,7 +48,7 @@ impl Day {
         let net = Arc::new(Net::read(net).unwrap());
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
         run.log_to(Log::create(log, false).unwrap(), false);
-        run.routes_are_fixed();
+        run.set_fixed_routes(true);
         let profile = run.roster.profile(car).unwrap();
         let courses = courses(&net);
         Self { net, courses, run, profile, cars: Vec::new(), rows: Vec::new(), steps: 0, entered: 0 }
@@ -87,9 +87,9 @@ impl Day {
             self.run.frame.push(self.cars[place].unwrap(), state);
             self.rows.push((place % self.courses.len(), way));
         }
-        for row in self.run.follow().to_vec() {
+        for row in self.run.track_paths().to_vec() {
             let (course, way) = self.rows[row as usize];
-            self.run.place(row, &self.courses[course].placement(&self.net, way));
+            self.run.set_placement(row, &self.courses[course].placement(&self.net, way));
         }
         self.run.finish_step().unwrap();
         self.steps += 1;

@@ -103,7 +103,7 @@ impl Compiled {
         // and `read` has the layout of what is written to it; neither is kept. No exception comes out: the function is
         // `noexcept` and catches all. libsumo itself knows no threads; Python's lock is held by every caller, as for its
         // Python getters. `kept` is null or has what this function has written there for the same road user: where
-        // nobody but closecall makes steps (`Source::is_alone`), SUMO deletes it in a step alone, and says then that it has
+        // nobody but closecall makes steps (`Source::set_exclusive`), SUMO deletes it in a step alone, and says then that it has
         // arrived (MSVehicleControl::removePending, MSTransportableControl::erase), so that `Domain::update` drops it
         // before anybody is read.
         let is_known = unsafe { closecall_read(&raw const *self, id.as_ptr().cast(), id.len(), kept, &raw mut read) };

@@ -108,7 +108,7 @@ impl Libsumo {
         })
     }
 
-    pub fn is_alone(&mut self) {
+    pub fn set_exclusive(&mut self) {
         self.vehicles.keeps = true;
         self.persons.keeps = true;
     }
@@ -129,7 +129,7 @@ impl Libsumo {
         for user in &self.vehicles.live[entered] {
             let id = run.roster.id(*user);
             if run.has_fixed_routes() && self.may_reroute(py, id)? {
-                run.routes_may_change();
+                run.set_fixed_routes(false);
             }
         }
         self.persons.update(py, run, jumped, |run, name| self.types.person(py, run, name))?;
@@ -185,7 +185,7 @@ impl Libsumo {
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
         // A route is asked for once: from then on the path that is laid along it knows it.
-        let stays = run.has_fixed_routes() && run.leaves_out().known_paths;
+        let stays = run.has_fixed_routes() && run.shortcuts().known_paths;
         for &row in rows {
             let Some(net) = run.net() else { return Ok(()) };
             let user = run.frame.user(row);
@@ -216,7 +216,7 @@ impl Libsumo {
                 route_position: position,
                 lateral_speed: ask(&self.get.lateral_speed)?.extract()?,
             };
-            run.place(row, &placement);
+            run.set_placement(row, &placement);
         }
         Ok(())
     }

@@ -37,7 +37,7 @@ impl Source {
             return Err(PyValueError::new_err(message));
         }
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
-            run.has_sublanes();
+            run.set_sublane(true);
         }
         Ok(if is_libsumo(source) {
             Self::Libsumo(Box::new(Libsumo::new(source, options)?))
@@ -48,9 +48,9 @@ impl Source {
 
     /// Says that nobody but the caller makes steps, none of them is missed, and nobody takes road users out of the
     /// simulation but SUMO itself.
-    pub fn is_alone(&mut self) {
+    pub fn set_exclusive(&mut self) {
         match self {
-            Self::Libsumo(source) => source.is_alone(),
+            Self::Libsumo(source) => source.set_exclusive(),
             Self::Traci(_) => {}
         }
     }

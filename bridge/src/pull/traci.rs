@@ -135,7 +135,7 @@ impl Traci {
                 route_position: position,
                 lateral_speed: value(self.variable.lateral_speed)?.extract()?,
             };
-            run.place(row, &placement);
+            run.set_placement(row, &placement);
         }
         Ok(())
     }

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::rows::{Row, Stance};
-use crate::analysis::logged::{self, ConflictReader, LoggedConflict, LoggedStance, PARQUET};
+use super::rows::{Row, Snapshot};
+use crate::analysis::logged::{self, ConflictReader, LoggedConflict, LoggedSnapshot, PARQUET};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log::RUN;
 use crate::{Error, Result};
@@ -19,7 +19,7 @@ pub fn record(log: &Path) -> Result<serde_json::Value> {
 
 /// Passes on the conflicts of a log, in their order.
 pub fn rows(log: &Path, mut take: impl FnMut(Row)) -> Result<()> {
-    ConflictReader::open(log)?.with_stances().try_for_each(|conflict| {
+    ConflictReader::open(log)?.with_snapshots().try_for_each(|conflict| {
         take(row(conflict?));
         Ok(())
     })
@@ -53,13 +53,13 @@ fn row(conflict: LoggedConflict) -> Row {
         ids: [conflict.ego.into(), conflict.foe.into()],
         types: [conflict.ego_type.into(), conflict.foe_type.into()],
         lane: conflict.lane.into(),
-        stances: conflict.stances.map(|stances| Box::new(stances.map(stance))),
+        snapshots: conflict.snapshots.map(|snapshots| Box::new(snapshots.map(stance))),
     }
 }
 
-fn stance(stance: LoggedStance) -> Stance {
-    let LoggedStance { x, y, heading, length, width, path } = stance;
-    Stance { numbers: [x, y, heading, length, width], path: path.into() }
+fn stance(stance: LoggedSnapshot) -> Snapshot {
+    let LoggedSnapshot { x, y, heading, length, width, path } = stance;
+    Snapshot { numbers: [x, y, heading, length, width], path: path.into() }
 }
 
 fn place<T: PartialEq>(all: &[T], one: T) -> u8 {

@@ -30,7 +30,7 @@ const TTC: usize = 6;
 
 /// What a drawing of the worst step needs of one of the two.
 #[derive(Clone, Debug, Default)]
-pub struct Stance {
+pub struct Snapshot {
     /// x, y, heading, length, width.
     pub numbers: [f64; 5],
     /// The path, as it is in the log.
@@ -59,7 +59,7 @@ pub struct Row {
     /// The lane of the meeting place; empty where there is none.
     pub lane: Box<str>,
     /// Ego, foe; none where the log has none.
-    pub stances: Option<Box<[Stance; 2]>>,
+    pub snapshots: Option<Box<[Snapshot; 2]>>,
 }
 
 impl Row {

@@ -60,14 +60,14 @@ pub struct LoggedConflict {
     /// The foe's type; empty in logs of before there was this column.
     #[serde(default)]
     pub foe_type: String,
-    /// Where ego and foe stood and would go; only from [`ConflictReader::with_stances`], and where the log has it.
+    /// Where ego and foe stood and would go; only from [`ConflictReader::with_snapshots`], and where the log has it.
     #[serde(skip)]
-    pub stances: Option<Box<[LoggedStance; 2]>>,
+    pub snapshots: Option<Box<[LoggedSnapshot; 2]>>,
 }
 
 /// Where one of the two stood in the step with the smallest margin, and where it would go.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct LoggedStance {
+pub struct LoggedSnapshot {
     /// x of the front bumper, in m.
     pub x: Metre,
     /// y of the front bumper, in m.

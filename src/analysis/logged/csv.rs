@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use super::conflicts::{LoggedConflict, LoggedStance};
+use super::conflicts::{LoggedConflict, LoggedSnapshot};
 use crate::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
@@ -14,8 +14,8 @@ pub struct CsvRows {
     reader: csv::Reader<Take<File>>,
     header: csv::StringRecord,
     row: csv::StringRecord,
-    /// Where in a row ego's and foe's stances are, if they are wanted and there.
-    stances: Option<[StancePlaces; 2]>,
+    /// Where in a row ego's and foe's snapshots are, if they are wanted and there.
+    snapshots: Option<[StancePlaces; 2]>,
 }
 
 /// Where in a row x, y, heading, length, width and path are.
@@ -43,11 +43,11 @@ impl CsvRows {
                 return Err(Error::line(path, 1, format!("the column \"{column}\" is missing")));
             }
         }
-        Ok(Self { path: path.to_owned(), reader, header, row: csv::StringRecord::new(), stances: None })
+        Ok(Self { path: path.to_owned(), reader, header, row: csv::StringRecord::new(), snapshots: None })
     }
 
-    /// From now on rows have their stances, where the file has them.
-    pub fn read_stances(&mut self) {
+    /// From now on rows have their snapshots, where the file has them.
+    pub fn read_snapshots(&mut self) {
         let places = |who: &str| {
             let mut places = [0; 6];
             for (place, name) in places.iter_mut().zip(["x", "y", "heading", "length", "width", "path"]) {
@@ -56,7 +56,7 @@ impl CsvRows {
             }
             Some(places)
         };
-        self.stances = places("ego").zip(places("foe")).map(<[StancePlaces; 2]>::from);
+        self.snapshots = places("ego").zip(places("foe")).map(<[StancePlaces; 2]>::from);
     }
 
     /// The columns.
@@ -81,14 +81,14 @@ impl CsvRows {
         if let Some(number) = conflict.not_finite() {
             return Err(Error::line(&self.path, line(), format!("{number} is no number of a log")));
         }
-        if let Some([ego, foe]) = &self.stances {
+        if let Some([ego, foe]) = &self.snapshots {
             let stance = |places| self.stance(places).map_err(|message| Error::line(&self.path, line(), message));
-            conflict.stances = Some(Box::new([stance(ego)?, stance(foe)?]));
+            conflict.snapshots = Some(Box::new([stance(ego)?, stance(foe)?]));
         }
         Ok(Some(conflict))
     }
 
-    fn stance(&self, places: &StancePlaces) -> std::result::Result<LoggedStance, String> {
+    fn stance(&self, places: &StancePlaces) -> std::result::Result<LoggedSnapshot, String> {
         let cell = |place: usize| self.row.get(place).unwrap_or_default();
         let number = |place: usize| match cell(place) {
             "" => Ok(0.0),
@@ -98,7 +98,7 @@ impl CsvRows {
             }
         };
         let [x, y, heading, length, width, path] = *places;
-        Ok(LoggedStance {
+        Ok(LoggedSnapshot {
             x: number(x)?,
             y: number(y)?,
             heading: number(heading)?,

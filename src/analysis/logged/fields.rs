@@ -2,7 +2,7 @@
 
 use parquet::basic::Type as Physical;
 
-use super::conflicts::{LoggedConflict, LoggedStance};
+use super::conflicts::{LoggedConflict, LoggedSnapshot};
 use crate::output::log::CONFLICT_COLUMNS;
 
 /// A column: its type, and how a conflict fills it.
@@ -30,7 +30,7 @@ impl Field {
     }
 }
 
-/// The columns of the log that every conflict has; the others are those of the stances.
+/// The columns of the log that every conflict has; the others are those of the snapshots.
 pub const WITHOUT_STANCES: usize = 25;
 
 /// How the columns of the log are filled, in the order of [`CONFLICT_COLUMNS`].
@@ -74,10 +74,10 @@ pub const FIELDS: [Field; CONFLICT_COLUMNS.len()] = [
     Field::Text(|conflict| foe(conflict).map_or("", |stance| &stance.path)),
 ];
 
-fn ego(conflict: &LoggedConflict) -> Option<&LoggedStance> {
-    conflict.stances.as_deref().map(|[ego, _]| ego)
+fn ego(conflict: &LoggedConflict) -> Option<&LoggedSnapshot> {
+    conflict.snapshots.as_deref().map(|[ego, _]| ego)
 }
 
-fn foe(conflict: &LoggedConflict) -> Option<&LoggedStance> {
-    conflict.stances.as_deref().map(|[_, foe]| foe)
+fn foe(conflict: &LoggedConflict) -> Option<&LoggedSnapshot> {
+    conflict.snapshots.as_deref().map(|[_, foe]| foe)
 }

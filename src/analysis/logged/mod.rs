@@ -13,7 +13,7 @@ mod parquet;
 mod reader;
 mod run;
 
-pub use conflicts::{LoggedConflict, LoggedStance};
+pub use conflicts::{LoggedConflict, LoggedSnapshot};
 pub use folders::{SUMMARY, log_folders};
 pub use pack::{Label, LabelValue, pack};
 pub use parquet::{PARQUET, Packed};

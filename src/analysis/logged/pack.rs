@@ -49,7 +49,7 @@ pub enum LabelValue {
 /// # Errors
 /// Those of reading the log; [`Error::File`] or [`Error::Content`] where `out` cannot be written.
 pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> Result<()> {
-    let conflicts = ConflictReader::open(folder)?.with_stances();
+    let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
     let within = out.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
@@ -234,7 +234,7 @@ mod tests {
         pack(&folder.join("log"), &labels(), "abc", &folder.join("p").join(PARQUET)).unwrap();
         assert_eq!(fs::read_dir(folder.join("p")).unwrap().count(), 1, "a draft is left");
         let read = |folder: &Path| {
-            let reader = ConflictReader::open(folder).unwrap().with_stances();
+            let reader = ConflictReader::open(folder).unwrap().with_snapshots();
             assert_eq!(reader.columns(), CONFLICT_COLUMNS);
             reader.collect::<Result<Vec<_>>>().unwrap()
         };

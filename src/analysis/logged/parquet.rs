@@ -9,7 +9,7 @@ use parquet::data_type::{ByteArray, DataType};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
-use super::conflicts::{LoggedConflict, LoggedStance};
+use super::conflicts::{LoggedConflict, LoggedSnapshot};
 use super::fields::{FIELDS, WITHOUT_STANCES};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log::CONFLICT_COLUMNS;
@@ -113,8 +113,8 @@ impl ParquetRows {
         })
     }
 
-    /// From now on rows have their stances, where the file has them.
-    pub fn read_stances(&mut self) {
+    /// From now on rows have their snapshots, where the file has them.
+    pub fn read_snapshots(&mut self) {
         if self.places.iter().all(Option::is_some) {
             self.wanted = FIELDS.len();
         }
@@ -279,18 +279,18 @@ impl Row<'_> {
             collision: self.flag(),
             ego_type: self.text()?,
             foe_type: self.text()?,
-            stances: None,
+            snapshots: None,
         };
         if self.columns.len() > 0 {
-            conflict.stances = Some(Box::new([self.stance()?, self.stance()?]));
+            conflict.snapshots = Some(Box::new([self.stance()?, self.stance()?]));
         }
         Ok(conflict)
     }
 
-    fn stance(&mut self) -> Said<LoggedStance> {
+    fn stance(&mut self) -> Said<LoggedSnapshot> {
         let mut number = || self.maybe().unwrap_or_default();
         let (x, y, heading, length, width) = (number(), number(), number(), number(), number());
-        Ok(LoggedStance { x, y, heading, length, width, path: self.text()? })
+        Ok(LoggedSnapshot { x, y, heading, length, width, path: self.text()? })
     }
 
     fn count(&mut self) -> Said<u64> {

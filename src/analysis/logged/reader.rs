@@ -42,12 +42,12 @@ impl ConflictReader {
         Ok(Self { rows, failed: false })
     }
 
-    /// Reads the stances too, where the log has them.
+    /// Reads the snapshots too, where the log has them.
     #[must_use]
-    pub fn with_stances(mut self) -> Self {
+    pub fn with_snapshots(mut self) -> Self {
         match &mut self.rows {
-            Rows::Csv(rows) => rows.read_stances(),
-            Rows::Parquet(rows) => rows.read_stances(),
+            Rows::Csv(rows) => rows.read_snapshots(),
+            Rows::Parquet(rows) => rows.read_snapshots(),
         }
         self
     }

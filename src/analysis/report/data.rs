@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::roads;
 use crate::analysis::dataset::Conflicts;
-use crate::analysis::dataset::rows::{NUMBERS, Row, Stance};
+use crate::analysis::dataset::rows::{NUMBERS, Row, Snapshot};
 use crate::detection::kind::{Kind, Severity};
 use crate::options::Options;
 use crate::traffic::net::{EdgeFunction, Net};
@@ -19,7 +19,7 @@ const DRAWN: usize = 2_000;
 pub fn json(found: Conflicts) -> String {
     let Conflicts { logs, records, ground, mut rows, seen } = found;
     for row in rows.iter_mut().skip(DRAWN) {
-        row.stances = None;
+        row.snapshots = None;
     }
     rows.sort_unstable_by_key(|row| (row.run, row.id));
     let data = json!({
@@ -82,7 +82,7 @@ fn columns(rows: &[Row], net: Option<&Net>) -> Value {
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
     let spot_of_lane = spots.iter().map(|spot| places.place(spot)).collect::<Vec<_>>();
-    let drawn = (0..).zip(rows).filter_map(|(row, kept)| Some((row, kept.stances.as_deref()?)));
+    let drawn = (0..).zip(rows).filter_map(|(row, kept)| Some((row, kept.snapshots.as_deref()?)));
     let drawn = drawn.map(|(row, [ego, foe]): (usize, _)| json!([row, stance(ego), stance(foe)])).collect::<Vec<_>>();
     json!({
         "count": rows.len(),
@@ -123,7 +123,7 @@ fn spot(lane: &str, net: Option<&Net>) -> String {
 }
 
 /// A stance as x, y, heading, length, width and the numbers of its path.
-fn stance(stance: &Stance) -> Vec<f64> {
+fn stance(stance: &Snapshot) -> Vec<f64> {
     let path = stance.path.split(' ').filter_map(|number| number.parse::<f64>().ok());
     stance.numbers.into_iter().map(|number| rounded(number, 3)).chain(path).collect()
 }
@@ -157,7 +157,7 @@ mod tests {
             ids: ["</script><script>".into(), "b".into()],
             types: Default::default(),
             lane: "".into(),
-            stances: None,
+            snapshots: None,
         };
         let ground = Default::default();
         let text = json(Conflicts { logs: Vec::new(), records: Vec::new(), ground, rows: vec![row], seen: 1 });

@@ -6,7 +6,7 @@ use crate::util::units::Metre;
 
 /// What is known of a part of the places.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Part {
+pub(super) struct Extent {
     /// Sum of the sizes.
     pub sum: Metre,
     /// Largest length along x, and largest height.
@@ -20,7 +20,7 @@ pub(super) struct Part {
     pub moved: usize,
 }
 
-impl Part {
+impl Extent {
     pub const EMPTY: Self =
         Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true, moved: 0 };
 

@@ -25,7 +25,7 @@ use crate::geometry::Vector;
 use crate::util::threads::{Team, share};
 use crate::util::tight_vec::{fill, make_room};
 use crate::util::units::Metre;
-use extent::Part;
+use extent::Extent;
 use fixed_box::Coarse;
 use pair_buffer::Near;
 use place::{Place, length};
@@ -59,7 +59,7 @@ pub struct Search<S> {
     /// Length along x of the longest box that has a strip, and the largest height.
     largest: Vector,
     large: Vec<Place>,
-    parts: Vec<Part>,
+    parts: Vec<Extent>,
 }
 
 impl Search<u32> {
@@ -107,10 +107,10 @@ impl<S: Slot> Search<S> {
         let busy = team.busy(count);
         let share = share(busy, count);
         self.parts.clear();
-        self.parts.resize(count.div_ceil(share), Part::EMPTY);
+        self.parts.resize(count.div_ceil(share), Extent::EMPTY);
         let parts = self.parts.iter_mut().zip(self.boxes.chunks_mut(share)).zip(self.slots.chunks_mut(share));
         team.each(repeat_n((), busy), parts, |(), ((part, boxes), slots)| {
-            let mut all = Part::EMPTY;
+            let mut all = Extent::EMPTY;
             let mut block = [Seen::default(); BLOCK];
             for (boxes, slots) in boxes.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
                 block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));

@@ -3,7 +3,7 @@
 
 use std::iter::repeat_n;
 
-use super::extent::Part;
+use super::extent::Extent;
 use super::fixed_box::FURTHEST;
 use super::place::insert;
 use super::{Search, Slot};
@@ -41,8 +41,8 @@ impl<S: Slot> Search<S> {
         self.places.append(&mut self.large);
     }
 
-    fn all_parts(&self) -> Part {
-        self.parts.iter().fold(Part::EMPTY, Part::join)
+    fn all_parts(&self) -> Extent {
+        self.parts.iter().fold(Extent::EMPTY, Extent::join)
     }
 
     /// Whether so many are larger than this.
@@ -92,7 +92,7 @@ impl<S: Slot> Search<S> {
         let busy = team.busy(count);
         let share = share(busy, count);
         self.parts.clear();
-        self.parts.resize(count.div_ceil(share), Part::EMPTY);
+        self.parts.resize(count.div_ceil(share), Extent::EMPTY);
         let parts = self.parts.iter_mut().zip(self.places.chunks_mut(share));
         team.each(repeat_n((), busy), parts, |(), (part, places)| {
             places.iter_mut().for_each(|place| place.follow(boxes, per_metre));

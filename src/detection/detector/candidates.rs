@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Detector;
-use super::reach::{Paths, Reach, Sight, Turning, Turns, lines_of};
+use super::reach::{PathSource, Paths, Reach, StepView, Turning, lines_of};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::{arc, turn};
 use crate::geometry::Point;
@@ -20,7 +20,7 @@ impl Detector {
     ///
     /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
     /// followed, in a pair or not, and what phase 1 leaves out changes no path.
-    pub fn follow(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
+    pub fn track_paths(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
         if self.paths.len() < roster.len() {
             fill(&mut self.paths, roster.len(), LanePath::default());
         }
@@ -28,7 +28,7 @@ impl Detector {
         self.unplaced.clear();
         self.on_lanes.clear();
         fill(&mut self.on_lanes, frame.len(), false);
-        if self.turns() == Turns::ByLanes {
+        if self.turns() == PathSource::Lanes {
             for (row, Row { user, state }) in frame.rows().enumerate() {
                 if state.moves() && roster.profile_of(user).category == Category::Vehicle {
                     self.keep_on_path(row, user, state.front());
@@ -39,10 +39,10 @@ impl Detector {
     }
 
     /// Phase 1: which pairs may meet.
-    pub fn approach(&mut self, frame: &Frame, roster: &Roster) {
+    pub fn broad_phase(&mut self, frame: &Frame, roster: &Roster) {
         self.lengthen_all(frame, roster);
         self.look(frame, roster);
-        if self.turns() == Turns::ByArcs {
+        if self.turns() == PathSource::Arcs {
             fill(&mut self.turnings, self.paths.len(), Turning::default());
             self.turn(frame);
         }
@@ -50,12 +50,12 @@ impl Detector {
     }
 
     /// What makes road users turn.
-    pub(super) fn turns(&self) -> Turns {
+    pub(super) fn turns(&self) -> PathSource {
         match self.options.path {
-            _ if self.options.mode == Mode::Paper => Turns::Not,
-            PathModel::Arc => Turns::ByArcs,
-            PathModel::Lanes if self.net.is_some() => Turns::ByLanes,
-            PathModel::Lanes | PathModel::Straight => Turns::Not,
+            _ if self.options.mode == Mode::Paper => PathSource::Straight,
+            PathModel::Arc => PathSource::Arcs,
+            PathModel::Lanes if self.net.is_some() => PathSource::Lanes,
+            PathModel::Lanes | PathModel::Straight => PathSource::Straight,
         }
     }
 
@@ -63,8 +63,8 @@ impl Detector {
     fn look(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let sight = Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
-        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
+        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
+        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
         let who_is_there = (roster.changes(), frame.len());
         let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
         self.search.lay(
@@ -95,8 +95,8 @@ impl Detector {
     /// The pairs whose areas meet, those that each thread has found.
     fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let reach = Reach::new(frame, roster, &self.options, self.leaves_out, paths);
-        let (search, count, all) = (&self.search, self.search.slots().len(), !self.leaves_out.circles_apart);
+        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
+        let (search, count, all) = (&self.search, self.search.slots().len(), !self.shortcuts.areas_apart);
         let busy = self.team.busy(count);
         let share = share(busy, count);
         let parts = (0..count.div_ceil(share)).map(|part| part * share..count.min((part + 1) * share));
@@ -115,7 +115,7 @@ impl Detector {
             }
         });
         let found = self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
-        self.work.circles_apart += all_pairs(count) - found;
+        self.work.areas_apart += all_pairs(count) - found;
         self.work.pairs += found;
     }
 
@@ -123,7 +123,7 @@ impl Detector {
     fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
         let of_net = lines_of(self.net.as_deref());
         self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, front);
-        if self.leaves_out.known_paths && !self.routes_may_change && self.on_lanes[row] {
+        if self.shortcuts.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
         } else {
             self.unplaced.push(row as u32);

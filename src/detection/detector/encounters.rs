@@ -2,16 +2,16 @@
 
 use std::hint::black_box;
 
-use super::occupancy::Ways;
+use super::occupancy::OccupancyCache;
 use super::reach;
 use super::reach::User;
-use super::step::Scene;
+use super::step::StepInputs;
 use super::work::Work;
 use super::worker::{Found, Met, Worker};
 use crate::braking::{self, Braking, MuModel};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, kind_at};
-use crate::detection::narrow_phase::{self, Meeting, Mover, side};
+use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{contact, cross};
 use crate::options::Mode;
@@ -30,12 +30,12 @@ const BLOCK: usize = 32;
 struct Roles<'a> {
     /// The ego's slot and the foe's.
     slots: [u32; 2],
-    ego: &'a Mover<'a>,
-    foe: &'a Mover<'a>,
+    ego: &'a Participant<'a>,
+    foe: &'a Participant<'a>,
 }
 
 impl<'a> Roles<'a> {
-    fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Mover<'a>; 2]) -> Self {
+    fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Participant<'a>; 2]) -> Self {
         match ego_is_first {
             true => Self { slots: [first, second], ego: a, foe: b },
             false => Self { slots: [second, first], ego: b, foe: a },
@@ -70,7 +70,7 @@ fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], work: &mut Work) 
     true
 }
 
-impl Scene<'_> {
+impl StepInputs<'_> {
     /// Those of these pairs that would meet.
     pub(super) fn meet_all(&self, worker: &mut Worker, pairs: &[(u32, u32)]) {
         let Worker { work, ways, found } = worker;
@@ -104,12 +104,12 @@ impl Scene<'_> {
         }
     }
 
-    fn meet(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+    fn meet(&self, ways: &mut OccupancyCache, work: &mut Work, slots: [u32; 2], found: &mut Found) {
         let [a, b] = slots;
         let both_ahead = self.user(a).ahead && self.user(b).ahead;
         // Of two that can only go straight on phase 1 has compared the boxes.
-        let is_known = self.leaves_out.circles_apart && both_ahead;
-        if is_known && self.leaves_out.in_line && self.conflicts_only && self.keeps_distance(slots) {
+        let is_known = self.shortcuts.areas_apart && both_ahead;
+        if is_known && self.shortcuts.in_line && self.conflicts_only && self.keeps_distance(slots) {
             work.in_line += 1;
             return;
         }
@@ -118,8 +118,8 @@ impl Scene<'_> {
         }
         ways.begin_pair();
         slots.iter().for_each(|slot| ways.see(self, *slot));
-        if self.leaves_out.ways_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
-            work.ways_apart += 1;
+        if self.shortcuts.paths_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
+            work.paths_apart += 1;
             return;
         }
         // The narrow boxes of who turns: the sweep needs them anyway.
@@ -142,19 +142,20 @@ impl Scene<'_> {
         &self,
         work: &mut Work,
         slots: [u32; 2],
-        [first, second]: [&Mover; 2],
+        [first, second]: [&Participant; 2],
         found: &mut Found,
     ) -> Option<bool> {
         if side::touch_now(first, second) {
             let first_is_ego = !second.shape.is_empty() || self.has_smaller_id(slots);
             let roles = Roles::new(first_is_ego, slots, [first, second]);
             let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
-            let meeting = Meeting { ego_way: 0.0, foe_way: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
+            let meeting =
+                ConflictPoint { ego_distance: 0.0, foe_distance: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
             self.met(work, found, &roles, &meeting, true);
             return None;
         }
         let in_line = narrow_phase::drive_in_line(first, second);
-        if !in_line || !self.leaves_out.in_line {
+        if !in_line || !self.shortcuts.in_line {
             return Some(in_line);
         }
         work.in_line += 1;
@@ -171,7 +172,7 @@ impl Scene<'_> {
         &self,
         work: &mut Work,
         slots: [u32; 2],
-        [first, second]: [&Mover; 2],
+        [first, second]: [&Participant; 2],
         in_line: bool,
         found: &mut Found,
     ) {
@@ -227,11 +228,11 @@ impl Scene<'_> {
     }
 
     /// Whether the narrow boxes around both ways do not meet.
-    fn are_apart(&self, ways: &mut Ways, work: &mut Work, slots: [u32; 2]) -> bool {
+    fn are_apart(&self, ways: &mut OccupancyCache, work: &mut Work, slots: [u32; 2]) -> bool {
         slots.iter().for_each(|slot| ways.cover(self, *slot));
         let [a, b] = slots.map(|slot| ways.cover_of(slot));
         let apart = !a.meets(b);
-        work.ways_apart += u64::from(apart);
+        work.paths_apart += u64::from(apart);
         apart
     }
 
@@ -258,10 +259,10 @@ impl Scene<'_> {
         self.add(found, &roles, &measured.meeting, how);
     }
 
-    fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &Meeting, collision: bool) {
+    fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &ConflictPoint, collision: bool) {
         let angle = meeting.angle();
         let sigma = narrow_phase::sigma(angle);
-        let gap = if collision { 0.0 } else { narrow_phase::gap(meeting.ego_way, meeting.foe_way, sigma) };
+        let gap = if collision { 0.0 } else { narrow_phase::gap(meeting.ego_distance, meeting.foe_distance, sigma) };
         let how = How { kind: kind_at(angle, self.options), angle, sigma, gap, collision };
         match how.kind {
             Kind::Frontal => work.frontal += 1,
@@ -272,7 +273,7 @@ impl Scene<'_> {
     }
 
     /// Adds a pair that would meet, and measures it; later where a path may have to be laid further for that.
-    fn add(&self, found: &mut Found, roles: &Roles, meeting: &Meeting, how: How) {
+    fn add(&self, found: &mut Found, roles: &Roles, meeting: &ConflictPoint, how: How) {
         let How { kind, angle, sigma, gap, collision } = how;
         let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
         let margin = gap - mu;
@@ -293,11 +294,11 @@ impl Scene<'_> {
             gap,
             mu,
             margin,
-            ego_way: meeting.ego_way,
-            foe_way: meeting.foe_way,
+            ego_distance: meeting.ego_distance,
+            foe_distance: meeting.foe_distance,
             x: at.x,
             y: at.y,
-            lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_way) } else { None },
+            lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_distance) } else { None },
             collision,
             nearness: None,
         };
@@ -323,9 +324,9 @@ impl Scene<'_> {
     }
 
     /// Whether a pair is in conflict if its foe leaves the meeting place as late as it can.
-    fn may_leave_late(&self, roles: &Roles, meeting: &Meeting, sigma: f64, mu: Metre) -> bool {
-        let foe_way = self.furthest_way_out(self.user(roles.slots[1]), meeting);
-        narrow_phase::gap(meeting.ego_way, foe_way, sigma) < mu + TOLERANCE
+    fn may_leave_late(&self, roles: &Roles, meeting: &ConflictPoint, sigma: f64, mu: Metre) -> bool {
+        let foe_distance = self.furthest_way_out(self.user(roles.slots[1]), meeting);
+        narrow_phase::gap(meeting.ego_distance, foe_distance, sigma) < mu + TOLERANCE
     }
 
     fn mu_model(&self) -> MuModel {

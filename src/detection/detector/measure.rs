@@ -2,21 +2,21 @@
 //! severity.
 
 use super::reach::User;
-use super::step::Scene;
+use super::step::StepInputs;
 use super::worker::{Found, Met, Scratch, Worker};
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::drac;
 use crate::detection::measures::ttc::{self, Course};
-use crate::detection::narrow_phase::{self, Meeting, Mover, side};
+use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
-impl Scene<'_> {
+impl StepInputs<'_> {
     /// How far ahead somebody's path has to be known to measure a pair that it is in.
-    pub(super) fn way_to_measure(&self, user: &User, meeting: &Meeting) -> Metre {
+    pub(super) fn way_to_measure(&self, user: &User, meeting: &ConflictPoint) -> Metre {
         (self.state(user).speed * ttc::HORIZON).max(self.furthest_way_out(user, meeting))
     }
 
@@ -30,11 +30,11 @@ impl Scene<'_> {
     }
 
     /// Completes what is known of a pair that would meet: the ego and its foe.
-    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &mut Encounter) {
+    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &mut Encounter) {
         if met.leaves {
-            encounter.foe_way = self.way_out(scratch, pair[1], met);
+            encounter.foe_distance = self.way_out(scratch, pair[1], met);
             if self.options.mode == Mode::Closecall {
-                encounter.gap = narrow_phase::gap(encounter.ego_way, encounter.foe_way, met.sigma);
+                encounter.gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
@@ -44,21 +44,21 @@ impl Scene<'_> {
     }
 
     /// The way that holds the one at which the foe is out of the way.
-    pub(super) fn furthest_way_out(&self, foe: &User, meeting: &Meeting) -> Metre {
+    pub(super) fn furthest_way_out(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
         let profile = self.profile(foe);
         // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
-        meeting.foe_way + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width
+        meeting.foe_distance + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width
     }
 
     /// The foe's way until it has left the ego's meeting place.
-    fn way_out(&self, scratch: &mut Scratch, foe: &Mover, met: &Met) -> Metre {
+    fn way_out(&self, scratch: &mut Scratch, foe: &Participant, met: &Met) -> Metre {
         let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
         poses.clear();
         self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
-        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego, met.meeting.foe_way)
+        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego, met.meeting.foe_distance)
     }
 
-    fn nearness(&self, scratch: &mut Scratch, pair: [&Mover; 2], met: &Met, encounter: &Encounter) -> Nearness {
+    fn nearness(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Nearness {
         let [ego, foe] = pair;
         let clearance = if encounter.collision {
             0.0

@@ -6,12 +6,12 @@
 
 mod candidates;
 mod encounters;
-pub mod exclusions;
 mod left_out;
 mod measure;
 mod occupancy;
 mod reach;
 mod row_order;
+pub mod shortcuts;
 mod step;
 mod straight_pair;
 mod work;
@@ -33,19 +33,20 @@ use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
-use exclusions::Exclusions;
-use reach::{Paths, Reach, Sight, Turning, User};
+use reach::{Paths, Reach, StepView, Turning, User};
 use row_order::Order;
-use step::Scene;
+use shortcuts::Shortcuts;
+use step::StepInputs;
 use worker::Worker;
 
+pub use left_out::LeftOut;
 pub use work::Work;
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
     work: Work,
     options: Options,
-    leaves_out: Exclusions,
+    shortcuts: Shortcuts,
     net: Option<Arc<Net>>,
     routes_may_change: bool,
     sublane: bool,
@@ -74,7 +75,7 @@ impl Detector {
         Self {
             work: Work::default(),
             options: options.clone(),
-            leaves_out: Exclusions::of(options),
+            shortcuts: Shortcuts::of(options),
             net,
             routes_may_change: true,
             sublane: false,
@@ -126,13 +127,18 @@ impl Detector {
     }
 
     /// Has the lane of everybody who drives asked for in every step: somebody else wants to know it.
-    pub fn ask_for_lanes(&mut self) {
-        self.leaves_out.known_paths = false;
+    pub fn keep_asking_for_lanes(&mut self) {
+        self.shortcuts.known_paths = false;
     }
 
     /// What is left out.
-    pub fn leaves_out(&self) -> Exclusions {
-        self.leaves_out
+    pub fn shortcuts(&self) -> Shortcuts {
+        self.shortcuts
+    }
+
+    /// What was left out so far.
+    pub fn left_out(&self) -> Vec<LeftOut> {
+        left_out::left_out(&self.work, self.shortcuts)
     }
 
     /// What was done so far.
@@ -161,7 +167,7 @@ impl Detector {
     }
 
     /// Where the road user of a row is on the net, if it is not on its path still or that is not that of its route.
-    pub fn place(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
+    pub fn set_placement(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
@@ -182,7 +188,11 @@ impl Detector {
     }
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows. The frame is that of [`Detector::approach`].
-    pub fn detect(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
+    pub fn narrow_phase(
+        &mut self,
+        frame: &Frame,
+        roster: &Roster,
+    ) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
             worker.found.clear();
@@ -246,25 +256,25 @@ impl Detector {
         }
     }
 
-    fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Sight<'a> {
+    fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> StepView<'a> {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
-        Sight { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: self.all_paths() }
+        StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: self.all_paths() }
     }
 
     fn all_paths(&self) -> Paths<'_> {
         Paths::new(&self.paths, self.net.as_deref())
     }
 
-    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> Scene<'a> {
-        Scene {
+    fn scene<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> StepInputs<'a> {
+        StepInputs {
             options: &self.options,
-            leaves_out: self.leaves_out,
+            shortcuts: self.shortcuts,
             conflicts_only: self.conflicts_only,
             frame,
             roster,
             paths: self.all_paths(),
             turnings: &self.turnings,
-            reach: Reach::new(frame, roster, &self.options, self.leaves_out, self.all_paths()),
+            reach: Reach::new(frame, roster, &self.options, self.shortcuts, self.all_paths()),
             users: self.search.slots(),
         }
     }

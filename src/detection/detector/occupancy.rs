@@ -2,8 +2,8 @@
 //! somebody asks, then kept until the step ends.
 
 use super::reach::User;
-use super::step::Scene;
-use crate::detection::narrow_phase::{Cover, Mover};
+use super::step::StepInputs;
+use crate::detection::narrow_phase::{Participant, SweptBounds};
 use crate::detection::path::{Pose, arc, straight};
 use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;
@@ -32,7 +32,7 @@ const POSES: usize = 12;
 /// The ways of a step that were asked for last. Those of everybody took a quarter of the memory that a run holds per road
 /// user; whose way is asked for after it was forgotten has it laid again, and it is the same.
 #[derive(Default)]
-pub(super) struct Ways {
+pub(super) struct OccupancyCache {
     /// By slot, where its way is, if it is kept: among the newer or the older ones.
     places: Vec<u16>,
     /// So many newer ones make the older ones be forgotten.
@@ -41,11 +41,11 @@ pub(super) struct Ways {
     kept: [Kept; 2],
 }
 
-/// Ways that were laid one after the other.
+/// OccupancyCache that were laid one after the other.
 struct Kept {
     laid: Vec<Laid>,
     poses: Vec<Pose>,
-    covers: Vec<Cover>,
+    covers: Vec<SweptBounds>,
 }
 
 impl Default for Kept {
@@ -85,7 +85,7 @@ impl Kept {
     }
 }
 
-impl Ways {
+impl OccupancyCache {
     /// Forgets those of the last step; slots below `slots` may be asked for.
     pub(super) fn begin(&mut self, slots: usize) {
         fill(&mut self.places, slots, 0);
@@ -106,13 +106,13 @@ impl Ways {
 
     /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
     /// will be.
-    pub(super) fn see(&mut self, scene: &Scene, slot: u32) {
+    pub(super) fn see(&mut self, scene: &StepInputs, slot: u32) {
         if !scene.user(slot).ahead {
             self.lay(scene, slot);
         }
     }
 
-    fn lay(&mut self, scene: &Scene, slot: u32) {
+    fn lay(&mut self, scene: &StepInputs, slot: u32) {
         if self.find(slot).is_some() {
             return;
         }
@@ -125,7 +125,7 @@ impl Ways {
         let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
         let straight = poses.iter().all(|pose| pose.axis == axis);
-        let bounds = if !scene.leaves_out.ways_apart {
+        let bounds = if !scene.shortcuts.paths_apart {
             Bounds::EVERYTHING
         } else if user.ahead {
             scene.reach.area(user).bounds
@@ -143,7 +143,7 @@ impl Ways {
     }
 
     /// Lays the poses and the boxes around them.
-    pub(super) fn cover(&mut self, scene: &Scene, slot: u32) {
+    pub(super) fn cover(&mut self, scene: &StepInputs, slot: u32) {
         self.lay(scene, slot);
         let place = self.places[slot as usize];
         let Some(Kept { laid, poses, covers }) = self.kept.iter_mut().find(|kept| kept.find(slot, place).is_some())
@@ -157,13 +157,13 @@ impl Ways {
         laid.covers = Some(covers.len() as u32);
         let profile = scene.profile(scene.user(slot));
         let poses = &poses[laid.poses.0 as usize..laid.poses.1 as usize];
-        let of = |poses: &[Pose]| match scene.leaves_out.ways_apart {
-            true => Cover::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
-            false => Cover::EVERYWHERE,
+        let of = |poses: &[Pose]| match scene.shortcuts.paths_apart {
+            true => SweptBounds::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
+            false => SweptBounds::EVERYWHERE,
         };
         let whole = match poses {
-            [first, .., last] if laid.straight && poses.len() <= MOST_STRAIGHT && scene.leaves_out.ways_apart => {
-                Cover::straight(first, last, profile.length, profile.width, laid.bounds)
+            [first, .., last] if laid.straight && poses.len() <= MOST_STRAIGHT && scene.shortcuts.paths_apart => {
+                SweptBounds::straight(first, last, profile.length, profile.width, laid.bounds)
             }
             _ => of(poses),
         };
@@ -175,7 +175,7 @@ impl Ways {
     }
 
     /// The box around all that it covers on its way.
-    pub(super) fn bounds(&self, scene: &Scene, slot: u32) -> Bounds {
+    pub(super) fn bounds(&self, scene: &StepInputs, slot: u32) -> Bounds {
         match self.find(slot) {
             Some((_, laid)) => laid.bounds,
             None => scene.reach.area(scene.user(slot)).bounds,
@@ -183,18 +183,18 @@ impl Ways {
     }
 
     /// The boxes around all that it covers on its way, if that was covered.
-    pub(super) fn cover_of(&self, slot: u32) -> &Cover {
+    pub(super) fn cover_of(&self, slot: u32) -> &SweptBounds {
         let found = self.find(slot).and_then(|(kept, laid)| kept.covers.get(laid.covers? as usize));
-        found.unwrap_or(&Cover::EVERYWHERE)
+        found.unwrap_or(&SweptBounds::EVERYWHERE)
     }
 
     /// Who is in a slot, with its way if that is not simply ahead.
-    pub(super) fn mover<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
+    pub(super) fn mover<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
         if scene.user(slot).ahead { scene.mover(slot) } else { self.covered(scene, slot) }
     }
 
     /// Who is in a slot whose way was covered.
-    pub(super) fn covered<'a>(&'a self, scene: &Scene<'a>, slot: u32) -> Mover<'a> {
+    pub(super) fn covered<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
         let mut mover = scene.mover(slot);
         if let Some((kept, laid)) = self.find(slot) {
             mover.poses = &kept.poses[laid.poses.0 as usize..laid.poses.1 as usize];
@@ -215,19 +215,19 @@ impl Ways {
     }
 }
 
-impl<'a> Scene<'a> {
+impl<'a> StepInputs<'a> {
     /// Who is in a slot, without its way.
-    pub(super) fn mover(&self, slot: u32) -> Mover<'a> {
+    pub(super) fn mover(&self, slot: u32) -> Participant<'a> {
         let user = self.user(slot);
         let (profile, state) = (self.roster.profile_at(user.profile), self.state(user));
         let stop = self.stop(user);
-        let mut mover = Mover {
+        let mut mover = Participant {
             rectangle: Rectangle::behind(state.front(), user.axis, profile.length, profile.width),
             shape: &[],
             poses: &[],
             straight: true,
             reach: stop + self.options.epsilon,
-            cover: &Cover::NOWHERE,
+            cover: &SweptBounds::NOWHERE,
             covers: &[],
             speed: state.speed,
             brakes: &profile.brakes,

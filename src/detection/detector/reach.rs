@@ -1,6 +1,6 @@
 //! What both phases know of each road user in the current step, and how far it reaches until it stands.
 
-use super::exclusions::Exclusions;
+use super::shortcuts::Shortcuts;
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::detection::broad_phase::{Area, Circle, Slot};
 use crate::detection::path::lanes::LanePath;
@@ -41,10 +41,10 @@ pub(super) struct User {
 
 /// What makes road users turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Turns {
-    Not,
-    ByArcs,
-    ByLanes,
+pub(super) enum PathSource {
+    Straight,
+    Arcs,
+    Lanes,
 }
 
 /// Everybody's path, and the lines of the net's lanes, on which most of them are.
@@ -77,10 +77,10 @@ pub(super) fn lines_of(net: Option<&Net>) -> &Lines {
 
 /// What the step under way says of everybody.
 #[derive(Clone, Copy)]
-pub(super) struct Sight<'a> {
+pub(super) struct StepView<'a> {
     pub frame: &'a Frame,
     pub roster: &'a Roster,
-    pub turns: Turns,
+    pub turns: PathSource,
     pub epsilon: Metre,
     pub on_lanes: &'a [bool],
     pub paths: Paths<'a>,
@@ -88,28 +88,28 @@ pub(super) struct Sight<'a> {
 
 /// What is said of who stands in a row, fetched from where it is.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Seen {
+pub(super) struct RowView {
     pub row: Row,
     pub profile: ProfileIndex,
 }
 
-impl Sight<'_> {
+impl StepView<'_> {
     /// What is said of who stands in a row.
     #[inline]
-    pub fn see(&self, row: u32) -> Seen {
+    pub fn see(&self, row: u32) -> RowView {
         let row = self.frame.row(row);
-        Seen { row, profile: self.roster.type_of(row.user) }
+        RowView { row, profile: self.roster.type_of(row.user) }
     }
 
     /// Who stands in a row. Whoever was `last` in its slot is mostly the same: one that heads as it did has the same axis,
     /// without asking for sine and cosine.
     // Always: by a call it would be written twice, and the second time wait for the first, 15 ns per road user.
     #[inline(always)]
-    pub fn user(&self, row: u32, seen: &Seen, last: &User) -> User {
-        let Seen { row: Row { user: index, ref state }, profile: type_index } = *seen;
+    pub fn user(&self, row: u32, seen: &RowView, last: &User) -> User {
+        let RowView { row: Row { user: index, ref state }, profile: type_index } = *seen;
         let (profile, moves) = (self.roster.profile_at(type_index), state.moves());
         let axis = if last.heading == state.heading { last.axis } else { direction(state.heading) };
-        let on_lanes = self.turns == Turns::ByLanes && self.on_lanes[row as usize];
+        let on_lanes = self.turns == PathSource::Lanes && self.on_lanes[row as usize];
         let goes_straight = || {
             let (track, lines) = self.paths.track(index);
             track.goes_straight(lines, &axis, profile.chord, stop(state, profile) + self.epsilon)
@@ -122,10 +122,10 @@ impl Sight<'_> {
             profile: type_index,
             category: profile.category,
             ahead: match self.turns {
-                Turns::Not => true,
-                Turns::ByArcs => profile.category == Category::Obstacle,
-                Turns::ByLanes if on_lanes => goes_straight(),
-                Turns::ByLanes => !moves || profile.category != Category::Vehicle,
+                PathSource::Straight => true,
+                PathSource::Arcs => profile.category == Category::Obstacle,
+                PathSource::Lanes if on_lanes => goes_straight(),
+                PathSource::Lanes => !moves || profile.category != Category::Vehicle,
             },
             on_lanes,
         }
@@ -188,11 +188,11 @@ impl<'a> Reach<'a> {
         frame: &'a Frame,
         roster: &'a Roster,
         options: &Options,
-        leaves_out: Exclusions,
+        shortcuts: Shortcuts,
         paths: Paths<'a>,
     ) -> Self {
         let on_paper = options.mode == Mode::Paper;
-        let has_boxes = leaves_out.ways_apart && !on_paper;
+        let has_boxes = shortcuts.paths_apart && !on_paper;
         let on_arcs = options.path == PathModel::Arc && !on_paper;
         Self { frame, roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
     }

@@ -11,11 +11,11 @@ const TOGETHER: u32 = 16;
 #[derive(Default)]
 pub(super) struct Order {
     starts: Vec<u32>,
-    sorted: Vec<Place>,
+    sorted: Vec<RowPlace>,
 }
 
 /// Which rows met, the smaller first, and which of whose finds that is.
-type Place = ((u32, u32), u32, u32);
+type RowPlace = ((u32, u32), u32, u32);
 
 fn rows(found: &Encounter) -> (u32, u32) {
     (found.ego_row.min(found.foe_row), found.ego_row.max(found.foe_row))
@@ -42,7 +42,7 @@ impl Order {
         }
         self.sorted.clear();
         let found = self.starts.last().map_or(0, |end| *end as usize);
-        fill(&mut self.sorted, found, Place::default());
+        fill(&mut self.sorted, found, RowPlace::default());
         for found in places() {
             let place = &mut self.starts[start_of(found.0)];
             self.sorted[*place as usize] = found;

@@ -1,8 +1,8 @@
 //! What the narrow phase reads of the current step.
 
-use super::exclusions::Exclusions;
 use super::reach;
 use super::reach::{Paths, Reach, Turning, User};
+use super::shortcuts::Shortcuts;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::profile::{Category, Profile};
@@ -11,9 +11,9 @@ use crate::util::units::Metre;
 
 /// What phase 2 reads of the step under way.
 #[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
+pub(super) struct StepInputs<'a> {
     pub options: &'a Options,
-    pub leaves_out: Exclusions,
+    pub shortcuts: Shortcuts,
     pub conflicts_only: bool,
     pub frame: &'a Frame,
     pub roster: &'a Roster,
@@ -23,7 +23,7 @@ pub(super) struct Scene<'a> {
     pub users: &'a [User],
 }
 
-impl Scene<'_> {
+impl StepInputs<'_> {
     pub fn user(&self, slot: u32) -> &User {
         &self.users[slot as usize]
     }

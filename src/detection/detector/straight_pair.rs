@@ -2,10 +2,10 @@
 //! pair takes less than to keep them.
 
 use super::reach::User;
-use super::step::Scene;
+use super::step::StepInputs;
 use super::work::Work;
 use super::worker::Found;
-use crate::detection::narrow_phase::Mover;
+use crate::detection::narrow_phase::Participant;
 use crate::detection::path::{Pose, straight};
 use crate::geometry::Point;
 use crate::geometry::contact::plainly_touches;
@@ -37,12 +37,12 @@ impl Onward {
     }
 }
 
-impl Scene<'_> {
+impl StepInputs<'_> {
     /// Whether both do, and phase 1 has compared the boxes around all that they cover.
     pub(super) fn go_onward(&self, slots: [u32; 2]) -> bool {
         let goes_onward = |user: &User| user.ahead && !user.on_lanes && user.category != Category::Obstacle;
-        self.leaves_out.circles_apart
-            && self.leaves_out.ways_apart
+        self.shortcuts.areas_apart
+            && self.shortcuts.paths_apart
             && slots.iter().all(|slot| goes_onward(self.user(*slot)))
     }
 
@@ -50,12 +50,12 @@ impl Scene<'_> {
     pub(super) fn meet_onward(&self, work: &mut Work, slots: [u32; 2], found: &mut Found) {
         let (mut first, mut second) = (self.mover(slots[0]), self.mover(slots[1]));
         let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
-        let covered = |mover: &Mover| mover.rectangle.swept(&(mover.rectangle.axis * mover.reach), TOLERANCE);
+        let covered = |mover: &Participant| mover.rectangle.swept(&(mover.rectangle.axis * mover.reach), TOLERANCE);
         if !plainly_touches(&covered(&first), &covered(&second)) {
-            work.ways_apart += 1;
+            work.paths_apart += 1;
             return;
         }
-        let onward = |slot: u32, mover: &Mover| {
+        let onward = |slot: u32, mover: &Participant| {
             let user = self.user(slot);
             Onward::of(self.state(user).front(), user, mover.stop, mover.reach)
         };

@@ -8,7 +8,7 @@ pub struct Work {
     /// Pairs that phase 1 lets through.
     pub pairs: u64,
     /// Pairs left out because they are too far apart to meet before both stand.
-    pub circles_apart: u64,
+    pub areas_apart: u64,
     /// Of the others, left out because both stand.
     pub both_stand: u64,
     /// Left out because one is on a bridge above the other.
@@ -16,7 +16,7 @@ pub struct Work {
     /// Left out because both are persons.
     pub both_persons: u64,
     /// Left out because the boxes around both ways do not meet.
-    pub ways_apart: u64,
+    pub paths_apart: u64,
     /// Settled in one dimension.
     pub in_line: u64,
     /// Swept.
@@ -33,11 +33,11 @@ impl std::ops::AddAssign for Work {
     fn add_assign(&mut self, other: Self) {
         self.rows += other.rows;
         self.pairs += other.pairs;
-        self.circles_apart += other.circles_apart;
+        self.areas_apart += other.areas_apart;
         self.both_stand += other.both_stand;
         self.other_level += other.other_level;
         self.both_persons += other.both_persons;
-        self.ways_apart += other.ways_apart;
+        self.paths_apart += other.paths_apart;
         self.in_line += other.in_line;
         self.swept += other.swept;
         self.frontal += other.frontal;

@@ -1,17 +1,17 @@
 //! What one thread needs for its part of a step, and what it finds.
 
-use super::occupancy::{MOST_POSES, Ways};
+use super::occupancy::{MOST_POSES, OccupancyCache};
 use super::work::Work;
 use crate::detection::encounter::Encounter;
-use crate::detection::narrow_phase::Meeting;
+use crate::detection::narrow_phase::ConflictPoint;
 use crate::detection::path::Pose;
-use crate::geometry::bisection::Halves;
+use crate::geometry::bisection::Bisection;
 
 /// One thread, and what it finds among the pairs that it looks at.
 #[derive(Default)]
 pub(super) struct Worker {
     pub work: Work,
-    pub ways: Ways,
+    pub ways: OccupancyCache,
     pub found: Found,
 }
 
@@ -28,12 +28,12 @@ pub(super) struct Found {
 pub(super) struct Scratch {
     /// Poses further ahead than the ways of the step: the ego's and the foe's.
     pub courses: [Vec<Pose>; 2],
-    pub halves: Halves,
+    pub halves: Bisection,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)), halves: Halves::to_keep() }
+        Self { courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)), halves: Bisection::to_keep() }
     }
 }
 
@@ -42,7 +42,7 @@ impl Default for Scratch {
 pub(super) struct Met {
     /// The ego's slot and the foe's.
     pub slots: [u32; 2],
-    pub meeting: Meeting,
+    pub meeting: ConflictPoint,
     /// cos α.
     pub sigma: f64,
     /// Whether the gap waits for when the foe has left the meeting place.

@@ -2,7 +2,7 @@
 
 use super::ttc::{Course, HORIZON};
 use crate::geometry::Vector;
-use crate::geometry::bisection::{Halves, Touch};
+use crate::geometry::bisection::{Bisection, Contact};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::normals;
 use crate::geometry::sweep::TOLERANCE;
@@ -32,7 +32,7 @@ pub fn drac_in_line(closing: MetrePerSecond, ttc: Second) -> Option<MetrePerSeco
 /// is now, which no deceleration avoids.
 ///
 /// Both keep to their poses, and touch after `ttc`, in s, if both keep their speeds.
-pub fn drac(halves: &mut Halves, ego: &Course, foe: &Course, ttc: Second) -> MetrePerSecondSquared {
+pub fn drac(halves: &mut Bisection, ego: &Course, foe: &Course, ttc: Second) -> MetrePerSecondSquared {
     if let (Some((of_ego, by)), Some((of_foe, foe_by))) = (ego.straight(), foe.straight()) {
         return straight((&of_ego, by / HORIZON), (&of_foe, foe_by / HORIZON));
     }
@@ -40,7 +40,7 @@ pub fn drac(halves: &mut Halves, ego: &Course, foe: &Course, ttc: Second) -> Met
 }
 
 /// The same where one of the two turns: from where the foe is at many moments, then at more of them about the worst.
-fn by_moments(halves: &mut Halves, ego: &Course, foe: &Course, ttc: Second) -> MetrePerSecondSquared {
+fn by_moments(halves: &mut Bisection, ego: &Course, foe: &Course, ttc: Second) -> MetrePerSecondSquared {
     halves.clear();
     let mut needed = |time| to_stay_behind(ego.speed, time, way_to(halves, ego, &foe.at(time), ego.speed * time));
     // To come to a stand, or to the speed of who leads, takes twice as long as to touch it. All close together about
@@ -165,14 +165,14 @@ fn to_stay_behind(speed: MetrePerSecond, time: Second, way: Metre) -> MetrePerSe
 }
 
 /// The ego's way at which it would touch something that stands; infinite where it does not within `furthest`.
-fn way_to(halves: &mut Halves, ego: &Course, fixed: &Rectangle, furthest: Metre) -> Metre {
+fn way_to(halves: &mut Bisection, ego: &Course, fixed: &Rectangle, furthest: Metre) -> Metre {
     let bounds = fixed.bounds().grown(2.0 * TOLERANCE);
     for (number, (from, to, step)) in ego.steps(furthest).enumerate() {
         let part = halves.numbered(number, || step);
         if !halves.bounds(part).meet(&bounds) {
             continue;
         }
-        if let Some(enter) = halves.meet_rectangle((number, &step), fixed, Touch::First) {
+        if let Some(enter) = halves.meet_rectangle((number, &step), fixed, Contact::Entry) {
             return from + (to - from) * enter;
         }
     }
@@ -207,7 +207,7 @@ mod tests {
     fn found(ego: &Driven, foe: &Driven) -> Option<(f64, f64)> {
         let (ego, foe) = (course(ego), course(foe));
         let ttc = time_to_collision(&ego, &foe).filter(|ttc| *ttc > 0.0)?;
-        Some((drac(&mut Halves::default(), &ego, &foe, ttc), ttc))
+        Some((drac(&mut Bisection::default(), &ego, &foe, ttc), ttc))
     }
 
     /// Whether an ego that brakes like this and is `further` ahead touches the foe until that time.
@@ -304,7 +304,7 @@ mod tests {
         for [ego, foe] in (0..10_000).map(|_| any_pair(&mut chance, 0.0)) {
             // Who is in the ego's way for a moment only, may be missed.
             let Some((closed, ttc)) = found(&ego, &foe).filter(|(closed, _)| *closed > 0.5) else { continue };
-            let looked = by_moments(&mut Halves::default(), &course(&ego), &course(&foe), ttc);
+            let looked = by_moments(&mut Bisection::default(), &course(&ego), &course(&foe), ttc);
             assert!(closed == looked || (closed - looked).abs() < 0.01 * closed, "{closed} and {looked}");
             compared += 1;
         }

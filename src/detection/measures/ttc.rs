@@ -1,7 +1,7 @@
 //! Time to collision: when two rectangles touch if both keep their speed along their paths.
 
 use crate::detection::path::Pose;
-use crate::geometry::bisection::{Halves, Touch};
+use crate::geometry::bisection::{Bisection, Contact};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::slide;
@@ -9,7 +9,7 @@ use crate::geometry::sweep::{Step, TOLERANCE};
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
-/// Contact that is later than this is none: paths are not laid further; s.
+/// ContactInterval that is later than this is none: paths are not laid further; s.
 pub const HORIZON: Second = 10.0;
 
 /// One road user that keeps its speed along its poses, which reach [`HORIZON`] ahead.
@@ -96,14 +96,14 @@ pub fn time_to_collision(a: &Course, b: &Course) -> Option<Second> {
 }
 
 /// Time until a moving road user touches something that stands.
-pub fn time_to_fixed(halves: &mut Halves, a: &Course, fixed: &[Polygon]) -> Option<Second> {
+pub fn time_to_fixed(halves: &mut Bisection, a: &Course, fixed: &[Polygon]) -> Option<Second> {
     a.poses
         .windows(2)
         .find_map(|pair| {
             halves.clear();
             let (pose, next) = (&pair[0], &pair[1]);
             let step = halves.add(pose.step_to(next, a.length, a.width));
-            let touched = fixed.iter().filter_map(|shape| halves.meet(step, shape, Touch::First));
+            let touched = fixed.iter().filter_map(|shape| halves.meet(step, shape, Contact::Entry));
             let time = |enter| (pose.way + (next.way - pose.way) * enter) / a.speed;
             touched.map(time).reduce(f64::min)
         })

@@ -6,11 +6,11 @@ use crate::util::units::{Metre, Radian};
 
 /// Where an ego meets a foe.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Meeting {
+pub struct ConflictPoint {
     /// Way of the ego to the meeting place.
-    pub ego_way: Metre,
+    pub ego_distance: Metre,
     /// Way of the foe until it is there.
-    pub foe_way: Metre,
+    pub foe_distance: Metre,
     /// The ego's rectangle there.
     pub ego: Rectangle,
     /// The foe's axis there; none for an obstacle, which the ego meets with its front.
@@ -19,7 +19,7 @@ pub struct Meeting {
     pub leads: bool,
 }
 
-impl Meeting {
+impl ConflictPoint {
     /// The angle α between the two headings.
     pub fn angle(&self) -> Radian {
         match self.foe_axis {

@@ -12,12 +12,12 @@ pub mod rear_end;
 pub mod side;
 mod swept_bounds;
 
-pub use conflict_point::Meeting;
-pub use participant::Mover;
-pub use swept_bounds::Cover;
+pub use conflict_point::ConflictPoint;
+pub use participant::Participant;
+pub use swept_bounds::SweptBounds;
 
 use crate::braking::{self, MuModel};
-use crate::geometry::bisection::Halves;
+use crate::geometry::bisection::Bisection;
 use crate::geometry::{Vector, cross};
 use crate::util::units::{Metre, Radian};
 
@@ -26,16 +26,16 @@ const PARALLEL: Metre = 1e-3;
 
 /// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
 /// of equal ones the first if `a_is_smaller` says that its id is.
-pub fn meet(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+pub fn meet(a: &Participant, b: &Participant, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, ConflictPoint)> {
     if drive_in_line(a, b) {
         meet_in_one_dimension(a, b, a_is_smaller)
     } else {
-        side::meet(&mut Halves::default(), a, b, false, a_is_smaller)
+        side::meet(&mut Bisection::default(), a, b, false, a_is_smaller)
     }
 }
 
 /// Whether both drive straight on, side by side or in line.
-pub fn drive_in_line(a: &Mover, b: &Mover) -> bool {
+pub fn drive_in_line(a: &Participant, b: &Participant) -> bool {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return false;
     }
@@ -48,12 +48,16 @@ pub fn lead_alike([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
 }
 
 /// Whether two that drive in line drive towards each other, or away from each other.
-pub fn drive_opposed(a: &Mover, b: &Mover) -> bool {
+pub fn drive_opposed(a: &Participant, b: &Participant) -> bool {
     a.rectangle.axis.dot(&b.rectangle.axis) <= 0.0
 }
 
 /// Where two that drive in line meet; `true` where the first of them is the ego.
-pub fn meet_in_one_dimension(a: &Mover, b: &Mover, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, Meeting)> {
+pub fn meet_in_one_dimension(
+    a: &Participant,
+    b: &Participant,
+    a_is_smaller: &impl Fn() -> bool,
+) -> Option<(bool, ConflictPoint)> {
     let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
@@ -77,11 +81,11 @@ pub fn sigma(angle: Radian) -> f64 {
 }
 
 /// The room that is left: max(way_ego − σ·way_foe, 0).
-pub fn gap(ego_way: Metre, foe_way: Metre, sigma: f64) -> Metre {
-    (ego_way - sigma * foe_way).max(0.0)
+pub fn gap(ego_distance: Metre, foe_distance: Metre, sigma: f64) -> Metre {
+    (ego_distance - sigma * foe_distance).max(0.0)
 }
 
 /// The minimal collision distance of a pair.
-pub fn mu(model: MuModel, ego: &Mover, foe: &Mover, sigma: f64, epsilon: Metre) -> Metre {
+pub fn mu(model: MuModel, ego: &Participant, foe: &Participant, sigma: f64, epsilon: Metre) -> Metre {
     braking::mu(model, ego.braking(), foe.braking(), sigma, epsilon)
 }

@@ -4,8 +4,8 @@
 //! It exists to be compared with. `Dis_P` is the distance of the two centres, a1 and a2 are half the lengths, L2 is
 //! the foe's length.
 
-use super::conflict_point::Meeting;
-use super::participant::Mover;
+use super::conflict_point::ConflictPoint;
+use super::participant::Participant;
 use crate::detection::kind::{Kind, kind_at};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, angle_between, left_of};
@@ -24,12 +24,12 @@ pub struct Found {
     /// The straight-line distance that fig. 5 compares with μ.
     pub distance: Metre,
     /// Where the ego is.
-    pub meeting: Meeting,
+    pub meeting: ConflictPoint,
 }
 
 /// Kind and distance by fig. 5; the ego is the one that has the other ahead of it, of two such the faster one, else
 /// the first.
-pub fn measure(a: &Mover, b: &Mover, options: &Options) -> Found {
+pub fn measure(a: &Participant, b: &Participant, options: &Options) -> Found {
     let between = b.rectangle.centre - a.rectangle.centre;
     let a_ahead = between.dot(&a.rectangle.axis) > 0.0;
     let b_ahead = between.dot(&b.rectangle.axis) < 0.0;
@@ -49,9 +49,9 @@ pub fn measure(a: &Mover, b: &Mover, options: &Options) -> Found {
             }
         }
     };
-    let meeting = Meeting {
-        ego_way: distance,
-        foe_way: 0.0,
+    let meeting = ConflictPoint {
+        ego_distance: distance,
+        foe_distance: 0.0,
         ego: ego.rectangle,
         foe_axis: Some(foe.rectangle.axis),
         leads: kind == Kind::RearEnd,

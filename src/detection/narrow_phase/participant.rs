@@ -1,6 +1,6 @@
 //! One road user of a pair, as the narrow phase sees it.
 
-use super::Cover;
+use super::SweptBounds;
 use crate::braking::{Brakes, Braking};
 use crate::detection::path::Pose;
 use crate::geometry::polygon::Polygon;
@@ -9,7 +9,7 @@ use crate::util::units::{Metre, MetrePerSecond};
 
 /// One road user of a pair: what phase 2 needs to know of it.
 #[derive(Clone, Copy, Debug)]
-pub struct Mover<'a> {
+pub struct Participant<'a> {
     /// The rectangle of now.
     pub rectangle: Rectangle,
     /// Convex parts of an obstacle; empty for all others.
@@ -21,9 +21,9 @@ pub struct Mover<'a> {
     /// How far ahead its path is known to go: S + ε, or less where the path ends.
     pub reach: Metre,
     /// The boxes around all that it covers on the way.
-    pub cover: &'a Cover,
+    pub cover: &'a SweptBounds,
     /// The same from each pose to the next; none of who drives straight on, where a part is hardly smaller than the whole.
-    pub covers: &'a [Cover],
+    pub covers: &'a [SweptBounds],
     /// Speed in m/s.
     pub speed: MetrePerSecond,
     /// How it brakes.
@@ -32,7 +32,7 @@ pub struct Mover<'a> {
     pub stop: Metre,
 }
 
-impl Mover<'_> {
+impl Participant<'_> {
     /// Length in m.
     pub fn length(&self) -> Metre {
         2.0 * self.rectangle.half_length

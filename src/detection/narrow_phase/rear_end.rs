@@ -1,18 +1,18 @@
 //! Rear-end in one lane: one-dimensional.
 
-use super::conflict_point::Meeting;
-use super::participant::Mover;
+use super::conflict_point::ConflictPoint;
+use super::participant::Participant;
 use crate::geometry::rectangle::Rectangle;
 use crate::util::units::Metre;
 
 /// The meeting of a follower with its leader, `ahead` m in front of it on the same straight line; none where the
 /// follower does not get there.
-pub fn in_line(ego: &Mover, foe: &Mover, ahead: Metre) -> Option<Meeting> {
-    let ego_way = ahead.max(0.0);
-    (ego_way <= ego.reach).then(|| Meeting {
-        ego_way,
-        foe_way: 0.0,
-        ego: Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_way, ..ego.rectangle },
+pub fn in_line(ego: &Participant, foe: &Participant, ahead: Metre) -> Option<ConflictPoint> {
+    let ego_distance = ahead.max(0.0);
+    (ego_distance <= ego.reach).then(|| ConflictPoint {
+        ego_distance,
+        foe_distance: 0.0,
+        ego: Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_distance, ..ego.rectangle },
         foe_axis: Some(foe.rectangle.axis),
         leads: true,
     })

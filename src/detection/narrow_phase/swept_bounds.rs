@@ -9,14 +9,14 @@ use crate::util::units::Metre;
 
 /// What a road user covers between two poses, in boxes that decide quickly where nothing meets.
 #[derive(Clone, Copy, Debug)]
-pub struct Cover {
+pub struct SweptBounds {
     /// The axis-parallel box around it.
     pub bounds: Bounds,
     /// The box along the way: narrow, whichever way that leads.
     pub around: Rectangle,
 }
 
-impl Cover {
+impl SweptBounds {
     /// The boxes around a road user of this length and width at all these poses and between; none of no pose.
     ///
     /// Between two poses it may leave the hull of both by less than the sweep's tolerance.
@@ -46,7 +46,7 @@ impl Cover {
     }
 }
 
-impl Cover {
+impl SweptBounds {
     /// What meets nothing.
     pub const NOWHERE: Self = Self {
         bounds: Bounds::EMPTY,
@@ -69,7 +69,7 @@ impl Cover {
     };
 }
 
-impl From<Bounds> for Cover {
+impl From<Bounds> for SweptBounds {
     fn from(bounds: Bounds) -> Self {
         Self { bounds, around: bounds.into() }
     }

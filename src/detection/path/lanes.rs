@@ -10,7 +10,7 @@ use smallvec::SmallVec;
 use super::beside::{Beside, Offset};
 use super::own::Own;
 use super::track::Track;
-use super::turns::Turns;
+use super::turns::RouteTurns;
 use crate::geometry::polylines::{Corner, Lines};
 use crate::geometry::{Point, Vector, cross};
 use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
@@ -37,7 +37,7 @@ pub struct LanePath {
     pub track: Track,
     own: Option<Box<Own>>,
     /// From the edge on it was on when the path was laid.
-    route: Turns,
+    route: RouteTurns,
 }
 
 /// The edge of who drives against its lane: its path does not go on.
@@ -85,7 +85,7 @@ impl LanePath {
     pub fn is_for(&self, net: &Net, route: &[EdgeIndex], position: usize) -> bool {
         let mut own = self.route.clone();
         own.advance(net, position);
-        own == Turns::of(net, route, position)
+        own == RouteTurns::of(net, route, position)
     }
 
     /// Lays the path anew; without geometry to lay it on, none.
@@ -95,7 +95,7 @@ impl LanePath {
         let hint = placement.position * length / lane.length.max(f64::MIN_POSITIVE);
         let foot = Foot::of(line, start.front, hint);
         match &placement.route {
-            Some(route) => self.route = Turns::of(net, route, placement.route_position),
+            Some(route) => self.route = RouteTurns::of(net, route, placement.route_position),
             None => self.route.advance(net, placement.route_position),
         }
         let against = foot.direction.dot(&start.axis) < 0.0 && !leads_along(net, lane, &self.route);
@@ -214,7 +214,7 @@ impl LanePath {
 
 /// Whether a lane is one of the route, where the road user is now. Who is on such a lane drives along it, whatever its
 /// heading says: after a sharp turn the rear stands across for as long as the road user.
-fn leads_along(net: &Net, lane: &crate::traffic::net::Lane, route: &Turns) -> bool {
+fn leads_along(net: &Net, lane: &crate::traffic::net::Lane, route: &RouteTurns) -> bool {
     let on_route = |further: usize| route.edges(net).nth(further);
     if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
         return on_route(0) == Some(lane.edge);

@@ -20,7 +20,7 @@ const NOWHERE: EdgeIndex = EdgeIndex(u32::MAX - 1);
 
 /// A route from one of its edges on.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Turns {
+pub(super) struct RouteTurns {
     /// That edge.
     begin: EdgeIndex,
     /// Which edge of the whole route that is.
@@ -28,13 +28,13 @@ pub(super) struct Turns {
     links: SmallVec<[u8; MOSTLY]>,
 }
 
-impl Default for Turns {
+impl Default for RouteTurns {
     fn default() -> Self {
         Self { begin: FREE, passed: 0, links: SmallVec::new() }
     }
 }
 
-impl Turns {
+impl RouteTurns {
     /// The rest of a route from this place on, until it ends or the net has no link to its next edge.
     pub fn of(net: &Net, route: &[EdgeIndex], position: usize) -> Self {
         if route.is_empty() {
@@ -119,7 +119,7 @@ mod tests {
             let route = route(&net, begin, &choices);
             let mut places = places.map(|place| place.index(route.len()));
             places.sort_unstable();
-            let mut turns = Turns::of(&net, &route, places[0]);
+            let mut turns = RouteTurns::of(&net, &route, places[0]);
             prop_assert!(turns.edges(&net).eq(route[places[0]..].iter().copied()));
             prop_assert!(turns.begin_before(places[1]) && (places[0] == 0 || !turns.begin_before(places[0] - 1)));
             turns.advance(&net, places[1]);
@@ -135,6 +135,6 @@ mod tests {
         let mut route = route(&net, 0, &[0; 5]);
         let all = route.len();
         route.push(route[all - 1]);
-        assert_eq!(Turns::of(&net, &route, 0).edges(&net).count(), all);
+        assert_eq!(RouteTurns::of(&net, &route, 0).edges(&net).count(), all);
     }
 }

@@ -142,7 +142,7 @@ impl Replay {
         run.begin(self.step.time);
         self.fill(run)?;
         self.approaching.clear();
-        self.approaching.extend_from_slice(run.follow());
+        self.approaching.extend_from_slice(run.track_paths());
         for index in 0..self.approaching.len() {
             self.place(run, self.approaching[index])?;
         }
@@ -272,7 +272,7 @@ impl Replay {
             route_position: live.route_position,
             lateral_speed: recorded.lateral_speed,
         };
-        run.place(row, &placement);
+        run.set_placement(row, &placement);
         Ok(())
     }
 }

@@ -48,9 +48,9 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
         frame.push(user, state);
     }
     let mut detector = Detector::new(&Options::default(), None);
-    detector.follow(&frame, &roster);
-    detector.approach(&frame, &roster);
-    detector.detect(&frame, &roster).next().copied()
+    detector.track_paths(&frame, &roster);
+    detector.broad_phase(&frame, &roster);
+    detector.narrow_phase(&frame, &roster).next().copied()
 }
 
 /// A run of cars, step by step.
@@ -94,9 +94,9 @@ impl Scene {
         for &(user, state) in states {
             self.run.frame.push(user, state);
         }
-        let unplaced = self.run.follow().to_vec();
+        let unplaced = self.run.track_paths().to_vec();
         if let Some(placement) = placement {
-            unplaced.into_iter().for_each(|row| self.run.place(row, placement));
+            unplaced.into_iter().for_each(|row| self.run.set_placement(row, placement));
         }
         self.finite &= self.run.finish_step().is_ok() && self.run.in_conflict().all(is_finite);
         self.run.in_conflict().len()
@@ -113,5 +113,6 @@ impl Scene {
 fn is_finite(found: &Encounter) -> bool {
     let nearness =
         found.nearness.map_or(0.0, |near| near.clearance + near.ttc.unwrap_or(0.0) + near.drac.unwrap_or(0.0));
-    (found.gap + found.mu + found.angle + found.ego_way + found.foe_way + found.x + found.y + nearness).is_finite()
+    (found.gap + found.mu + found.angle + found.ego_distance + found.foe_distance + found.x + found.y + nearness)
+        .is_finite()
 }

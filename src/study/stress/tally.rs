@@ -9,7 +9,7 @@ use crate::study::reference::{Deviation, Number, deviation};
 pub enum Group {
     /// Stopping distance and μ.
     Braking,
-    /// Contact and distance of rectangles.
+    /// ContactInterval and distance of rectangles.
     Geometry,
     /// Time to collision, steps, events.
     Time,

@@ -15,7 +15,7 @@ const DRAWN: Metre = 0.05;
 
 /// One road user of a conflict at the step with the smallest margin.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Stance {
+pub struct Snapshot {
     /// Front-bumper centre; a corner of an obstacle.
     pub front: Point,
     /// Direction from the rear to the front bumper, in rad counter-clockwise from +x.
@@ -45,7 +45,7 @@ impl Stood {
     }
 }
 
-impl Stance {
+impl Snapshot {
     /// Somebody of this type.
     pub(super) fn of(stood: &Stood, profile: &Profile) -> Self {
         let Stood { front, heading, ref path } = *stood;
@@ -86,7 +86,7 @@ fn distance(point: &Point, from: &Point, to: &Point) -> Metre {
 
 #[cfg(test)]
 mod tests {
-    use crate::events::situation::*;
+    use crate::events::snapshot::*;
 
     fn path(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
         let points = points.iter().map(|&(x, y)| Point::new(x, y)).collect::<Vec<_>>();

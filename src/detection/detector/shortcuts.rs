@@ -1,0 +1,30 @@
+//! Which shortcuts a run takes: all but those that the options keep it from.
+
+use crate::options::Options;
+use crate::options::shortcut::Shortcut;
+
+/// What is left out of a run where the scene does not need it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shortcuts {
+    /// [`Shortcut::AreasApart`].
+    pub areas_apart: bool,
+    /// [`Shortcut::PathsApart`].
+    pub paths_apart: bool,
+    /// [`Shortcut::InLine`].
+    pub in_line: bool,
+    /// [`Shortcut::KnownPaths`].
+    pub known_paths: bool,
+}
+
+impl Shortcuts {
+    /// What these options leave out: all but what they keep.
+    pub fn of(options: &Options) -> Self {
+        let shortcuts = |what| !options.keep_all && !options.keep.contains(&what);
+        Self {
+            areas_apart: shortcuts(Shortcut::AreasApart),
+            paths_apart: shortcuts(Shortcut::PathsApart),
+            in_line: shortcuts(Shortcut::InLine),
+            known_paths: shortcuts(Shortcut::KnownPaths),
+        }
+    }
+}
