@@ -101,8 +101,8 @@ impl Error {
         Self::Content { path: path.to_owned(), message: message.into() }
     }
 
-    /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded, 3 if
-    /// a recording was cut short, 130 if the user interrupted it, 2 for every other unusable input.
+    /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded,
+    /// 3 if a recording was cut short, 130 if the user interrupted it, 2 for every other unusable input.
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Failed { .. } | Self::Exceeded(_) => 1,

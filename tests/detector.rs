@@ -71,7 +71,7 @@ const WEST: f64 = std::f64::consts::PI;
 const NORTH: f64 = std::f64::consts::FRAC_PI_2;
 
 #[test]
-fn the_gap_of_a_follower_is_the_room_between_the_bumpers() {
+fn a_followers_gap_is_the_room_between_the_bumpers() {
     let [(found, ego)] = &encounters(&[(30.0, 0.0, 0.0, 10.0), (0.0, 0.0, 0.0, 20.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "b"));
     assert!((found.gap - 25.0).abs() < 1e-9);
@@ -95,7 +95,7 @@ fn ordinary_oncoming_traffic_is_not_an_encounter() {
 }
 
 #[test]
-fn a_crossing_foe_is_met_at_the_edge_of_its_path() {
+fn a_crossing_foe_is_met_at_its_paths_edge() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -11.0, NORTH, 10.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::Side, "a"));
     assert!((found.ego_distance - 19.0).abs() < 0.02, "{}", found.ego_distance);
@@ -103,7 +103,7 @@ fn a_crossing_foe_is_met_at_the_edge_of_its_path() {
 }
 
 #[test]
-fn a_vehicle_that_stops_before_the_crossing_is_not_a_foe() {
+fn a_vehicle_stopping_before_the_crossing_is_not_a_foe() {
     assert!(encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -25.0, NORTH, 10.0)]).is_empty());
 }
 
@@ -143,7 +143,7 @@ fn the_restriction_to_conflicts_keeps_all_of_them() {
 }
 
 #[test]
-fn the_restriction_to_conflicts_drops_a_foe_that_leaves_in_time() {
+fn the_restriction_to_conflicts_drops_foes_that_leave_in_time() {
     let [(all, of_all), (only, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, 20.0), (44.5, -1.0, 0.1, 20.0)]);
     assert_eq!((all, only, of_all, of_only), (1, 0, vec![], vec![]));
 }
@@ -203,7 +203,7 @@ proptest! {
 }
 
 #[test]
-fn a_kind_without_pairs_in_reach_is_reported_as_left_out() {
+fn a_kind_without_pairs_is_reported_as_left_out() {
     let left_out = |options: &Options, foe| {
         let mut detector = Detector::new(options, None);
         look(&mut detector, &[(0.0, 0.0, 0.0, 20.0), foe]);

@@ -41,7 +41,7 @@ fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
 }
 
 #[test]
-fn after_a_sharp_turn_a_car_follows_its_route_whatever_its_heading() {
+fn after_a_sharp_turn_a_car_follows_its_route() {
     for heading in [0.5, 1.5, 3.0, std::f64::consts::PI] {
         assert!(drives_west(heading, &["east", "west"], 1));
     }
@@ -62,7 +62,7 @@ const APART: &str = r#"<net>
 </net>"#;
 
 #[test]
-fn a_path_leads_straight_across_between_lanes_that_do_not_join() {
+fn a_path_leads_straight_across_between_unjoined_lanes() {
     let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::study::stress::car()).unwrap();
@@ -104,7 +104,7 @@ const FORK: &str = r#"<net>
 </net>"#;
 
 #[test]
-fn a_path_is_rebuilt_for_another_route_not_for_the_same_one() {
+fn a_path_is_rebuilt_only_for_another_route() {
     let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::study::stress::car()).unwrap();

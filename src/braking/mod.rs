@@ -4,8 +4,8 @@
 //! over t3 and stays there until the road user stands, which may be before t3 is over. μ is the room that the ego needs
 //! so that both can brake without contact. [`MuModel`] lists its three models.
 //!
-//! μ is logged with 15 digits, which must be right also where S − Si cancels. [`mu`] computes the formulas in plain f64;
-//! where the result is much smaller than its terms, it computes them again in twice the precision
+//! μ is logged with 15 digits, which must be right also where S − Si cancels. [`mu`] computes the formulas in plain
+//! f64; where the result is much smaller than its terms, it computes them again in twice the precision
 //! ([`crate::util::double_double`]).
 
 mod brakes;

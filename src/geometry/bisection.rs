@@ -1,11 +1,11 @@
 //! Where moving rectangles touch: movements are halved until each part hardly turns.
 //!
-//! The last parts of the one movement are treated as translations, those of the other as hulls ([`super::sweep`]). A hull
-//! that is not touched leaves out all its parts. Parts, boxes and hulls are kept, so that a later query (another
+//! The last parts of the one movement are treated as translations, those of the other as hulls ([`super::sweep`]). A
+//! hull that is not touched leaves out all its parts. Parts, boxes and hulls are kept, so that a later query (another
 //! movement, the other direction, the last contact after the first) finds them computed.
 //!
-//! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. A hull therefore leaves out only
-//! what stays clear of it by more than that, and the result equals that of trying all parts, to the last bit.
+//! A half may reach a little beyond the hull of the whole, by the arc beyond its chord. A hull therefore leaves out
+//! only what stays clear of it by more than that, and the result equals that of trying all parts, to the last bit.
 
 use super::Bounds;
 use super::convex::ConvexOutline;
@@ -17,16 +17,16 @@ use super::swept_part::SweptPart;
 use crate::util::tight_vec::{add, make_room};
 use crate::util::units::Metre;
 
-/// Capacity, in parts and in hulls, of an instance that is kept between simulation steps. In `sumo_nets/town` one pair in
-/// 8,000 needs more than half of it.
+/// Capacity, in parts and in hulls, of an instance that is kept between simulation steps. In `sumo_nets/town` one pair
+/// in 8,000 needs more than half of it.
 const KEPT: usize = 256;
 
 /// Identifies a movement in a [`Bisection`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Part(u32);
 
-/// Movements, and the halves that they have been cut into so far. Reuse one instance to keep its allocations; each query
-/// first clears the previous one's movements.
+/// Movements, and the halves that they have been cut into so far. Reuse one instance to keep its allocations; each
+/// query first clears the previous one's movements.
 #[derive(Clone, Debug, Default)]
 pub struct Bisection {
     parts: Vec<SweptPart>,
@@ -123,7 +123,8 @@ impl Bisection {
         self.touch(part, other, which, known)
     }
 
-    /// The other's hull rules out quickly that the two touch; where it does not, the other is halved until its hull fits.
+    /// The other's hull rules out quickly that the two touch; where it does not, the other is halved until its hull
+    /// fits.
     fn search_swept(&mut self, of: u32, other: u32, which: Contact, known: f64) -> f64 {
         if which.is_best(known) || !self.bounds(Part(of)).meet(self.bounds(Part(other))) {
             return known;
@@ -173,8 +174,8 @@ impl Bisection {
         })
     }
 
-    /// Whether every place with a contact better than the known one is so far from a hull that nothing within `stray` of
-    /// that hull is touched.
+    /// Whether every place with a contact better than the known one is so far from a hull that nothing within `stray`
+    /// of that hull is touched.
     fn is_clear(&mut self, of: u32, hull: &Polygon, stray: Metre, which: Contact, known: f64) -> bool {
         if which.is_best(known) {
             return true;

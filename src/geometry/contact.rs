@@ -66,7 +66,7 @@ mod tests {
     }
 
     #[test]
-    fn two_in_a_row_are_as_far_apart_as_their_bumpers() {
+    fn two_in_line_are_apart_by_their_bumpers() {
         let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
         let b = Rectangle::new(Point::new(9.0, 0.0), 0.0, 4.0, 2.0);
         assert!((distance(&a, &b) - 5.0).abs() < 1e-12);

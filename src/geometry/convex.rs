@@ -85,8 +85,8 @@ impl ConvexOutline {
         self.room_to(other, room, room) > room
     }
 
-    /// A lower bound on the distance to another outline, in m: the widest room between an edge of the one and the other,
-    /// or the first room above `enough`. Negative where the two overlap; −∞ where the room is below `little`.
+    /// A lower bound on the distance to another outline, in m: the widest room between an edge of the one and the
+    /// other, or the first room above `enough`. Negative where the two overlap; −∞ where the room is below `little`.
     pub(super) fn room_to(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
         let room = self.room_beside_edges(other, little, enough);
         if room > enough { room } else { room.max(other.room_beside_edges(self, little, enough)) }

@@ -1,7 +1,7 @@
 //! Whether two rectangles touch, decided without error.
 //!
-//! The test is that of separating axes, first in f64 with a bound on the rounding error. Only where the bound leaves the
-//! answer open is it computed in exact arithmetic (adaptive predicates, Shewchuk 1997).
+//! The test is that of separating axes, first in f64 with a bound on the rounding error. Only where the bound leaves
+//! the answer open is it computed in exact arithmetic (adaptive predicates, Shewchuk 1997).
 //!
 //! The corners of a rectangle follow exactly from its f64 centre, axis and half dimensions: the sides are at right
 //! angles, but the axis need not have length 1.

@@ -48,8 +48,8 @@ impl Rectangle {
         ]
     }
 
-    /// The rectangle along the same axis around the area that this one covers while it moves `by` without turning, larger
-    /// by `margin` on every side.
+    /// The rectangle along the same axis around the area that this one covers while it moves `by` without turning,
+    /// larger by `margin` on every side.
     pub fn swept(&self, by: &Vector, margin: Metre) -> Self {
         Self {
             centre: self.centre + by / 2.0,

@@ -1,7 +1,7 @@
 //! All settings: name, default, unit and source.
 //!
-//! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long option
-//! with underscores, and all three use the same parser ([`Options::from_settings`]).
+//! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
+//! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
 pub mod shortcut;
 pub mod thresholds;

@@ -28,9 +28,9 @@ pub fn drac_in_line(closing: MetrePerSecond, ttc: Second) -> Option<MetrePerSeco
     (closing > 0.0 && ttc > 0.0).then(|| closing / (2.0 * ttc)).filter(|drac| drac.is_finite())
 }
 
-/// DRAC in m/s² towards any other foe: the least constant deceleration with which the ego, at every time until the foe has
-/// left, stays behind the place where the foe blocks its path. Infinite if the foe comes to where the ego is now: no
-/// deceleration avoids that.
+/// DRAC in m/s² towards any other foe: the least constant deceleration with which the ego, at every time until the foe
+/// has left, stays behind the place where the foe blocks its path. Infinite if the foe comes to where the ego is now:
+/// no deceleration avoids that.
 ///
 /// Both follow their poses. If both keep their speeds, they touch after `ttc`, in s.
 pub fn drac(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, ttc: Second) -> MetrePerSecondSquared {
@@ -45,8 +45,8 @@ fn by_search(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, 
     bisection.clear();
     let mut needed =
         |time| to_stay_behind(ego.speed, time, contact_distance(bisection, ego, &foe.at(time), ego.speed * time));
-    // Braking to a stand, or to the leader's speed, takes twice as long as to the contact. The samples are dense about the
-    // contact, because a foe that crosses may block the path only briefly.
+    // Braking to a stand, or to the leader's speed, takes twice as long as to the contact. The samples are dense about
+    // the contact, because a foe that crosses may block the path only briefly.
     let time = |number: i32| {
         let part = f64::from(number) / f64::from(if number < 0 { BEFORE } else { AFTER });
         if number < 0 { ttc * (1.0 - part * part) } else { ttc + (2.0 * HORIZON - ttc) * part.powi(3) }
@@ -66,8 +66,8 @@ fn by_search(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, 
     if most.is_finite() { search_maximum(needed, time(at - 1), time(AFTER.min(at + 1)), most) } else { most }
 }
 
-/// The largest value between two times, at least `most`, by golden-section search: the needed deceleration has one maximum
-/// there, or drops to 0 when the foe has left.
+/// The largest value between two times, at least `most`, by golden-section search: the needed deceleration has one
+/// maximum there, or drops to 0 when the foe has left.
 fn search_maximum(mut needed: impl FnMut(Second) -> f64, mut from: Second, mut to: Second, mut most: f64) -> f64 {
     const PART: f64 = 0.618_033_988_749_894_9;
     let [mut low, mut high] = [to - PART * (to - from), from + PART * (to - from)];
@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn a_leader_that_is_not_quite_parallel_is_still_a_leader() {
+    fn a_leader_not_quite_parallel_is_still_a_leader() {
         let (ego, leader) = (drive((0.0, 0.0), 0.0, 20.0, 0.0), drive((30.0, 0.0), 0.001, 10.0, 0.0));
         let (drac, _) = found(&ego, &leader).unwrap();
         assert!((drac - 2.0).abs() < 1e-3, "{drac}");

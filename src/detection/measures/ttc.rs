@@ -120,8 +120,8 @@ struct PairAt {
     b: Rectangle,
 }
 
-/// The first contact between two times. The interval is halved until both hardly turn; then the relative translation has
-/// a closed form.
+/// The first contact between two times. The interval is halved until both hardly turn; then the relative translation
+/// has a closed form.
 fn contact_between(at: &impl Fn(Second) -> PairAt, start: &PairAt, end: &PairAt, depth: u32) -> Option<Second> {
     /// After this many halvings less than a millionth of the interval is left.
     const DEEPEST: u32 = 20;

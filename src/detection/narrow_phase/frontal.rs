@@ -6,9 +6,9 @@ use super::participant::Participant;
 use crate::geometry::rectangle::Rectangle;
 use crate::util::units::Metre;
 
-/// The conflict point of two that drive towards each other with `ahead` m between their fronts. The distance of each ends
-/// where the area that the other needs to stop begins. The ego is the one with the longer distance; if equal, the one
-/// with the smaller id.
+/// The conflict point of two that drive towards each other with `ahead` m between their fronts. The distance of each
+/// ends where the area that the other needs to stop begins. The ego is the one with the longer distance; if equal, the
+/// one with the smaller id.
 pub(super) fn in_line(
     a: &Participant,
     b: &Participant,

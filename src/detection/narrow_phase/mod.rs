@@ -1,8 +1,8 @@
 //! Narrow phase (the paper's "accurate" phase): the conflict point of a pair, and the kind by the angle there.
 //!
 //! Two that drive straight on, side by side or in line, are a problem in one dimension: `rear_end` if they drive in the
-//! same direction, `frontal` if they drive towards each other. All others are swept: [`side`]. The paper's own tests are
-//! in [`paper`].
+//! same direction, `frontal` if they drive towards each other. All others are swept: [`side`]. The paper's own tests
+//! are in [`paper`].
 
 mod approach;
 mod conflict_point;

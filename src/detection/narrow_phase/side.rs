@@ -16,9 +16,9 @@ use crate::util::units::Metre;
 /// How far apart two rectangles may be where the sweep of both finds contact, in m.
 const INEXACT: Metre = 2.0 * TOLERANCE;
 
-/// How a pair meets: at the first pose on the ego's path at which its rectangle touches the area that the foe covers now
-/// and still needs to stop. The ego is the one with the longer distance there; if equal, the one with the smaller id. An
-/// obstacle is never the ego.
+/// How a pair meets: at the first pose on the ego's path at which its rectangle touches the area that the foe covers
+/// now and still needs to stop. The ego is the one with the longer distance there; if equal, the one with the smaller
+/// id. An obstacle is never the ego.
 pub fn meet(
     bisection: &mut Bisection,
     a: &Participant,
@@ -47,8 +47,8 @@ pub fn meet(
     };
     let [ego, foe] = roles.then_foe([a, b]);
     let [_, of_foe] = roles.then_foe(numbers);
-    // In line, the distance is measured along the heading: recorded positions are rounded to centimetres, so the poses may
-    // lie beside it.
+    // In line, the distance is measured along the heading: recorded positions are rounded to centimetres, so the poses
+    // may lie beside it.
     let in_front = Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_distance, ..ego.rectangle };
     let ego_rectangle = if in_line { in_front } else { rectangle };
     let (foe_distance, foe_axis, foe_leads) = if !foe.shape.is_empty() {

@@ -39,8 +39,8 @@ pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, distance
     }
 }
 
-/// The curvature, in 1/m, of the circle through two states `between` apart, with a turn in rad from one to the other; 0 if
-/// they are too close to tell. `between` is the chord of the circle, 2 · radius · sin(turn/2).
+/// The curvature, in 1/m, of the circle through two states `between` apart, with a turn in rad from one to the other; 0
+/// if they are too close to tell. `between` is the chord of the circle, 2 · radius · sin(turn/2).
 pub fn curvature(turn: f64, between: Metre) -> f64 {
     /// Over a shorter distance, rounding dominates the curvature, in m.
     const SHORTEST: Metre = 0.05;
@@ -57,7 +57,7 @@ mod tests {
     use crate::detection::path::arc::*;
 
     #[test]
-    fn a_quarter_circle_ends_a_radius_ahead_and_a_radius_aside() {
+    fn a_quarter_circle_ends_a_radius_ahead_and_aside() {
         let mut found = Vec::new();
         let quarter = 10.0 * std::f64::consts::FRAC_PI_2;
         poses(Point::origin(), Vector::new(1.0, 0.0), 0.1, 0.0, &[0.0, quarter], &mut found);

@@ -1,8 +1,9 @@
 //! Path along the lanes of the route, with the current lateral offset.
 //!
-//! A [`LanePath`] is built when a road user first needs a path or has left the one it had (a lane change, another route).
-//! From then on it is followed, and extended ahead. Behind the front bumper it runs over the lanes that the vehicle came
-//! from, since the rear is still on them. Where no lane leads to the next edge of the route, the path ends with the lane.
+//! A [`LanePath`] is built when a road user first needs a path or has left the one it had (a lane change, another
+//! route). From then on it is followed, and extended ahead. Behind the front bumper it runs over the lanes that the
+//! vehicle came from, since the rear is still on them. Where no lane leads to the next edge of the route, the path ends
+//! with the lane.
 
 use smallvec::SmallVec;
 use std::sync::Arc;
@@ -95,8 +96,8 @@ impl LanePath {
             Some(route) => self.route = RouteAhead::new(net, route, placement.route_position),
             None => self.route.advance(placement.route_position),
         }
-        // On a lane of its route a road user drives along the lane whatever its heading: after a sharp turn the rear still
-        // stands across, and the heading with it.
+        // On a lane of its route a road user drives along the lane whatever its heading: after a sharp turn the rear
+        // still stands across, and the heading with it.
         let against = foot.direction.dot(&start.axis) < 0.0 && !is_on_route(net, lane, self.route.edges());
         let beside = OffsetLine::new(offset(net, start, placement, &foot, against));
         let before = if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start) };
@@ -189,8 +190,8 @@ impl LanePath {
     }
 }
 
-/// The current offset, and where a lateral movement leads: to the centre of this lane or the next one, or (sublane model)
-/// to the border of this one.
+/// The current offset, and where a lateral movement leads: to the centre of this lane or the next one, or (sublane
+/// model) to the border of this one.
 fn offset(net: &Net, start: &PathStart, placement: &Placement, foot: &Foot, against: bool) -> Offset {
     let sign = if against { -1.0 } else { 1.0 };
     let now = sign * if foot.aside.abs() < 1e-3 { 0.0 } else { foot.aside };

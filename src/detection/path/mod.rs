@@ -1,8 +1,8 @@
 //! The expected path of a road user while it brakes, as poses.
 //!
-//! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] and [`arc`] need only
-//! the state; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows it;
-//! `poses` has the poses along a track.
+//! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] and [`arc`] need
+//! only the state; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows
+//! it; `poses` has the poses along a track.
 
 pub mod arc;
 mod foot;
@@ -37,8 +37,8 @@ impl Pose {
     }
 }
 
-/// The largest turn between two poses for which a corner of a road user of this length stays within the sweep's tolerance
-/// of a straight line: the sagitta is L·Δ²/8.
+/// The largest turn between two poses for which a corner of a road user of this length stays within the sweep's
+/// tolerance of a straight line: the sagitta is L·Δ²/8.
 pub(crate) fn largest_turn(length: Metre) -> Radian {
     (8.0 * crate::geometry::sweep::TOLERANCE / length.max(1.0)).sqrt()
 }

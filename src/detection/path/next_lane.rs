@@ -6,8 +6,8 @@ use crate::util::units::Metre;
 /// How many edges ahead lanes are compared by how far they lead along the route.
 const EDGES_AHEAD: usize = 9;
 
-/// The link that leads on from a lane, towards the edges that are ahead on the route. Without a route (`is_free`) any edge
-/// may come next.
+/// The link that leads on from a lane, towards the edges that are ahead on the route. Without a route (`is_free`) any
+/// edge may come next.
 pub(super) fn next_link<'a>(net: &'a Net, lane: LaneIndex, ahead: &[EdgeIndex], is_free: bool) -> Option<&'a Link> {
     let Lane { links, edge, .. } = &net.lanes[lane.0 as usize];
     let inside = net.edges[edge.0 as usize].function == EdgeFunction::Internal;
@@ -42,8 +42,8 @@ pub(super) fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {
     net.lanes[lane.0 as usize].edge
 }
 
-/// How far a lane of the first edge of a route leads along the route without a lane change (SUMO's criterion for choosing
-/// lanes).
+/// How far a lane of the first edge of a route leads along the route without a lane change (SUMO's criterion for
+/// choosing lanes).
 fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex) -> Metre {
     let here = &net.lanes[lane.0 as usize];
     let beyond = match route {
@@ -60,8 +60,10 @@ fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex) -> Metre {
 
 /// The cosine of the turn from a lane to the next: 1 straight on, −1 for a U-turn.
 fn straightness(net: &Net, lane: LaneIndex, next: LaneIndex) -> f64 {
-    let (here, there) = (&net.lanes[lane.0 as usize].shape, &net.lanes[next.0 as usize].shape);
+    let here = &net.lanes[lane.0 as usize].shape;
+    let there = &net.lanes[next.0 as usize].shape;
     let (Some([a, b]), Some([c, .., d])) = (here.last_chunk::<2>(), Some(there.as_slice())) else { return 0.0 };
-    let (out, on) = (b - a, d - c);
+    let out = b - a;
+    let on = d - c;
     out.dot(&on) / (out.norm() * on.norm()).max(f64::MIN_POSITIVE)
 }

@@ -1,4 +1,5 @@
-//! A line of a road user's own: beside the lanes' centre lines, against their direction, or over lanes that do not join.
+//! A line of a road user's own: beside the lanes' centre lines, against their direction, or over lanes that do not
+//! join.
 
 use super::lateral_offset::OffsetLine;
 use super::track::Track;
@@ -22,7 +23,8 @@ pub(super) struct OwnLine {
 const LINE: u32 = 0;
 
 impl OwnLine {
-    /// A line over points of the lanes' centre lines: those behind, the one beside the front bumper (`foot`), those ahead.
+    /// A line over points of the lanes' centre lines: those behind, the one beside the front bumper (`foot`), those
+    /// ahead.
     pub fn build(
         track: &mut Track,
         behind: impl Iterator<Item = Point>,

@@ -12,8 +12,8 @@ const SAME_HEADING: Radian = 1e-6;
 const SAME_DIRECTION: f64 = 1e-10;
 
 impl Track {
-    /// Whether a road user of this length and heading drives straight on for a distance, within the segment that it is on
-    /// now; `false` also where only the next segments could tell.
+    /// Whether a road user of this length and heading drives straight on for a distance, within the segment that it is
+    /// on now; `false` also where only the next segments could tell.
     pub fn goes_straight(&self, lines: &Lines, axis: &Vector, length: Metre, distance: Metre) -> bool {
         let under = lines.segment(self.vertex);
         self.front - length >= under.begins_at
@@ -21,15 +21,15 @@ impl Track {
             && turns_less(&under.direction, axis, SAME_HEADING)
     }
 
-    /// Bound on how far a straight path of this length deviates from the heading: by the distance from the line now and the
-    /// difference in heading, doubled for rounding.
+    /// Bound on how far a straight path of this length deviates from the heading: by the distance from the line now and
+    /// the difference in heading, doubled for rounding.
     pub fn beside_heading(distance: Metre) -> Metre {
         2.0 * (ON_THE_LINE + SAME_HEADING * distance)
     }
 
-    /// Adds the poses at the given distances ahead of the front bumper (ascending, from 0 on), at the vertices that make
-    /// the road user turn, and as many between as the sweep's tolerance needs. They end where the line ends, unless
-    /// `beyond` is set: then they go straight on from there.
+    /// Adds the poses at the given distances ahead of the front bumper (ascending, from 0 on), at the vertices that
+    /// make the road user turn, and as many between as the sweep's tolerance needs. They end where the line ends,
+    /// unless `beyond` is set: then they go straight on from there.
     ///
     /// `axis` is the current heading. Where it differs from the chord (a lane change, a rear on an unknown lane), the
     /// difference fades out over the road user's length.
@@ -99,8 +99,8 @@ fn axis_of_last(poses: &[Pose], otherwise: Vector) -> Vector {
     poses.last().map_or(otherwise, |pose| pose.axis)
 }
 
-/// Adds a pose. It replaces the last one if that lies on the straight line between its neighbours and is not at an asked
-/// distance.
+/// Adds a pose. It replaces the last one if that lies on the straight line between its neighbours and is not at an
+/// asked distance.
 fn push_merged(poses: &mut Vec<Pose>, start: usize, pose: Pose, asked: &[Metre]) {
     if let [.., before, last] = &poses[start..]
         && last.axis == before.axis
@@ -128,8 +128,8 @@ fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
     (front - rear).try_normalize(1e-9).unwrap_or(otherwise)
 }
 
-/// Whether the angle between two directions is certainly smaller than `angle`, without trigonometry: an angle is smaller
-/// than its tangent.
+/// Whether the angle between two directions is certainly smaller than `angle`, without trigonometry: an angle is
+/// smaller than its tangent.
 fn turns_less(from: &Vector, to: &Vector, angle: Radian) -> bool {
     /// A margin far above rounding errors.
     const SURELY: f64 = 1.0 - 1e-9;
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn front_and_rear_are_both_on_the_line_round_a_corner() {
+    fn round_a_corner_front_and_rear_are_on_the_line() {
         let corner = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
         for pose in poses(&corner, &[10.0]) {
             let on_line = |distance: f64| {

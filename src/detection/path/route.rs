@@ -96,7 +96,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn its_edges_are_those_of_the_route_from_any_position_on(
+        fn its_edges_are_the_rest_of_the_route(
             begin in any::<usize>(),
             choices in prop::collection::vec(any::<usize>(), 0..60),
             positions in any::<[prop::sample::Index; 2]>(),

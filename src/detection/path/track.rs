@@ -9,8 +9,8 @@ use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point};
 use crate::util::units::Metre;
 
-/// Within one simulation step a road user drives at most this many times the straight distance along the line: enough for
-/// a U-turn.
+/// Within one simulation step a road user drives at most this many times the straight distance along the line: enough
+/// for a U-turn.
 const LONGEST_DETOUR: f64 = 4.0;
 /// A road user that moves back by more than this has left the line, in m: more than recordings round, to 1 cm.
 const BACKWARDS: Metre = 0.02;
@@ -267,7 +267,7 @@ mod tests {
     use crate::detection::path::track::*;
 
     #[test]
-    fn it_is_followed_as_long_as_the_front_is_on_it() {
+    fn it_is_followed_while_the_front_is_on_it() {
         let (mut track, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
         assert!(track.follow(&lines, Point::new(9.5, 0.0)));
         assert!(track.follow(&lines, Point::new(10.0, 3.0)));

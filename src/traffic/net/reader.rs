@@ -23,8 +23,8 @@ impl Net {
     /// Reads a net file.
     ///
     /// # Errors
-    /// An error that names the file and line: unreadable, not a SUMO net, a lane without geometry, a connection to a lane
-    /// that does not exist.
+    /// An error that names the file and line: unreadable, not a SUMO net, a lane without geometry, a connection to a
+    /// lane that does not exist.
     pub fn read(path: &Path) -> Result<Self> {
         read(path, open(path)?)
     }
@@ -203,7 +203,8 @@ impl NetReader<'_> {
             .ok_or_else(|| self.wrong(format!("connection to lane {lane} of edge \"{edge}\", which does not exist")))
     }
 
-    /// The points of a shape. Repeated points are dropped, since they have no direction, unless fewer than two would be left.
+    /// The points of a shape. Repeated points are dropped, since they have no direction, unless fewer than two would be
+    /// left.
     fn shape(&self, id: &str, text: &str) -> Result<Vec<Point>> {
         let mut points: Vec<Point> = Vec::new();
         for triple in text.split_ascii_whitespace() {
