@@ -1,13 +1,11 @@
-//! The one way to report what went wrong: an error names the file, the place in it and what is wrong there.
+//! Errors: each names the file, the place in it and what is wrong there.
 
 use std::path::{Path, PathBuf};
 
-/// What the library's functions return.
+/// The result of the library's functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// Why closecall could not do what it was asked to do.
-///
-/// Its `Display` is one line, fit for standard error.
+/// An error of closecall. Its `Display` is one line for standard error.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A file or folder cannot be read or written.
@@ -15,10 +13,10 @@ pub enum Error {
     File {
         /// The file or folder.
         path: PathBuf,
-        /// What the operating system says.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// A file's content is not what it should be.
+    /// The content of a file is wrong at a line.
     #[error("{}, line {line}: {message}", path.display())]
     Line {
         /// The file.
@@ -28,7 +26,7 @@ pub enum Error {
         /// What is wrong there.
         message: String,
     },
-    /// A file as a whole is not what it should be.
+    /// The content of a file is wrong as a whole.
     #[error("{}: {message}", path.display())]
     Content {
         /// The file.
@@ -36,7 +34,7 @@ pub enum Error {
         /// What is wrong with it.
         message: String,
     },
-    /// A recording ends before its format says so; what came before it was checked.
+    /// A recording ends early; the steps before that were checked.
     #[error("{}: cut short after time {time} s: {message}", path.display())]
     CutShort {
         /// The file.
@@ -46,10 +44,10 @@ pub enum Error {
         /// Where and how it ends.
         message: String,
     },
-    /// A value that a caller or an option gives is out of its range.
+    /// A value of a caller or an option is out of range.
     #[error("{0}")]
     Value(String),
-    /// What was measured does not keep a bound that it should.
+    /// A measured value exceeds its bound.
     #[error("{0}")]
     Exceeded(String),
     /// SUMO refused to start: its configuration, net or demand cannot be used.
@@ -57,7 +55,7 @@ pub enum Error {
     Refused {
         /// The SUMO configuration.
         path: PathBuf,
-        /// What SUMO says.
+        /// SUMO's message.
         message: String,
     },
     /// SUMO failed while it ran.
@@ -65,7 +63,7 @@ pub enum Error {
     Failed {
         /// The simulated time that was reached.
         time: f64,
-        /// What SUMO says.
+        /// SUMO's message.
         message: String,
     },
     /// The user ended the run.
@@ -74,21 +72,21 @@ pub enum Error {
         /// The simulated time that was reached.
         time: f64,
     },
-    /// The user ended a command before it had come to a result.
+    /// The user ended a command before it had a result.
     #[error("interrupted; nothing was compared or written")]
     Stopped,
     /// The user ended a sweep.
-    #[error("interrupted after {done} of {all} runs; the same command continues there")]
+    #[error("interrupted after {done} of {all} runs; repeat the command to continue")]
     Paused {
-        /// The runs that have ended.
+        /// Number of completed runs.
         done: usize,
-        /// All runs.
+        /// Number of runs.
         all: usize,
     },
 }
 
 impl Error {
-    /// An unusable file, with what the operating system says of it.
+    /// An unusable file, with the error of the operating system.
     pub fn file(path: &Path, source: std::io::Error) -> Self {
         Self::File { path: path.to_owned(), source }
     }
@@ -103,13 +101,13 @@ impl Error {
         Self::Content { path: path.to_owned(), message: message.into() }
     }
 
-    /// The exit status of a command that ends with this error: 1 where SUMO failed in mid-run or a bound was exceeded, 3 where a
-    /// recording was cut short, 130 where the user interrupted it, 2 for every other input that cannot be used.
+    /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded,
+    /// 3 if a recording was cut short, 130 if the user interrupted it, 2 for every other unusable input.
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Failed { .. } | Self::Exceeded(_) => 1,
             Self::CutShort { .. } => 3,
-            // As shells say it: 128 + SIGINT.
+            // The convention of shells: 128 + SIGINT.
             Self::Interrupted { .. } | Self::Stopped | Self::Paused { .. } => 130,
             _ => 2,
         }

@@ -1,4 +1,4 @@
-//! Scenes of two, straight on and without a net: what the definitions in docs/model.md give by hand.
+//! Scenes with two vehicles, straight on and without a net, compared with the definitions in docs/model.md.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
@@ -34,24 +34,24 @@ fn options() -> Options {
     options
 }
 
-/// Encounters of cars given as (x, y, heading, speed) of their front bumpers, named a, b, c, ….
+/// Encounters of cars given as (x, y, heading, speed) of their front bumpers, named a, b, c, …, with the ego's name.
 fn encounters(cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     encounters_by(cars, |_| {})
 }
 
-/// The same by a detector that is set up so.
+/// [`encounters`] by a detector with settings of its own.
 fn encounters_by(cars: &[(f64, f64, f64, f64)], set_up: impl Fn(&mut Detector)) -> Vec<(Encounter, String)> {
     let mut detector = Detector::new(&options(), None);
     set_up(&mut detector);
     look(&mut detector, cars)
 }
 
-/// What a detector finds in a step.
+/// The encounters that a detector finds in a step.
 fn look(detector: &mut Detector, cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     look_at(detector, &options(), cars)
 }
 
-/// The same where the cars brake as these options say.
+/// [`look`] with cars whose brakes follow these options.
 fn look_at(detector: &mut Detector, options: &Options, cars: &[(f64, f64, f64, f64)]) -> Vec<(Encounter, String)> {
     let mut roster = Roster::default();
     let profile = roster.profile(car(options)).unwrap();
@@ -71,7 +71,7 @@ const WEST: f64 = std::f64::consts::PI;
 const NORTH: f64 = std::f64::consts::FRAC_PI_2;
 
 #[test]
-fn a_follower_has_the_room_between_the_bumpers_left() {
+fn a_followers_gap_is_the_room_between_the_bumpers() {
     let [(found, ego)] = &encounters(&[(30.0, 0.0, 0.0, 10.0), (0.0, 0.0, 0.0, 20.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "b"));
     assert!((found.gap - 25.0).abs() < 1e-9);
@@ -82,7 +82,7 @@ fn a_follower_has_the_room_between_the_bumpers_left() {
 }
 
 #[test]
-fn two_that_drive_at_each_other_need_the_sum_of_their_ways() {
+fn oncoming_vehicles_need_the_sum_of_their_stopping_distances() {
     let [(found, _)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (60.0, 0.5, WEST, 10.0)])[..] else { panic!() };
     assert_eq!(found.kind, Kind::Frontal);
     assert!((found.gap - 60.0).abs() < 1e-9);
@@ -90,12 +90,12 @@ fn two_that_drive_at_each_other_need_the_sum_of_their_ways() {
 }
 
 #[test]
-fn ordinary_opposite_traffic_is_no_encounter() {
+fn ordinary_oncoming_traffic_is_not_an_encounter() {
     assert!(encounters(&[(0.0, 0.0, 0.0, 20.0), (60.0, 3.2, WEST, 20.0)]).is_empty());
 }
 
 #[test]
-fn one_that_crosses_is_met_at_the_edge_of_its_way() {
+fn a_crossing_foe_is_met_at_its_paths_edge() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -11.0, NORTH, 10.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::Side, "a"));
     assert!((found.ego_distance - 19.0).abs() < 0.02, "{}", found.ego_distance);
@@ -103,7 +103,7 @@ fn one_that_crosses_is_met_at_the_edge_of_its_way() {
 }
 
 #[test]
-fn who_can_stop_before_the_crossing_is_no_foe() {
+fn a_vehicle_stopping_before_the_crossing_is_not_a_foe() {
     assert!(encounters(&[(0.0, 0.0, 0.0, 15.0), (20.0, -25.0, NORTH, 10.0)]).is_empty());
 }
 
@@ -115,18 +115,18 @@ fn overlapping_rectangles_are_a_collision_without_a_gap() {
 }
 
 #[test]
-fn two_that_stand_are_no_pair() {
+fn two_standing_vehicles_are_not_a_pair() {
     assert!(encounters(&[(0.0, 0.0, 0.0, 0.0), (5.1, 0.0, 0.0, 0.0)]).is_empty());
 }
 
 #[test]
-fn in_a_merge_the_foe_first_has_to_come_and_go() {
+fn in_a_merge_the_foe_has_to_pass_first() {
     let [(found, ego)] = &encounters(&[(0.0, 0.0, 0.0, 20.0), (20.0, -4.0, 0.3, 15.0)])[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
     assert!(found.foe_distance > 5.0 && found.foe_distance < 15.0, "{}", found.foe_distance);
 }
 
-/// All that meet, and those that are left of them where conflicts are asked for only; of each the conflicts.
+/// Number of encounters and the conflicts: without and with the restriction to conflicts.
 fn all_and_only(cars: &[(f64, f64, f64, f64)]) -> [(usize, Vec<(Encounter, String)>); 2] {
     [false, true].map(|only| {
         let found = encounters_by(cars, |detector| detector.set_conflicts_only(only));
@@ -135,7 +135,7 @@ fn all_and_only(cars: &[(f64, f64, f64, f64)]) -> [(usize, Vec<(Encounter, Strin
 }
 
 #[test]
-fn who_asks_for_conflicts_only_gets_all_of_them() {
+fn the_restriction_to_conflicts_keeps_all_of_them() {
     let cars = [(0.0, 0.0, 0.0, 20.0), (40.0, 0.0, 0.0, 20.0), (0.0, 99.0, 0.0, 20.0), (12.0, 99.0, 0.0, 15.0)];
     let [(all, of_all), (only, of_only)] = all_and_only(&cars);
     assert!(0 < only && only < all, "{only} {all}");
@@ -143,7 +143,7 @@ fn who_asks_for_conflicts_only_gets_all_of_them() {
 }
 
 #[test]
-fn of_a_foe_that_leaves_in_time_whenever_that_is_nothing_is_asked_for_conflicts_only() {
+fn the_restriction_to_conflicts_drops_foes_that_leave_in_time() {
     let [(all, of_all), (only, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, 20.0), (44.5, -1.0, 0.1, 20.0)]);
     assert_eq!((all, only, of_all, of_only), (1, 0, vec![], vec![]));
 }
@@ -152,7 +152,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(5000))]
 
     #[test]
-    fn who_asks_for_conflicts_only_gets_every_merge_that_is_one(
+    fn the_restriction_to_conflicts_keeps_every_merging_conflict(
         x in -60.0..60.0, y in -12.0..12.0, turn in -0.5..0.5, speed in 2.0..35.0, foe_speed in 2.0..35.0,
     ) {
         let [(_, of_all), (_, of_only)] = all_and_only(&[(0.0, 0.0, 0.0, speed), (x, y, turn, foe_speed)]);
@@ -160,7 +160,7 @@ proptest! {
     }
 }
 
-/// Cars near each other, some of which stand; headings of few and of all directions.
+/// Cars near each other, some of them standing; with a few fixed headings and arbitrary ones.
 fn some_cars() -> impl Strategy<Value = Vec<(f64, f64, f64, f64)>> {
     let heading = prop_oneof![-4.0..4.0, prop_oneof![Just(0.0), Just(1.0), Just(NORTH)]];
     prop::collection::vec((-40.0..40.0, -40.0..40.0, heading, prop_oneof![Just(0.0), 0.0..35.0]), 2..7)
@@ -169,9 +169,9 @@ fn some_cars() -> impl Strategy<Value = Vec<(f64, f64, f64, f64)>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// With these kept a way is laid, kept and covered as that of one who turns.
+    /// With these shortcuts off, straight paths are built and stored like those that turn.
     #[test]
-    fn who_goes_straight_on_meets_the_same_whatever_is_left_out(cars in some_cars()) {
+    fn straight_traffic_meets_the_same_whatever_is_left_out(cars in some_cars()) {
         let [left_out, kept] = [vec![], vec![Shortcut::AreasApart, Shortcut::PathsApart]].map(|keep| {
             let options = Options { keep, ..options() };
             look_at(&mut Detector::new(&options, None), &options, &cars)
@@ -180,7 +180,7 @@ proptest! {
     }
 
     #[test]
-    fn what_was_known_of_a_step_changes_nothing_in_the_next(before in some_cars(), cars in some_cars()) {
+    fn one_step_changes_nothing_in_the_next(before in some_cars(), cars in some_cars()) {
         let mut warm = Detector::new(&options(), None);
         look(&mut warm, &before);
         prop_assert_eq!(look(&mut warm, &cars), encounters(&cars));
@@ -189,7 +189,7 @@ proptest! {
 
 proptest! {
     #[test]
-    fn on_paper_nobody_is_too_far_apart_whom_its_flow_chart_warns_of(
+    fn in_paper_mode_leaving_out_changes_nothing(
         cars in prop::collection::vec((-40.0..40.0, -40.0..40.0, -4.0..4.0, 0.0..35.0), 2..6), build_up in 0.0..3.0,
     ) {
         let mut options = Options { mode: Mode::Paper, ..options() };
@@ -203,15 +203,15 @@ proptest! {
 }
 
 #[test]
-fn a_kind_of_which_no_two_come_within_reach_is_left_out_and_said() {
+fn a_kind_without_pairs_is_reported_as_left_out() {
     let left_out = |options: &Options, foe| {
         let mut detector = Detector::new(options, None);
         look(&mut detector, &[(0.0, 0.0, 0.0, 20.0), foe]);
         let altogether = detector.left_out().into_iter().filter(|entry| entry.times.is_none());
         altogether.map(|entry| entry.to_string()).collect::<Vec<_>>()
     };
-    let frontal = "frontal: left out (no opposing ways within reach)";
-    let side = "side: left out (no crossing or bending ways within reach)";
+    let frontal = "frontal: left out (no opposing distances within reach)";
+    let side = "side: left out (no crossing or bending distances within reach)";
     let (ahead, towards_it, across) = ((30.0, 0.0, 0.0, 10.0), (60.0, 0.0, WEST, 10.0), (40.0, -20.0, NORTH, 15.0));
     assert_eq!(left_out(&options(), ahead), [frontal, side]);
     assert_eq!(left_out(&options(), towards_it), [side]);
@@ -233,11 +233,11 @@ fn any_number_of_threads_finds_the_same() {
     });
     for step in 0..3 {
         frame.begin(f64::from(step));
-        // Prime numbers, so that everybody goes another way and the rows are in no order of place.
+        // Prime numbers, so that all directions differ and the rows are not sorted by place.
         for (number, user) in (0_u32..).zip(&users) {
             let of = |prime: u32| f64::from(number * prime % 20_983) / 20_983.0;
-            let way = f64::from(step) * 10.0;
-            let (x, y) = (of(1709) * 3000.0 + way * of(7), of(2903) * 3000.0);
+            let distance = f64::from(step) * 10.0;
+            let (x, y) = (of(1709) * 3000.0 + distance * of(7), of(2903) * 3000.0);
             frame.push(*user, State { x, y, z: 0.0, heading: of(3571) * 6.2, speed: of(4273) * 15.0 });
         }
         let [alone, others @ ..] = &mut detectors;
@@ -254,13 +254,13 @@ fn any_number_of_threads_finds_the_same() {
     }
 }
 
-/// The encounters of these of the cars, given as (x, y, heading, speed), who have turned for a step; by their numbers.
+/// Encounters among some of the cars, given as (x, y, heading, speed), after one step of turning; by their numbers.
 fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Roster) -> Vec<Encounter> {
     let mut detector = Detector::new(&Options { path: PathModel::Arc, ..options() }, None);
     turned_by(0.01, &mut detector, cars, numbers, roster)
 }
 
-/// The same by this detector of those who have turned by so much.
+/// [`encounters_of`] by this detector, after a turn by this angle.
 fn turned_by(
     turn: f64,
     detector: &mut Detector,
@@ -283,9 +283,9 @@ fn turned_by(
     detector.narrow_phase(&frame, roster).map(by_number).collect()
 }
 
-/// Of many the detector forgets ways, and lays them again.
+/// With many vehicles the detector forgets paths, and builds them again.
 #[test]
-fn among_many_everybody_meets_whom_it_meets_alone() {
+fn vehicles_meet_the_same_foes_among_many_as_alone() {
     let mut roster = Roster::default();
     let profile = roster.profile(car(&options())).unwrap();
     let all = (0..200).collect::<Vec<_>>();
@@ -306,9 +306,9 @@ fn among_many_everybody_meets_whom_it_meets_alone() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// The tail of a long one that turns on a small circle gets further than its front.
+    /// On a small circle the tail of a long vehicle reaches further than its front.
     #[test]
-    fn on_arcs_nobody_is_too_far_apart_whom_a_tail_meets(
+    fn on_arcs_leaving_out_keeps_pairs_that_a_tail_meets(
         (x, y) in (-60.0..60.0, -60.0..60.0), heading in -3.2..3.2, speed in 0.5..15.0, foe_speed in 0.0..15.0,
         length in 2.0..25.0, turn in -0.5..0.5, articulated: bool,
     ) {

@@ -1,82 +1,81 @@
-//! Where steps touch, against trying all parts of both: the same to the last bit.
+//! Where movements touch: equal, to the last bit, to trying all parts of both.
 
-use closecall::geometry::bisection::{Bisection, Contact};
+use closecall::geometry::bisection::Bisection;
 use closecall::geometry::convex::ConvexOutline;
 use closecall::geometry::polygon::Polygon;
 use closecall::geometry::rectangle::{Rectangle, direction};
-use closecall::geometry::separating_axes::translation;
-use closecall::geometry::sweep::{Step, TOLERANCE};
+use closecall::geometry::separating_axes::{Contact, translation};
+use closecall::geometry::sweep::{Movement, TOLERANCE};
 use closecall::geometry::{Bounds, Point, Vector};
 use proptest::prelude::*;
 
-/// The part of a step at which it touches another's area, by all hulls of the other that are not left out by one that
-/// they are a half of.
-fn touch(step: &Step, other: &Step, which: Contact) -> Option<f64> {
-    if !bounds(step).meet(&bounds(other)) {
+/// The fraction of a movement at which it touches another's area, by all hulls of the other whose whole is touched.
+fn touch(movement: &Movement, other: &Movement, which: Contact) -> Option<f64> {
+    if !bounds(movement).meet(&bounds(other)) {
         return None;
     }
     let hull = other.hull();
-    let part = meet(step, &hull, &hull.bounds(), which)?;
+    let part = meet(movement, &hull, &hull.bounds(), which)?;
     if turn(other) * other.length / 4.0 <= TOLERANCE {
         return Some(part);
     }
-    let parts = halves(other).into_iter().filter_map(|half| touch(step, &half, which));
+    let parts = halves(other).into_iter().filter_map(|half| touch(movement, &half, which));
     parts.reduce(if which == Contact::Entry { f64::min } else { f64::max })
 }
 
-/// The part of a step at which it touches a fixed outline.
-fn meet(step: &Step, fixed: &ConvexOutline, box_around: &Bounds, which: Contact) -> Option<f64> {
-    if turn(step) * (step.length + step.width) / 2.0 <= TOLERANCE {
-        let (middle, by) = (step.rectangle(0.5), step.to - step.from);
+/// The fraction of a movement at which it touches a fixed outline.
+fn meet(movement: &Movement, fixed: &ConvexOutline, box_around: &Bounds, which: Contact) -> Option<f64> {
+    if turn(movement) * (movement.length + movement.width) / 2.0 <= TOLERANCE {
+        let (middle, by) = (movement.rectangle(0.5), movement.to - movement.from);
         let start = ConvexOutline::rectangle(&Rectangle { centre: middle.centre - by * 0.5, ..middle });
         let contact = translation(&start, &by, fixed)?;
         return Some(if which == Contact::Entry { contact.enter } else { contact.leave });
     }
-    if !bounds(step).meet(box_around) || translation(&step.hull(), &Vector::zeros(), fixed).is_none() {
+    if !bounds(movement).meet(box_around) || translation(&movement.hull(), &Vector::zeros(), fixed).is_none() {
         return None;
     }
-    let [first, second] = halves(step);
+    let [first, second] = halves(movement);
     let first = || meet(&first, fixed, box_around, which).map(|part| (part / 2.0).min(0.5));
     let second = || meet(&second, fixed, box_around, which).map(|part| 0.5 + part / 2.0);
     if which == Contact::Entry { first().or_else(second) } else { second().or_else(first) }
 }
 
-fn turn(step: &Step) -> f64 {
-    (step.to_axis - step.from_axis).norm()
+fn turn(movement: &Movement) -> f64 {
+    (movement.to_axis - movement.from_axis).norm()
 }
 
-fn bounds(step: &Step) -> Bounds {
-    let mut bounds = step.rectangle(0.0).bounds();
-    bounds.join(&step.rectangle(1.0).bounds());
+fn bounds(movement: &Movement) -> Bounds {
+    let mut bounds = movement.rectangle(0.0).bounds();
+    bounds.join(&movement.rectangle(1.0).bounds());
     bounds
 }
 
-fn halves(step: &Step) -> [Step; 2] {
-    [(0.0, 0.5), (0.5, 1.0)].map(|(start, end)| Step {
-        from: step.from + (step.to - step.from) * start,
-        from_axis: step.rectangle(start).axis,
-        to: step.from + (step.to - step.from) * end,
-        to_axis: step.rectangle(end).axis,
-        ..*step
+fn halves(movement: &Movement) -> [Movement; 2] {
+    [(0.0, 0.5), (0.5, 1.0)].map(|(start, end)| Movement {
+        from: movement.from + (movement.to - movement.from) * start,
+        from_axis: movement.rectangle(start).axis,
+        to: movement.from + (movement.to - movement.from) * end,
+        to_axis: movement.rectangle(end).axis,
+        ..*movement
     })
 }
 
-/// The last touch beyond the end is that at the end.
+/// A last contact beyond the end counts as one at the end.
 fn capped(part: Option<f64>) -> Option<f64> {
     part.map(|part| part.min(1.0))
 }
 
 prop_compose! {
-    /// A step of 10 m at most, as road users drive: it may turn, and slide a little.
-    fn step()(
-        x in -8.0..8.0, y in -8.0..8.0, heading in -4.0..4.0, way in prop_oneof![Just(0.0), 0.0..10.0],
+    /// A movement of up to 10 m, as road users drive: it may turn, and slide a little.
+    fn movement()(
+        x in -8.0..8.0, y in -8.0..8.0, heading in -4.0..4.0, distance in prop_oneof![Just(0.0), 0.0..10.0],
         turn in prop_oneof![Just(0.0), -0.1..0.1, -1.5..1.5], slide in prop_oneof![Just(0.0), -0.3..0.3],
         length in 0.5..12.0, width in 0.3..3.0,
-    ) -> Step {
+    ) -> Movement {
         let from = Point::new(20_000.0 + x, 5_000.0 + y);
         let (from_axis, to_axis) = (direction(heading), direction(heading + turn));
-        let to = from + direction(heading + turn / 2.0 + slide) * way;
-        Step { from, from_axis, to, to_axis, length, width }
+        let to = from + direction(heading + turn / 2.0 + slide) * distance;
+        Movement { from, from_axis, to, to_axis, length, width }
     }
 }
 
@@ -84,12 +83,12 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn what_is_left_out_changes_no_touch(step in step(), others in prop::collection::vec(step(), 1..4)) {
+    fn leaving_out_parts_changes_no_contact(movement in movement(), others in prop::collection::vec(movement(), 1..4)) {
         let mut halves = Bisection::default();
-        let part = halves.add(step);
+        let part = halves.add(movement);
         let parts = others.iter().map(|other| halves.add(*other)).collect::<Vec<_>>();
         for which in [Contact::Entry, Contact::Exit] {
-            let all = others.iter().filter_map(|other| touch(&step, other, which));
+            let all = others.iter().filter_map(|other| touch(&movement, other, which));
             let all = all.reduce(if which == Contact::Entry { f64::min } else { f64::max });
             let found = parts.iter().fold(which.none(), |known, other| halves.touch(part, *other, which, known));
             prop_assert_eq!(capped((found != which.none()).then_some(found)), capped(all));
@@ -97,12 +96,12 @@ proptest! {
     }
 
     #[test]
-    fn a_fixed_outline_is_met_where_all_parts_say(step in step(), fixed in step()) {
+    fn a_fixed_outline_is_met_where_all_parts_meet_it(movement in movement(), fixed in movement()) {
         let (mut halves, outline) = (Bisection::default(), ConvexOutline::rectangle(&fixed.rectangle(0.0)));
-        let part = halves.add(step);
+        let part = halves.add(movement);
         for which in [Contact::Entry, Contact::Exit] {
             let found = halves.meet(part, &Polygon::from(outline), which);
-            prop_assert_eq!(found, meet(&step, &outline, &outline.bounds(), which));
+            prop_assert_eq!(found, meet(&movement, &outline, &outline.bounds(), which));
         }
     }
 }

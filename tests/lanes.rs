@@ -1,4 +1,4 @@
-//! Which way somebody is taken to drive along the lane that it is on.
+//! The path that is built from a road user's lane, heading and route.
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
@@ -18,7 +18,7 @@ use closecall::traffic::roster::Roster;
 
 use street::street;
 
-/// Whether a car on the lane to the west, headed this way, is taken to drive to the west, on this route.
+/// Whether the path of a car on the westbound lane, with this heading and route, leads west.
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     let net = street();
     let mut roster = Roster::default();
@@ -41,16 +41,16 @@ fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
 }
 
 #[test]
-fn who_has_just_turned_sharply_onto_its_route_drives_along_it_whatever_its_heading() {
+fn after_a_sharp_turn_a_car_follows_its_route() {
     for heading in [0.5, 1.5, 3.0, std::f64::consts::PI] {
         assert!(drives_west(heading, &["east", "west"], 1));
     }
 }
 
 #[test]
-fn who_is_on_the_lane_of_those_who_come_towards_it_drives_against_it() {
+fn a_car_on_the_oncoming_lane_drives_against_it() {
     assert!(!drives_west(0.0, &["east"], 0));
-    assert!(!drives_west(0.0, &[], 0), "of whom no route is known the heading says it");
+    assert!(!drives_west(0.0, &[], 0), "without a route the heading decides");
     assert!(drives_west(3.0, &[], 0));
 }
 
@@ -62,15 +62,15 @@ const APART: &str = r#"<net>
 </net>"#;
 
 #[test]
-fn where_lanes_do_not_join_a_path_leads_straight_across() {
+fn a_path_leads_straight_across_between_unjoined_lanes() {
     let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_fixed_routes(true);
-    let way = [(60.0, 0.0), (80.0, 0.0), (100.0, 0.0), (105.0, 2.5), (110.0, 5.0), (130.0, 5.0)];
-    for (step, (x, y)) in way.into_iter().enumerate() {
+    let places = [(60.0, 0.0), (80.0, 0.0), (100.0, 0.0), (105.0, 2.5), (110.0, 5.0), (130.0, 5.0)];
+    for (step, (x, y)) in places.into_iter().enumerate() {
         frame.begin(step as f64);
         frame.push(user, State { x, y, z: 0.0, heading: 0.0, speed: 25.0 });
         let asked = detector.track_paths(&frame, &roster).to_vec();
@@ -94,7 +94,7 @@ fn where_lanes_do_not_join_a_path_leads_straight_across() {
     }
 }
 
-/// A street from which another turns off to the south.
+/// A street with a turn-off to the south.
 const FORK: &str = r#"<net>
     <edge id="a" from="w" to="m"><lane id="a_0" index="0" length="100" shape="0,0 100,0"/></edge>
     <edge id="b" from="m" to="e"><lane id="b_0" index="0" length="100" shape="100,0 200,0"/></edge>
@@ -104,14 +104,14 @@ const FORK: &str = r#"<net>
 </net>"#;
 
 #[test]
-fn a_path_is_laid_anew_where_the_route_is_another_one_not_where_it_is_told_again() {
+fn a_path_is_rebuilt_only_for_another_route() {
     let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
     let mut roster = Roster::default();
     let profile = roster.profile(closecall::study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
-    // Where its path ends; a step later it stands where it did.
-    let mut told = |route: Option<[&str; 2]>, lateral_speed: f64| {
+    // The end of the path; the car stays at the same place in every step.
+    let mut path_end = |route: Option<[&str; 2]>, lateral_speed: f64| {
         frame.begin(frame.time + 1.0);
         frame.push(user, State { x: 80.0, y: 0.0, z: 0.0, heading: 0.0, speed: 25.0 });
         assert_eq!(detector.track_paths(&frame, &roster), [0]);
@@ -122,10 +122,10 @@ fn a_path_is_laid_anew_where_the_route_is_another_one_not_where_it_is_told_again
         detector.broad_phase(&frame, &roster);
         detector.path(&frame, &roster, 0).pop().unwrap()
     };
-    let drifts = told(Some(["a", "b"]), 1.0);
+    let drifts = path_end(Some(["a", "b"]), 1.0);
     assert!(drifts.y > 1.0, "{drifts}");
-    assert_eq!(told(Some(["a", "b"]), 0.0), drifts);
-    assert_eq!(told(None, 0.0), drifts);
-    let turns = told(Some(["a", "c"]), 0.0);
+    assert_eq!(path_end(Some(["a", "b"]), 0.0), drifts);
+    assert_eq!(path_end(None, 0.0), drifts);
+    let turns = path_end(Some(["a", "c"]), 0.0);
     assert!(turns.y < -10.0, "{turns}");
 }

@@ -1,4 +1,4 @@
-//! The sublane model: who drifts to the side does so within its lanes.
+//! The sublane model: a vehicle that drifts to the side stays within its lanes.
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
@@ -15,7 +15,7 @@ use closecall::traffic::roster::Roster;
 
 use street::street;
 
-/// How many pairs meet when the car to the east drives at y and drifts to the left.
+/// Number of encounters when the eastbound car is at y and drifts to the left.
 fn encounters(y: f64, drift: f64) -> usize {
     let net = street();
     let mut roster = Roster::default();
@@ -45,13 +45,13 @@ fn encounters(y: f64, drift: f64) -> usize {
 }
 
 #[test]
-fn who_drifts_to_the_border_of_the_last_lane_goes_no_further() {
+fn a_drift_ends_at_the_border_of_the_last_lane() {
     assert_eq!(encounters(-1.6, 0.5), 0);
     // The border itself: half of 3.2 m less 2 m to the left of the centre.
     assert_eq!(encounters(-1.0, 0.5), 0);
 }
 
 #[test]
-fn who_is_across_the_border_meets_who_drives_there() {
+fn a_car_across_the_border_meets_oncoming_traffic() {
     assert_eq!(encounters(0.5, 0.0), 1);
 }

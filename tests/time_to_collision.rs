@@ -1,8 +1,8 @@
-//! TTC of two that keep their speed, against parry2d's linear `cast_shapes`.
+//! TTC of two road users that keep their speed, compared with parry2d's linear `cast_shapes`.
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use closecall::detection::measures::ttc::{Course, HORIZON, time_to_collision};
+use closecall::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
 use closecall::detection::path::Pose;
 use closecall::geometry::Point;
 use closecall::geometry::contact::distance;
@@ -33,7 +33,7 @@ impl RoadUser {
         let front = Point::new(chance.between(-20.0, 20.0), chance.between(-20.0, 20.0));
         let axis = direction(chance.between(-4.0, 4.0));
         Self {
-            pose: Pose { way: 0.0, front, axis },
+            pose: Pose { distance: 0.0, front, axis },
             speed: chance.between(0.0, 40.0),
             length: chance.between(0.5, 15.0),
             width: chance.between(0.3, 3.0),
@@ -53,8 +53,8 @@ impl RoadUser {
         )
     }
 
-    fn course<'a>(&self, poses: &'a [Pose]) -> Course<'a> {
-        Course { poses, speed: self.speed, length: self.length, width: self.width }
+    fn motion<'a>(&self, poses: &'a [Pose]) -> SteadyMotion<'a> {
+        SteadyMotion { poses, speed: self.speed, length: self.length, width: self.width }
     }
 
     fn parry(&self) -> (ParryPose, Vector, Cuboid) {
@@ -75,14 +75,14 @@ fn ttc_at_any_angle_is_that_of_parrys_cast() {
     for _ in 0..100_000 {
         let (a, b) = (RoadUser::new(&mut chance), RoadUser::new(&mut chance));
         let (poses_a, poses_b) = ([a.pose], [b.pose]);
-        let ours = time_to_collision(&a.course(&poses_a), &b.course(&poses_b));
+        let ours = time_to_collision(&a.motion(&poses_a), &b.motion(&poses_b));
         let ((pose_a, velocity_a, shape_a), (pose_b, velocity_b, shape_b)) = (a.parry(), b.parry());
         let options = ShapeCastOptions::with_max_time_of_impact(HORIZON);
         let theirs = cast_shapes(&pose_a, velocity_a, &shape_a, &pose_b, velocity_b, &shape_b, options).unwrap();
         match (ours, theirs.map(|hit| hit.time_of_impact)) {
             (Some(ours), Some(theirs)) => {
                 met += 1;
-                // Where the two disagree, the rectangles themselves say who is right: they touch at our time.
+                // Where the two disagree, the rectangles decide: they touch at our time.
                 if (ours - theirs).abs() > 1e-9 {
                     grazing += 1;
                     assert!(distance(&a.at(ours), &b.at(ours)) < 1e-9, "{ours} s against {theirs} s");

@@ -1,32 +1,32 @@
-//! What the braking model knows of a road user, and which models of μ there are.
+//! The inputs of the braking model, and the models of μ.
 
 use crate::util::units::{MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// How one road user brakes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Brakes {
-    /// Response time t1 + t2 in s: full speed until it is over.
+    /// Response time t1 + t2 in s, at full speed.
     pub response: Second,
     /// Build-up time t3 in s, in which the deceleration rises linearly.
     pub build_up: Second,
-    /// Deceleration in m/s² from then on; above 0.
+    /// Deceleration after the build-up, in m/s²; above 0.
     pub deceleration: MetrePerSecondSquared,
 }
 
 impl Brakes {
-    /// The same brakes in the paper's worst case: at once and fully.
+    /// The same brakes in the paper's worst case: fully applied at once.
     pub fn at_once(&self) -> Self {
         Self { response: 0.0, build_up: 0.0, ..*self }
     }
 }
 
-/// Which model of the minimal collision distance.
+/// A model of the minimal collision distance μ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MuModel {
-    /// The narrowest moment on the way to rest.
+    /// The room at the narrowest moment until both stand.
     Minimal,
-    /// Both at rest.
+    /// The room when both stand.
     AtRest,
     /// Eq. 19 and 21 as printed: always a minus sign, no floor.
     Paper,

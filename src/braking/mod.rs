@@ -1,11 +1,12 @@
 //! How a road user brakes, and the minimal collision distance μ (Guan et al. 2008, eq. 5–21, corrected).
 //!
-//! A braking road user keeps its speed V for its response time r = t1 + t2; then its deceleration rises linearly to a
-//! over t3 and stays there until it stands, which may be before t3 is over. μ is the room that the ego needs so that
-//! both can brake without contact. Three models of it, chosen by name: [`MuModel`].
+//! A braking road user keeps its speed V for its response time r = t1 + t2. Then its deceleration rises linearly to a
+//! over t3 and stays there until the road user stands, which may be before t3 is over. μ is the room that the ego needs
+//! so that both can brake without contact. [`MuModel`] lists its three models.
 //!
-//! Published μ must hold its 15 digits also where S − Si cancels, so [`mu`] computes the same formulas in plain f64
-//! first and only where the result is much smaller than its terms in twice the precision ([`crate::util::double_double`]).
+//! μ is logged with 15 digits, which must be right also where S − Si cancels. [`mu`] computes the formulas in plain
+//! f64; where the result is much smaller than its terms, it computes them again in twice the precision
+//! ([`crate::util::double_double`]).
 
 mod brakes;
 mod narrowest;
@@ -32,7 +33,7 @@ pub fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre 
     speed * (brakes.response + brakes.build_up) + speed / (2.0 * brakes.deceleration) * speed
 }
 
-/// The minimal collision distance in m, with σ = cos α of the angle between the headings at the meeting place:
+/// The minimal collision distance in m, with σ = cos α of the angle between the headings at the conflict point:
 ///
 /// ```text
 /// minimal:  max over t ≥ 0 of ( travel_ego(t) − σ · travel_foe(t) ) + ε,  never below ε
@@ -57,7 +58,7 @@ pub fn mu(model: MuModel, ego: Braking, foe: Braking, sigma: f64, epsilon: Metre
         return stopping_distance(ego.speed, ego.brakes) - sigma * stopping_distance(foe.speed, foe.brakes) + epsilon;
     }
     let plain = needed::<f64>(model, ego, foe, sigma);
-    // Of the paper's model, which has no floor, ε may cancel what is left.
+    // The paper's model has no floor: ε may cancel the rest.
     let sum = if model == MuModel::Paper { plain.distance + epsilon } else { plain.distance };
     if plain.trusted(sum) {
         return add_epsilon(model, plain.distance, epsilon);
@@ -70,10 +71,10 @@ fn add_epsilon(model: MuModel, distance: Metre, epsilon: Metre) -> Metre {
     if model == MuModel::Paper { distance + epsilon } else { distance.max(0.0) + epsilon }
 }
 
-/// What the ego needs more than the foe, before ε and floor.
+/// The room that the ego needs, before ε and the floor.
 fn needed<N: Number>(model: MuModel, ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
     match model {
-        MuModel::Minimal => narrowest::on_the_way::<N>(ego, foe, sigma),
+        MuModel::Minimal => narrowest::minimal::<N>(ego, foe, sigma),
         MuModel::AtRest => narrowest::at_rest::<N>(ego, foe, sigma),
         MuModel::Paper => narrowest::on_paper::<N>(ego, foe),
     }
@@ -84,7 +85,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// f(t) by its definition, at one time.
+    /// The distance travelled by a time, by definition.
     fn travel(braking: Braking, time: f64) -> f64 {
         let Brakes { response, build_up, deceleration } = *braking.brakes;
         let speed = braking.speed;
@@ -97,16 +98,16 @@ mod tests {
             build_up
         };
         let on_ramp = (time - response).min(ramp);
-        let mut way = speed * (response + on_ramp);
+        let mut distance = speed * (response + on_ramp);
         if build_up > 0.0 {
-            way -= deceleration / (6.0 * build_up) * on_ramp.powi(3);
+            distance -= deceleration / (6.0 * build_up) * on_ramp.powi(3);
         }
         let left = speed - deceleration * build_up / 2.0;
         if left > 0.0 && time > response + build_up {
             let braking = (time - response - build_up).min(left / deceleration);
-            way += left * braking - deceleration * braking * braking / 2.0;
+            distance += left * braking - deceleration * braking * braking / 2.0;
         }
-        way
+        distance
     }
 
     fn brakes() -> impl Strategy<Value = Brakes> {
@@ -119,7 +120,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn minimal_is_the_largest_of_all_moments(
+        fn minimal_is_the_largest_over_all_moments(
             ego_brakes in brakes(), foe_brakes in brakes(), v in 0.0..60.0, vi in 0.0..60.0, sigma in -1.0..=1.0,
         ) {
             let foe_brakes = if sigma > 0.0 { foe_brakes.at_once() } else { foe_brakes };
@@ -148,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn who_stands_before_the_build_up_ends_needs_less() {
+    fn standing_before_the_build_up_ends_needs_less() {
         let brakes = Brakes { response: 0.0, build_up: 2.0, deceleration: 8.0 };
         assert!((stopping_distance(1.0, &brakes) - 2.0 / 3.0 * 0.5_f64.sqrt()).abs() < 1e-15);
     }

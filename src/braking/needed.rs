@@ -1,8 +1,8 @@
-//! A difference of distances with the size of its terms: whether plain f64 has kept enough digits of it.
+//! A difference of distances with the size of its terms, which tells whether f64 has kept enough digits.
 
 use crate::util::units::Metre;
 
-/// A difference of ways, and how large the terms were that it was formed from.
+/// A difference of distances, and the magnitude of the terms that it was formed from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Needed<N> {
     pub distance: N,
@@ -10,11 +10,11 @@ pub(super) struct Needed<N> {
 }
 
 impl Needed<f64> {
-    /// Whether so little cancelled in this sum of the terms that plain f64 has kept 13 digits.
+    /// Whether f64 has kept 13 digits of this sum of the terms.
     ///
-    /// A clearly negative distance is the floor ε for the models that have one, and needs no digits.
+    /// For a model with a floor, a clearly negative distance becomes ε and needs no digits.
     pub fn trusted(&self, sum: Metre) -> bool {
-        /// Each of some ten operations may err by half a unit in the last place of the largest term.
+        /// Each of about ten operations has an error of at most half a unit in the last place of the largest term.
         const KEPT: f64 = 1.0 / 64.0;
         sum.abs() > KEPT * self.scale || self.scale == 0.0
     }

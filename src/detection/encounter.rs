@@ -1,57 +1,57 @@
-//! What the detector finds in one step: pairs that would meet, measured.
+//! The result of the detector in one step: pairs with a conflict point, and their measures.
 
 use super::kind::{Kind, Severity};
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 
-/// A pair that would meet, in one step.
+/// A pair with a conflict point, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Encounter {
-    /// The one with the longer way to the meeting place.
+    /// The road user with the longer distance to the conflict point.
     pub ego: UserIndex,
-    /// The other one.
+    /// The other road user.
     pub foe: UserIndex,
     /// The ego's row in the frame.
     pub ego_row: u32,
     /// The foe's row in the frame.
     pub foe_row: u32,
-    /// How they would meet.
+    /// Kind by the angle at the conflict point.
     pub kind: Kind,
-    /// Angle α between the headings at the meeting place, 0 to π.
+    /// Angle α between the headings at the conflict point, 0 to π.
     pub angle: Radian,
-    /// The room that is left.
+    /// Room that is left.
     pub gap: Metre,
-    /// The minimal collision distance.
+    /// Minimal collision distance μ.
     pub mu: Metre,
-    /// gap − μ: below 0 the pair is in conflict.
+    /// gap − μ; the pair is in conflict if it is below 0.
     pub margin: Metre,
-    /// Way of the ego to the meeting place.
+    /// Distance of the ego to the conflict point.
     pub ego_distance: Metre,
-    /// Way of the foe until it is at the meeting place or (cos α > 0) has left it.
+    /// Distance of the foe until it reaches the conflict point or (cos α > 0) has left it.
     pub foe_distance: Metre,
-    /// The ego's front-bumper centre at the meeting place, x.
+    /// Front-bumper centre of the ego at the conflict point, x.
     pub x: Metre,
-    /// The ego's front-bumper centre at the meeting place, y.
+    /// Front-bumper centre of the ego at the conflict point, y.
     pub y: Metre,
-    /// The lane of the meeting place, on the ego's path; none without a net.
+    /// Lane of the conflict point, on the ego's path; none without a net.
     pub lane: Option<LaneIndex>,
     /// Whether the rectangles overlap now.
     pub collision: bool,
-    /// What only pairs in conflict have; none where margin ≥ 0.
+    /// Measures of a pair in conflict; none if margin ≥ 0.
     pub nearness: Option<Nearness>,
 }
 
-/// How near the two of a pair in conflict are, in one step.
+/// Measures of a pair in conflict, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearness {
     /// Smallest distance between the two rectangles now.
     pub clearance: Metre,
-    /// Time to collision at the speeds of now, along the paths; none if they never touch.
+    /// Time to collision at the current speeds, along the paths; none if the two never touch.
     pub ttc: Option<Second>,
-    /// Deceleration that the ego needs to just avoid contact; none where they touch now or, at the speeds of now, never.
+    /// Deceleration with which the ego just avoids contact; none if the two touch now or, at the current speeds, never.
     pub drac: Option<MetrePerSecondSquared>,
-    /// The worst of what the values above say.
+    /// Severity by the values above.
     pub severity: Severity,
 }
 

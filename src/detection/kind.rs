@@ -1,25 +1,25 @@
-//! What kind of conflict a pair is in, and how severe it is.
+//! The kind and the severity of a conflict.
 
 use serde::{Deserialize, Serialize};
 
-use crate::options::Options;
+use crate::options::thresholds::KindBounds;
 use crate::util::units::Radian;
 
-/// How the two would meet, by the angle between their headings at the meeting place.
+/// How the two road users of a pair meet, by the angle between their headings at the conflict point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, clap::ValueEnum)]
 #[serde(rename_all = "snake_case")]
 #[value(rename_all = "snake_case")]
 pub enum Kind {
-    /// The ego runs into a foe that drives the same way.
+    /// The ego runs into a foe that drives in the same direction.
     RearEnd,
     /// Both drive towards each other.
     Frontal,
-    /// The ego runs into a foe that crosses its way.
+    /// The ego runs into a foe that crosses its path.
     Side,
 }
 
 impl Kind {
-    /// All kinds, in the order of tables.
+    /// All kinds, in the order used in tables.
     pub const ALL: [Self; 3] = [Self::RearEnd, Self::Frontal, Self::Side];
 
     /// The name in columns and tables.
@@ -31,7 +31,18 @@ impl Kind {
         }
     }
 
-    /// σ = cos α of the kind's own angle.
+    /// The kind at an angle α between the headings.
+    pub fn at(angle: Radian, bounds: KindBounds) -> Self {
+        if angle < bounds.rear_end_below {
+            Self::RearEnd
+        } else if angle > bounds.frontal_above {
+            Self::Frontal
+        } else {
+            Self::Side
+        }
+    }
+
+    /// σ = cos α at the kind's typical angle: 0, 90 or 180 degrees.
     pub fn sigma(self) -> f64 {
         match self {
             Self::RearEnd => 1.0,
@@ -41,7 +52,7 @@ impl Kind {
     }
 }
 
-/// How bad a conflict is.
+/// How severe a conflict is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
@@ -49,7 +60,7 @@ pub enum Severity {
     Caution,
     /// TTC below 1.5 s or DRAC above 3.4 m/s².
     Serious,
-    /// DRAC above what the ego's brakes can do, or a collision.
+    /// DRAC above the ego's deceleration, or a collision.
     Critical,
 }
 
@@ -64,16 +75,5 @@ impl Severity {
             Self::Serious => "serious",
             Self::Critical => "critical",
         }
-    }
-}
-
-/// The kind of a conflict at this angle.
-pub fn kind_at(angle: Radian, options: &Options) -> Kind {
-    if angle < options.rear_end_below {
-        Kind::RearEnd
-    } else if angle > options.frontal_above {
-        Kind::Frontal
-    } else {
-        Kind::Side
     }
 }

@@ -1,6 +1,7 @@
 //! Frames in, encounters out: which pairs come too close in a step, and how close.
 //!
-//! The broad phase finds the pairs that may meet, the narrow phase finds where, and the measures tell how close they are.
+//! The broad phase finds the pairs that may meet. The narrow phase finds their conflict points. The measures tell how
+//! close a pair is.
 
 pub mod broad_phase;
 pub mod detector;

@@ -6,8 +6,9 @@
 //! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
 
 use crate::detection::path::Pose;
-use crate::geometry::bisection::{Bisection, Contact, Part};
+use crate::geometry::bisection::{Bisection, Part};
 use crate::geometry::rectangle::{Rectangle, direction};
+use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
 use crate::util::tight_vec::add;
@@ -65,7 +66,7 @@ impl Course {
     }
 
     fn pose(&self, moment: &Moment) -> Pose {
-        Pose { way: 0.0, front: moment.front, axis: direction(moment.heading) }
+        Pose { distance: 0.0, front: moment.front, axis: direction(moment.heading) }
     }
 
     fn bounds_at(&self, pose: &Pose) -> Bounds {
@@ -88,7 +89,7 @@ impl Course {
             if !bounds.grown(TOLERANCE).meet(near) {
                 return None;
             }
-            let part = halves.add(start.step_to(&end, self.length, self.width));
+            let part = halves.add(start.movement_to(&end, self.length, self.width));
             Some((pair[0].time, pair[1].time, part))
         });
         Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |moment| moment.time) }

@@ -1,13 +1,13 @@
-//! A convex outline of a few corners, kept on the stack: the shape that sweeping works on.
+//! A convex outline with few corners, stored inline: the shape that sweeping works on.
 
 use super::rectangle::Rectangle;
 use super::{Bounds, Point, Vector, cross};
 use crate::util::units::Metre;
 
-/// The hull of two rectangles has eight corners at most.
+/// The hull of two rectangles has at most eight corners.
 const MOST_CORNERS: usize = 8;
 
-/// Room and overlap of less than this may be rounding's, in m.
+/// Room and overlap below this may be rounding errors, in m.
 pub(super) const UNSURE: Metre = 1e-6;
 
 /// A convex polygon with up to eight corners, counter-clockwise.
@@ -15,7 +15,7 @@ pub(super) const UNSURE: Metre = 1e-6;
 pub struct ConvexOutline {
     corners: [Point; MOST_CORNERS],
     count: usize,
-    /// Edges whose normals have to be looked at: in a rectangle opposite ones share theirs.
+    /// Number of edges with a normal of their own: in a rectangle opposite edges share one.
     edges: usize,
 }
 
@@ -27,9 +27,7 @@ impl ConvexOutline {
         outline
     }
 
-    /// The convex hull of two outlines of four corners at most.
-    ///
-    /// Andrew's monotone chain; corners beyond the eighth, which two rectangles do not have, are never made.
+    /// The convex hull of two rectangles, by Andrew's monotone chain.
     pub fn hull(a: &Rectangle, b: &Rectangle) -> Self {
         let mut points = [Point::origin(); MOST_CORNERS];
         points[..4].copy_from_slice(&a.corners());
@@ -61,7 +59,7 @@ impl ConvexOutline {
         &self.corners[..self.count]
     }
 
-    /// The normals of the edges, not normalised, each direction once where the shape is a rectangle.
+    /// The normals of the edges, not normalised; a rectangle has two.
     pub fn normals(&self) -> impl Iterator<Item = Vector> + '_ {
         (0..self.edges).map(|index| {
             let edge = self.corners[(index + 1) % self.count] - self.corners[index];
@@ -75,20 +73,20 @@ impl ConvexOutline {
         let mut high = f64::NEG_INFINITY;
         for corner in self.corners() {
             let along = corner.coords.dot(direction);
-            // Not `f64::min`, which asks for NaN as well: this is the innermost loop of phase 2.
+            // Not `f64::min`, which also handles NaN: this is the innermost loop of the narrow phase.
             low = if along < low { along } else { low };
             high = if along > high { along } else { high };
         }
         (low, high)
     }
 
-    /// Whether another surely is further away than that, in m: beside an edge of one of the two.
+    /// Whether another outline is certainly further away than `room`, in m; only edge normals are tried.
     pub fn is_further_than(&self, room: Metre, other: &Self) -> bool {
         self.room_to(other, room, room) > room
     }
 
-    /// How far another surely is away, in m: the widest room between one's edge and the other, or the first that is more
-    /// than `enough`. Negative where the two overlap by so much; −∞ where it is less than `little`.
+    /// A lower bound on the distance to another outline, in m: the widest room between an edge of the one and the
+    /// other, or the first room above `enough`. Negative where the two overlap; −∞ where the room is below `little`.
     pub(super) fn room_to(&self, other: &Self, little: Metre, enough: Metre) -> Metre {
         let room = self.room_beside_edges(other, little, enough);
         if room > enough { room } else { room.max(other.room_beside_edges(self, little, enough)) }
@@ -99,9 +97,9 @@ impl ConvexOutline {
         let mut start = self.corners[self.count - 1];
         for end in self.corners() {
             let normal = Vector::new(end.y - start.y, start.x - end.x);
-            // No root: the sum is the length or more, and the room the true one or less.
+            // Without a square root: the sum is at least the length, so the room is at most the true one.
             let length = normal.x.abs() + normal.y.abs();
-            // Of most edges the first corner or two say that the other is not beside them.
+            // For most edges the first or second corner shows that the other outline is not beside them.
             let too_near = (little - UNSURE) * length;
             let nearest = other.corners().iter().try_fold(f64::INFINITY, |nearest, corner| {
                 let beside = (corner - start).dot(&normal);
@@ -129,8 +127,10 @@ impl ConvexOutline {
 impl TryFrom<&[Point]> for ConvexOutline {
     type Error = usize;
 
-    /// The outline of a convex polygon, corners counter-clockwise; fails with the number of corners where these are
-    /// not three to eight.
+    /// The outline of a convex polygon, corners counter-clockwise.
+    ///
+    /// # Errors
+    /// The number of corners, if it is not three to eight.
     fn try_from(corners: &[Point]) -> Result<Self, usize> {
         let count = corners.len();
         if !(3..=MOST_CORNERS).contains(&count) {
@@ -147,7 +147,7 @@ mod tests {
     use crate::geometry::convex::*;
 
     #[test]
-    fn the_hull_of_a_rectangle_and_its_shifted_self_is_the_swept_area() {
+    fn the_hull_of_a_shifted_rectangle_is_the_swept_area() {
         let here = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
         let there = Rectangle::new(Point::new(10.0, 0.0), 0.0, 4.0, 2.0);
         let hull = ConvexOutline::hull(&here, &there);

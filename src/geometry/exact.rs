@@ -1,24 +1,26 @@
-//! Whether two rectangles touch, decided without error: by separating axes, first in f64 with a bound on what rounding
-//! can have done, and only where that bound does not decide in exact arithmetic (Shewchuk 1997, adaptive predicates).
+//! Whether two rectangles touch, decided without error.
 //!
-//! The rectangles are those whose corners follow from the f64 centre, axis and half dimensions, computed exactly: their
-//! sides are at right angles, but the axis need not be of length 1.
+//! The test is that of separating axes, first in f64 with a bound on the rounding error. Only where the bound leaves
+//! the answer open is it computed in exact arithmetic (adaptive predicates, Shewchuk 1997).
+//!
+//! The corners of a rectangle follow exactly from its f64 centre, axis and half dimensions: the sides are at right
+//! angles, but the axis need not have length 1.
 
 use super::rectangle::Rectangle;
 use super::{Vector, cross, left_of};
 use crate::util::double_double::{two_product, two_sum};
 
-/// Rounding of the f64 form errs by less than this part of the largest term: some twenty operations, each by 2⁻⁵³.
+/// Bound on the relative rounding error of the f64 form: about twenty operations, each with an error of 2⁻⁵³.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
-/// More than rounding can add to a square.
+/// A factor above the rounding error of a square.
 const SURELY_MORE: f64 = 1.0 + 1e-9;
-/// Terms of one axis: the distance of the centres, and what both rectangles reach.
+/// Most terms that one axis needs: the distance of the centres and the reach of both rectangles.
 const TERMS: usize = 40;
 
 /// Whether two rectangles share a point; touching counts.
 ///
-/// All four axes need no more than the products of the two rectangles' own axes: across one's side the other reaches
-/// as far as along it, with sine and cosine exchanged.
+/// All four axes need only the products of the two rectangles' axes: the reach across one's side is that along it with
+/// sine and cosine exchanged.
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     let between = b.centre - a.centre;
     let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
@@ -32,7 +34,7 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
         across_b - (b.half_width * square_b + a.half_length * sine + a.half_width * cosine),
     ];
     let sizes = sizes(a, b);
-    // The difference of the centres rounds as well, relative to itself.
+    // The difference of the centres has a rounding error relative to its own size.
     let bound = ROUNDING * (between.x.abs() + between.y.abs() + 2.0 * sizes) * square_a.max(square_b).max(1.0);
     let widest = room[0].max(room[1]).max(room[2].max(room[3]));
     if widest.abs() > bound {
@@ -42,14 +44,14 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     axes.iter().zip(room).all(|(axis, room)| room < -bound || meet_along_exactly(a, b, axis))
 }
 
-/// Whether two rectangles are so far from each other that they cannot touch however they are turned. Quicker than
-/// [`touches`] where most pairs are, and lost time where it does not decide.
+/// Whether two rectangles are too far apart to touch, whatever their headings. Faster than [`touches`] where most pairs
+/// are far apart; wasted where they are not.
 pub fn are_far_apart(a: &Rectangle, b: &Rectangle) -> bool {
     let (sizes, longer_axis) = (sizes(a, b), a.axis.norm_squared().max(b.axis.norm_squared()));
     (b.centre - a.centre).norm_squared() > sizes * sizes * longer_axis * SURELY_MORE
 }
 
-/// More than what both reach from their centres together, in lengths of the longer axis.
+/// More than the reach of both from their centres together, in lengths of the longer axis.
 fn sizes(a: &Rectangle, b: &Rectangle) -> f64 {
     a.half_length + a.half_width + b.half_length + b.half_width
 }
@@ -125,7 +127,7 @@ impl Sum {
         self.add(high);
     }
 
-    /// −1, 0 or 1: the largest term's.
+    /// −1, 0 or 1: the sign of the largest term.
     fn sign(&self) -> f64 {
         self.terms().last().map_or(0.0, |largest| largest.signum())
     }
@@ -157,7 +159,7 @@ mod tests {
         })
     }
 
-    /// A second rectangle that touches the first with its rear, but for some units in the last place.
+    /// A second rectangle that touches the front of the first to within some units in the last place.
     fn nearly_touching(a: &Rectangle, heading: f64, length: f64, width: f64, nudge: i32) -> Rectangle {
         let mut b = Rectangle::new(a.centre, heading, length, width);
         let reach = a.half_length
@@ -171,7 +173,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(3000))]
         #[test]
-        fn no_decision_is_wrong_where_two_touch_to_the_last_place(
+        fn no_decision_is_wrong_at_contact_to_the_last_place(
             x in -1e7..1e7, y in -1e3..1e3, heading in -4.0..4.0, turn in prop_oneof![Just(0.0), Just(1e-16), -4.0..4.0],
             length in 0.0..20.0, width in 0.0..3.0, other in 0.001..100.0, nudge in -4..=4,
         ) {

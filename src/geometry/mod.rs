@@ -1,7 +1,7 @@
 //! Rectangles, convex outlines, and where moving ones touch.
 //!
-//! Our own vectors and points are nalgebra's; what parry2d does well enough it does ([`polygon::distance`],
-//! [`polygon::convex_parts`]), and the conversion to its types is in one place, `parry.rs`.
+//! Vectors and points are nalgebra's. parry2d serves where it is fast enough ([`polygon::distance`],
+//! [`polygon::convex_parts`]); the conversion to its types is in `parry.rs` alone.
 
 pub mod bisection;
 pub mod contact;
@@ -13,6 +13,7 @@ pub mod polylines;
 pub mod rectangle;
 pub mod separating_axes;
 pub mod sweep;
+mod swept_part;
 
 use nalgebra::{Point2, Vector2};
 
@@ -23,7 +24,7 @@ pub type Point = Point2<Metre>;
 /// A direction or displacement in the plane.
 pub type Vector = Vector2<Metre>;
 
-/// An axis-parallel box: what is compared before anything costlier is.
+/// An axis-parallel box: compared before anything costlier.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Smallest x and y.
@@ -40,7 +41,7 @@ impl Bounds {
     /// Bounds that hold the whole plane.
     pub const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
 
-    /// How long and how high they are.
+    /// Extent along x and y.
     pub fn size(&self) -> Vector {
         self.high - self.low
     }
@@ -59,14 +60,14 @@ impl Bounds {
 
     /// Whether the two share a point.
     pub fn meet(&self, other: &Self) -> bool {
-        // All four at once: which of them fails is nothing that a processor could guess.
+        // All four without a branch: which of them fails is unpredictable.
         (self.low.x <= other.high.x)
             & (other.low.x <= self.high.x)
             & (self.low.y <= other.high.y)
             & (other.low.y <= self.high.y)
     }
 
-    /// What both hold; none if they do not meet.
+    /// The intersection; none if the two do not meet.
     pub fn shared_with(&self, other: &Self) -> Option<Self> {
         self.meet(other).then(|| Self { low: self.low.sup(&other.low), high: self.high.inf(&other.high) })
     }
@@ -91,6 +92,6 @@ pub fn left_of(direction: &Vector) -> Vector {
 /// The angle between two directions, 0 to π.
 pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
     let (across, along) = (cross(a, b).abs(), a.dot(b));
-    // What atan2 says of 0, without asking it: most who follow each other head exactly the same way.
+    // As atan2 would return, but without calling it: most followers have exactly the heading of their leader.
     if across == 0.0 && along > 0.0 { 0.0 } else { across.atan2(along) }
 }

@@ -1,4 +1,4 @@
-//! The one place where our types become parry2d's.
+//! Conversion between our types and parry2d's.
 
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::shape::Cuboid;

@@ -1,4 +1,4 @@
-//! Polygons of any shape, in convex parts: what static obstacles are made of.
+//! Polygons of any shape, cut into convex parts: static obstacles.
 
 use parry2d_f64::math::Pose;
 use parry2d_f64::query;
@@ -31,9 +31,9 @@ impl From<ConvexOutline> for Polygon {
     }
 }
 
-/// The convex parts of a polygon given by its outline, in either sense and closed or not; parts with more than
-/// eight corners come as fans. An outline that crosses itself, which no partition exists for, gives its convex hull;
-/// fewer than three different points give none.
+/// The convex parts of a polygon. Its outline may run in either sense and may be closed or not. Parts with more than
+/// eight corners are cut into fans. An outline that crosses itself has no partition and returns its convex hull; fewer
+/// than three different points return nothing.
 pub fn convex_parts(outline: &[Point]) -> Vec<Polygon> {
     let mut points = outline.to_vec();
     points.dedup();
@@ -71,7 +71,7 @@ pub fn distance(parts: &[Polygon], rectangle: &Rectangle) -> Metre {
         .fold(f64::INFINITY, f64::min)
 }
 
-/// A convex polygon in pieces of up to eight corners that all share the first corner.
+/// Cuts a convex polygon into pieces of up to eight corners that all share the first corner.
 fn fans(corners: &[Point]) -> Vec<Polygon> {
     let Some((&first, rest)) = corners.split_first() else { return Vec::new() };
     let mut pieces = Vec::new();
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_no_obstacle() {
+    fn a_line_is_not_an_obstacle() {
         assert!(convex_parts(&[Point::new(0.0, 0.0), Point::new(1.0, 0.0)]).is_empty());
     }
 }

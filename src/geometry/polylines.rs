@@ -1,31 +1,31 @@
-//! Lines on the ground, all in one table: the points of each, and the way to them from where their line begins.
+//! Polylines, all in one table: their points, and the distance of each from the beginning of its line.
 
 use super::{Point, Vector};
 use crate::util::units::Metre;
 
-/// What is nearer than this to a line is on it, in m.
+/// A point nearer than this to a line is on it, in m.
 pub(crate) const ON_THE_LINE: Metre = 1e-3;
 
-/// A point of a line and the way to it from the line's beginning.
+/// A point of a line and its distance from the line's beginning.
 #[derive(Clone, Copy, Debug)]
-pub struct Corner {
+pub struct Vertex {
     /// Where it is.
     pub point: Point,
     /// Along the line, in m.
-    pub way: Metre,
+    pub distance: Metre,
 }
 
-/// Lines, numbered from 0, each with its corners one after the other.
+/// Lines, numbered from 0, each with its vertices one after the other.
 #[derive(Clone, Debug, Default)]
 pub struct Lines {
-    corners: Vec<Corner>,
-    /// By line, its first corner; then where the last line ends.
+    vertices: Vec<Vertex>,
+    /// First vertex of each line, then the end of the last line.
     begins: Vec<u32>,
 }
 
 impl Lines {
     /// No lines.
-    pub const NONE: &'static Self = &Self { corners: Vec::new(), begins: Vec::new() };
+    pub const NONE: &'static Self = &Self { vertices: Vec::new(), begins: Vec::new() };
 
     /// One line through these points.
     pub fn through(points: impl IntoIterator<Item = Point>) -> Self {
@@ -37,68 +37,68 @@ impl Lines {
 
     /// Begins another line.
     pub fn begin(&mut self) {
-        let end = self.corners.len() as u32;
+        let end = self.vertices.len() as u32;
         if self.begins.is_empty() {
             self.begins.push(end);
         }
         self.begins.push(end);
     }
 
-    /// Appends a point to the last line; one that repeats the one before, within a millimetre, is left out.
+    /// Appends a point to the last line, unless it lies within a millimetre of the point before.
     pub fn push(&mut self, point: Point) {
         let [.., begin, end] = &mut self.begins[..] else { return };
-        let way = match self.corners[*begin as usize..].last() {
+        let distance = match self.vertices[*begin as usize..].last() {
             Some(last) => {
                 let step = (point - last.point).norm();
                 if step < ON_THE_LINE {
                     return;
                 }
-                last.way + step
+                last.distance + step
             }
             None => 0.0,
         };
-        self.corners.push(Corner { point, way });
+        self.vertices.push(Vertex { point, distance });
         *end += 1;
     }
 
-    /// Takes the memory for so many further points, no more.
+    /// Allocates exactly the memory for this many further points.
     pub(crate) fn reserve(&mut self, points: usize) {
-        self.corners.reserve_exact(points);
+        self.vertices.reserve_exact(points);
     }
 
-    /// Gives back what memory is not needed.
+    /// Frees unused memory.
     pub(crate) fn shrink(&mut self) {
-        self.corners.shrink_to_fit();
+        self.vertices.shrink_to_fit();
         self.begins.shrink_to_fit();
     }
 
-    /// How many lines there are.
+    /// Number of lines.
     pub fn count(&self) -> u32 {
         self.begins.len().saturating_sub(1) as u32
     }
 
-    /// How many corners all lines have.
+    /// Number of vertices of all lines.
     pub(crate) fn len(&self) -> usize {
-        self.corners.len()
+        self.vertices.len()
     }
 
-    /// Where the corners of a line are.
+    /// First vertex of a line, and one past its last.
     pub(crate) fn range(&self, line: u32) -> (u32, u32) {
         (self.begins[line as usize], self.begins[line as usize + 1])
     }
 
-    /// The corners of a line.
-    pub fn line(&self, line: u32) -> &[Corner] {
+    /// The vertices of a line.
+    pub fn line(&self, line: u32) -> &[Vertex] {
         let (begin, end) = self.range(line);
-        &self.corners[begin as usize..end as usize]
+        &self.vertices[begin as usize..end as usize]
     }
 
-    /// How long a line is.
+    /// Length of a line in m.
     pub fn length(&self, line: u32) -> Metre {
-        self.line(line).last().map_or(0.0, |last| last.way)
+        self.line(line).last().map_or(0.0, |last| last.distance)
     }
 
-    /// Whether one line goes on exactly where another ends.
+    /// Whether `next` begins exactly where `line` ends.
     pub(crate) fn join(&self, line: u32, next: u32) -> bool {
         match (self.line(line), self.line(next)) {
             ([_, .., end], [begin, _, ..]) => end.point == begin.point,
@@ -106,49 +106,51 @@ impl Lines {
         }
     }
 
-    /// The part of a line that begins at this corner, which is not the line's last.
-    pub(crate) fn segment(&self, corner: u32) -> Segment {
-        Segment::between(&self.corners[corner as usize], &self.corners[corner as usize + 1])
+    /// The segment that begins at a vertex, which is not the last of its line.
+    pub(crate) fn segment(&self, vertex: u32) -> Segment {
+        Segment::between(&self.vertices[vertex as usize], &self.vertices[vertex as usize + 1])
     }
 
-    /// Drops so many corners of the only line, which then begins at the next; returns the way that was cut off.
-    pub(crate) fn cut(&mut self, corners: usize) -> Metre {
-        self.corners.drain(..corners);
-        self.begins[1] = self.corners.len() as u32;
-        let shift = self.corners.first().map_or(0.0, |first| first.way);
-        self.corners.iter_mut().for_each(|corner| corner.way -= shift);
+    /// Removes the first vertices of the only line, and returns the length that was cut off.
+    pub(crate) fn cut(&mut self, vertices: usize) -> Metre {
+        self.vertices.drain(..vertices);
+        self.begins[1] = self.vertices.len() as u32;
+        let shift = self.vertices.first().map_or(0.0, |first| first.distance);
+        self.vertices.iter_mut().for_each(|vertex| vertex.distance -= shift);
         shift
     }
 }
 
-/// The part of a line between two corners.
+/// A straight part of a line, between two vertices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub start: Point,
     pub direction: Vector,
-    /// The way from the line's beginning to its start.
-    pub way: Metre,
-    /// The same to its end.
-    pub end: Metre,
+    /// Distance of its start from the line's beginning.
+    pub begins_at: Metre,
+    /// Distance of its end from the line's beginning.
+    pub ends_at: Metre,
 }
 
 impl Segment {
     #[inline]
-    fn between(start: &Corner, end: &Corner) -> Self {
-        let length = end.way - start.way;
-        Self { start: start.point, direction: (end.point - start.point) / length, way: start.way, end: end.way }
+    fn between(start: &Vertex, end: &Vertex) -> Self {
+        let length = end.distance - start.distance;
+        let direction = (end.point - start.point) / length;
+        Self { start: start.point, direction, begins_at: start.distance, ends_at: end.distance }
     }
 
-    /// The way from the line's beginning to a front bumper, if that is on this segment.
-    pub fn way_to(&self, front: Point) -> Option<Metre> {
+    /// Distance of a front bumper from the line's beginning, if it is on this segment.
+    pub fn distance_of(&self, front: Point) -> Option<Metre> {
         let along = (front - self.start).dot(&self.direction);
         let aside = (front - (self.start + self.direction * along)).norm_squared();
-        let is_on = along <= self.end - self.way && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE;
-        is_on.then_some(self.way + along.max(0.0))
+        let is_on =
+            along <= self.ends_at - self.begins_at && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE;
+        is_on.then_some(self.begins_at + along.max(0.0))
     }
 
-    /// The place at a way from the line's beginning; before this segment and beyond it, straight on.
-    pub fn at(&self, way: Metre) -> Point {
-        self.start + self.direction * (way - self.way)
+    /// The point at a distance from the line's beginning; beyond the segment's ends, straight on.
+    pub fn at(&self, distance: Metre) -> Point {
+        self.start + self.direction * (distance - self.begins_at)
     }
 }

@@ -48,8 +48,8 @@ impl Rectangle {
         ]
     }
 
-    /// The rectangle along the same axis that holds all that this one covers while it moves `by` without turning, larger by
-    /// `margin` on every side.
+    /// The rectangle along the same axis around the area that this one covers while it moves `by` without turning,
+    /// larger by `margin` on every side.
     pub fn swept(&self, by: &Vector, margin: Metre) -> Self {
         Self {
             centre: self.centre + by / 2.0,
@@ -59,11 +59,11 @@ impl Rectangle {
         }
     }
 
-    /// The smallest rectangle along `axis` that covers all of these, larger by `margin` on every side; of none, none.
+    /// The smallest rectangle along `axis` around all `parts`, larger by `margin` on every side; none without parts.
     pub fn around(axis: Vector, parts: impl IntoIterator<Item = Self>, margin: Metre) -> Option<Self> {
         let mut parts = parts.into_iter();
         let first = parts.next()?;
-        // Measured from the first: far from the origin nothing cancels.
+        // Relative to the first centre, so that nothing cancels far from the origin.
         let extent = |part: &Self, direction: &Vector| {
             let (middle, reach) = ((part.centre - first.centre).dot(direction), reach(part, direction));
             (middle - reach, middle + reach)
@@ -101,7 +101,7 @@ impl From<Bounds> for Rectangle {
     }
 }
 
-/// The directions of no, one, two and three quarters of a turn.
+/// The directions of 0, 1, 2 and 3 quarter turns.
 const ALONG_AXES: [Vector; 4] =
     [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0), Vector::new(-1.0, 0.0), Vector::new(0.0, -1.0)];
 
@@ -127,7 +127,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_directions_along_the_axes_are_exact_and_no_others_are_taken_for_them() {
+    fn the_directions_along_the_axes_are_exact_no_others_are() {
         for turns in -1..=1 {
             for (quarters, (x, y)) in [(0, (1.0, 0.0)), (1, (0.0, 1.0)), (2, (-1.0, 0.0)), (3, (0.0, -1.0))] {
                 let (heading, axis) = (f64::from(4 * turns + quarters) * FRAC_PI_2, Vector::new(x, y));

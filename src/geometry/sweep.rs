@@ -1,12 +1,10 @@
-//! When a moving convex outline first touches another, and when it leaves it again.
+//! A rectangle that moves from one pose to the next.
 //!
-//! Closed form for a translation: on each edge normal the two projections overlap during one interval of the way;
-//! they touch where all intervals do (the swept form of the separating-axes test; Eberly, "Dynamic collision
-//! detection using oriented bounding boxes"). A turn is cut into translations short enough for [`TOLERANCE`], by
-//! [`super::bisection`].
+//! The contact of a translation has a closed form ([`super::separating_axes`]). A turn is cut into translations short
+//! enough for [`TOLERANCE`] ([`super::bisection`]).
 //!
-//! Measured (`cargo bench --bench library`): 58 ns for a pair of rectangles, parry2d's `cast_shapes` 226 ns; its
-//! `cast_shapes_nonlinear`, which would turn too, has no cap on its iterations and was seen not to return.
+//! Measured (`cargo bench --bench library`): 58 ns for a pair of rectangles, parry2d's `cast_shapes` 226 ns. parry2d's
+//! `cast_shapes_nonlinear` handles turns too, but has no cap on its iterations; in our tests it did not always return.
 
 use super::convex::ConvexOutline;
 use super::rectangle::Rectangle;
@@ -14,16 +12,16 @@ use super::separating_axes::{ContactInterval, slide};
 use super::{Point, Vector, cross};
 use crate::util::units::Metre;
 
-/// How far a corner of a sweeping rectangle may be from where it really goes, in m.
+/// Largest error in the position of a moving rectangle's corner, in m.
 pub const TOLERANCE: Metre = 0.01;
 
-/// A step that leaves its own direction by less than this covers a rectangle, in m: more than rounding, far less than
-/// the tolerance.
+/// A movement that deviates from the heading by less than this covers a rectangle, in m: more than rounding, far less
+/// than the tolerance.
 const STRAIGHT: Metre = 1e-9;
 
-/// A rectangle on its way from one pose to the next: the front-bumper centre moves straight, the axis turns evenly.
+/// A rectangle that moves from one pose to the next: the front-bumper centre moves straight, the axis turns evenly.
 #[derive(Clone, Copy, Debug)]
-pub struct Step {
+pub struct Movement {
     /// Front-bumper centre at the beginning.
     pub from: Point,
     /// Axis at the beginning.
@@ -38,8 +36,8 @@ pub struct Step {
     pub width: Metre,
 }
 
-impl Step {
-    /// The rectangle at a part of the step, 0 to 1.
+impl Movement {
+    /// The rectangle at a fraction of the movement, 0 to 1.
     pub fn rectangle(&self, part: f64) -> Rectangle {
         let axis = if self.from_axis == self.to_axis {
             self.from_axis
@@ -49,17 +47,17 @@ impl Step {
         Rectangle::behind(self.from + (self.to - self.from) * part, axis, self.length, self.width)
     }
 
-    /// Whether it never turns: it is a translation.
+    /// Whether the movement is a translation.
     pub fn slides(&self) -> bool {
         self.from_axis == self.to_axis
     }
 
-    /// The contact of one that never turns with a rectangle that stands.
+    /// The contact of a translation with a standing rectangle.
     pub fn slide_to(&self, fixed: &Rectangle) -> Option<ContactInterval> {
         slide(&self.rectangle(0.0), &(self.to - self.from), fixed)
     }
 
-    /// The rectangle that the step covers, if it leads straight ahead.
+    /// The rectangle that the movement covers, if it leads straight ahead.
     pub fn covered(&self) -> Option<Rectangle> {
         let by = self.to - self.from;
         let ahead = by.dot(&self.from_axis);
@@ -67,7 +65,7 @@ impl Step {
         leads_ahead.then(|| Rectangle::behind(self.to, self.from_axis, self.length + ahead, self.width))
     }
 
-    /// A convex outline around the area that the step covers.
+    /// A convex outline around the area that the movement covers.
     pub fn hull(&self) -> ConvexOutline {
         match self.covered() {
             Some(covered) => ConvexOutline::rectangle(&covered),
@@ -79,12 +77,12 @@ impl Step {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::bisection::{Bisection, Contact};
-    use crate::geometry::separating_axes::translation;
+    use crate::geometry::bisection::Bisection;
+    use crate::geometry::separating_axes::{Contact, translation};
 
     #[test]
-    fn a_turning_rectangle_touches_where_sampling_says_it_does() {
-        let step = Step {
+    fn a_turning_rectangle_touches_where_sampling_finds_it() {
+        let step = Movement {
             from: Point::new(0.0, 0.0),
             from_axis: Vector::new(1.0, 0.0),
             to: Point::new(3.0, 0.5),

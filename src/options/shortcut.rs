@@ -1,16 +1,16 @@
-//! What a run leaves out where the scene does not need it, one by one: what `--keep` names.
+//! Work that a run leaves out where the scene does not need it; `--keep` names single ones.
 
 use clap::ValueEnum;
 
-/// Something that a scene may not need.
+/// Work that a scene may not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Shortcut {
-    /// Pairs whose areas do not meet: phase 1. Kept, every pair goes on to phase 2.
+    /// The broad phase leaves out pairs whose areas do not meet. If kept, every pair enters the narrow phase.
     AreasApart,
-    /// Accurate tests of pairs whose ways lie in boxes that do not meet.
+    /// The narrow phase leaves out pairs whose paths lie in boxes that do not meet.
     PathsApart,
-    /// Sweeps of pairs that drive in line, for which one dimension is enough.
+    /// Pairs in line are not swept: one dimension is enough.
     InLine,
-    /// Asking for the lane of who is still on the path laid before.
+    /// A road user that is still on its known path is not asked for its lane.
     KnownPaths,
 }

@@ -118,7 +118,7 @@ impl Driven {
         let trace = self.traces.get(id)?;
         let start = trace.partition_point(|(at, ..)| *at < time - 1e-6);
         let (_, front, axis) = *trace.get(start)?;
-        let mut poses = vec![Pose { way: 0.0, front, axis }];
+        let mut poses = vec![Pose { distance: 0.0, front, axis }];
         for (_, front, axis) in &trace[start + 1..] {
             let last = poses[poses.len() - 1];
             let moved = front - last.front;
@@ -129,18 +129,18 @@ impl Driven {
             if cross(&last.axis, &moved).abs() > SIDEWAYS + 0.5 * length {
                 return None;
             }
-            let way = last.way + length;
-            for asked in ways.iter().filter(|asked| last.way < **asked && **asked < way) {
-                let part = (asked - last.way) / length;
+            let way = last.distance + length;
+            for asked in ways.iter().filter(|asked| last.distance < **asked && **asked < way) {
+                let part = (asked - last.distance) / length;
                 let turned = (last.axis + (axis - last.axis) * part).normalize();
-                poses.push(Pose { way: *asked, front: last.front + moved * part, axis: turned });
+                poses.push(Pose { distance: *asked, front: last.front + moved * part, axis: turned });
             }
-            poses.push(Pose { way, front: *front, axis: *axis });
+            poses.push(Pose { distance: way, front: *front, axis: *axis });
             if way > ways[2] {
                 break;
             }
         }
-        (poses[poses.len() - 1].way >= ways[1]).then_some(poses)
+        (poses[poses.len() - 1].distance >= ways[1]).then_some(poses)
     }
 }
 
@@ -162,7 +162,7 @@ impl<'a> Way<'a> {
         let Row { user, state: State { x, y, heading, speed, .. } } = frame.row(row as u32);
         let profile = roster.profile_of(user);
         let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
-        let end = all.partition_point(|pose| pose.way <= stop + epsilon);
+        let end = all.partition_point(|pose| pose.distance <= stop + epsilon);
         let poses = &all[..end.max(1)];
         let (length, width) = (profile.length, profile.width);
         let cover = SweptBounds::of(poses, length, width).unwrap_or(SweptBounds::NOWHERE);
@@ -172,7 +172,7 @@ impl<'a> Way<'a> {
 
     fn mover(&self) -> Participant<'_> {
         let Self { rectangle, poses, ref cover, ref covers, speed, brakes, stop, .. } = *self;
-        let reach = poses.last().map_or(0.0, |pose| pose.way);
+        let reach = poses.last().map_or(0.0, |pose| pose.distance);
         Participant { rectangle, shape: &[], poses, straight: false, reach, cover, covers, speed, brakes, stop }
     }
 }
@@ -182,8 +182,9 @@ fn judge(a: &Way, b: &Way, options: &Options) -> Truth {
     if side::touch_now(&first, &second) {
         return Truth::Conflict(0.0);
     }
-    let Some((ego_is_a, meeting)) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
-    let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
+    let Some(approach) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
+    let [ego, foe] = approach.ego.then_foe([a, b]);
+    let meeting = approach.conflict_point;
     let sigma = meeting.angle().cos();
     let foe_distance = if sigma > 0.0 { way_out(foe, &meeting) } else { meeting.foe_distance };
     let gap = narrow_phase::gap(meeting.ego_distance, foe_distance, sigma);
@@ -200,6 +201,6 @@ fn way_out(foe: &Way, meeting: &ConflictPoint) -> Metre {
     if meeting.foe_distance <= 0.0 {
         0.0
     } else {
-        side::departure(&mut Bisection::default(), foe.all, &foe.mover(), &meeting.ego, meeting.foe_distance)
+        side::departure(&mut Bisection::default(), foe.all, &foe.mover(), &meeting.ego_rectangle, meeting.foe_distance)
     }
 }

@@ -6,7 +6,7 @@ use super::clock::{Timed, interleaved};
 use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
 use super::reference::{contact, nearest};
-use crate::detection::measures::ttc::{Course, HORIZON, time_to_collision};
+use crate::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
 use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::contact::touches;
@@ -31,7 +31,7 @@ impl Moving {
     /// One that is at `place`, `arrives` s from now.
     fn towards(place: Point, heading: Radian, speed: MetrePerSecond, arrives: Second) -> Self {
         let axis = direction(heading);
-        Self { pose: [Pose { way: 0.0, front: place - axis * (speed * arrives), axis }], speed }
+        Self { pose: [Pose { distance: 0.0, front: place - axis * (speed * arrives), axis }], speed }
     }
 
     fn rectangle(&self, time: Second) -> Rectangle {
@@ -39,8 +39,8 @@ impl Moving {
         Rectangle::behind(front + axis * (self.speed * time), axis, LENGTH, WIDTH)
     }
 
-    fn course(&self) -> Course<'_> {
-        Course { poses: &self.pose, speed: self.speed, length: LENGTH, width: WIDTH }
+    fn course(&self) -> SteadyMotion<'_> {
+        SteadyMotion { poses: &self.pose, speed: self.speed, length: LENGTH, width: WIDTH }
     }
 }
 

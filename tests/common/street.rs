@@ -1,4 +1,4 @@
-//! A street of one lane each way, 200 m long, from west to east and back.
+//! A street with one lane in each direction, 200 m long, from west to east and back.
 
 use std::path::Path;
 use std::sync::Arc;

@@ -10,8 +10,8 @@ use super::work::Work;
 use super::worker::{Found, Met, Worker};
 use crate::braking::{self, Braking, MuModel};
 use crate::detection::encounter::Encounter;
-use crate::detection::kind::{Kind, kind_at};
-use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
+use crate::detection::kind::Kind;
+use crate::detection::narrow_phase::{self, ConflictPoint, Ego, Participant, side};
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{contact, cross};
 use crate::options::Mode;
@@ -35,11 +35,10 @@ struct Roles<'a> {
 }
 
 impl<'a> Roles<'a> {
-    fn new(ego_is_first: bool, [first, second]: [u32; 2], [a, b]: [&'a Participant<'a>; 2]) -> Self {
-        match ego_is_first {
-            true => Self { slots: [first, second], ego: a, foe: b },
-            false => Self { slots: [second, first], ego: b, foe: a },
-        }
+    fn new(ego: Ego, slots: [u32; 2], pair: [&'a Participant<'a>; 2]) -> Self {
+        let slots = ego.then_foe(slots);
+        let [ego, foe] = ego.then_foe(pair);
+        Self { slots, ego, foe }
     }
 }
 
@@ -146,12 +145,17 @@ impl StepInputs<'_> {
         found: &mut Found,
     ) -> Option<bool> {
         if side::touch_now(first, second) {
-            let first_is_ego = !second.shape.is_empty() || self.has_smaller_id(slots);
-            let roles = Roles::new(first_is_ego, slots, [first, second]);
+            let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
+            let roles = Roles::new(ego, slots, [first, second]);
             let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
-            let meeting =
-                ConflictPoint { ego_distance: 0.0, foe_distance: 0.0, ego: roles.ego.rectangle, foe_axis, leads: true };
-            self.met(work, found, &roles, &meeting, true);
+            let conflict_point = ConflictPoint {
+                ego_distance: 0.0,
+                foe_distance: 0.0,
+                ego_rectangle: roles.ego.rectangle,
+                foe_axis,
+                foe_leads: true,
+            };
+            self.met(work, found, &roles, &conflict_point, true);
             return None;
         }
         let in_line = narrow_phase::drive_in_line(first, second);
@@ -160,9 +164,10 @@ impl StepInputs<'_> {
         }
         work.in_line += 1;
         work.frontal += u64::from(narrow_phase::drive_opposed(first, second));
-        let met = narrow_phase::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
-        if let Some((first_is_ego, meeting)) = met {
-            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
+        let approach = narrow_phase::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
+        if let Some(approach) = approach {
+            let roles = Roles::new(approach.ego, slots, [first, second]);
+            self.met(work, found, &roles, &approach.conflict_point, false);
         }
         None
     }
@@ -178,9 +183,10 @@ impl StepInputs<'_> {
     ) {
         work.swept += 1;
         let halves = &mut found.scratch.halves;
-        let met = side::meet(halves, first, second, in_line, &|| self.has_smaller_id(slots));
-        if let Some((first_is_ego, meeting)) = met {
-            self.met(work, found, &Roles::new(first_is_ego, slots, [first, second]), &meeting, false);
+        let approach = side::meet(halves, first, second, in_line, &|| self.has_smaller_id(slots));
+        if let Some(approach) = approach {
+            let roles = Roles::new(approach.ego, slots, [first, second]);
+            self.met(work, found, &roles, &approach.conflict_point, false);
         }
     }
 
@@ -197,7 +203,7 @@ impl StepInputs<'_> {
     fn keeps_distance(&self, slots: [u32; 2]) -> bool {
         let [a, b] = slots.map(|slot| self.user(slot));
         let (of_a, of_b) = (self.profile(a), self.profile(b));
-        let lead_alike = |lengths| narrow_phase::lead_alike([&a.axis, &b.axis], lengths);
+        let lead_alike = |lengths| narrow_phase::are_parallel([&a.axis, &b.axis], lengths);
         // Most pairs that cross do not, however far they go.
         if !lead_alike([of_a.length, of_b.length])
             || a.axis.dot(&b.axis) <= 0.0
@@ -244,8 +250,8 @@ impl StepInputs<'_> {
         work.frontal += 1;
         work.side += 1;
         let (first, second) = (self.mover(slots[0]), self.mover(slots[1]));
-        let measured = narrow_phase::paper::measure(&first, &second, self.options);
-        let roles = Roles::new(measured.ego_is_a, slots, [&first, &second]);
+        let measured = narrow_phase::paper::measure(&first, &second, self.options.kind_bounds());
+        let roles = Roles::new(measured.approach.ego, slots, [&first, &second]);
         let (ego, foe) = (roles.ego, roles.foe);
         let between = (foe.rectangle.centre - ego.rectangle.centre).norm();
         let radius = braking::stopping_distance_paper(ego.speed, ego.brakes) + self.options.epsilon;
@@ -254,16 +260,17 @@ impl StepInputs<'_> {
             return;
         }
         let collision = contact::touches(&ego.rectangle, &foe.rectangle);
-        let angle = measured.meeting.angle();
+        let conflict_point = measured.approach.conflict_point;
+        let angle = conflict_point.angle();
         let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, collision };
-        self.add(found, &roles, &measured.meeting, how);
+        self.add(found, &roles, &conflict_point, how);
     }
 
     fn met(&self, work: &mut Work, found: &mut Found, roles: &Roles, meeting: &ConflictPoint, collision: bool) {
         let angle = meeting.angle();
         let sigma = narrow_phase::sigma(angle);
         let gap = if collision { 0.0 } else { narrow_phase::gap(meeting.ego_distance, meeting.foe_distance, sigma) };
-        let how = How { kind: kind_at(angle, self.options), angle, sigma, gap, collision };
+        let how = How { kind: Kind::at(angle, self.options.kind_bounds()), angle, sigma, gap, collision };
         match how.kind {
             Kind::Frontal => work.frontal += 1,
             Kind::Side => work.side += 1,
@@ -278,11 +285,11 @@ impl StepInputs<'_> {
         let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
         let margin = gap - mu;
         // Of a foe that has to come and go first the gap is not known yet.
-        let leaves = !meeting.leads && meeting.foe_axis.is_some() && sigma > 0.0;
+        let leaves = !meeting.foe_leads && meeting.foe_axis.is_some() && sigma > 0.0;
         if self.conflicts_only && margin >= 0.0 && !(leaves && self.may_leave_late(roles, meeting, sigma, mu)) {
             return;
         }
-        let at = meeting.place();
+        let at = meeting.front();
         let [ego, foe] = roles.slots.map(|slot| self.user(slot));
         let encounter = Encounter {
             ego: ego.index,

@@ -8,7 +8,7 @@ use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::drac;
-use crate::detection::measures::ttc::{self, Course};
+use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
@@ -47,7 +47,10 @@ impl StepInputs<'_> {
     pub(super) fn furthest_way_out(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
         let profile = self.profile(foe);
         // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
-        meeting.foe_distance + profile.length + 2.0 * (meeting.ego.half_length + meeting.ego.half_width) + profile.width
+        meeting.foe_distance
+            + profile.length
+            + 2.0 * (meeting.ego_rectangle.half_length + meeting.ego_rectangle.half_width)
+            + profile.width
     }
 
     /// The foe's way until it has left the ego's meeting place.
@@ -55,7 +58,7 @@ impl StepInputs<'_> {
         let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
         poses.clear();
         self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
-        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego, met.meeting.foe_distance)
+        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego_rectangle, met.meeting.foe_distance)
     }
 
     fn nearness(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Nearness {
@@ -69,7 +72,13 @@ impl StepInputs<'_> {
         };
         let (ttc, drac) =
             if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, met, encounter) };
-        let severity = measures::severity(ttc, drac, ego.brakes.deceleration, encounter.collision, self.options);
+        let severity = measures::severity(
+            ttc,
+            drac,
+            ego.brakes.deceleration,
+            encounter.collision,
+            self.options.severity_thresholds(),
+        );
         Nearness { clearance, ttc, drac, severity }
     }
 
@@ -87,7 +96,7 @@ impl StepInputs<'_> {
         }
         let course = |user: &User, poses| {
             let profile = self.profile(user);
-            Course { poses, speed: self.state(user).speed, length: profile.length, width: profile.width }
+            SteadyMotion { poses, speed: self.state(user).speed, length: profile.length, width: profile.width }
         };
         let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
         let is_obstacle = self.is_obstacle(met.slots[1]);
@@ -98,7 +107,7 @@ impl StepInputs<'_> {
         };
         let Some(time) = ttc else { return (None, None) };
         let in_line = drac::drac_in_line(ego.speed - met.sigma * foe.speed, time);
-        if met.meeting.leads || is_obstacle || encounter.kind == Kind::Frontal {
+        if met.meeting.foe_leads || is_obstacle || encounter.kind == Kind::Frontal {
             return (ttc, in_line);
         }
         let drac = drac::drac(&mut scratch.halves, &ego, &foe, time);

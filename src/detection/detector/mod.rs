@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use super::broad_phase::Search;
 use super::encounter::Encounter;
-use super::path::lanes::{LanePath, Start};
+use super::path::lanes::{LanePath, PathStart};
 use crate::braking::stopping_distance;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
@@ -175,7 +175,7 @@ impl Detector {
         if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
             return;
         }
-        let start = Start {
+        let start = PathStart {
             front: state.front(),
             axis: direction(state.heading),
             length: profile.chord,
@@ -183,8 +183,8 @@ impl Detector {
             speed: state.speed,
             sublane: self.sublane,
         };
-        path.lay(net, &start, placement);
-        self.on_lanes[row as usize] = path.track.is_laid();
+        path.build(net, &start, placement);
+        self.on_lanes[row as usize] = !path.track.is_empty();
     }
 
     /// Phase 2: the pairs that would meet, in the order of the frame's rows. The frame is that of [`Detector::approach`].
@@ -244,7 +244,7 @@ impl Detector {
             if *on_lanes {
                 let profile = roster.profile_of(user);
                 let way = stopping_distance(state.speed, &profile.brakes) + self.options.epsilon;
-                self.paths[user.0 as usize].reach(net, profile.chord, way);
+                self.paths[user.0 as usize].extend(net, profile.chord, way);
             }
         }
     }
@@ -252,7 +252,7 @@ impl Detector {
     /// Sees to it that somebody's path reaches so far ahead, if the route does.
     fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
         if let Some(net) = &self.net {
-            self.paths[user.index.0 as usize].reach(net, roster.profile_at(user.profile).chord, way);
+            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).chord, way);
         }
     }
 

@@ -199,7 +199,7 @@ impl OccupancyCache {
         if let Some((kept, laid)) = self.find(slot) {
             mover.poses = &kept.poses[laid.poses.0 as usize..laid.poses.1 as usize];
             mover.straight = laid.straight;
-            mover.reach = mover.poses.last().map_or(0.0, |pose| pose.way);
+            mover.reach = mover.poses.last().map_or(0.0, |pose| pose.distance);
             if let Some(start) = laid.covers {
                 let steps = if laid.straight { 0 } else { mover.poses.len().saturating_sub(1) };
                 mover.cover = &kept.covers[start as usize];
@@ -251,7 +251,7 @@ impl<'a> StepInputs<'a> {
             let (track, lines) = self.paths.track(user.index);
             return track.poses(lines, axis, chord(), ways, beyond, poses);
         }
-        poses.push(Pose { way: 0.0, front, axis });
+        poses.push(Pose { distance: 0.0, front, axis });
         let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
             arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, chord(), ways, poses);

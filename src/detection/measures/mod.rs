@@ -1,32 +1,35 @@
-//! Surrogate safety measures of a pair in one step: ΔV, severity. TTC is in [`crate::detection::measures::ttc`], DRAC in
-//! [`crate::detection::measures::drac`], PET in [`crate::events`].
+//! Surrogate safety measures of a pair in one step: ΔV and severity. TTC is in [`ttc`], DRAC in [`drac`], PET in
+//! [`crate::events`].
 
 pub mod drac;
+mod drac_straight;
 pub mod ttc;
 
 use super::kind::Severity;
-use crate::options::Options;
+use crate::options::thresholds::SeverityThresholds;
 use crate::util::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
-/// How bad a conflict is, from what is known of it in one step.
+/// The severity of a conflict in one step.
 pub fn severity(
     ttc: Option<Second>,
     drac: Option<MetrePerSecondSquared>,
     ego_deceleration: MetrePerSecondSquared,
     collision: bool,
-    options: &Options,
+    thresholds: SeverityThresholds,
 ) -> Severity {
     if collision || drac.is_some_and(|drac| drac > ego_deceleration) {
         Severity::Critical
-    } else if ttc.is_some_and(|ttc| ttc < options.serious_ttc) || drac.is_some_and(|drac| drac > options.serious_drac) {
+    } else if ttc.is_some_and(|ttc| ttc < thresholds.serious_ttc)
+        || drac.is_some_and(|drac| drac > thresholds.serious_drac)
+    {
         Severity::Serious
     } else {
         Severity::Caution
     }
 }
 
-/// ΔV in m/s: how much the ego's velocity changes in a fully inelastic collision of both masses, at the speeds of now
-/// and the angle α of the meeting place.
+/// ΔV in m/s: the change of the ego's velocity in a fully inelastic collision of both masses, at the current speeds and
+/// the angle α at the conflict point.
 ///
 /// ```
 /// use closecall::detection::measures::delta_v;

@@ -1,35 +1,34 @@
-//! The conflict point of a pair: the first pose of the ego at which it touches what the foe covers.
+//! The conflict point of a pair: the first pose of the ego at which it touches the area that the foe covers.
+
+use std::f64::consts::PI;
 
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector, angle_between};
 use crate::util::units::{Metre, Radian};
 
-/// Where an ego meets a foe.
+/// Where an ego meets its foe.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConflictPoint {
-    /// Way of the ego to the meeting place.
+    /// Distance of the ego to the conflict point.
     pub ego_distance: Metre,
-    /// Way of the foe until it is there.
+    /// Distance of the foe until it reaches the conflict point.
     pub foe_distance: Metre,
-    /// The ego's rectangle there.
-    pub ego: Rectangle,
-    /// The foe's axis there; none for an obstacle, which the ego meets with its front.
+    /// The ego's rectangle at the conflict point.
+    pub ego_rectangle: Rectangle,
+    /// The foe's axis at the conflict point; none for an obstacle, which the ego hits with its front.
     pub foe_axis: Option<Vector>,
-    /// Whether the foe is out of the way as soon as it moves: a leader in the lane.
-    pub leads: bool,
+    /// Whether the foe leaves the conflict area as soon as it moves: a leader in the lane.
+    pub foe_leads: bool,
 }
 
 impl ConflictPoint {
     /// The angle α between the two headings.
     pub fn angle(&self) -> Radian {
-        match self.foe_axis {
-            Some(axis) => angle_between(&self.ego.axis, &axis),
-            None => std::f64::consts::PI,
-        }
+        self.foe_axis.map_or(PI, |axis| angle_between(&self.ego_rectangle.axis, &axis))
     }
 
     /// The ego's front-bumper centre.
-    pub fn place(&self) -> Point {
-        self.ego.centre + self.ego.axis * self.ego.half_length
+    pub fn front(&self) -> Point {
+        self.ego_rectangle.centre + self.ego_rectangle.axis * self.ego_rectangle.half_length
     }
 }

@@ -1,36 +1,39 @@
 //! Frontal on one straight line: the two paths meet where the areas that both need to stop meet.
 
+use super::approach::{Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
 use crate::geometry::rectangle::Rectangle;
 use crate::util::units::Metre;
 
-/// The meeting of two that drive towards each other with `ahead` m between their fronts. Each one's way ends where
-/// the area that the other needs to stop begins; the ego is the one with the longer way.
+/// The conflict point of two that drive towards each other with `ahead` m between their fronts. The distance of each
+/// ends where the area that the other needs to stop begins. The ego is the one with the longer distance; if equal, the
+/// one with the smaller id.
 pub(super) fn in_line(
     a: &Participant,
     b: &Participant,
     ahead: Metre,
-    a_is_smaller: &impl Fn() -> bool,
-) -> Option<(bool, ConflictPoint)> {
-    let way = |ego: &Participant, foe: &Participant| {
-        let way = (ahead - foe.stop.min(foe.reach)).max(0.0);
-        (way <= ego.reach).then_some(way)
+    a_has_smaller_id: &impl Fn() -> bool,
+) -> Option<Approach> {
+    let distance = |ego: &Participant, foe: &Participant| {
+        let distance = (ahead - foe.stop.min(foe.reach)).max(0.0);
+        (distance <= ego.reach).then_some(distance)
     };
-    let (ego_is_a, ego_distance) = match (way(a, b), way(b, a)) {
+    let (a_is_ego, ego_distance) = match (distance(a, b), distance(b, a)) {
         (None, None) => return None,
-        (Some(a), Some(b)) => (a > b || (a == b && a_is_smaller()), a.max(b)),
+        (Some(a), Some(b)) => (a > b || (a == b && a_has_smaller_id()), a.max(b)),
         (Some(a), None) => (true, a),
         (None, Some(b)) => (false, b),
     };
-    let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
+    let roles = Ego::first_if(a_is_ego);
+    let [ego, foe] = roles.then_foe([a, b]);
     let centre = ego.rectangle.centre + ego.rectangle.axis * ego_distance;
-    let meeting = ConflictPoint {
+    let conflict_point = ConflictPoint {
         ego_distance,
         foe_distance: ahead.max(0.0) - ego_distance,
-        ego: Rectangle { centre, ..ego.rectangle },
+        ego_rectangle: Rectangle { centre, ..ego.rectangle },
         foe_axis: Some(foe.rectangle.axis),
-        leads: false,
+        foe_leads: false,
     };
-    Some((ego_is_a, meeting))
+    Some(Approach { ego: roles, conflict_point })
 }

@@ -1,17 +1,19 @@
-//! Phase 2, accurate: where two road users would meet, and by the angle there of which kind that is.
+//! Narrow phase (the paper's "accurate" phase): the conflict point of a pair, and the kind by the angle there.
 //!
-//! Two that drive straight on, side by side or in line, are a matter of one dimension: [`rear_end`] where they drive
-//! the same way, [`frontal`] where they drive towards each other. All others are swept: [`side`]. The paper's own
-//! tests are in [`paper`].
+//! Two that drive straight on, side by side or in line, are a problem in one dimension: `rear_end` if they drive in the
+//! same direction, `frontal` if they drive towards each other. All others are swept: [`side`]. The paper's own tests
+//! are in [`paper`].
 
+mod approach;
 mod conflict_point;
-pub mod frontal;
+mod frontal;
 pub mod paper;
 mod participant;
-pub mod rear_end;
+mod rear_end;
 pub mod side;
 mod swept_bounds;
 
+pub use approach::{Approach, Ego};
 pub use conflict_point::ConflictPoint;
 pub use participant::Participant;
 pub use swept_bounds::SweptBounds;
@@ -21,16 +23,16 @@ use crate::geometry::bisection::Bisection;
 use crate::geometry::{Vector, cross};
 use crate::util::units::{Metre, Radian};
 
-/// Two straight paths are parallel where they deviate by less than this over their length, in m.
+/// Two straight paths are parallel if they deviate by less than this over their length, in m.
 const PARALLEL: Metre = 1e-3;
 
-/// Where a pair meets that does not touch now, and whether the first of it is the ego: the one with the longer way,
-/// of equal ones the first if `a_is_smaller` says that its id is.
-pub fn meet(a: &Participant, b: &Participant, a_is_smaller: &impl Fn() -> bool) -> Option<(bool, ConflictPoint)> {
+/// How a pair that does not touch now would meet. The ego is the one with the longer distance to the conflict point; if
+/// equal, the one with the smaller id.
+pub fn meet(a: &Participant, b: &Participant, a_has_smaller_id: &impl Fn() -> bool) -> Option<Approach> {
     if drive_in_line(a, b) {
-        meet_in_one_dimension(a, b, a_is_smaller)
+        meet_in_one_dimension(a, b, a_has_smaller_id)
     } else {
-        side::meet(&mut Bisection::default(), a, b, false, a_is_smaller)
+        side::meet(&mut Bisection::default(), a, b, false, a_has_smaller_id)
     }
 }
 
@@ -39,25 +41,25 @@ pub fn drive_in_line(a: &Participant, b: &Participant) -> bool {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return false;
     }
-    lead_alike([&a.rectangle.axis, &b.rectangle.axis], [a.stop + a.length(), b.stop + b.length()])
+    are_parallel([&a.rectangle.axis, &b.rectangle.axis], [a.stop + a.length(), b.stop + b.length()])
 }
 
-/// Whether two axes lead so much the same way, or the opposite one, that over neither of these lengths they deviate.
-pub fn lead_alike([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
+/// Whether two axes point in the same or in opposite directions, up to [`PARALLEL`] over the longer of two lengths.
+pub fn are_parallel([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
     cross(a, b).abs() * length.max(other) <= PARALLEL
 }
 
-/// Whether two that drive in line drive towards each other, or away from each other.
+/// Whether two that drive in line have opposite directions.
 pub fn drive_opposed(a: &Participant, b: &Participant) -> bool {
     a.rectangle.axis.dot(&b.rectangle.axis) <= 0.0
 }
 
-/// Where two that drive in line meet; `true` where the first of them is the ego.
+/// How two that drive in line would meet.
 pub fn meet_in_one_dimension(
     a: &Participant,
     b: &Participant,
-    a_is_smaller: &impl Fn() -> bool,
-) -> Option<(bool, ConflictPoint)> {
+    a_has_smaller_id: &impl Fn() -> bool,
+) -> Option<Approach> {
     let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
@@ -66,10 +68,11 @@ pub fn meet_in_one_dimension(
     let along = between.dot(&axis);
     let ahead = along.abs() - a.rectangle.half_length - b.rectangle.half_length;
     if !drive_opposed(a, b) {
-        let (ego_is_a, ego, foe) = if along > 0.0 { (true, a, b) } else { (false, b, a) };
-        rear_end::in_line(ego, foe, ahead).map(|meeting| (ego_is_a, meeting))
+        let roles = Ego::first_if(along > 0.0);
+        let [ego, foe] = roles.then_foe([a, b]);
+        rear_end::in_line(ego, foe, ahead).map(|conflict_point| Approach { ego: roles, conflict_point })
     } else if along > 0.0 {
-        frontal::in_line(a, b, ahead, a_is_smaller)
+        frontal::in_line(a, b, ahead, a_has_smaller_id)
     } else {
         None
     }
@@ -80,7 +83,7 @@ pub fn sigma(angle: Radian) -> f64 {
     if angle == 0.0 { 1.0 } else { angle.cos() }
 }
 
-/// The room that is left: max(way_ego − σ·way_foe, 0).
+/// The room that is left: max(distance_ego − σ · distance_foe, 0).
 pub fn gap(ego_distance: Metre, foe_distance: Metre, sigma: f64) -> Metre {
     (ego_distance - sigma * foe_distance).max(0.0)
 }

@@ -1,43 +1,42 @@
-//! The paper's accurate phase as printed (Guan et al. 2008, fig. 5 to 8): straight-line distances, the kind by the
-//! angle of now.
+//! The paper's accurate phase as printed (Guan et al. 2008, fig. 5 to 8), for comparison: straight-line distances, the
+//! kind by the current angle.
 //!
-//! It exists to be compared with. `Dis_P` is the distance of the two centres, a1 and a2 are half the lengths, L2 is
-//! the foe's length.
+//! `Dis_P` is the distance of the two centres, a1 and a2 are half the lengths, L2 is the foe's length.
 
+use super::approach::{Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
-use crate::detection::kind::{Kind, kind_at};
+use crate::detection::kind::Kind;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, angle_between, left_of};
-use crate::options::Options;
+use crate::options::thresholds::KindBounds;
 use crate::util::units::{Metre, Radian};
 
-/// What the paper's flow chart says of a pair.
+/// The result of the paper's flow chart for a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found {
-    /// Whether the first of the pair is the ego.
-    pub ego_is_a: bool,
-    /// Kind by the angle of now.
+pub struct PaperResult {
+    /// Which of the two is the ego, and where it is now.
+    pub approach: Approach,
+    /// Kind by the current angle.
     pub kind: Kind,
-    /// The angle of now.
+    /// The current angle.
     pub angle: Radian,
     /// The straight-line distance that fig. 5 compares with μ.
     pub distance: Metre,
-    /// Where the ego is.
-    pub meeting: ConflictPoint,
 }
 
-/// Kind and distance by fig. 5; the ego is the one that has the other ahead of it, of two such the faster one, else
-/// the first.
-pub fn measure(a: &Participant, b: &Participant, options: &Options) -> Found {
+/// Kind and distance by fig. 5. The ego is the one that has the other ahead of it; if both or neither have, the faster
+/// one, and at equal speeds the first.
+pub fn measure(a: &Participant, b: &Participant, bounds: KindBounds) -> PaperResult {
     let between = b.rectangle.centre - a.rectangle.centre;
     let a_ahead = between.dot(&a.rectangle.axis) > 0.0;
     let b_ahead = between.dot(&b.rectangle.axis) < 0.0;
-    let ego_is_a = if a_ahead == b_ahead { a.speed >= b.speed } else { a_ahead };
-    let (ego, foe) = if ego_is_a { (a, b) } else { (b, a) };
+    let roles = Ego::first_if(if a_ahead == b_ahead { a.speed >= b.speed } else { a_ahead });
+    let [ego, foe] = roles.then_foe([a, b]);
     let angle = angle_between(&ego.rectangle.axis, &foe.rectangle.axis);
-    let kind = kind_at(angle, options);
-    let (a1, a2) = (ego.rectangle.half_length, foe.rectangle.half_length);
+    let kind = Kind::at(angle, bounds);
+    let a1 = ego.rectangle.half_length;
+    let a2 = foe.rectangle.half_length;
     let distance = match kind {
         Kind::Frontal => (between.norm() - a1 - a2).abs(),
         Kind::RearEnd => (between.norm() - a1 - (foe.length() - a2)).abs(),
@@ -49,18 +48,18 @@ pub fn measure(a: &Participant, b: &Participant, options: &Options) -> Found {
             }
         }
     };
-    let meeting = ConflictPoint {
+    let conflict_point = ConflictPoint {
         ego_distance: distance,
         foe_distance: 0.0,
-        ego: ego.rectangle,
+        ego_rectangle: ego.rectangle,
         foe_axis: Some(foe.rectangle.axis),
-        leads: kind == Kind::RearEnd,
+        foe_leads: kind == Kind::RearEnd,
     };
-    Found { ego_is_a, kind, angle, distance, meeting }
+    PaperResult { approach: Approach { ego: roles, conflict_point }, kind, angle, distance }
 }
 
-/// Fig. 8: whether a vertex of one rectangle lies within or on the other. Two that cross like a plus sign have no
-/// such vertex.
+/// Whether a vertex of one rectangle lies within or on the other (fig. 8). Two rectangles that cross like a plus sign
+/// have no such vertex.
 pub fn a_vertex_touches_a_side(a: &Rectangle, b: &Rectangle) -> bool {
     a.corners().iter().any(|corner| holds(b, corner)) || b.corners().iter().any(|corner| holds(a, corner))
 }

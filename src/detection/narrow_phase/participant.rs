@@ -1,4 +1,4 @@
-//! One road user of a pair, as the narrow phase sees it.
+//! One road user of a pair, as the narrow phase needs it.
 
 use super::SweptBounds;
 use crate::braking::{Brakes, Braking};
@@ -7,26 +7,26 @@ use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::util::units::{Metre, MetrePerSecond};
 
-/// One road user of a pair: what phase 2 needs to know of it.
+/// One road user of a pair.
 #[derive(Clone, Copy, Debug)]
 pub struct Participant<'a> {
-    /// The rectangle of now.
+    /// Its current rectangle.
     pub rectangle: Rectangle,
-    /// Convex parts of an obstacle; empty for all others.
+    /// The convex parts of an obstacle; empty for other road users.
     pub shape: &'a [Polygon],
-    /// Poses from now until it stands and ε further; may be left out of who drives in line.
+    /// Poses from now until it stands and ε further; may be empty for a pair in line.
     pub poses: &'a [Pose],
-    /// Whether it drives straight on all the way.
+    /// Whether all its poses lie straight ahead.
     pub straight: bool,
-    /// How far ahead its path is known to go: S + ε, or less where the path ends.
+    /// How far ahead its path is known: S + ε, or less where the path ends.
     pub reach: Metre,
-    /// The boxes around all that it covers on the way.
+    /// The boxes around the area that it covers along all poses.
     pub cover: &'a SweptBounds,
-    /// The same from each pose to the next; none of who drives straight on, where a part is hardly smaller than the whole.
+    /// The boxes between each two poses; empty if it drives straight on, where a part is hardly smaller than the whole.
     pub covers: &'a [SweptBounds],
     /// Speed in m/s.
     pub speed: MetrePerSecond,
-    /// How it brakes.
+    /// Its brakes.
     pub brakes: &'a Brakes,
     /// Its stopping distance.
     pub stop: Metre,

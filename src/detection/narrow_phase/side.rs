@@ -1,62 +1,78 @@
-//! Side, and whatever else is not in line: swept rectangles.
+//! Side conflicts, and all others that are not in line: swept rectangles.
 
+use super::approach::{Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
 use super::swept_bounds::SweptBounds;
 use crate::detection::path::Pose;
-use crate::geometry::bisection::{Bisection, Contact};
+use crate::geometry::bisection::Bisection;
 use crate::geometry::convex::ConvexOutline;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::separating_axes::translation;
-use crate::geometry::sweep::{Step, TOLERANCE};
+use crate::geometry::separating_axes::{Contact, translation};
+use crate::geometry::sweep::{Movement, TOLERANCE};
 use crate::geometry::{Vector, exact};
 use crate::util::units::Metre;
 
-/// How far from each other two may be, after both were swept, where they touch, in m.
+/// How far apart two rectangles may be where the sweep of both finds contact, in m.
 const INEXACT: Metre = 2.0 * TOLERANCE;
 
-/// Where a pair meets, and whether `a` is the ego: at the first pose on the ego's path at which its rectangle touches the
-/// area that the foe covers now and still needs to stop. The ego is the one with the longer way there, of equal ones the
-/// one with the smaller id; none of an obstacle.
+/// How a pair meets: at the first pose on the ego's path at which its rectangle touches the area that the foe covers
+/// now and still needs to stop. The ego is the one with the longer distance there; if equal, the one with the smaller
+/// id. An obstacle is never the ego.
 pub fn meet(
-    halves: &mut Bisection,
+    bisection: &mut Bisection,
     a: &Participant,
     b: &Participant,
     in_line: bool,
-    a_is_smaller: &impl Fn() -> bool,
-) -> Option<(bool, ConflictPoint)> {
-    halves.clear();
-    let (of_a, of_b) = (0, numbers(a));
+    a_has_smaller_id: &impl Fn() -> bool,
+) -> Option<Approach> {
+    bisection.clear();
+    // The movements of both are numbered one after the other.
+    let numbers = [0, movement_count(a)];
     let mut touch = |numbers, ego: &Participant, foe: &Participant| match one_rectangle(foe) {
         _ if !ego.shape.is_empty() => None,
         Some(covered) if ego.straight => first_slide(ego, &covered),
-        _ => first_touch(halves, numbers, ego, foe),
+        _ => first_touch(bisection, numbers, ego, foe),
     };
-    let (as_a, as_b) = (touch([of_a, of_b], a, b), touch([of_b, of_a], b, a));
-    let (a_is_ego, (ego_distance, rectangle)) = match (as_a, as_b) {
-        (Some(as_a), Some(as_b)) if as_b.0 > as_a.0 || (as_b.0 == as_a.0 && !a_is_smaller()) => (false, as_b),
-        (Some(as_a), _) => (true, as_a),
-        (None, as_b) => (false, as_b?),
+    let [of_a, of_b] = numbers;
+    let a_touches = touch([of_a, of_b], a, b);
+    let b_touches = touch([of_b, of_a], b, a);
+    let (roles, Touch { ego_distance, rectangle }) = match (a_touches, b_touches) {
+        (Some(a), Some(b)) => {
+            let b_is_ego = b.ego_distance > a.ego_distance || (b.ego_distance == a.ego_distance && !a_has_smaller_id());
+            if b_is_ego { (Ego::Second, b) } else { (Ego::First, a) }
+        }
+        (Some(a), None) => (Ego::First, a),
+        (None, b) => (Ego::Second, b?),
     };
-    let (ego, foe, of_foe) = if a_is_ego { (a, b, of_b) } else { (b, a, of_a) };
-    // Poses stand along the path, which the heading may leave by as much as rounding to centimetres.
+    let [ego, foe] = roles.then_foe([a, b]);
+    let [_, of_foe] = roles.then_foe(numbers);
+    // In line, the distance is measured along the heading: recorded positions are rounded to centimetres, so the poses
+    // may lie beside it.
     let in_front = Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_distance, ..ego.rectangle };
-    let rectangle = if in_line { in_front } else { rectangle };
-    let meeting =
-        |foe_distance, foe_axis, leads| ConflictPoint { ego_distance, foe_distance, ego: rectangle, foe_axis, leads };
-    let meeting = if !foe.shape.is_empty() {
-        meeting(0.0, None, false)
-    } else if in_line && rectangle.axis.dot(&foe.rectangle.axis) > 0.0 {
-        meeting(0.0, Some(foe.rectangle.axis), true)
+    let ego_rectangle = if in_line { in_front } else { rectangle };
+    let (foe_distance, foe_axis, foe_leads) = if !foe.shape.is_empty() {
+        (0.0, None, false)
+    } else if in_line && ego_rectangle.axis.dot(&foe.rectangle.axis) > 0.0 {
+        (0.0, Some(foe.rectangle.axis), true)
     } else {
-        let (foe_distance, foe_axis) = arrival(halves, of_foe, foe, &rectangle, if in_line { 0.0 } else { INEXACT });
-        meeting(foe_distance, Some(foe_axis), false)
+        let inexact = if in_line { 0.0 } else { INEXACT };
+        let (foe_distance, foe_axis) = arrival(bisection, of_foe, foe, &ego_rectangle, inexact);
+        (foe_distance, Some(foe_axis), false)
     };
-    Some((a_is_ego, meeting))
+    let conflict_point = ConflictPoint { ego_distance, foe_distance, ego_rectangle, foe_axis, foe_leads };
+    Some(Approach { ego: roles, conflict_point })
 }
 
-/// How many numbers the steps of a mover need: one is that of who stands.
-fn numbers(of: &Participant) -> usize {
+/// Where an ego first touches the area of a foe.
+struct Touch {
+    ego_distance: Metre,
+    /// The ego's rectangle there.
+    rectangle: Rectangle,
+}
+
+/// How many numbers the movements of a road user take; the last one stands for a road user that does not move.
+fn movement_count(of: &Participant) -> usize {
     of.poses.len() + 1
 }
 
@@ -69,108 +85,118 @@ fn one_rectangle(foe: &Participant) -> Option<Rectangle> {
         return stands(foe).covered();
     }
     match foe.poses {
-        [now, next, ..] if next.way >= foe.stop => now.step_to(next, foe.length(), foe.width()).covered(),
+        [now, next, ..] if next.distance >= foe.stop => now.movement_to(next, foe.length(), foe.width()).covered(),
         _ => None,
     }
 }
 
-/// The way of an ego that drives straight on to such an area, and its rectangle there.
-fn first_slide(ego: &Participant, covered: &Rectangle) -> Option<(Metre, Rectangle)> {
+/// Where an ego that drives straight on first touches such a rectangle.
+fn first_slide(ego: &Participant, covered: &Rectangle) -> Option<Touch> {
     ego.poses.windows(2).find_map(|pair| {
-        let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
-        let enter = step.slide_to(covered)?.enter;
-        Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)))
+        let movement = pair[0].movement_to(&pair[1], ego.length(), ego.width());
+        let enter = movement.slide_to(covered)?.enter;
+        let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
+        Some(Touch { ego_distance, rectangle: movement.rectangle(enter) })
     })
 }
 
-/// The ego's way to the foe's area and its rectangle there; the steps of both may be known already, by their numbers from
-/// these on.
+/// Where an ego first touches the area of a foe. The movements of the two are numbered from `of_ego` and `of_foe` on.
 fn first_touch(
-    halves: &mut Bisection,
+    bisection: &mut Bisection,
     [of_ego, of_foe]: [usize; 2],
     ego: &Participant,
     foe: &Participant,
-) -> Option<(Metre, Rectangle)> {
+) -> Option<Touch> {
     for (index, pair) in ego.poses.windows(2).enumerate() {
         let cover = ego.covers.get(index);
         if cover.is_some_and(|cover| !cover.meets(foe.cover)) {
             continue;
         }
         let cover = cover.unwrap_or(ego.cover);
-        let step = pair[0].step_to(&pair[1], ego.length(), ego.width());
+        let movement = pair[0].movement_to(&pair[1], ego.length(), ego.width());
         let mut enter = Contact::Entry.none();
         for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
-            let part = halves.numbered(of_ego + index, || step);
-            enter = halves.meet(part, shape, Contact::Entry).map_or(enter, |found| found.min(enter));
+            let part = bisection.numbered(of_ego + index, || movement);
+            enter = bisection.meet(part, shape, Contact::Entry).map_or(enter, |found| found.min(enter));
         }
-        for (of_other, other) in area(foe, cover) {
-            enter = halves.touch_numbered((of_ego + index, &step), (of_foe + of_other, &other), Contact::Entry, enter);
+        for (other_index, other) in area(foe, cover) {
+            let ego_movement = (of_ego + index, &movement);
+            let foe_movement = (of_foe + other_index, &other);
+            enter = bisection.touch_numbered(ego_movement, foe_movement, Contact::Entry, enter);
         }
         if enter <= 1.0 {
-            return Some((pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter)));
+            let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
+            return Some(Touch { ego_distance, rectangle: movement.rectangle(enter) });
         }
     }
     None
 }
 
-/// The steps near an ego's over which the foe covers the area that it is in now and still needs to stop, with their
-/// numbers; none of an obstacle.
-fn area<'a>(foe: &'a Participant, near: &'a SweptBounds) -> impl Iterator<Item = (usize, Step)> + 'a {
+/// The numbered movements near `near` over which the foe covers the area that it needs to stop; none for an obstacle.
+fn area<'a>(foe: &'a Participant, near: &'a SweptBounds) -> impl Iterator<Item = (usize, Movement)> + 'a {
     let standing = (foe.shape.is_empty() && foe.stop <= 0.0).then(|| (foe.poses.len(), stands(foe)));
-    let before_it_stands = foe.poses.iter().take_while(|pose| pose.way < foe.stop);
-    let moving = before_it_stands.zip(steps(foe).enumerate()).map(|(_, step)| step);
+    let before_it_stands = foe.poses.iter().take_while(|pose| pose.distance < foe.stop);
+    let moving = before_it_stands.zip(movements(foe).enumerate()).map(|(_, movement)| movement);
     let moving = moving.filter(|(index, _)| foe.covers.get(*index).is_none_or(|cover| cover.meets(near)));
     standing.into_iter().chain(moving)
 }
 
-/// The step of who stands.
-fn stands(of: &Participant) -> Step {
+/// The movement of a road user that stands.
+fn stands(of: &Participant) -> Movement {
     let front = of.rectangle.centre + of.rectangle.axis * of.rectangle.half_length;
-    let now = Pose { way: 0.0, front, axis: of.rectangle.axis };
-    now.step_to(&now, of.length(), of.width())
+    let now = Pose { distance: 0.0, front, axis: of.rectangle.axis };
+    now.movement_to(&now, of.length(), of.width())
 }
 
-/// The foe's way to the ego's rectangle at the meeting place, and its axis there.
+/// The foe's distance to the ego's rectangle at the conflict point, and its axis there.
 ///
-/// The two touch there to within rounding and the sweep's tolerances, so the rectangle is taken larger by that.
+/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by `inexact`.
 fn arrival(
-    halves: &mut Bisection,
-    numbers: usize,
+    bisection: &mut Bisection,
+    first_number: usize,
     foe: &Participant,
     ego: &Rectangle,
     inexact: Metre,
 ) -> (Metre, Vector) {
     let ego = grown(ego, inexact);
-    for (index, (pair, step)) in foe.poses.windows(2).zip(steps(foe)).enumerate() {
-        if let Some(enter) = halves.meet_rectangle((numbers + index, &step), &ego, Contact::Entry) {
-            return (pair[0].way + (pair[1].way - pair[0].way) * enter, step.rectangle(enter).axis);
+    for (index, (pair, movement)) in foe.poses.windows(2).zip(movements(foe)).enumerate() {
+        if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
+            let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
+            return (foe_distance, movement.rectangle(enter).axis);
         }
-        if pair[0].way >= foe.stop {
+        if pair[0].distance >= foe.stop {
             break;
         }
     }
     (foe.stop.min(foe.reach), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
 }
 
-/// The way at which a foe on these poses has left the ego's rectangle at the meeting place; `arrival` is its way
-/// until it is there.
-pub fn departure(halves: &mut Bisection, poses: &[Pose], foe: &Participant, ego: &Rectangle, arrival: Metre) -> Metre {
-    halves.clear();
+/// The distance at which a foe on these poses has left the ego's rectangle at the conflict point; `arrival` is the
+/// distance at which it reaches that rectangle.
+pub fn departure(
+    bisection: &mut Bisection,
+    poses: &[Pose],
+    foe: &Participant,
+    ego: &Rectangle,
+    arrival: Metre,
+) -> Metre {
+    bisection.clear();
     let ego = grown(ego, INEXACT);
     let mut left = arrival;
     for (index, pair) in poses.windows(2).enumerate() {
-        let (pose, next) = (pair[0], pair[1]);
-        if next.way < arrival {
+        let pose = pair[0];
+        let next = pair[1];
+        if next.distance < arrival {
             continue;
         }
-        let step = pose.step_to(&next, foe.length(), foe.width());
-        let Some(leave) = halves.meet_rectangle((index, &step), &ego, Contact::Exit) else {
-            if pose.way > arrival {
+        let movement = pose.movement_to(&next, foe.length(), foe.width());
+        let Some(leave) = bisection.meet_rectangle((index, &movement), &ego, Contact::Exit) else {
+            if pose.distance > arrival {
                 return left;
             }
             continue;
         };
-        left = pose.way + (next.way - pose.way) * leave.min(1.0);
+        left = pose.distance + (next.distance - pose.distance) * leave.min(1.0);
         if leave < 1.0 {
             return left;
         }
@@ -182,11 +208,11 @@ fn grown(rectangle: &Rectangle, by: Metre) -> Rectangle {
     Rectangle { half_length: rectangle.half_length + by, half_width: rectangle.half_width + by, ..*rectangle }
 }
 
-fn steps<'a>(of: &'a Participant) -> impl Iterator<Item = Step> + 'a {
-    of.poses.windows(2).map(|pair| pair[0].step_to(&pair[1], of.length(), of.width()))
+fn movements<'a>(of: &'a Participant) -> impl Iterator<Item = Movement> + 'a {
+    of.poses.windows(2).map(|pair| pair[0].movement_to(&pair[1], of.length(), of.width()))
 }
 
-/// Whether two rectangles-with-shapes overlap or touch now.
+/// Whether two road users, the second of which may be an obstacle, touch or overlap now.
 pub fn touch_now(a: &Participant, b: &Participant) -> bool {
     if b.shape.is_empty() {
         return !exact::are_far_apart(&a.rectangle, &b.rectangle) && exact::touches(&a.rectangle, &b.rectangle);
@@ -206,10 +232,10 @@ mod tests {
     const SIZE: (Metre, Metre) = (5.0, 2.0);
     const BRAKES: Brakes = Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 };
 
-    fn mover<'a>(poses: &'a [Pose], covers: &'a [SweptBounds], cover: &'a SweptBounds) -> Participant<'a> {
+    fn participant<'a>(poses: &'a [Pose], covers: &'a [SweptBounds], cover: &'a SweptBounds) -> Participant<'a> {
         let (length, width) = SIZE;
         let rectangle = Rectangle::behind(poses[0].front, poses[0].axis, length, width);
-        let (stop, reach) = (poses[poses.len() - 2].way, poses[poses.len() - 1].way);
+        let (stop, reach) = (poses[poses.len() - 2].distance, poses[poses.len() - 1].distance);
         Participant {
             rectangle,
             shape: &[],
@@ -225,10 +251,10 @@ mod tests {
     }
 
     prop_compose! {
-        fn way()(x in -40.0..40.0, y in -40.0..40.0, heading in -3.2..3.2, stop in 1.0..60.0, curvature in -0.1..0.1)
+        fn path()(x in -40.0..40.0, y in -40.0..40.0, heading in -3.2..3.2, stop in 1.0..60.0, curvature in -0.1..0.1)
             -> Vec<Pose> {
             let (front, axis) = (Point::new(x, y), crate::geometry::rectangle::direction(heading));
-            let mut poses = vec![Pose { way: 0.0, front, axis }];
+            let mut poses = vec![Pose { distance: 0.0, front, axis }];
             arc::poses(front, axis, curvature, SIZE.0, &[stop, stop + 0.5], &mut poses);
             poses
         }
@@ -238,16 +264,16 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(5000))]
 
         #[test]
-        fn covers_leave_out_nothing_that_meets(ego in way(), foe in way()) {
+        fn covers_leave_out_nothing_that_meets(ego in path(), foe in path()) {
             let all = vec![SweptBounds::EVERYWHERE; 1000];
             let whole = |poses: &[Pose]| SweptBounds::of(poses, SIZE.0, SIZE.1).unwrap();
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
-            let mut halves = Bisection::default();
-            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut halves, ego, foe, false, &|| true);
-            let slow = meet(&mover(&ego, &all, &SweptBounds::EVERYWHERE), &mover(&foe, &all, &SweptBounds::EVERYWHERE));
+            let mut bisection = Bisection::default();
+            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, ego, foe, false, &|| true);
+            let slow = meet(&participant(&ego, &all, &SweptBounds::EVERYWHERE), &participant(&foe, &all, &SweptBounds::EVERYWHERE));
             let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
-            let (ego, foe) = (mover(&ego, &ego_parts, &ego_whole), mover(&foe, &foe_parts, &foe_whole));
+            let (ego, foe) = (participant(&ego, &ego_parts, &ego_whole), participant(&foe, &foe_parts, &foe_whole));
             prop_assert!(slow.is_none() || ego.cover.meets(foe.cover));
             prop_assert_eq!(meet(&ego, &foe), slow);
         }

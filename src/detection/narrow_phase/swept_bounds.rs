@@ -1,4 +1,4 @@
-//! The boxes around what a road user covers along its path: they decide quickly that a pair cannot meet.
+//! Boxes around the area that a road user covers along its path: they rule out quickly that a pair can meet.
 
 use crate::detection::path::Pose;
 use crate::geometry::contact::plainly_touches;
@@ -7,19 +7,19 @@ use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
 
-/// What a road user covers between two poses, in boxes that decide quickly where nothing meets.
+/// Boxes around the area that a road user covers between poses.
 #[derive(Clone, Copy, Debug)]
 pub struct SweptBounds {
-    /// The axis-parallel box around it.
+    /// The axis-parallel box.
     pub bounds: Bounds,
-    /// The box along the way: narrow, whichever way that leads.
+    /// The box along the direction of travel: narrow whatever that direction is.
     pub around: Rectangle,
 }
 
 impl SweptBounds {
-    /// The boxes around a road user of this length and width at all these poses and between; none of no pose.
+    /// The boxes around a road user of this length and width at these poses and between them; none without poses.
     ///
-    /// Between two poses it may leave the hull of both by less than the sweep's tolerance.
+    /// Between two poses it leaves the hull of both by less than the sweep's tolerance.
     pub fn of(poses: &[Pose], length: Metre, width: Metre) -> Option<Self> {
         let rectangles = || poses.iter().map(|pose| Rectangle::behind(pose.front, pose.axis, length, width));
         let mut bounds = Bounds::EMPTY;
@@ -33,21 +33,21 @@ impl SweptBounds {
         Some(Self { bounds: bounds.grown(TOLERANCE), around })
     }
 
-    /// The same around one that goes straight on from one pose to another, with the box that is known.
+    /// The boxes around a road user that goes straight on from one pose to another; the axis-parallel box is known.
     pub fn straight(first: &Pose, last: &Pose, length: Metre, width: Metre, bounds: Bounds) -> Self {
         let now = Rectangle::behind(first.front, first.axis, length, width);
         let around = now.swept(&(last.front - first.front), TOLERANCE);
         Self { bounds, around }
     }
 
-    /// Whether the boxes of two meet.
+    /// Whether the boxes of two road users meet.
     pub fn meets(&self, other: &Self) -> bool {
         self.bounds.meet(&other.bounds) && plainly_touches(&self.around, &other.around)
     }
 }
 
 impl SweptBounds {
-    /// What meets nothing.
+    /// Boxes that meet nothing.
     pub const NOWHERE: Self = Self {
         bounds: Bounds::EMPTY,
         around: Rectangle {
@@ -57,7 +57,7 @@ impl SweptBounds {
             half_width: 0.0,
         },
     };
-    /// What meets everything: nothing is left out.
+    /// Boxes that meet everything, so that nothing is left out.
     pub const EVERYWHERE: Self = Self {
         bounds: Bounds::EVERYTHING,
         around: Rectangle {

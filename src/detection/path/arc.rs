@@ -1,4 +1,4 @@
-//! On a circle: the curvature of now is kept.
+//! Poses on a circle with the current curvature.
 
 use super::{Pose, largest_turn, rotated};
 use crate::geometry::{Point, Vector, left_of};
@@ -7,14 +7,14 @@ use crate::util::units::Metre;
 /// Below this curvature, in 1/m, the path is straight: a lateral deviation of 1 mm after 450 m.
 const STRAIGHT: f64 = 1e-8;
 
-/// Adds the poses at the given ways, in ascending order, and as many between as the sweep's tolerance needs.
+/// Adds the poses at the given distances, in ascending order, and as many between as the sweep's tolerance needs.
 ///
-/// `curvature` is in 1/m, positive to the left. The heading is the chord from the rear to the front bumper, so at
-/// the front the circle's tangent is ahead of it by the angle asin(κ·L/2). On a circle smaller than the chord it
-/// turns about the chord's middle, as far as its front gets that way.
-pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, ways: &[Metre], poses: &mut Vec<Pose>) {
+/// `curvature` is in 1/m, positive to the left. The heading is the chord from the rear to the front bumper, so the
+/// circle's tangent at the front is ahead of it by the angle asin(κ·L/2). If the circle is smaller than the chord, the
+/// road user turns about the middle of the chord.
+pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, distances: &[Metre], poses: &mut Vec<Pose>) {
     if curvature.abs() < STRAIGHT {
-        super::straight::poses(front, axis, ways, poses);
+        super::straight::poses(front, axis, distances, poses);
         return;
     }
     let tightest = 2.0 / length;
@@ -24,23 +24,27 @@ pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, ways: &[
     let centre = front + left_of(&tangent) / curvature;
     let widest = largest_turn(length);
     let mut last = 0.0;
-    for &way in ways {
-        let parts = ((way - last) * curvature.abs() / widest).ceil().clamp(1.0, 1e4);
+    for &distance in distances {
+        let parts = ((distance - last) * curvature.abs() / widest).ceil().clamp(1.0, 1e4);
         for part in 1..=parts as u32 {
-            let way = last + (way - last) * f64::from(part) / parts;
-            let angle = way * curvature;
-            poses.push(Pose { way, front: centre + rotated(&(front - centre), angle), axis: rotated(&axis, angle) });
+            let distance = last + (distance - last) * f64::from(part) / parts;
+            let angle = distance * curvature;
+            poses.push(Pose {
+                distance,
+                front: centre + rotated(&(front - centre), angle),
+                axis: rotated(&axis, angle),
+            });
         }
-        last = way;
+        last = distance;
     }
 }
 
-/// The curvature, in 1/m, of the circle through two states, `between` apart, with a turn in rad from one to the other;
-/// 0 where they are too close to tell. `between` is the circle's chord: 2 sin(turn/2) of its radii.
+/// The curvature, in 1/m, of the circle through two states `between` apart, with a turn in rad from one to the other; 0
+/// if they are too close to tell. `between` is the chord of the circle, 2 · radius · sin(turn/2).
 pub fn curvature(turn: f64, between: Metre) -> f64 {
-    /// A shorter way than this says more of rounding than of a curve.
+    /// Over a shorter distance, rounding dominates the curvature, in m.
     const SHORTEST: Metre = 0.05;
-    /// A smaller radius than SUMO's tightest hairpins is a vehicle that was moved, in m.
+    /// The radius of SUMO's tightest hairpins, in m; a smaller one means that the vehicle was moved.
     const SMALLEST_RADIUS: Metre = 2.0;
     if between < SHORTEST {
         return 0.0;
@@ -53,7 +57,7 @@ mod tests {
     use crate::detection::path::arc::*;
 
     #[test]
-    fn a_quarter_circle_ends_a_radius_ahead_and_a_radius_aside() {
+    fn a_quarter_circle_ends_a_radius_ahead_and_aside() {
         let mut found = Vec::new();
         let quarter = 10.0 * std::f64::consts::FRAC_PI_2;
         poses(Point::origin(), Vector::new(1.0, 0.0), 0.1, 0.0, &[0.0, quarter], &mut found);
@@ -63,7 +67,7 @@ mod tests {
     }
 
     #[test]
-    fn two_states_on_a_circle_have_its_curvature_however_far_apart() {
+    fn two_states_on_a_circle_have_its_curvature() {
         let (start, radius) = (Point::origin(), 10.0_f64);
         for angle in [-3.0, -0.8, -0.1, 0.1, 0.8, 3.0] {
             let left = Vector::new(0.0, radius.copysign(angle));

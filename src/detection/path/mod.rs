@@ -1,27 +1,29 @@
-//! Where a road user will go while it brakes: the poses along its path.
+//! The expected path of a road user while it brakes, as poses.
 //!
-//! A pose is what SUMO's is: the chord from the rear to the front bumper, both on the path. [`straight`] and [`arc`]
-//! need nothing but the state, [`lanes`] the net and the route; the latter lays a [`track::Track`] once and follows it; what stands on
-//! that is in `poses`.
+//! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] and [`arc`] need
+//! only the state; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows
+//! it; `poses` has the poses along a track.
 
 pub mod arc;
-mod beside;
+mod foot;
 pub mod lanes;
-mod own;
+mod lateral_offset;
+mod next_lane;
+mod own_line;
 mod poses;
+mod route;
 pub mod straight;
 pub mod track;
-mod turns;
 
-use crate::geometry::sweep::Step;
+use crate::geometry::sweep::Movement;
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, Radian};
 
-/// A place on a path and how the road user stands there.
+/// A place on a path, and the heading of the road user there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Way from where the road user is now, in m.
-    pub way: Metre,
+    /// Distance from the current place of the road user, in m.
+    pub distance: Metre,
     /// Front-bumper centre.
     pub front: Point,
     /// Unit vector from the rear to the front.
@@ -30,13 +32,13 @@ pub struct Pose {
 
 impl Pose {
     /// The movement from this pose to the next of a road user of this size.
-    pub fn step_to(&self, next: &Self, length: Metre, width: Metre) -> Step {
-        Step { from: self.front, from_axis: self.axis, to: next.front, to_axis: next.axis, length, width }
+    pub fn movement_to(&self, next: &Self, length: Metre, width: Metre) -> Movement {
+        Movement { from: self.front, from_axis: self.axis, to: next.front, to_axis: next.axis, length, width }
     }
 }
 
-/// The largest turn between two poses that keeps a corner of a road user of this length within the sweep's
-/// tolerance of a straight line between them: the sagitta L·Δ²/8.
+/// The largest turn between two poses for which a corner of a road user of this length stays within the sweep's
+/// tolerance of a straight line: the sagitta is L·Δ²/8.
 pub(crate) fn largest_turn(length: Metre) -> Radian {
     (8.0 * crate::geometry::sweep::TOLERANCE / length.max(1.0)).sqrt()
 }

@@ -1,7 +1,7 @@
 //! A road user's place on lines that join: where its front bumper is, and how far they lead ahead.
 //!
-//! A track says which lines of a table it runs over, the net's lanes mostly, which nobody has to copy. Ways are those along
-//! the line that the front bumper is on: behind its beginning they are negative, beyond its end larger than it is long.
+//! A track refers to lines of a table, mostly the lanes of the net, which therefore need not be copied. Distances are
+//! measured along the line that the front bumper is on: negative before its beginning, above its length beyond its end.
 
 use smallvec::SmallVec;
 
@@ -9,37 +9,36 @@ use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point};
 use crate::util::units::Metre;
 
-/// A way along the line is at most this many times as long as the straight line between its ends, where a road user
-/// drives on it for one step: a turn right back.
+/// Within one simulation step a road user drives at most this many times the straight distance along the line: enough
+/// for a U-turn.
 const LONGEST_DETOUR: f64 = 4.0;
-/// Who gets further back than this on a line does not drive along it, in m: more than recordings round, to 1 cm.
+/// A road user that moves back by more than this has left the line, in m: more than recordings round, to 1 cm.
 const BACKWARDS: Metre = 0.02;
-/// Of so many lines hardly a track has more: the lane behind, the junction's, the next two.
-const MOSTLY: usize = 6;
+/// Inline capacity: few tracks have more lines; longer ones spill to the heap.
+const FEW: usize = 6;
 
 /// Lines of a table that join, and a place on them.
 #[derive(Clone, Debug, Default)]
 pub struct Track {
-    /// In their order.
-    pub(super) lines: SmallVec<[u32; MOSTLY]>,
-    /// On which of them the front bumper is.
-    pub(super) at: u16,
-    /// On which edge of the route the last of them is, or was when the route was left, as [`super::lanes`] counts them.
-    pub(super) edge: u16,
-    /// The last corner before it, in the table.
-    pub(super) corner: u32,
+    /// Lines in driving order.
+    pub(super) lines: SmallVec<[u32; FEW]>,
+    /// Index of the line that the front bumper is on.
+    pub(super) at: usize,
+    /// The last vertex before the front bumper, in the table.
+    pub(super) vertex: u32,
+    /// Distance of the front bumper from the beginning of its line.
     pub(super) front: Metre,
-    /// Where the last line ends: whether a track reaches far enough is asked of everybody in every step.
+    /// Distance of the end of the last line. It is kept because every step asks whether the track reaches far enough.
     pub(super) end: Metre,
 }
 
 impl Track {
-    /// Forgets the lines.
+    /// Removes all lines.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
 
-    /// Begins with this line, which has two corners at least, the front bumper at this way.
+    /// Begins with a line of at least two vertices, with the front bumper at a distance along it.
     pub fn begin(&mut self, lines: &Lines, line: u32, front: Metre) {
         self.lines.clear();
         self.lines.push(line);
@@ -48,33 +47,34 @@ impl Track {
         self.set_front(lines, front);
     }
 
-    /// Puts the front bumper at a way along the line that it is on.
-    pub(super) fn set_front(&mut self, lines: &Lines, way: Metre) {
-        let line = self.lines[self.at as usize];
-        let corners = lines.line(line);
-        let before = corners.partition_point(|corner| corner.way <= way).saturating_sub(1).min(corners.len() - 2);
-        self.front = way;
-        self.corner = lines.range(line).0 + before as u32;
+    /// Puts the front bumper at a distance along the line that it is on.
+    pub(super) fn set_front(&mut self, lines: &Lines, distance: Metre) {
+        let line = self.lines[self.at];
+        let vertices = lines.line(line);
+        let before =
+            vertices.partition_point(|vertex| vertex.distance <= distance).saturating_sub(1).min(vertices.len() - 2);
+        self.front = distance;
+        self.vertex = lines.range(line).0 + before as u32;
     }
 
-    /// Goes on over a line that joins the last one.
-    pub fn go_on(&mut self, lines: &Lines, line: u32) {
+    /// Appends a line that begins where the last one ends.
+    pub fn append(&mut self, lines: &Lines, line: u32) {
         self.lines.push(line);
         self.end += lines.length(line);
     }
 
-    /// Has come over a line that the first one joins.
-    pub fn come_from(&mut self, line: u32) {
+    /// Prepends a line that ends where the first one begins.
+    pub fn prepend(&mut self, line: u32) {
         self.lines.insert(0, line);
         self.at += 1;
     }
 
-    /// Whether there is a line at all.
-    pub fn is_laid(&self) -> bool {
-        !self.lines.is_empty()
+    /// Whether the track has no lines.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
     }
 
-    /// The way from the beginning of the line that the front bumper is on.
+    /// Distance of the front bumper from the beginning of the line that it is on.
     pub fn front(&self) -> Metre {
         self.front
     }
@@ -84,152 +84,165 @@ impl Track {
         self.end - self.front
     }
 
-    /// Follows the front bumper to where it is now; `false` if it is not on the lines ahead any more.
+    /// Updates the place of the front bumper; `false` if it is no longer on the lines ahead.
     pub fn follow(&mut self, lines: &Lines, front: Point) -> bool {
-        if !self.is_laid() {
+        if self.is_empty() {
             return false;
         }
-        let under = lines.segment(self.corner);
-        if let Some(way) = under.way_to(front) {
-            let goes_on = way >= self.front - BACKWARDS;
-            self.front = way;
+        let under = lines.segment(self.vertex);
+        if let Some(distance) = under.distance_of(front) {
+            let goes_on = distance >= self.front - BACKWARDS;
+            self.front = distance;
             return goes_on;
         }
         let moved = (front - under.at(self.front)).norm();
         let furthest = self.front + LONGEST_DETOUR * moved + ON_THE_LINE;
-        let mut cursor = Cursor { way: furthest, ..self.cursor(lines) };
+        let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
-            cursor.go_on();
-            if let Some(way) = cursor.under.way_to(front) {
-                let (at, corner) = (cursor.at, cursor.corner);
-                let passed = self.lines[self.at as usize..at].iter();
+            cursor.enter_next();
+            if let Some(distance) = cursor.under.distance_of(front) {
+                let Cursor { at, vertex, .. } = cursor;
+                let passed = self.lines[self.at..at].iter();
                 self.end -= passed.map(|line| lines.length(*line)).sum::<Metre>();
-                (self.at, self.corner, self.front) = (at as u16, corner, way);
+                self.at = at;
+                self.vertex = vertex;
+                self.front = distance;
                 return true;
             }
         }
         false
     }
 
-    /// The box around the lines from the front bumper to this way ahead of it, or to their end.
-    pub fn bounds_ahead(&self, lines: &Lines, way: Metre) -> Bounds {
+    /// The box around the lines from the front bumper to a distance ahead of it, or to their end.
+    pub fn bounds_ahead(&self, lines: &Lines, distance: Metre) -> Bounds {
         let mut cursor = self.cursor(lines);
         let mut bounds = Bounds::EMPTY;
         bounds.include(cursor.point());
-        cursor.way = (self.front + way).min(self.end);
+        cursor.distance = (self.front + distance).min(self.end);
         while cursor.room() < 0.0 {
-            cursor.go_on();
+            cursor.enter_next();
             bounds.include(cursor.under.start);
         }
         bounds.include(cursor.point());
         bounds
     }
 
-    /// The corner at this way ahead of the front bumper, or the last one before it, and which line has it.
-    pub(super) fn corner_ahead(&self, lines: &Lines, way: Metre) -> (u32, u32) {
-        let mut cursor = Cursor { way: self.front + way, ..self.cursor(lines) };
+    /// The last vertex up to a distance ahead of the front bumper, and the line that it is on.
+    pub(super) fn vertex_ahead(&self, lines: &Lines, distance: Metre) -> (u32, u32) {
+        let mut cursor = Cursor { distance: self.front + distance, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
-            cursor.go_on();
+            cursor.enter_next();
         }
-        (cursor.corner, self.lines[cursor.at])
+        (cursor.vertex, self.lines[cursor.at])
     }
 
-    /// Drops the lines that lie wholly further behind the front bumper than this.
-    pub fn forget_behind(&mut self, lines: &Lines, behind: Metre) {
-        let (mut begin, mut first) = (self.front, self.at as usize);
+    /// Removes the lines that lie wholly further behind the front bumper than this.
+    pub fn remove_behind(&mut self, lines: &Lines, behind: Metre) {
+        let mut begin = self.front;
+        let mut first = self.at;
         while begin < behind && first > 0 {
             first -= 1;
             begin += lines.length(self.lines[first]);
         }
         self.lines.drain(..first);
         self.lines.shrink_to_fit();
-        self.at -= first as u16;
+        self.at -= first;
     }
 
-    /// How long its lines are, all together.
+    /// Total length of its lines.
     pub(super) fn length(&self, lines: &Lines) -> Metre {
-        self.end + self.lines[..self.at as usize].iter().map(|line| lines.length(*line)).sum::<Metre>()
+        self.end + self.lines[..self.at].iter().map(|line| lines.length(*line)).sum::<Metre>()
     }
 
-    /// Where the front bumper is.
+    /// A cursor at the front bumper.
     #[inline]
     pub(super) fn cursor<'a>(&'a self, lines: &'a Lines) -> Cursor<'a> {
-        let (chain, at, way) = (&self.lines[..], self.at as usize, self.front);
-        let (range, under) = (lines.range(chain[at]), lines.segment(self.corner));
-        let mut cursor = Cursor { lines, chain, at, range, corner: self.corner, under, next: under.end, way };
+        let under = lines.segment(self.vertex);
+        let mut cursor = Cursor {
+            lines,
+            chain: &self.lines,
+            at: self.at,
+            range: lines.range(self.lines[self.at]),
+            vertex: self.vertex,
+            under,
+            next: under.ends_at,
+            distance: self.front,
+        };
         cursor.look_ahead();
         cursor
     }
 }
 
-/// A place on a track that moves.
+/// A moving place on a track.
 #[derive(Clone, Copy)]
 pub(super) struct Cursor<'a> {
     lines: &'a Lines,
     chain: &'a [u32],
-    /// On which of these lines it is, and where its corners are.
+    /// Index of the line that it is on.
     at: usize,
+    /// The vertices of that line.
     range: (u32, u32),
-    /// The last corner before it.
-    pub corner: u32,
+    /// The last vertex before it.
+    pub vertex: u32,
+    /// The segment that it is on.
     pub under: Segment,
-    /// Where the next corner is; from the track's last part there is none, however far.
+    /// Distance of the next vertex; infinite on the last segment of the track.
     next: Metre,
-    /// Along the line that it is on.
-    pub way: Metre,
+    /// Distance along the line that it is on.
+    pub distance: Metre,
 }
 
 impl Cursor<'_> {
-    /// Before the track's beginning and beyond its end, straight on.
+    /// Its place in the plane; beyond either end of the track, straight on.
     pub fn point(&self) -> Point {
-        self.under.at(self.way)
+        self.under.at(self.distance)
     }
 
-    /// Way to the next corner; behind it less than 0.
+    /// Distance to the next vertex; negative beyond it.
     #[inline]
     pub fn room(&self) -> Metre {
-        self.next - self.way
+        self.next - self.distance
     }
 
-    /// How far the part of the track reaches that it is on.
+    /// Finds the next vertex.
     #[inline]
     fn look_ahead(&mut self) {
-        let is_last = self.corner + 2 == self.range.1 && self.at + 1 == self.chain.len();
-        self.next = if is_last { f64::INFINITY } else { self.under.end };
+        let is_last = self.vertex + 2 == self.range.1 && self.at + 1 == self.chain.len();
+        self.next = if is_last { f64::INFINITY } else { self.under.ends_at };
     }
 
-    /// On to the next part of the track, if there is one; the place stays where it is.
-    pub fn go_on(&mut self) {
-        if self.corner + 2 < self.range.1 {
-            self.corner += 1;
+    /// Enters the next segment of the track, if there is one; the place does not change.
+    pub fn enter_next(&mut self) {
+        if self.vertex + 2 < self.range.1 {
+            self.vertex += 1;
         } else if let Some(line) = self.chain.get(self.at + 1) {
-            self.way -= self.under.end;
+            self.distance -= self.under.ends_at;
             self.at += 1;
             self.range = self.lines.range(*line);
-            self.corner = self.range.0;
+            self.vertex = self.range.0;
         }
         self.enter();
     }
 
     #[inline]
     fn enter(&mut self) {
-        self.under = self.lines.segment(self.corner);
+        self.under = self.lines.segment(self.vertex);
         self.look_ahead();
     }
 
-    /// Back to where this way ends; before the track's beginning on its first part.
-    pub fn back(mut self, way: Metre) -> Self {
-        self.way -= way;
-        while self.way < self.under.way {
-            if self.corner > self.range.0 {
-                self.corner -= 1;
+    /// Moves back by a distance; before the beginning of the track it stays on the first segment.
+    pub fn back(mut self, distance: Metre) -> Self {
+        self.distance -= distance;
+        while self.distance < self.under.begins_at {
+            if self.vertex > self.range.0 {
+                self.vertex -= 1;
                 self.enter();
             } else if self.at > 0 {
                 self.at -= 1;
                 self.range = self.lines.range(self.chain[self.at]);
-                self.corner = self.range.1 - 2;
+                self.vertex = self.range.1 - 2;
                 self.enter();
-                self.way += self.under.end;
+                self.distance += self.under.ends_at;
             } else {
                 break;
             }
@@ -240,7 +253,7 @@ impl Cursor<'_> {
 
 #[cfg(test)]
 impl Track {
-    /// On one line through these points, the front bumper at this way; and the line.
+    /// A track on one line through these points, with the front bumper at a distance along it; and the line.
     pub(super) fn through(points: &[(f64, f64)], front: f64) -> (Self, Lines) {
         let lines = Lines::through(points.iter().map(|&(x, y)| Point::new(x, y)));
         let mut track = Self::default();
@@ -254,18 +267,18 @@ mod tests {
     use crate::detection::path::track::*;
 
     #[test]
-    fn it_is_followed_as_long_as_the_front_is_on_it() {
-        let (mut corner, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
-        assert!(corner.follow(&lines, Point::new(9.5, 0.0)));
-        assert!(corner.follow(&lines, Point::new(10.0, 3.0)));
-        assert_eq!(corner.front(), 13.0);
-        assert!(!corner.follow(&lines, Point::new(11.0, 4.0)));
+    fn it_is_followed_while_the_front_is_on_it() {
+        let (mut track, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
+        assert!(track.follow(&lines, Point::new(9.5, 0.0)));
+        assert!(track.follow(&lines, Point::new(10.0, 3.0)));
+        assert_eq!(track.front(), 13.0);
+        assert!(!track.follow(&lines, Point::new(11.0, 4.0)));
     }
 
     #[test]
-    fn who_drives_back_on_it_is_not_on_it() {
-        let (mut line, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
-        assert!(line.follow(&lines, Point::new(49.99, 0.0)), "a rounded position");
-        assert!(!line.follow(&lines, Point::new(49.0, 0.0)));
+    fn a_vehicle_that_drives_back_is_not_on_it() {
+        let (mut track, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
+        assert!(track.follow(&lines, Point::new(49.99, 0.0)), "a rounded position");
+        assert!(!track.follow(&lines, Point::new(49.0, 0.0)));
     }
 }

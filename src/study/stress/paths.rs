@@ -125,8 +125,8 @@ fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
     let inputs = (points, track.front(), length, ways);
     let unit = poses.iter().map(|pose| (pose.axis.norm() - 1.0).abs()).fold(0.0, worse);
     tally.error(UNIT, unit, &inputs);
-    let ascending = poses.windows(2).all(|pair| pair[0].way < pair[1].way);
-    let last = poses.last().map_or(f64::NAN, |pose| pose.way);
+    let ascending = poses.windows(2).all(|pair| pair[0].distance < pair[1].distance);
+    let last = poses.last().map_or(f64::NAN, |pose| pose.distance);
     tally.holds(ASCENDING, ascending && (last - room).abs() <= 1e-9 * whole.max(1.0), &inputs);
     // A track leaves out points that are nearer than this to the last one (a millimetre): the line may be off by it.
     let kept = laid(points);
@@ -134,7 +134,7 @@ fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
     let some = (0..SAMPLES).filter_map(|_| poses.get(chance.below(poses.len())).copied()).collect::<Vec<_>>();
     let off = some.iter().map(|pose| ulps_off(pose, &kept)).fold(0.0, worse);
     tally.error(ON_LINE, off, &inputs);
-    let uneven = |pair: &[Pose]| (pair[1].front - pair[0].front).norm() - (pair[1].way - pair[0].way);
+    let uneven = |pair: &[Pose]| (pair[1].front - pair[0].front).norm() - (pair[1].distance - pair[0].distance);
     let uneven = poses.windows(2).map(|pair| uneven(pair).abs() / ulp(&kept)).fold(0.0, worse);
     tally.error(EVEN, uneven, &inputs);
     // Both bumpers turn at every point, by half a turn at most, in parts of some hundredths of a rad.

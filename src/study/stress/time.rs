@@ -3,7 +3,7 @@
 use super::case::Case;
 use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
-use crate::detection::measures::ttc::{Course, HORIZON, time_to_collision};
+use crate::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
 use crate::detection::path::Pose;
 use crate::events::CLOSES_AFTER;
 use crate::geometry::contact::distance;
@@ -108,9 +108,9 @@ fn any(chance: &mut Chance) -> Moving {
 
 fn check(a: &Moving, b: &Moving, tally: &mut Tally) {
     let inputs = (a, b);
-    let poses = |moving: &Moving| [Pose { way: 0.0, front: moving.front, axis: direction(moving.heading) }];
+    let poses = |moving: &Moving| [Pose { distance: 0.0, front: moving.front, axis: direction(moving.heading) }];
     let (a_poses, b_poses) = (poses(a), poses(b));
-    let course = |poses, speed| Course { poses, speed, length: LENGTH, width: WIDTH };
+    let course = |poses, speed| SteadyMotion { poses, speed, length: LENGTH, width: WIDTH };
     let found = time_to_collision(&course(&a_poses, a.speed), &course(&b_poses, b.speed));
     tally.holds(LATE, found.is_none_or(|time| time.is_finite() && (0.0..=HORIZON).contains(&time)), &inputs);
     let velocity = direction(a.heading) * a.speed - direction(b.heading) * b.speed;

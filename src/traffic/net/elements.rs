@@ -7,15 +7,15 @@ use crate::util::units::Metre;
 /// SUMO's default width of a lane in m.
 pub(super) const LANE_WIDTH: Metre = 3.2;
 
-/// Which lane of a [`Net`].
+/// The index of a lane in a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct LaneIndex(pub u32);
 
-/// Which edge of a [`Net`].
+/// The index of an edge in a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeIndex(pub u32);
 
-/// What an edge is for (SUMO's attribute `function`).
+/// The purpose of an edge (SUMO's attribute `function`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeFunction {
     /// A road between junctions.
@@ -24,7 +24,7 @@ pub enum EdgeFunction {
     Internal,
     /// A pedestrian crossing.
     Crossing,
-    /// Where pedestrians get from one to another.
+    /// Connects pedestrian crossings and sidewalks.
     WalkingArea,
     /// A macroscopic connector.
     Connector,
@@ -35,7 +35,7 @@ pub enum EdgeFunction {
 pub struct Edge {
     /// SUMO's id.
     pub id: String,
-    /// What it is for.
+    /// Its purpose.
     pub function: EdgeFunction,
     /// Its lanes, from right to left.
     pub lanes: Vec<LaneIndex>,
@@ -43,12 +43,12 @@ pub struct Edge {
     pub junction: String,
 }
 
-/// Where a lane leads.
+/// A link from a lane to another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Link {
-    /// The lane of the next normal edge that is reached in the end.
+    /// The lane of the next normal edge.
     pub to: LaneIndex,
-    /// The first junction lane on the way there; none where lanes join directly.
+    /// The first junction lane between the two; none if they join directly.
     pub via: Option<LaneIndex>,
 }
 
@@ -59,17 +59,17 @@ pub struct Lane {
     pub id: String,
     /// Its edge.
     pub edge: EdgeIndex,
-    /// Its place on the edge, 0 at the right.
+    /// Its index on the edge, 0 at the right.
     pub index: u32,
-    /// Length in SUMO's terms, in m; a lane position is measured in these.
+    /// SUMO's length in m, which lane positions refer to; it may differ from the length of the shape.
     pub length: Metre,
     /// Width in m.
     pub width: Metre,
-    /// The centre line, two points at least.
+    /// The centre line, at least two points.
     pub shape: Vec<Point2<Metre>>,
-    /// Where it leads. A junction lane in two parts leads to its second part (`via`), then to the edge.
+    /// Its links. A junction lane in two parts leads to its second part (`via`), then to the edge.
     pub links: Vec<Link>,
-    /// The lanes from which one gets here directly (for a lane behind a junction: the junction lanes).
+    /// The lanes that lead here directly (for a lane behind a junction: the junction lanes).
     pub from: Vec<LaneIndex>,
 }
 

@@ -1,4 +1,4 @@
-//! Only what happens there: a selection file of SUMO (`edge:ID`, `junction:ID`, `lane:ID` lines) as a set of lanes.
+//! A part of the net: a SUMO selection file (`edge:ID`, `junction:ID`, `lane:ID` lines) as a set of lanes.
 
 use std::path::Path;
 
@@ -15,8 +15,7 @@ impl Filter {
     /// Reads a selection file.
     ///
     /// # Errors
-    /// An error that names the file, line and what is wrong: unreadable, an unknown sort of object, an id that the
-    /// net does not have.
+    /// An error that names the file and line: unreadable, an unknown kind of object, an id that the net does not have.
     pub fn read(path: &Path, net: &Net) -> Result<Self> {
         let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
         let mut filter = Self { holds: vec![false; net.lanes.len()] };
@@ -26,11 +25,11 @@ impl Filter {
                 continue;
             }
             let wrong = |message: String| Error::line(path, line, message);
-            let (sort, id) = text
+            let (kind, id) = text
                 .split_once(':')
                 .ok_or_else(|| wrong(format!("\"{text}\" is not edge:ID, junction:ID or lane:ID")))?;
-            let unknown = || wrong(format!("the net has no {sort} \"{id}\""));
-            match sort {
+            let unknown = || wrong(format!("the net has no {kind} \"{id}\""));
+            match kind {
                 "edge" => filter.add_edge(net, net.edge(id).ok_or_else(unknown)?.0),
                 "lane" => filter.add(net.lane(id).ok_or_else(unknown)?),
                 "junction" => {
@@ -49,7 +48,7 @@ impl Filter {
         Ok(filter)
     }
 
-    /// Whether what happens on this lane is wanted; what is on no lane is not.
+    /// Whether the filter holds a lane; a place without a lane is not held.
     pub fn holds(&self, lane: Option<LaneIndex>) -> bool {
         lane.is_some_and(|lane| self.holds[lane.0 as usize])
     }

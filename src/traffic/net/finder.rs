@@ -1,6 +1,6 @@
-//! Which lane is at a place: parry2d's bounding-volume tree over the lanes.
+//! Finds the lane at a place, by parry2d's bounding-volume tree.
 //!
-//! Of whole lanes: those of sumo_nets/town have three times as many pieces.
+//! The leaves are whole lanes: in sumo_nets/town, lanes have three times as many segments.
 
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
@@ -9,7 +9,7 @@ use super::elements::{Lane, LaneIndex};
 use crate::geometry::{Bounds, Point, parry};
 use crate::util::units::Metre;
 
-/// A place further than this from any lane's centre line is on none, in m.
+/// A place further than this from every centre line is on no lane, in m.
 const REACH: Metre = 10.0;
 
 /// Finds lanes by place.
@@ -28,7 +28,7 @@ impl Finder {
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &lanes.iter().map(around).collect::<Vec<_>>()) }
     }
 
-    /// The lane whose centre line is nearest; of two at the same distance the first of the net.
+    /// The lane with the nearest centre line; if equal, the first of the net.
     pub(super) fn lane_at(&self, lanes: &[Lane], place: Point) -> Option<LaneIndex> {
         let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
         let near =

@@ -1,6 +1,6 @@
-//! Lanes and links, read from a SUMO net (`*.net.xml`, also gzipped).
+//! A SUMO net (`*.net.xml`, also gzipped).
 //!
-//! Only what paths, obstacles of the scene and places in the log need: lane shapes, what leads where, junctions.
+//! It holds only what paths, obstacles and the log need: lane shapes, links and junctions.
 
 mod elements;
 pub mod filter;
@@ -33,7 +33,7 @@ mod tests {
     </net>"#;
 
     #[test]
-    fn lanes_know_what_leads_where_through_the_junction() {
+    fn lanes_have_links_through_the_junction() {
         let net = net(CORNER).unwrap();
         let (ab, via, bc) = (net.lane("ab_0").unwrap(), net.lane(":b_0_0").unwrap(), net.lane("bc_0").unwrap());
         assert_eq!(net.lanes[ab.0 as usize].links, [Link { to: bc, via: Some(via) }]);
@@ -59,24 +59,24 @@ mod tests {
     }
 
     #[test]
-    fn an_escaped_id_is_the_one_that_sumo_says() {
+    fn an_escaped_id_is_the_one_that_sumo_uses() {
         let net = net(&CORNER.replace("ab_0", "a&amp;b_0")).unwrap();
         assert!(net.lane("a&b_0").is_some());
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_line() {
-        for (from, to, said) in [
+    fn errors_name_the_line() {
+        for (from, to, expected) in [
             ("0,0 100,0", "0,0", r#"line 3: lane "ab_0" has 1 shape point(s); at least two are needed"#),
             ("0,0 100,0", "0,0 nan,0", r#"line 3: "ab_0": shape point "nan,0" is out of range"#),
             ("0,0 100,0", "0,0 x", r#"line 3: "ab_0": shape point "x" is not x,y or x,y,z"#),
             (r#"via=":b_0_0""#, r#"via="gone""#, r#"line 6: no lane "gone""#),
-            (r#"length="100""#, r#"length="-1""#, r#"line 3: lane "ab_0": its length must be given, 0 m or more"#),
+            (r#"length="100""#, r#"length="-1""#, r#"line 3: lane "ab_0": its length must be 0 m or more"#),
             ("</net>", "", "the file ends before its elements do"),
-            ("<net>", "<routes>", "it is no SUMO net: its root element is not <net>"),
+            ("<net>", "<routes>", "not a SUMO net: its root element is not <net>"),
         ] {
             let message = net(&CORNER.replace(from, to)).unwrap_err().to_string();
-            assert!(message.contains(said), "{message}");
+            assert!(message.contains(expected), "{message}");
         }
     }
 }

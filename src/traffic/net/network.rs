@@ -1,4 +1,4 @@
-//! A road network as paths and logs ask for it.
+//! A road network.
 
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
@@ -25,17 +25,17 @@ pub struct Net {
 }
 
 impl Net {
-    /// The lane of this id.
+    /// The lane with this id.
     pub fn lane(&self, id: &str) -> Option<LaneIndex> {
         self.lane_ids.get(id).copied()
     }
 
-    /// The edge of this id.
+    /// The edge with this id.
     pub fn edge(&self, id: &str) -> Option<EdgeIndex> {
         self.edge_ids.get(id).copied()
     }
 
-    /// The lane whose centre line is nearest to a place; none where that is far off.
+    /// The lane with the centre line nearest to a place; none if that is more than 10 m away.
     pub fn lane_at(&self, place: Point2<Metre>) -> Option<LaneIndex> {
         self.finder.lane_at(&self.lanes, place)
     }

@@ -1,4 +1,4 @@
-//! Reading a SUMO net: XML as netconvert writes it, plain or gzipped.
+//! Reads a SUMO net: XML as netconvert writes it, plain or gzipped.
 
 use std::borrow::Cow;
 use std::io::BufRead;
@@ -16,29 +16,29 @@ use crate::geometry::Point;
 use crate::util::input_file::{LineCounter, open, xml_message};
 use crate::{Error, Result};
 
-/// Beyond this a coordinate is no place on earth, in m; SUMO's invalid value is larger.
+/// Larger coordinates are not places on earth, in m; SUMO's invalid value is one of them.
 const FURTHEST: f64 = 1e9;
 
 impl Net {
     /// Reads a net file.
     ///
     /// # Errors
-    /// An error that names the file, line and what is wrong: unreadable, no SUMO net, a lane without geometry, a
-    /// connection to nowhere.
+    /// An error that names the file and line: unreadable, not a SUMO net, a lane without geometry, a connection to a
+    /// lane that does not exist.
     pub fn read(path: &Path) -> Result<Self> {
         read(path, open(path)?)
     }
 
-    /// The net in a text; `path` is what errors call it.
+    /// Reads a net from a text; `path` names it in errors.
     ///
     /// # Errors
-    /// As [`Net::read`] has them.
+    /// As for [`Net::read`].
     pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
         read(path, Box::new(std::io::Cursor::new(text.into())))
     }
 }
 
-/// Reads a net; `path` is what errors call it.
+/// Reads a net; `path` names it in errors.
 fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
     NetReader { path, line: 1, net: Net::default(), connections: Vec::new() }.read(source)
 }
@@ -50,7 +50,7 @@ struct NetReader<'a> {
     connections: Vec<Connection>,
 }
 
-/// A `<connection>` before its ends are looked up: a lane may stand behind it.
+/// A `<connection>`, whose lanes may follow later in the file.
 struct Connection {
     line: u64,
     from: (String, u32),
@@ -70,7 +70,7 @@ impl NetReader<'_> {
             match event {
                 Event::Start(ref tag) | Event::Empty(ref tag) => {
                     if !root && tag.name().as_ref() != "net" {
-                        return Err(self.wrong("it is no SUMO net: its root element is not <net>"));
+                        return Err(self.wrong("not a SUMO net: its root element is not <net>"));
                     }
                     root = true;
                     depth += usize::from(matches!(event, Event::Start(_)));
@@ -98,7 +98,7 @@ impl NetReader<'_> {
         }
     }
 
-    fn edge(&mut self, attributes: &Attributes) -> Result<()> {
+    fn edge(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let id = self.required(attributes, "id")?;
         let function = match attributes.get("function") {
             Some("internal") => EdgeFunction::Internal,
@@ -114,10 +114,10 @@ impl NetReader<'_> {
         Ok(())
     }
 
-    fn lane(&mut self, attributes: &Attributes) -> Result<()> {
+    fn lane(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let id = self.required(attributes, "id")?;
         let Some(edge) = self.net.edges.len().checked_sub(1) else {
-            return Err(self.wrong(format!("lane \"{id}\" stands outside any edge")));
+            return Err(self.wrong(format!("lane \"{id}\" is not inside an edge")));
         };
         let shape = self.shape(id, self.required(attributes, "shape")?)?;
         if shape.len() < 2 {
@@ -126,7 +126,7 @@ impl NetReader<'_> {
         }
         let length = self.number(attributes, "length", f64::NAN)?;
         if !(length.is_finite() && length >= 0.0) {
-            return Err(self.wrong(format!("lane \"{id}\": its length must be given, 0 m or more")));
+            return Err(self.wrong(format!("lane \"{id}\": its length must be 0 m or more")));
         }
         let width = self.number(attributes, "width", LANE_WIDTH)?;
         if !(width.is_finite() && width >= 0.0) {
@@ -146,7 +146,7 @@ impl NetReader<'_> {
         Ok(())
     }
 
-    fn junction(&mut self, attributes: &Attributes) -> Result<()> {
+    fn junction(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let id = self.required(attributes, "id")?;
         let shape = match attributes.get("shape") {
             Some(shape) => self.shape(id, shape)?,
@@ -156,7 +156,7 @@ impl NetReader<'_> {
         Ok(())
     }
 
-    fn connection(&mut self, attributes: &Attributes) -> Result<()> {
+    fn connection(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let end = |edge: &str, lane: &str| -> Result<(String, u32)> {
             let index = self.required(attributes, lane)?;
             let index = index.parse().map_err(|_| self.wrong(format!("connection: {lane} is \"{index}\"")))?;
@@ -203,7 +203,8 @@ impl NetReader<'_> {
             .ok_or_else(|| self.wrong(format!("connection to lane {lane} of edge \"{edge}\", which does not exist")))
     }
 
-    /// The points of a shape; points that repeat are dropped, since they have no direction, but two are kept.
+    /// The points of a shape. Repeated points are dropped, since they have no direction, unless fewer than two would be
+    /// left.
     fn shape(&self, id: &str, text: &str) -> Result<Vec<Point>> {
         let mut points: Vec<Point> = Vec::new();
         for triple in text.split_ascii_whitespace() {
@@ -230,8 +231,8 @@ impl NetReader<'_> {
         Ok(points)
     }
 
-    fn attributes<'a>(&self, tag: &'a BytesStart) -> Result<Attributes<'a>> {
-        let mut attributes = Attributes::default();
+    fn attributes<'a>(&self, tag: &'a BytesStart) -> Result<ElementAttributes<'a>> {
+        let mut attributes = ElementAttributes::default();
         for attribute in tag.attributes() {
             let Attribute { key, value } = attribute.map_err(|error| self.wrong(error.to_string()))?;
             let value = match value {
@@ -243,14 +244,14 @@ impl NetReader<'_> {
         Ok(attributes)
     }
 
-    fn required<'a>(&self, attributes: &'a Attributes, name: &str) -> Result<&'a str> {
+    fn required<'a>(&self, attributes: &'a ElementAttributes, name: &str) -> Result<&'a str> {
         attributes.get(name).ok_or_else(|| match attributes.get("id") {
             Some(id) => self.wrong(format!("\"{id}\" has no attribute \"{name}\"")),
             None => self.wrong(format!("attribute \"{name}\" is missing")),
         })
     }
 
-    fn number(&self, attributes: &Attributes, name: &str, default: f64) -> Result<f64> {
+    fn number(&self, attributes: &ElementAttributes, name: &str, default: f64) -> Result<f64> {
         match attributes.get(name) {
             Some(text) => text.parse().map_err(|_| self.wrong(format!("{name} is \"{text}\", not a number"))),
             None => Ok(default),
@@ -262,17 +263,17 @@ impl NetReader<'_> {
     }
 }
 
-/// An element's few attributes, as they stand in the file where nothing is escaped: large nets have millions.
+/// The attributes of an element. They borrow from the file unless escaped: large nets have millions.
 #[derive(Default)]
-struct Attributes<'a>(Vec<(&'a str, Cow<'a, str>)>);
+struct ElementAttributes<'a>(Vec<(&'a str, Cow<'a, str>)>);
 
-impl Attributes<'_> {
+impl ElementAttributes<'_> {
     fn get(&self, name: &str) -> Option<&str> {
-        self.0.iter().find(|(own, _)| *own == name).map(|(_, value)| &**value)
+        self.0.iter().find(|(key, _)| *key == name).map(|(_, value)| &**value)
     }
 }
 
-/// `:J_0` lies in junction J.
+/// The junction of an internal edge: `:J_0` lies in junction J.
 fn junction_of_internal(edge: &str) -> &str {
     let name = edge.strip_prefix(':').unwrap_or(edge);
     name.rsplit_once('_').map_or(name, |(junction, _)| junction)

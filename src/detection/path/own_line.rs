@@ -1,36 +1,37 @@
-//! A line of a road user's own: of who drives beside the lanes' centre lines, against their direction, or over lanes that do
-//! not join.
+//! A line of a road user's own: beside the lanes' centre lines, against their direction, or over lanes that do not
+//! join.
 
-use super::beside::Beside;
+use super::lateral_offset::OffsetLine;
 use super::track::Track;
 use crate::geometry::Point;
-use crate::geometry::polylines::{Corner, Lines};
+use crate::geometry::polylines::{Lines, Vertex};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::util::units::Metre;
 
-/// The line, and which lanes it follows.
+/// One line, and the lanes that it follows.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Own {
+pub(super) struct OwnLine {
     /// One line.
     pub lines: Lines,
-    /// On which lane it is from which of its corners on.
+    /// Each lane, with the first vertex that is on it.
     lanes: Vec<(u32, LaneIndex)>,
-    /// None on the lanes' centre line.
-    beside: Option<Beside>,
+    /// None if the line follows the lanes' centre line.
+    beside: Option<OffsetLine>,
 }
 
-/// Its number in its own table.
+/// The number of the line in its own table.
 const LINE: u32 = 0;
 
-impl Own {
-    /// A line that comes over these points of the lanes' centre lines to the one next to the front bumper, on this lane.
-    pub fn lay(
+impl OwnLine {
+    /// A line over points of the lanes' centre lines: those behind, the one beside the front bumper (`foot`), those
+    /// ahead.
+    pub fn build(
         track: &mut Track,
         behind: impl Iterator<Item = Point>,
         foot: Point,
         ahead: Vec<Point>,
         lane: LaneIndex,
-        beside: Option<Beside>,
+        beside: Option<OffsetLine>,
     ) -> Self {
         let mut own = Self { lines: Lines::through([]), lanes: Vec::new(), beside };
         let lines = &mut own.lines;
@@ -51,45 +52,45 @@ impl Own {
         own
     }
 
-    /// The line that a track has so far, along these lanes.
-    pub fn along(net: &Net, track: &mut Track) -> Self {
+    /// A copy of the lines of a track.
+    pub fn copy_of(net: &Net, track: &mut Track) -> Self {
         let mut own = Self { lines: Lines::through([]), ..Self::default() };
         let mut front = track.front();
         for (place, line) in (0..).zip(&track.lines) {
             own.begin_lane(LaneIndex(*line));
-            own.push_ahead(net.lines.line(*line).iter().map(|corner| corner.point));
+            own.push_ahead(net.lines.line(*line).iter().map(|vertex| vertex.point));
             front += if place < track.at { net.lines.length(*line) } else { 0.0 };
         }
         track.begin(&own.lines, LINE, front);
         own
     }
 
-    /// Goes on along this lane.
-    pub fn go_on(&mut self, net: &Net, track: &mut Track, lane: LaneIndex) {
+    /// Appends a lane.
+    pub fn append(&mut self, net: &Net, track: &mut Track, lane: LaneIndex) {
         let line = net.lines.line(lane.0);
         self.lines.reserve(line.len());
         self.begin_lane(lane);
-        self.push_ahead(line.iter().map(|corner| corner.point));
+        self.push_ahead(line.iter().map(|vertex| vertex.point));
         track.begin(&self.lines, LINE, track.front());
     }
 
-    /// Forgets what lies further behind the front bumper than this.
-    pub fn forget_behind(&mut self, track: &mut Track, behind: Metre) {
-        let corners = self.lines.line(LINE);
-        let is_behind = |corner: &Corner| corner.way <= track.front() - behind;
-        let forgotten = corners.partition_point(is_behind).saturating_sub(1);
-        let front = track.front() - self.lines.cut(forgotten);
-        for (corner, _) in &mut self.lanes {
-            *corner = corner.saturating_sub(forgotten as u32);
+    /// Removes what lies further behind the front bumper than this.
+    pub fn remove_behind(&mut self, track: &mut Track, behind: Metre) {
+        let vertices = self.lines.line(LINE);
+        let is_behind = |vertex: &Vertex| vertex.distance <= track.front() - behind;
+        let removed = vertices.partition_point(is_behind).saturating_sub(1);
+        let front = track.front() - self.lines.cut(removed);
+        for (vertex, _) in &mut self.lanes {
+            *vertex = vertex.saturating_sub(removed as u32);
         }
-        let lanes = self.lanes.partition_point(|(corner, _)| *corner == 0).saturating_sub(1);
+        let lanes = self.lanes.partition_point(|(vertex, _)| *vertex == 0).saturating_sub(1);
         self.lanes.drain(..lanes);
-        if track.is_laid() {
+        if !track.is_empty() {
             track.begin(&self.lines, LINE, front);
         }
     }
 
-    /// Gives back what memory is not needed.
+    /// Frees unused memory.
     pub fn shrink(&mut self) {
         self.lines.shrink();
         self.lanes.shrink_to_fit();
@@ -100,13 +101,13 @@ impl Own {
         self.lanes.last().map(|(_, lane)| *lane)
     }
 
-    /// The lane at a corner of the line.
-    pub fn lane_at(&self, corner: u32) -> Option<LaneIndex> {
-        let index = self.lanes.partition_point(|(first, _)| *first <= corner).saturating_sub(1);
+    /// The lane at a vertex.
+    pub fn lane_at(&self, vertex: u32) -> Option<LaneIndex> {
+        let index = self.lanes.partition_point(|(first, _)| *first <= vertex).saturating_sub(1);
         self.lanes.get(index).map(|(_, lane)| *lane)
     }
 
-    /// From the end of the line on it is on this lane.
+    /// Records that the line continues on this lane.
     fn begin_lane(&mut self, lane: LaneIndex) {
         if let Some(beside) = &self.beside {
             beside.flush(&mut self.lines);
@@ -114,7 +115,7 @@ impl Own {
         self.lanes.push((self.lines.len().saturating_sub(1) as u32, lane));
     }
 
-    /// The line along these points of the centre line.
+    /// Appends points of the centre line.
     fn push_ahead(&mut self, points: impl Iterator<Item = Point>) {
         match &mut self.beside {
             Some(beside) => {

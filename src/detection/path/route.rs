@@ -1,0 +1,128 @@
+//! The part of a route that is still ahead.
+
+use std::sync::Arc;
+
+use crate::traffic::net::{EdgeIndex, Net};
+
+/// A route from one of its edges on, up to its end or to where the net has no link to its next edge.
+#[derive(Clone, Debug, Default)]
+pub(super) struct RouteAhead {
+    /// All edges of the route; none if no route is known, so that any edge may come next.
+    edges: Option<Arc<[EdgeIndex]>>,
+    /// The first edge that is still ahead.
+    begin: usize,
+    /// One past the last edge that can be reached.
+    end: usize,
+}
+
+impl RouteAhead {
+    /// The route from this position on.
+    pub fn new(net: &Net, route: &Arc<[EdgeIndex]>, position: usize) -> Self {
+        if route.is_empty() {
+            return Self::default();
+        }
+        let end = position + connected(net, route, position).len();
+        Self { edges: Some(Arc::clone(route)), begin: position, end }
+    }
+
+    /// Whether no route is known, so that any edge may come next.
+    pub fn is_free(&self) -> bool {
+        self.edges.is_none()
+    }
+
+    /// Whether it begins at or before this position of the whole route.
+    pub fn begins_before(&self, position: usize) -> bool {
+        self.begin <= position
+    }
+
+    /// Whether it is the same as this route, from this position on.
+    pub fn is_same(&self, net: &Net, route: &[EdgeIndex], position: usize) -> bool {
+        match &self.edges {
+            None => route.is_empty(),
+            Some(_) if route.is_empty() => false,
+            Some(_) => self.begins_before(position) && self.from(position) == connected(net, route, position),
+        }
+    }
+
+    /// Advances to this position of the whole route.
+    pub fn advance(&mut self, position: usize) {
+        if !self.is_free() {
+            self.begin = self.begin.max(position);
+        }
+    }
+
+    /// The edges that are ahead; empty if no route is known.
+    pub fn edges(&self) -> &[EdgeIndex] {
+        self.from(self.begin)
+    }
+
+    fn from(&self, position: usize) -> &[EdgeIndex] {
+        self.edges.as_ref().and_then(|edges| edges.get(position..self.end)).unwrap_or_default()
+    }
+}
+
+/// The edges of a route from this position on, up to its end or to where the net has no link to its next edge.
+fn connected<'a>(net: &Net, route: &'a [EdgeIndex], position: usize) -> &'a [EdgeIndex] {
+    let rest = route.get(position..).unwrap_or_default();
+    let linked = rest.windows(2).take_while(|pair| has_link(net, pair[0], pair[1])).count();
+    &rest[..rest.len().min(linked + 1)]
+}
+
+/// Whether a link leads from one edge to another.
+fn has_link(net: &Net, from: EdgeIndex, to: EdgeIndex) -> bool {
+    let lanes = net.edges[from.0 as usize].lanes.iter().map(|lane| &net.lanes[lane.0 as usize]);
+    lanes.flat_map(|lane| &lane.links).any(|link| net.lanes[link.to.0 as usize].edge == to)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use proptest::prelude::*;
+
+    use crate::detection::path::route::*;
+
+    /// A drive through a net: at each edge the link of this number is taken.
+    fn route(net: &Net, begin: usize, choices: &[usize]) -> Vec<EdgeIndex> {
+        let mut route = vec![EdgeIndex((begin % net.edges.len()) as u32)];
+        for choice in choices {
+            let lanes = &net.edges[route[route.len() - 1].0 as usize].lanes;
+            let links = lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).collect::<Vec<_>>();
+            let Some(link) = links.get(choice % links.len().max(1)) else { break };
+            route.push(net.lanes[link.to.0 as usize].edge);
+        }
+        route
+    }
+
+    proptest! {
+        #[test]
+        fn its_edges_are_the_rest_of_the_route(
+            begin in any::<usize>(),
+            choices in prop::collection::vec(any::<usize>(), 0..60),
+            positions in any::<[prop::sample::Index; 2]>(),
+        ) {
+            let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
+            let route = Arc::<[EdgeIndex]>::from(route(&net, begin, &choices));
+            let mut positions = positions.map(|position| position.index(route.len()));
+            positions.sort_unstable();
+            let [first, second] = positions;
+            let mut ahead = RouteAhead::new(&net, &route, first);
+            prop_assert_eq!(ahead.edges(), &route[first..]);
+            prop_assert!(ahead.begins_before(second) && (first == 0 || !ahead.begins_before(first - 1)));
+            prop_assert!(ahead.is_same(&net, &route, second));
+            ahead.advance(second);
+            prop_assert_eq!(ahead.edges(), &route[second..]);
+            ahead.advance(route.len());
+            prop_assert!(ahead.edges().is_empty() && !ahead.is_free());
+        }
+    }
+
+    #[test]
+    fn a_route_ends_where_no_link_leads_on() {
+        let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
+        let mut route = route(&net, 0, &[0; 5]);
+        let linked = route.len();
+        route.push(route[linked - 1]);
+        assert_eq!(RouteAhead::new(&net, &Arc::from(route), 0).edges().len(), linked);
+    }
+}

@@ -1,0 +1,82 @@
+//! Options from a TOML file.
+
+use std::path::Path;
+
+use rustc_hash::FxHashMap;
+
+use super::type_options::TypeOptions;
+use super::values::word;
+use crate::{Error, Result};
+
+/// The content of a TOML file of options.
+#[derive(Debug, Default)]
+pub struct OptionsFile {
+    /// The settings as command-line words. They precede the words that the user typed, so that the latter win.
+    pub words: Vec<String>,
+    /// The `[type.NAME]` tables.
+    pub types: FxHashMap<String, TypeOptions>,
+    /// The `[regress]` table, for the command of that name.
+    pub regress: Option<toml::Table>,
+}
+
+impl OptionsFile {
+    /// Reads a TOML file; `known` are the long options that a key may name.
+    ///
+    /// # Errors
+    /// An error that names the file and the line or key: unreadable, not TOML, an unknown key.
+    pub fn read(path: &Path, known: &[String]) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
+        Self::parse(path, &text, known)
+    }
+
+    /// Reads TOML from a text; `path` names it in errors.
+    ///
+    /// # Errors
+    /// As for [`OptionsFile::read`].
+    pub fn parse(path: &Path, text: &str, known: &[String]) -> Result<Self> {
+        let table: toml::Table = toml::from_str(text).map_err(|error| toml_error(path, text, &error))?;
+        let mut file = Self::default();
+        for (key, value) in table {
+            match (key.as_str(), value) {
+                ("type", toml::Value::Table(types)) => {
+                    for (name, settings) in types {
+                        let parsed = settings.try_into().map_err(|error: toml::de::Error| {
+                            Error::content(path, format!("[type.{name}]: {}", error.message()))
+                        })?;
+                        file.types.insert(name, parsed);
+                    }
+                }
+                ("regress", toml::Value::Table(regress)) => file.regress = Some(regress),
+                (name, value) => {
+                    let option = name.replace('_', "-");
+                    if !known.contains(&option) {
+                        return Err(Error::content(path, format!("unknown key \"{name}\"")));
+                    }
+                    file.words.extend(word(name, &plain_value(path, name, &value)?));
+                }
+            }
+        }
+        Ok(file)
+    }
+}
+
+fn plain_value(path: &Path, name: &str, value: &toml::Value) -> Result<String> {
+    match value {
+        toml::Value::String(text) => Ok(text.clone()),
+        toml::Value::Integer(number) => Ok(number.to_string()),
+        toml::Value::Float(number) => Ok(number.to_string()),
+        toml::Value::Boolean(flag) => Ok(flag.to_string()),
+        toml::Value::Array(items) => {
+            let items = items.iter().map(|item| plain_value(path, name, item)).collect::<Result<Vec<_>>>()?;
+            Ok(items.join(","))
+        }
+        _ => {
+            Err(Error::content(path, format!("\"{name}\" must be a text, a number, true or false, or a list of these")))
+        }
+    }
+}
+
+fn toml_error(path: &Path, text: &str, error: &toml::de::Error) -> Error {
+    let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count() as u64);
+    Error::line(path, line, error.message())
+}

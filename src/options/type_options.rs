@@ -1,0 +1,37 @@
+//! Settings of one vehicle type.
+
+use serde::{Deserialize, Serialize};
+
+use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
+
+/// The brake system of a vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BrakeSystem {
+    /// Cars, bicycles, motorcycles.
+    Hydraulic,
+    /// Trucks, buses, coaches, trailers.
+    Pneumatic,
+}
+
+/// Settings of one vehicle type in the TOML file. Absent values come from SUMO or the general settings.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TypeOptions {
+    /// Response time t1 of the driver in s.
+    pub response_time: Option<Second>,
+    /// Brake coordination time t2 in s.
+    pub brake_delay: Option<Second>,
+    /// Build-up time t3 in s.
+    pub build_up: Option<Second>,
+    /// Deceleration in m/s².
+    pub decel: Option<MetrePerSecondSquared>,
+    /// Brake system, which determines t2 if `brake_delay` is absent.
+    pub brakes: Option<BrakeSystem>,
+    /// Length in m.
+    pub length: Option<Metre>,
+    /// Width in m.
+    pub width: Option<Metre>,
+    /// Mass in kg.
+    pub mass: Option<Kilogram>,
+}
