@@ -27,13 +27,14 @@ fuzz: target/tools/bin/cargo-fuzz ## random files into the readers, a minute eac
 	mkdir -p fuzz/corpus/net && $(FUZZ) net fuzz/corpus/net tests/fuzz/net -- -max_total_time=60
 	mkdir -p fuzz/corpus/config && $(FUZZ) config fuzz/corpus/config tests/fuzz/config -- -max_total_time=60
 
-lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy
+lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	cargo check --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
 	$(BIN)/ruff format --check bridge/python tests benches
 	$(BIN)/ruff check bridge/python tests benches
 	$(BIN)/mypy
+	$(PYTHON) .ci/imports.py
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
 
 regress: $(VENV)/wheel ## run the scenarios in sumo_nets/ and compare with what is blessed
