@@ -8,7 +8,7 @@ use std::path::Path;
 
 use closecall::input::replay::recording::Recording;
 use closecall::input::replay::routes::Routes;
-use closecall::input::replay::rows::Step;
+use closecall::input::replay::rows::RecordedStep;
 use closecall::traffic::net::{EdgeIndex, Net};
 use proptest::prelude::*;
 
@@ -34,7 +34,7 @@ fn read(text: &str) -> (Steps, Option<String>) {
         Ok(recording) => recording,
         Err(error) => return (steps, Some(error.to_string())),
     };
-    let mut step = Step::default();
+    let mut step = RecordedStep::default();
     let mut there = Vec::new();
     loop {
         match recording.next_step(&mut step) {
@@ -311,13 +311,13 @@ fn what_is_wrong_is_named_with_its_line() {
         (xml(r#"id="a" x="1" y="2" angle="0""#), r#"fcd, line 3: "a" has no attribute speed"#),
         (xml(r#"id="a" x="1" y="2" x="1" angle="0" speed="0""#), "fcd, line 3: an attribute is given twice"),
         (xml(r#"x="1" y="2" angle="0" speed="0""#), r#"fcd, line 3: "" has no attribute id"#),
-        (xml(r"id=a"), r#"fcd, line 3: "id=a/" is no attribute"#),
+        (xml(r"id=a"), r#"fcd, line 3: "id=a/" is not an attribute"#),
         (xml("").replace("\"1\"", "\"x\""), r#"fcd, line 2: time is "x""#),
         (xml("").replace("\"1\"", "\"inf\""), r#"fcd, line 2: time is "inf""#),
         (xml("").replace("time=", "when="), "fcd, line 2: a timestep without time"),
         (csv("0;a;1;2;x;3"), r#"fcd, line 2: angle is "x", not a number"#),
         (csv("0;a;1;2;3"), r#"fcd, line 2: "a" has no value in column speed"#),
-        (csv("0;a;1;2;3;4\n\n-1;a;1;2;3;4"), "fcd, line 4: time -1 s follows on 0 s"),
+        (csv("0;a;1;2;3;4\n\n-1;a;1;2;3;4"), "fcd, line 4: time -1 s follows 0 s"),
         (csv("x;a;1;2;3;4"), r#"fcd, line 2: timestep_time is "x""#),
         (csv("0;a;1;2;3;4\n1;a"), r#"fcd, line 3: "a" has no value in column x"#),
         (csv("0;\"a;1;2;3;4"), "fcd: cut short after time NaN s: the last row is incomplete"),
@@ -354,7 +354,7 @@ fn in_columns_that_they_share_vehicles_and_persons_are_told_apart_by_where_they_
 fn a_vehicle_and_a_person_of_the_same_id_are_two() {
     let row = "id=\"a\" x=\"1\" y=\"2\" angle=\"0\" speed=\"1\"";
     let text = format!("<fcd-export><timestep time=\"0\"><vehicle {row}/><person {row}/></timestep></fcd-export>");
-    let (mut recording, mut step) = (Recording::parse(Path::new("fcd"), text).unwrap(), Step::default());
+    let (mut recording, mut step) = (Recording::parse(Path::new("fcd"), text).unwrap(), RecordedStep::default());
     assert!(recording.next_step(&mut step).unwrap());
     assert_ne!(step.rows()[0].user, step.rows()[1].user);
 }
