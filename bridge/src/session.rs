@@ -1,4 +1,4 @@
-//! A run attached to SUMO, from step to step until the scenario ends.
+//! A run attached to SUMO: its steps until the scenario ends.
 
 use std::time::{Duration, Instant};
 

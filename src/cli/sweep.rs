@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_typed_for_closecall_run_is_passed_on_and_nothing_else() {
+    fn only_typed_options_of_closecall_run_are_passed_on() {
         let passed =
             passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--keep-all", "--", "--scale", "2"]);
         let mut words = passed.words;

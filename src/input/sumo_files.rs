@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_at_the_end_of_a_route_file_is_named_with_its_line() {
+    fn a_late_fault_in_a_route_file_has_its_line_number() {
         let message =
             with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", check_xml).unwrap_err().to_string();
         assert!(message.contains("bad.rou.xml, line 3: "), "{message}");

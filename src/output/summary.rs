@@ -232,7 +232,7 @@ mod tests {
     use crate::output::summary::*;
 
     #[test]
-    fn a_share_is_100_percent_only_where_all_is_part_of_it() {
+    fn a_share_is_rounded_down() {
         let shares = [(0, 0), (1, 3), (9999, 10_000), (7, 7)];
         let texts = shares.map(|(part, whole)| Share { part, whole }.to_string());
         assert_eq!(texts, ["0.0 %", "33.3 %", "99.9 %", "100.0 %"]);

@@ -17,7 +17,7 @@ use crate::output::summary::Summary;
 pub struct RecordedRun {
     /// The run to be stepped.
     pub run: Run,
-    /// None where there is no log.
+    /// None without a log.
     record: Option<Box<RunRecord>>,
 }
 

@@ -2,8 +2,8 @@
 //!
 //! A vehicle's position, angle and speed take 0.25 to 0.29 µs, against 0.68 to 0.71 µs through the Python getters of the same
 //! module. Half of that is SUMO looking up the id for each value. With the functions behind the getters, where they are
-//! known, one look-up is enough: 0.15 µs. A person, who may also be inside a vehicle, takes 0.5 to 0.7 µs instead of 0.7 to
-//! 1.3, because SUMO computes its position on the lane. With the addresses of road users kept from step to step, all that a
+//! known, one look-up is enough: 0.15 µs. A person (it may be inside a vehicle) takes 0.5 to 0.7 µs instead of 0.7 to
+//! 1.3, because SUMO computes its position on the lane. With the addresses of road users kept between steps, all that a
 //! step reads takes 0.09 to 0.14 µs per vehicle instead of 0.21 to 0.33 (SUMO's A10, a grid), and a third less with persons
 //! (a grid with 1,500 of them).
 

@@ -21,7 +21,7 @@ pub(super) struct LibsumoDomain {
     ids: Py<PyAny>,
     type_id: Py<PyAny>,
     pub getters: Getters,
-    /// Whether their addresses are kept from step to step.
+    /// Whether their addresses are kept between steps.
     keeps_addresses: bool,
     /// The road users in the scene; the roster has their ids.
     pub live: Vec<UserIndex>,
@@ -56,7 +56,7 @@ impl LibsumoDomain {
         })
     }
 
-    /// Keeps the addresses of road users from step to step: only SUMO removes road users, and every step is read.
+    /// Keeps the addresses of road users between steps: only SUMO removes road users, and every step is read.
     pub fn keep_addresses(&mut self) {
         self.keeps_addresses = true;
     }

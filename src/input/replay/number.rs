@@ -93,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn unusual_texts_are_read_as_std_reads_them() {
+    fn unusual_texts_are_read_as_by_std() {
         for text in [
             "",
             "-",
@@ -148,7 +148,7 @@ mod tests {
         }
 
         #[test]
-        fn any_text_is_read_as_std_reads_it(text in "[-+0-9.eEinfa ]{0,20}") {
+        fn any_text_is_read_as_by_std(text in "[-+0-9.eEinfa ]{0,20}") {
             is_what_std_reads(&text);
         }
 

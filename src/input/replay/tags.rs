@@ -66,7 +66,7 @@ fn end_of(rest: &[u8]) -> Option<usize> {
     }
 }
 
-/// Whether a `>` follows the end of a value, or there is no value before it.
+/// Whether a `>` follows the end of a value, or no value precedes it.
 #[inline]
 fn is_value_end(rest: &[u8], end: usize) -> bool {
     let before = rest[..end].strip_suffix(b"/").unwrap_or(&rest[..end]);

@@ -38,7 +38,7 @@ pub struct Trajectories {
     /// By the roster's index.
     vehicles: Vec<Option<PreviousStep>>,
     next_number: i32,
-    /// The lanes of the step's rows, as far as they were asked for.
+    /// The lanes of the rows that were placed in this step.
     placed: FxHashMap<u32, LaneIndex>,
     record: Vec<u8>,
 }
