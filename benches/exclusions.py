@@ -25,10 +25,10 @@ PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
 
 def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
     """Time per road user and step of all parts but SUMO's."""
-    words = ["run", config, "--end", end, "--out", out, "--threads", 1, *(["--keep", keep] if keep else [])]
+    words = ["run", config, "--end", end, "--out", out, "--threads", 1, "--explain", *(["--keep", keep] if keep else [])]
     command = [sys.executable, "-m", "closecall", *map(str, words), "--", "--no-warnings"]
     said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    parts = dict(PART.findall(said.rsplit("time:", 1)[1]))
+    parts = dict(PART.findall(said.rsplit("time:", 1)[1].splitlines()[0]))
     spent = sum(float(seconds) for part, seconds in parts.items() if part.strip(" ,") != "SUMO")
     summary = json.loads((out / "run.json").read_text())["summary"]
     step = (summary["end"] - summary["begin"]) / (summary["steps"] - 1)

@@ -1,9 +1,9 @@
-//! Vehicle-steps per second of a replay, from CSV and from XML: reading alone, and the whole of it, in sparse traffic
-//! (nobody near anybody) and in platoons (everybody has somebody 25 m ahead); and the largest memory of
-//! `closecall replay` on a small recording and on a large one. `cargo bench --bench replay`.
+//! Vehicle-steps per second of a replay from CSV and from XML: reading alone and the whole replay, in sparse traffic (no
+//! two vehicles near each other) and in platoons (each vehicle 25 m behind another). Also the peak memory of
+//! `closecall replay` on a small and on a large recording. `cargo bench --bench replay`.
 //!
-//! `-- --large GIGABYTES` sets the size of the large recording (1). Given recordings are measured instead:
-//! `-- [--net NET] RECORDING…`; with a net they are replayed too.
+//! `-- --large GIGABYTES` sets the size of the large recording (1). `-- [--net NET] RECORDING…` measures given recordings
+//! instead; with a net they are replayed too.
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "a benchmark may")]
 
@@ -17,19 +17,19 @@ use std::time::Instant;
 
 use closecall::input::replay::Replay;
 use closecall::input::replay::recording::Recording;
-use closecall::input::replay::rows::Step;
+use closecall::input::replay::rows::RecordedStep;
 use closecall::options::Options;
 use closecall::run::Run;
 use closecall::traffic::net::Net;
 
-/// Parallel roads, so far apart that their traffic never meets.
+/// Parallel roads, far enough apart that their traffic never meets.
 const ROADS: usize = 20;
 const LENGTH: f64 = 10_000.0;
 const SPEED: f64 = 13.89;
 const STEPS: usize = 200;
 
-/// So many turns each recording has; the least time counts.
-const TURNS: usize = 5;
+/// Rounds per recording; the fastest counts.
+const ROUNDS: usize = 5;
 
 fn main() {
     let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
@@ -51,7 +51,7 @@ fn given(paths: &[&str]) -> Vec<Measured> {
 }
 
 fn all(large: f64) {
-    // On the disk of the target folder: the system's folder for temporary files may be in memory.
+    // On the disk of the target folder, because the system's temporary folder may be in memory.
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
     let net = write_net(folder.path());
     let mut recordings = Vec::new();
@@ -73,8 +73,8 @@ fn all(large: f64) {
     }
 }
 
-/// Replays a recording of about this size in processes of their own, and prints the most that was in the memory of one:
-/// of nine, the least, since one and the same differs by 0.5 MB.
+/// Replays a recording of about this size in nine processes and prints the least of their peak memories: that of one
+/// recording varies by 0.5 MB.
 fn peak(net: &Path, path: &Path, megabytes: f64) {
     write_recording(path, 100.0, 10, false);
     let steps = megabytes * 1e6 / std::fs::metadata(path).unwrap().len() as f64 * 10.0;
@@ -92,7 +92,7 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
     std::fs::remove_file(path).unwrap();
 }
 
-/// Runs closecall with these words, and prints the most that was in memory, in kB, where the system tells it (Linux).
+/// Runs closecall with these words and prints its peak memory, in kB, if the system reports it (Linux).
 fn alone(words: &[&str]) {
     assert_eq!(closecall::cli::main(words.iter().map(OsString::from), None), 0);
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -104,7 +104,7 @@ fn name(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_uppercase()
 }
 
-/// A recording, and the least time that reading and replaying it took, in s.
+/// A recording, and the fastest times for reading and for replaying it, in s.
 struct Measured {
     scene: String,
     path: PathBuf,
@@ -122,8 +122,8 @@ impl Measured {
         self.rows = 0;
         let (rows, path) = (&mut self.rows, &self.path);
         let seconds = seconds(|| {
-            let (mut recording, mut step) = (Recording::open(path).unwrap(), Step::default());
-            // What is cut short is read as far as it goes.
+            let (mut recording, mut step) = (Recording::open(path).unwrap(), RecordedStep::default());
+            // A recording that is cut short is read up to there.
             while let Ok(true) = recording.next_step(&mut step) {
                 *rows += step.rows().len();
             }
@@ -143,10 +143,10 @@ impl Measured {
     }
 }
 
-/// All of them in turns, since the machine is fast or slow for seconds at a time.
+/// Measures the recordings in turns, because the machine's speed changes every few seconds.
 fn measure(mut recordings: Vec<Measured>, net: Option<&Path>) {
     let net = net.map(|net| Arc::new(Net::read(net).unwrap()));
-    for _ in 0..TURNS {
+    for _ in 0..ROUNDS {
         for recording in &mut recordings {
             recording.read();
             net.iter().for_each(|net| recording.replay(net));
@@ -159,7 +159,7 @@ fn measure(mut recordings: Vec<Measured>, net: Option<&Path>) {
     }
 }
 
-/// How long that takes, in s: of the processor's time where the system tells it, so that other programs do not count.
+/// The time that the action takes, in s: processor time if the system reports it, so that other programs do not count.
 fn seconds(action: impl FnOnce()) -> f64 {
     let started = Instant::now();
     let now = || {
@@ -184,7 +184,7 @@ fn write_net(folder: &Path) -> PathBuf {
     path
 }
 
-/// Vehicles drive along every road, one enters as another leaves; ids never come again.
+/// Vehicles drive along every road, and one enters as another leaves; ids are never reused.
 fn write_recording(path: &Path, headway: f64, steps: usize, all: bool) {
     let xml = path.extension().is_some_and(|ending| ending == "xml");
     let mut file = BufWriter::new(File::create(path).unwrap());

@@ -1,14 +1,16 @@
 //! One run, from its first frame to its summary: the detector, the events and the log, in the order of the flow.
 //!
-//! Whoever has the data drives it, step by step: [`Run::begin`], a row into [`Run::frame`] per road user,
-//! [`Run::follow`], [`Run::place`] for the rows that it names, [`Run::finish_step`] (or its parts, to time them); after
-//! the last step [`Run::finish`].
+//! A source of road users (SUMO, a recording, a script's arrays) drives the run. For each step it calls
+//! [`Run::begin_step`], pushes a row into [`Run::frame`] per road user, and calls [`Run::step`] with a function that
+//! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
+
+pub mod recorded;
+pub mod step;
 
 use std::sync::Arc;
 
-use crate::Result;
 use crate::detection::detector::Detector;
-use crate::detection::detector::{LeftOut, shortcuts::Shortcuts};
+use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Conflict, Tracker};
 use crate::geometry::Point;
@@ -16,7 +18,7 @@ use crate::geometry::polygon::convex_parts;
 use crate::options::Options;
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
-use crate::output::summary::Summary;
+use crate::output::summary::{Skipped, Summary};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::net::Net;
 use crate::traffic::net::filter::Filter;
@@ -24,10 +26,11 @@ use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, Profile, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
+use crate::{Error, Result};
 
 /// One run.
 pub struct Run {
-    /// Who is in the scene.
+    /// The road users in the scene.
     pub roster: Roster,
     /// The road users of the step under way.
     pub frame: Frame,
@@ -37,12 +40,16 @@ pub struct Run {
     tracker: Tracker,
     log: Option<Log>,
     outputs: Outputs,
-    keeps: bool,
+    keeps_conflicts: bool,
     conflicts: Vec<Conflict>,
     leaving: Vec<UserIndex>,
     obstacles: Vec<(UserIndex, Point)>,
-    /// What the options say of single types: as they name it, and as the roster does.
-    settings: Vec<(String, String)>,
+    /// The rows whose placement the step under way needs.
+    unplaced: Vec<u32>,
+    /// Placements asked for so far.
+    lane_lookups: u64,
+    /// Settings of single types: as the options name the type, and as the roster does.
+    type_settings: Vec<(String, String)>,
     summary: Summary,
 }
 
@@ -50,11 +57,11 @@ impl Run {
     /// A run that keeps its conflicts in memory.
     ///
     /// # Errors
-    /// An error that names the filter's file and what is wrong with it.
+    /// [`Error::File`], [`Error::Line`] or [`Error::Content`] that names the filter's file and what is wrong with it.
     pub fn new(options: &Options, net: Option<Arc<Net>>) -> Result<Self> {
         let filter = match (&options.filter, &net) {
             (Some(path), Some(net)) => Some(Filter::read(path, net)?),
-            (Some(path), None) => return Err(crate::Error::content(path, "a filter needs a net")),
+            (Some(path), None) => return Err(Error::content(path, "a filter needs a net")),
             (None, _) => None,
         };
         let mut detector = Detector::new(options, net.clone());
@@ -68,23 +75,29 @@ impl Run {
             tracker: Tracker::default(),
             log: None,
             outputs: Outputs::default(),
-            keeps: true,
+            keeps_conflicts: true,
             conflicts: Vec::new(),
             leaving: Vec::new(),
             obstacles: Vec::new(),
-            settings: settings(options),
+            unplaced: Vec::new(),
+            lane_lookups: 0,
+            type_settings: type_settings(options),
             summary: Summary::default(),
         })
     }
 
-    /// Writes the conflicts to a log too, and no longer keeps them in memory unless `keeps`.
-    pub fn log_to(&mut self, log: Log, keeps: bool) {
+    /// Writes the conflicts to a log too.
+    pub fn set_log(&mut self, log: Log) {
         self.log = Some(log);
-        self.keeps = keeps;
     }
 
-    /// Writes other files too, besides the log.
-    pub fn write_to(&mut self, outputs: Outputs) {
+    /// Counts closed conflicts, but does not keep them in memory for [`Run::conflicts`].
+    pub fn drop_closed_conflicts(&mut self) {
+        self.keeps_conflicts = false;
+    }
+
+    /// Writes other files besides the log.
+    fn set_outputs(&mut self, outputs: Outputs) {
         if outputs.want_lanes() {
             self.detector.keep_asking_for_lanes();
         }
@@ -94,12 +107,12 @@ impl Run {
         self.outputs = outputs;
     }
 
-    /// What is left out.
+    /// The shortcuts that the run takes.
     pub fn shortcuts(&self) -> Shortcuts {
         self.detector.shortcuts()
     }
 
-    /// Looks at each step with so many threads, at least one; the results are the same.
+    /// Checks each step with this many threads, at least one. The number does not change the results.
     pub fn set_threads(&mut self, threads: usize) {
         self.detector.set_threads(threads);
     }
@@ -124,7 +137,7 @@ impl Run {
         self.detector.has_fixed_routes()
     }
 
-    /// Takes a vehicle or person of a type that the roster has into the scene.
+    /// A vehicle or person enters the scene; the roster has its profile.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
         let user = self.roster.enter(id, profile);
         match self.roster.profile_of(user).category {
@@ -135,13 +148,13 @@ impl Run {
         user
     }
 
-    /// Takes a static obstacle into the scene, where it stays: a polygon of this type and outline.
+    /// A static obstacle enters the scene and stays: a polygon of this type and outline.
     ///
     /// # Errors
-    /// [`crate::Error::Value`] where the outline has fewer than three points or a point that is none.
+    /// [`Error::Value`] if the outline has fewer than three points or a point that is not finite.
     pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
         if outline.len() < 3 || outline.iter().any(|point| !(point.x + point.y).is_finite()) {
-            return Err(crate::Error::Value(format!("polygon \"{id}\" needs three points at least, all finite")));
+            return Err(Error::Value(format!("polygon \"{id}\" needs at least three points, all finite")));
         }
         let shape = convex_parts(outline).into();
         let profile = self.roster.profile(Profile::obstacle(polygon_type))?;
@@ -149,32 +162,32 @@ impl Run {
         Ok(())
     }
 
-    /// Lets a road user leave the scene; it must not be in a later frame.
+    /// A road user leaves the scene; it must not be in a later frame.
     pub fn leave(&mut self, user: UserIndex) {
         self.leaving.push(user);
     }
 
     /// Begins the step at `time`, with an empty frame.
-    pub fn begin(&mut self, time: Second) {
+    pub fn begin_step(&mut self, time: Second) {
         match self.time() {
             None => self.summary.begin = time,
-            Some(last) => self.expose(time - last),
+            Some(last) => self.count_exposure(time - last),
         }
         self.summary.steps += 1;
         self.summary.end = time;
         self.frame.begin(time);
-        for &(user, place) in &self.obstacles {
-            self.frame.push(user, State { x: place.x, y: place.y, z: 0.0, heading: 0.0, speed: 0.0 });
+        for &(user, corner) in &self.obstacles {
+            self.frame.push(user, State { x: corner.x, y: corner.y, z: 0.0, heading: 0.0, speed: 0.0 });
         }
     }
 
-    /// The time of the step under way; none before the first.
+    /// The time of the step under way, if one has begun.
     pub fn time(&self) -> Option<Second> {
         (self.summary.steps > 0).then_some(self.frame.time)
     }
 
-    /// Counts the traffic of the step before, which lasted this long.
-    fn expose(&mut self, lasted: Second) {
+    /// Counts the traffic of the previous step, which lasted this long.
+    fn count_exposure(&mut self, lasted: Second) {
         let exposure = &mut self.summary.exposure;
         for Row { user, state } in self.frame.rows() {
             if self.roster.profile_of(user).category == Category::Vehicle {
@@ -184,86 +197,21 @@ impl Run {
         }
     }
 
-    /// Where everybody is now; returns the rows that have to be placed.
-    pub fn track_paths(&mut self) -> &[u32] {
-        self.detector.track_paths(&self.frame, &self.roster)
-    }
-
-    /// Whether the road user of a row, if it still has its route, is on the path laid before: nobody needs to know where it
-    /// is on the net.
+    /// Whether the road user of a row is still on its predicted path, so that its lane is not needed as long as its
+    /// route is the same.
     pub fn keeps_path(&self, row: u32) -> bool {
         !self.outputs.want_lanes() && self.detector.keeps_path(row)
     }
 
-    /// Whether the route that a road user was said to have is known from this place in it on.
+    /// Whether the route last given for a road user is known from this position in it.
     pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
         self.detector.knows_route(user, position)
     }
 
-    /// Says where the road user of a row is on the net.
+    /// Sets where on the net the road user of a row is.
     pub fn set_placement(&mut self, row: u32, placement: &Placement) {
         self.detector.set_placement(&self.frame, &self.roster, row, placement);
         self.outputs.place(row, placement);
-    }
-
-    /// Both phases, the events and the log.
-    ///
-    /// # Errors
-    /// As [`Run::write`].
-    pub fn finish_step(&mut self) -> Result<()> {
-        self.broad_phase();
-        self.narrow_phase();
-        self.close_conflicts();
-        self.write()
-    }
-
-    /// Phase 1.
-    pub fn broad_phase(&mut self) {
-        self.detector.broad_phase(&self.frame, &self.roster);
-    }
-
-    /// Phase 2.
-    pub fn narrow_phase(&mut self) {
-        let Self { detector, net, filter, .. } = self;
-        _ = detector.narrow_phase(&self.frame, &self.roster);
-        detector.retain(|found| {
-            if let (true, None, Some(net)) = (found.in_conflict(), found.lane, &net) {
-                found.lane = net.lane_at(Point::new(found.x, found.y));
-            }
-            found.in_conflict() && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
-        });
-    }
-
-    /// The events.
-    pub fn close_conflicts(&mut self) {
-        let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
-        let path = |row| detector.path(frame, roster, row);
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path);
-        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
-    }
-
-    /// The log and the other files; ends the step.
-    ///
-    /// # Errors
-    /// An error that names the log's file if it cannot be written.
-    pub fn write(&mut self) -> Result<()> {
-        let closed = self.tracker.closed();
-        if let Some(log) = &mut self.log {
-            if !closed.is_empty() {
-                log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
-            }
-            log.append_encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
-        }
-        self.outputs.step(&self.frame, &self.roster, self.net.as_deref())?;
-        self.outputs.conflicts(closed)?;
-        self.tracker.forget_closed();
-        // Only now may their indices be given to others: the events of this step have seen that they are gone.
-        for user in self.leaving.drain(..) {
-            self.roster.leave(user);
-            self.detector.forget(user);
-            self.outputs.forget(user);
-        }
-        Ok(())
     }
 
     /// The pairs that were in conflict in the last step.
@@ -271,12 +219,12 @@ impl Run {
         self.detector.encounters()
     }
 
-    /// The conflicts that go on in this step.
+    /// The conflicts that are still open in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()
     }
 
-    /// The conflicts that are kept in memory, and those that go on as they are now.
+    /// The closed conflicts that are kept in memory, then the open ones as they are now.
     pub fn conflicts(&self) -> Vec<Conflict> {
         self.conflicts.iter().cloned().chain(self.tracker.open(&self.roster)).collect()
     }
@@ -286,7 +234,7 @@ impl Run {
         self.net.as_deref()
     }
 
-    /// What was found so far, conflicts that go on included.
+    /// What was found so far, open conflicts included.
     pub fn summary(&self) -> Summary {
         let mut summary = self.summary.clone();
         for conflict in self.tracker.open(&self.roster) {
@@ -295,44 +243,34 @@ impl Run {
         summary
     }
 
-    /// How many conflicts have closed so far.
-    pub fn conflicts_so_far(&self) -> u64 {
+    /// The number of conflicts that have closed so far.
+    pub fn closed_conflicts(&self) -> u64 {
         self.summary.count(None, None)
     }
 
-    /// Closes what is still open and adds it to the log; what the caller did without is added to what was left out.
+    /// Closes the open conflicts and writes them; returns the summary.
     ///
     /// # Errors
-    /// An error that names the log's file if it cannot be written.
-    pub fn finish(&mut self, left_out: Vec<LeftOut>) -> Result<Summary> {
+    /// [`Error::File`] that names what cannot be written.
+    pub fn finish(&mut self) -> Result<Summary> {
         let closed = self.tracker.finish(&self.roster);
         if let Some(log) = &mut self.log {
             log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
-        self.outputs.conflicts(closed)?;
+        self.outputs.write_conflicts(closed)?;
         self.outputs.finish()?;
-        settle(closed, &mut self.summary, self.keeps.then_some(&mut self.conflicts));
+        count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
         self.summary.left_out = self.detector.left_out();
-        self.summary.left_out.extend(left_out);
-        let unmet = self.settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
-        let remarks = unmet.map(|(setting, _)| format!("{setting}: nobody of this type was in the scene"));
+        self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
+        let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
+        let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
         self.summary.remarks = remarks.collect();
         Ok(self.summary.clone())
     }
-
-    /// Takes back the files besides the log: the input could not be used after all.
-    pub fn discard_outputs(&mut self) {
-        std::mem::take(&mut self.outputs).discard();
-    }
-
-    /// The log, taken away from the run.
-    pub fn take_log(&mut self) -> Option<Log> {
-        self.log.take()
-    }
 }
 
-/// The settings of single types, in order, each with the name that somebody of the type has.
-fn settings(options: &Options) -> Vec<(String, String)> {
+/// The settings of single types in order, each with the profile name of road users of that type.
+fn type_settings(options: &Options) -> Vec<(String, String)> {
     let types = options.types.keys().map(|name| (format!("[type.{name}]"), name.clone()));
     let obstacles = options.obstacles.iter().map(|name| (format!("obstacles {name}"), obstacle_name(name)));
     let mut settings = types.chain(obstacles).collect::<Vec<_>>();
@@ -340,7 +278,7 @@ fn settings(options: &Options) -> Vec<(String, String)> {
     settings
 }
 
-fn settle(closed: &[Conflict], summary: &mut Summary, kept: Option<&mut Vec<Conflict>>) {
+fn count(closed: &[Conflict], summary: &mut Summary, kept: Option<&mut Vec<Conflict>>) {
     for conflict in closed {
         summary.add(conflict);
     }

@@ -1,5 +1,5 @@
-//! Recordings as replay reads them, beside the simplest reader of the same files: csv's and quick-xml's own, with every
-//! text looked at by itself.
+//! Recordings as replay reads them, compared with the simplest readers of the same files: those of the crates csv and
+//! quick-xml, which parse every text anew.
 
 #![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "tests")]
 
@@ -8,11 +8,11 @@ use std::path::Path;
 
 use closecall::input::replay::recording::Recording;
 use closecall::input::replay::routes::Routes;
-use closecall::input::replay::rows::Step;
+use closecall::input::replay::rows::RecordedStep;
 use closecall::traffic::net::{EdgeIndex, Net};
 use proptest::prelude::*;
 
-/// One row, in full.
+/// One row with all its values.
 #[derive(Clone, Debug, PartialEq)]
 struct Simple {
     id: String,
@@ -27,14 +27,14 @@ type Steps = Vec<(f64, Vec<Simple>)>;
 
 const NUMBERS: [&str; 7] = ["x", "y", "z", "angle", "speed", "pos", "speedLat"];
 
-/// As closecall reads it; `Err` with the message, and what came before it.
+/// The steps that closecall reads, and the message of the error that ends them.
 fn read(text: &str) -> (Steps, Option<String>) {
     let mut steps = Steps::new();
     let mut recording = match Recording::parse(Path::new("fcd"), text) {
         Ok(recording) => recording,
         Err(error) => return (steps, Some(error.to_string())),
     };
-    let mut step = Step::default();
+    let mut step = RecordedStep::default();
     let mut there = Vec::new();
     loop {
         match recording.next_step(&mut step) {
@@ -131,7 +131,7 @@ fn read_xml_simply(text: &str) -> Steps {
     }
 }
 
-/// Somebody in a step, as it is to be written.
+/// A road user in a step, to be written.
 #[derive(Clone, Debug)]
 struct Written {
     id: String,
@@ -139,14 +139,14 @@ struct Written {
     type_name: String,
     lane: String,
     numbers: Vec<String>,
-    /// How it is written: which attributes there are, in what order and with what around them.
+    /// How it is written: which attributes there are, their order and what is around them.
     style: u8,
 }
 
-/// Ids with all that XML and CSV have to escape, of one letter or of many.
+/// Ids with everything that XML and CSV must escape, short and long.
 const ID: &str = "[a-d]|[a-d]{7,9}|[a-d<>&\"';é #]{1,12}";
 
-fn somebody() -> impl Strategy<Value = Written> {
+fn road_user() -> impl Strategy<Value = Written> {
     let number = "-?[0-9]{1,5}\\.[0-9]{2}|-?[0-9]{1,3}|[0-9]\\.[0-9]{9,20}|[0-9]e-?[0-9]";
     let numbers = prop::collection::vec(number, 7);
     (ID, prop::bool::weighted(0.2), "[ab]?|car", "[ab]_[01]|[é&<]", numbers, 0..16_u8).prop_map(
@@ -154,9 +154,9 @@ fn somebody() -> impl Strategy<Value = Written> {
     )
 }
 
-/// Steps in which most of those of the step before drive on, in the same order.
+/// Steps in which most road users of the previous step are still there, in the same order.
 fn steps() -> impl Strategy<Value = Vec<Vec<Written>>> {
-    let all = prop::collection::vec(somebody(), 1..12);
+    let all = prop::collection::vec(road_user(), 1..12);
     let present = prop::collection::vec(prop::collection::vec(prop::bool::weighted(0.8), 12), 0..8);
     (all, present, any::<bool>()).prop_map(|(mut all, present, sorted)| {
         all.sort_by(|a, b| (&a.id, a.person).cmp(&(&b.id, b.person)));
@@ -253,7 +253,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
-    fn a_csv_recording_is_what_the_simple_reader_says(steps in steps(), windows in any::<bool>()) {
+    fn a_csv_recording_equals_what_the_simple_reader_reads(steps in steps(), windows in any::<bool>()) {
         let text = as_csv(&steps, if windows { "\r\n" } else { "\n" });
         let (read, error) = read(&text);
         prop_assert_eq!(error, None);
@@ -261,7 +261,7 @@ proptest! {
     }
 
     #[test]
-    fn an_xml_recording_is_what_the_simple_reader_says(steps in steps()) {
+    fn an_xml_recording_equals_what_the_simple_reader_reads(steps in steps()) {
         let text = as_xml(&steps);
         let (read, error) = read(&text);
         prop_assert_eq!(error, None);
@@ -284,7 +284,7 @@ proptest! {
     }
 }
 
-/// Longer than the blocks in which a file is read, so that rows lie across their borders.
+/// The files are longer than the blocks in which they are read, so that rows cross the blocks' borders.
 #[test]
 fn rows_across_the_blocks_of_a_file_are_whole() {
     let one = |id: usize| Written {
@@ -311,13 +311,13 @@ fn what_is_wrong_is_named_with_its_line() {
         (xml(r#"id="a" x="1" y="2" angle="0""#), r#"fcd, line 3: "a" has no attribute speed"#),
         (xml(r#"id="a" x="1" y="2" x="1" angle="0" speed="0""#), "fcd, line 3: an attribute is given twice"),
         (xml(r#"x="1" y="2" angle="0" speed="0""#), r#"fcd, line 3: "" has no attribute id"#),
-        (xml(r"id=a"), r#"fcd, line 3: "id=a/" is no attribute"#),
+        (xml(r"id=a"), r#"fcd, line 3: "id=a/" is not an attribute"#),
         (xml("").replace("\"1\"", "\"x\""), r#"fcd, line 2: time is "x""#),
         (xml("").replace("\"1\"", "\"inf\""), r#"fcd, line 2: time is "inf""#),
         (xml("").replace("time=", "when="), "fcd, line 2: a timestep without time"),
         (csv("0;a;1;2;x;3"), r#"fcd, line 2: angle is "x", not a number"#),
         (csv("0;a;1;2;3"), r#"fcd, line 2: "a" has no value in column speed"#),
-        (csv("0;a;1;2;3;4\n\n-1;a;1;2;3;4"), "fcd, line 4: time -1 s follows on 0 s"),
+        (csv("0;a;1;2;3;4\n\n-1;a;1;2;3;4"), "fcd, line 4: time -1 s follows 0 s"),
         (csv("x;a;1;2;3;4"), r#"fcd, line 2: timestep_time is "x""#),
         (csv("0;a;1;2;3;4\n1;a"), r#"fcd, line 3: "a" has no value in column x"#),
         (csv("0;\"a;1;2;3;4"), "fcd: cut short after time NaN s: the last row is incomplete"),
@@ -336,16 +336,16 @@ fn a_byte_order_mark_is_passed_over() {
     }
 }
 
-/// SUMO calls the columns after whoever came first, and has vehicles on a lane and persons on an edge.
+/// SUMO names the columns after the kind of the first road user, and gives vehicles a lane and persons an edge.
 #[test]
-fn in_columns_that_they_share_vehicles_and_persons_are_told_apart_by_where_they_are() {
+fn shared_columns_tell_vehicles_and_persons_apart_by_lane_or_edge() {
     for kind in ["vehicle", "person"] {
         let names = ["id", "x", "y", "angle", "speed", "lane", "edge"].map(|name| format!("{kind}_{name}")).join(";");
-        let text = format!("timestep_time;{names}\n0;car;1;2;90;3;a_0;\n0;walker;1;2;90;1;;a\n0;somebody;1;2;90;1;;\n");
+        let text = format!("timestep_time;{names}\n0;car;1;2;90;3;a_0;\n0;walker;1;2;90;1;;a\n0;unknown;1;2;90;1;;\n");
         let (steps, error) = read(&text);
         assert_eq!(error, None);
         let persons = steps[0].1.iter().map(|row| (&*row.id, row.person)).collect::<Vec<_>>();
-        assert_eq!(persons, [("car", false), ("walker", true), ("somebody", kind == "person")]);
+        assert_eq!(persons, [("car", false), ("walker", true), ("unknown", kind == "person")]);
     }
 }
 
@@ -354,7 +354,8 @@ fn in_columns_that_they_share_vehicles_and_persons_are_told_apart_by_where_they_
 fn a_vehicle_and_a_person_of_the_same_id_are_two() {
     let row = "id=\"a\" x=\"1\" y=\"2\" angle=\"0\" speed=\"1\"";
     let text = format!("<fcd-export><timestep time=\"0\"><vehicle {row}/><person {row}/></timestep></fcd-export>");
-    let (mut recording, mut step) = (Recording::parse(Path::new("fcd"), text).unwrap(), Step::default());
+    let mut recording = Recording::parse(Path::new("fcd"), text).unwrap();
+    let mut step = RecordedStep::default();
     assert!(recording.next_step(&mut step).unwrap());
     assert_ne!(step.rows()[0].user, step.rows()[1].user);
 }
@@ -372,8 +373,7 @@ fn read_routes(rows: impl Iterator<Item = (f64, String, usize)>) -> (tempfile::N
     (file, routes)
 }
 
-/// The routes of so many vehicles, in the order of their coming, and which of them each of so many is that enter the
-/// scene.
+/// The routes of this number of vehicles in the order of arrival, and the vehicle's number for each entry into the scene.
 fn routes(
     vehicles: u64,
     entering: usize,
@@ -386,8 +386,8 @@ fn routes(
 }
 
 #[test]
-fn a_vehicle_that_comes_back_drives_on_and_after_long_it_is_another() {
-    // Somebody stays, b is away for 300 s (SUMO put it further on), c for 700 s.
+fn a_returning_vehicle_continues_its_route_unless_absent_for_long() {
+    // a stays, b is absent for 300 s (SUMO put it further along), c for 700 s.
     let steps = (0..1000).flat_map(|time| {
         let there = |id: &str| match id {
             "b" => !(100..400).contains(&time),
@@ -411,9 +411,9 @@ fn a_recording_that_grows_while_it_is_read_is_named() {
 }
 
 #[test]
-fn routes_that_do_not_fit_into_memory_come_back_from_the_file() {
+fn routes_too_large_for_memory_are_read_from_the_file() {
     const VEHICLES: u64 = 2000;
-    // They leave in another order than they come: the route of vehicle n has 150 − n % 50 edges, from edge n % 40 on.
+    // They leave in another order than they arrive: the route of vehicle n has 150 − n % 50 edges, from edge n % 40 on.
     let steps = (0..150).flat_map(|step| {
         let row = move |n: u64| (step as f64, format!("v{n}"), (n % 40 + step) as usize);
         (0..VEHICLES).filter(move |n| step < 150 - n % 50).map(row)

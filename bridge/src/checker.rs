@@ -1,11 +1,11 @@
-//! The step listener: a run that is fed from libsumo, traci or arrays in somebody's own script.
+//! The step listener: a run that a Python script feeds from libsumo, traci or arrays.
 
 use std::path::PathBuf;
 
 use closecall::options::Options;
-use closecall::output::log::Log;
-use closecall::output::record::RunRecord;
+use closecall::output::formats::OutputFiles;
 use closecall::run::Run;
+use closecall::run::recorded::{Ending, RecordedRun};
 use closecall::traffic::net::Net;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -20,30 +20,29 @@ use crate::pull::{self, Source};
 /// Finds the conflicts of a simulation, or of plain frames, step by step.
 ///
 /// Args:
-///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None where
-///         frames are given to `step`.
+///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None if `step`
+///         gets frames.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, run.json, and encounters.csv with `log_encounters=True`); by default
-///         none.
-///     paint: whether to colour the vehicles in conflict; by default where libsumo runs sumo-gui.
-///     **options: what the command line has as long options, with underscores: `mu="at-rest"`, `epsilon=1.0`.
+///         no log is written.
+///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
+///     **options: the long options of the command line, with underscores: `mu="at-rest"`, `epsilon=1.0`.
 ///
 /// Raises:
-///     ValueError: an unknown option or one out of its range, a net that cannot be used, a mesoscopic simulation; the
+///     ValueError: an option is unknown or out of its range, the net cannot be used, or the simulation is mesoscopic; the
 ///         message says which.
 ///     RuntimeError: no simulation is started.
-///     OSError: a file or folder that cannot be read or written.
+///     OSError: a file or folder cannot be read or written.
 #[pyclass(subclass, module = "closecall._closecall", name = "Checker")]
 pub struct Checker {
-    run: Run,
-    input: Input,
+    recorded: RecordedRun,
+    feed: Feed,
     painter: Option<Painter>,
-    /// Of the log, where there is one.
-    record: Option<Box<RunRecord>>,
     is_closed: bool,
 }
 
-enum Input {
+/// Where the road users come from.
+enum Feed {
     Simulation(Source),
     Frames(Box<Frames>),
 }
@@ -67,124 +66,119 @@ impl Checker {
             (None, None) => None,
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
-        let input = match source {
+        let feed = match source {
             Some(source) => {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
-                Input::Simulation(Source::new(source, &mut run, &options)?)
+                Feed::Simulation(Source::new(source, &mut run, &options)?)
             }
-            None => Input::Frames(Box::new(Frames::new(&options))),
+            None => Feed::Frames(Box::new(Frames::new(&options))),
         };
-        let mut record = None;
-        if let Some(folder) = out {
-            let begun = provenance::record_of_script(source, given, &run, &options)?;
-            let log = Log::create(&folder, options.log_encounters).map_err(exception)?;
-            log.write_record(&begun).map_err(exception)?;
-            run.log_to(log, true);
-            record = Some(Box::new(begun));
-        }
+        let recorded = match out {
+            Some(folder) => {
+                let record = provenance::record_of_script(source, given, &run, &options)?;
+                RecordedRun::open(run, record, &folder, &OutputFiles::default()).map_err(exception)?
+            }
+            None => RecordedRun::in_memory(run),
+        };
         let painter = match (source, paint) {
             (Some(source), None) if has_gui(source) => Some(Painter::new(source)),
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { run, input, painter, record, is_closed: false })
+        Ok(Self { recorded, feed, painter, is_closed: false })
     }
 
-    /// Check one step; a simulation calls this itself where the checker is its step listener.
+    /// Check one step. A simulation calls this itself if the checker is its step listener.
     ///
     /// Args:
     ///     time: simulated time in s; only with `states`.
-    ///     states: where there is no simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper
-    ///         centre, m), `heading` (rad, counter-clockwise from +x), `speed` (m/s) and where they are known `z`,
-    ///         `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row whose place, heading or speed is not
-    ///         finite is no road user.
+    ///     states: without a simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper centre, m),
+    ///         `heading` (rad, counter-clockwise from +x), `speed` (m/s) and, if known, `z`, `length`, `width` (m),
+    ///         `decel` (m/s²), `mass` (kg). A row whose position, heading or speed is not finite is ignored.
     ///
     /// Returns:
-    ///     Whether the listener wants the next step too: a simulation drops one that is closed. Where its time goes
-    ///     back (another one was started or loaded, or a state of before), the checker closes itself.
+    ///     Whether the listener wants the next step too: a simulation drops one that is closed. If the simulation's time
+    ///     goes back (another one was started or loaded, or an earlier state), the checker closes itself.
     ///
     /// Raises:
-    ///     ValueError: a column is missing or of another length, an id is there twice, the time is before the last,
+    ///     ValueError: a column is missing or has another length, an id occurs twice, the time is before the last one, or
     ///         dimensions are impossible.
-    ///     RuntimeError: the checker is closed, and it is not a simulation that calls.
+    ///     RuntimeError: the checker is closed and has no simulation.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
-        match (&mut self.input, states) {
-            (Input::Simulation(_), None) if self.is_closed => return Ok(false),
-            (Input::Simulation(source), None) => {
+        let run = &mut self.recorded.run;
+        match (&mut self.feed, states) {
+            (Feed::Simulation(_), None) if self.is_closed => return Ok(false),
+            (Feed::Simulation(source), None) => {
                 let time = source.time(py)?;
-                if self.run.time().is_some_and(|last| time < last) {
-                    // Whom it painted is not in that simulation.
+                if run.time().is_some_and(|last| time < last) {
+                    // The vehicles that it painted are not in the new simulation.
                     self.painter = None;
                     self.close(py)?;
                     return Ok(false);
                 }
-                source.pull(py, &mut self.run, time)?;
-                let rows = py.detach(|| self.run.track_paths().to_vec());
-                source.place(py, &mut self.run, &rows)?;
+                source.pull(py, run, time)?;
+                source.update_paths(py, run)?;
+                py.detach(|| run.finish_step(|_| ())).map_err(exception)?;
             }
-            (Input::Frames(_), Some(_)) if self.is_closed => {
+            (Feed::Frames(_), Some(_)) if self.is_closed => {
                 return Err(PyRuntimeError::new_err("the checker is closed"));
             }
-            (Input::Frames(frames), Some(states)) => {
-                if let Some(last) = self.run.time().filter(|last| time < *last) {
+            (Feed::Frames(frames), Some(states)) => {
+                if let Some(last) = run.time().filter(|last| time < *last) {
                     return Err(PyValueError::new_err(format!("time is {time}, after {last}")));
                 }
-                frames.pull(&mut self.run, time, states)?;
-                py.detach(|| self.run.track_paths().len());
+                frames.pull(run, time, states)?;
+                py.detach(|| run.step(|_, _| Ok(()))).map_err(exception)?;
             }
-            (Input::Simulation(_), Some(_)) => {
-                return Err(PyTypeError::new_err("a checker with a simulation takes no states: it asks for them"));
+            (Feed::Simulation(_), Some(_)) => {
+                return Err(PyTypeError::new_err("a checker with a simulation takes no states: it reads them itself"));
             }
-            (Input::Frames(_), None) => {
+            (Feed::Frames(_), None) => {
                 return Err(PyTypeError::new_err("a checker without a simulation needs states: step(time, states)"));
             }
         }
-        py.detach(|| self.run.finish_step()).map_err(exception)?;
         if let Some(painter) = &mut self.painter {
-            painter.paint(py, &self.run)?;
+            painter.paint(py, &self.recorded.run)?;
         }
         Ok(true)
     }
 
-    /// End the run: what is still open is closed and written, painted vehicles get their colours back.
+    /// End the run: close and write the open conflicts, and restore the colours of painted vehicles.
     fn close(&mut self, py: Python) -> PyResult<()> {
         self.end(py, None)
     }
 
-    /// The same; with what ended the run before its time, if something did.
+    /// The same, with the error that ended the run early, if there was one.
     #[pyo3(name = "_end")]
     fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
         if std::mem::replace(&mut self.is_closed, true) {
             return Ok(());
         }
-        let summary = self.run.finish(Vec::new()).map_err(exception)?;
-        if let (Some(log), Some(record)) = (self.run.take_log(), self.record.take()) {
-            log.write_record(&RunRecord { summary, complete: error.is_none(), error, ..*record }).map_err(exception)?;
-        }
+        self.recorded.close(Ending { error, ..Ending::default() }).map_err(exception)?;
         match &mut self.painter {
             Some(painter) => painter.clear(py),
             None => Ok(()),
         }
     }
 
-    /// All conflicts so far, those that still go on as they are now.
+    /// All conflicts so far; the open ones as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let conflicts = self.run.conflicts();
-        PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.run.net())))
+        let conflicts = self.recorded.run.conflicts();
+        PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.recorded.run.net())))
     }
 
-    /// Counts by kind and severity, the traffic that was checked, and, once it is closed, what was left out, as in `run.json`.
+    /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text =
-            serde_json::to_string(&self.run.summary()).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let text = serde_json::to_string(&self.recorded.run.summary())
+            .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         py.import("json")?.call_method1("loads", (text,))
     }
 }
 
-/// Options from Python keywords.
+/// The options that Python keywords set.
 pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
     let mut settings = Vec::new();
     for (name, value) in keywords.into_iter().flatten() {
@@ -200,7 +194,7 @@ pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
     Options::from_settings(settings.iter().map(|(name, value)| (name.as_str(), value.clone()))).map_err(exception)
 }
 
-/// Whether libsumo runs sumo-gui. traci is not asked: a plain SUMO would print an error.
+/// Whether libsumo runs sumo-gui. traci is not asked, because a plain SUMO would print an error.
 fn has_gui(source: &Bound<PyAny>) -> bool {
     pull::is_libsumo(source) && source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
 }

@@ -4,14 +4,13 @@ use closecall::Error;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-/// The exception that tells of an error: an `OSError` for files, a `RuntimeError` where SUMO failed, otherwise a
-/// `ValueError`.
+/// The exception for an error: an `OSError` for files, a `RuntimeError` if SUMO failed, otherwise a `ValueError`.
 pub fn exception(error: Error) -> PyErr {
     match error {
         Error::File { path, source } => {
             let text = source.to_string();
             match source.raw_os_error() {
-                // With the number Python chooses the subclass: FileNotFoundError and so on.
+                // From the number Python derives the subclass, such as FileNotFoundError.
                 Some(number) => PyOSError::new_err((number, text, path)),
                 None => PyOSError::new_err(format!("{}: {text}", path.display())),
             }
@@ -21,7 +20,7 @@ pub fn exception(error: Error) -> PyErr {
     }
 }
 
-/// What an exception says, in one line.
+/// The message of an exception, as one line.
 pub fn message(py: Python, exception: &PyErr) -> String {
     exception.value(py).to_string().lines().map(str::trim).collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Plain frames from Python: arrays of states, for those who have trajectories and no SUMO.
+//! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 
 use closecall::options::Options;
 use closecall::run::Run;
@@ -13,14 +13,15 @@ use rustc_hash::FxHashMap;
 
 use crate::error::exception;
 
-/// Who was in the frames so far.
+/// Reads frames and remembers the road users in the scene.
 pub struct Frames {
     options: Options,
+    /// Each road user by its id, and the last step that it was in.
     live: FxHashMap<String, (UserIndex, u64)>,
     steps: u64,
 }
 
-type Column<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+type StateColumn<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
 
 impl Frames {
     pub fn new(options: &Options) -> Self {
@@ -31,16 +32,16 @@ impl Frames {
     pub fn pull(&mut self, run: &mut Run, time: f64, states: &Bound<PyAny>) -> PyResult<()> {
         let ids =
             states.get_item("id")?.try_iter()?.map(|id| Ok(id?.str()?.to_string())).collect::<PyResult<Vec<_>>>()?;
-        let column = |name: &str| -> PyResult<Column> {
+        let column = |name: &str| -> PyResult<StateColumn> {
             let Ok(column) = states.get_item(name) else {
                 return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
             };
-            let column: Column = column.extract()?;
+            let column: StateColumn = column.extract()?;
             if column.as_array().len() == ids.len() {
                 Ok(column)
             } else {
-                let (found, wanted) = (column.as_array().len(), ids.len());
-                Err(PyValueError::new_err(format!("\"{name}\" has {found} values, \"id\" has {wanted}")))
+                let length = column.as_array().len();
+                Err(PyValueError::new_err(format!("\"{name}\" has {length} values, \"id\" has {}", ids.len())))
             }
         };
         let optional = |name: &str| states.contains(name)?.then(|| column(name)).transpose();
@@ -50,9 +51,9 @@ impl Frames {
         if !time.is_finite() {
             return Err(PyValueError::new_err(format!("time is {time}")));
         }
-        run.begin(time);
+        run.begin_step(time);
         self.steps += 1;
-        let value = |column: &Option<Column>, row: usize, default| {
+        let value = |column: &Option<StateColumn>, row: usize, default| {
             column.as_ref().map_or(default, |column| column.as_array()[row])
         };
         for (row, id) in ids.iter().enumerate() {
@@ -96,7 +97,7 @@ impl Frames {
         Ok(())
     }
 
-    /// The profile of all road users like this one.
+    /// The profile that all road users with these dimensions share.
     fn profile(&self, run: &mut Run, sumo: SumoType) -> PyResult<ProfileIndex> {
         let SumoType { length, width, decel, mass, .. } = sumo;
         let name = format!("{length} m x {width} m, {decel} m/s², {mass} kg");

@@ -1,4 +1,4 @@
-//! Single formulas on arrays: μ, contact and distance of rectangles.
+//! Single formulas on arrays: μ, and contact and distance of rectangles.
 
 use clap::ValueEnum;
 use closecall::braking::{self, Brakes, Braking, MuModel};
@@ -15,20 +15,20 @@ use pyo3::prelude::*;
 type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
 type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 
-/// The minimal collision distance of an ego and a foe in m; arrays broadcast as in NumPy.
+/// The minimal collision distance of an ego and a foe, in m; arrays broadcast as in NumPy.
 ///
 /// Args:
 ///     speed, foe_speed: m/s, 0 or more.
 ///     decel, foe_decel: braking decelerations in m/s², above 0; 9.0 by default.
-///     response_time: full speed until it is over, t1 + t2, in s; 1.05 by default.
+///     response_time: time t1 + t2 at full speed before braking begins, in s; 1.05 by default.
 ///     build_up: time t3 in which the deceleration builds up, in s; 0.1 by default.
-///     epsilon: redundancy in m; 0.5 by default.
-///     kind: "rear_end", "side" or "frontal": the cosine of the angle between the headings is 1, 0 or -1.
+///     epsilon: redundancy, in m; 0.5 by default.
+///     kind: "rear_end", "side" or "frontal", which sets the cosine of the angle between the headings to 1, 0 or -1.
 ///     model: "minimal", "at_rest" or "paper".
 ///     angle: the angle between the headings in rad, 0 to π, instead of the kind.
 ///
 /// Raises:
-///     ValueError: a value out of its range, which the message names.
+///     ValueError: a value is out of its range; the message names it.
 #[pyfunction]
 #[pyo3(signature = (
     speed, foe_speed, *, decel=None, foe_decel=None, response_time=None, build_up=None, epsilon=None,
@@ -126,7 +126,8 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 ///     n booleans.
 ///
 /// Raises:
-///     ValueError: not 5 columns, different numbers of rows, a value that is not finite, a negative dimension.
+///     ValueError: an array does not have 5 columns, the numbers of rows differ, a value is not finite, or a dimension is
+///         negative.
 #[pyfunction]
 pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
@@ -134,7 +135,7 @@ pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
-/// The smallest distance between rectangles in m, row by row; 0 where they touch or overlap.
+/// The smallest distance between rectangles, in m, row by row; 0 where they touch or overlap.
 ///
 /// Args and errors as for `touches`.
 #[pyfunction]
@@ -168,9 +169,10 @@ fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
         }
     }
     let rectangle = |row: numpy::ndarray::ArrayView1<f64>| {
-        // The axis is the heading's cosine and sine as they are, so that who checks this can form the same corners.
+        // The axis is exactly the cosine and sine of the heading, so that a check can compute the same corners.
         let (sine, cosine) = row[2].sin_cos();
-        let (centre, axis) = (Point::new(row[0], row[1]), Vector::new(cosine, sine));
+        let centre = Point::new(row[0], row[1]);
+        let axis = Vector::new(cosine, sine);
         Rectangle { centre, axis, half_length: row[3] / 2.0, half_width: row[4] / 2.0 }
     };
     Ok(a.rows().into_iter().zip(b.rows()).map(|(a, b)| (rectangle(a), rectangle(b))).collect())

@@ -1,76 +1,78 @@
-//! Ctrl-C, SIGTERM and SIGHUP (a terminal that is gone): they end a command at once as long as that has nothing to keep,
-//! and are told to it otherwise.
+//! Ctrl-C, SIGTERM and SIGHUP (the terminal has closed). They end a command at once while it has no results to keep;
+//! after that they are reported to it.
 
 use std::cell::Cell;
 
 use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 
-/// Who gets the signals: nobody, so that they end the process, or Python's handler of Ctrl-C, which keeps them until
-/// somebody asks.
+/// Switches the handling of the signals: they end the process, or Python's handler of Ctrl-C keeps them until the command
+/// asks.
 pub struct Interrupts<'py> {
     signals: Bound<'py, PyModule>,
-    /// The signals, each with its handler so far; not those which whoever started the process, or called, wants otherwise
-    /// than Python does.
+    /// The signals, each with its former handler. A signal whose handler is not Python's own was set by the caller, and is
+    /// left alone.
     handlers: Vec<(Bound<'py, PyAny>, Bound<'py, PyAny>)>,
     end: Bound<'py, PyAny>,
-    tell: Bound<'py, PyAny>,
-    is_told: Cell<bool>,
-    /// One that came while it was said who gets them.
-    has_one: Cell<bool>,
+    report: Bound<'py, PyAny>,
+    reports: Cell<bool>,
+    /// Whether a signal arrived while the handlers were being set.
+    has_pending: Cell<bool>,
 }
 
 impl<'py> Interrupts<'py> {
-    /// From now on they end the process.
+    /// From now on the signals end the process.
     pub fn new(py: Python<'py>) -> PyResult<Self> {
         let signals = py.import("signal")?;
-        let (end, tell) = (signals.getattr("SIG_DFL")?, signals.getattr("default_int_handler")?);
+        let end = signals.getattr("SIG_DFL")?;
+        let report = signals.getattr("default_int_handler")?;
         let mut handlers = Vec::new();
-        for (signal, pythons) in [("SIGINT", &tell), ("SIGTERM", &end), ("SIGHUP", &end)] {
-            // Not every system has all of them.
+        for (signal, pythons) in [("SIGINT", &report), ("SIGTERM", &end), ("SIGHUP", &end)] {
+            // Not every system has all three.
             let Ok(signal) = signals.getattr(signal) else { continue };
             let handler = signals.call_method1("getsignal", (&signal,))?;
-            // Those of signals are equal, not the same object.
+            // Equal handlers need not be the same object.
             if handler.eq(pythons)? {
                 handlers.push((signal, handler));
             }
         }
-        let interrupts = Self { signals, handlers, end, tell, is_told: Cell::new(true), has_one: Cell::new(false) };
+        let reports = Cell::new(true);
+        let interrupts = Self { signals, handlers, end, report, reports, has_pending: Cell::new(false) };
         interrupts.end_the_process();
         Ok(interrupts)
     }
 
-    /// From now on they end the process.
+    /// From now on the signals end the process.
     pub fn end_the_process(&self) {
-        if self.is_told.replace(false) {
+        if self.reports.replace(false) {
             self.set(|_| &self.end);
-            if self.has_one.take() {
+            if self.has_pending.take() {
                 let _ = self.signals.getattr("SIGINT").and_then(|it| self.signals.call_method1("raise_signal", (it,)));
             }
         }
     }
 
-    /// From now on they are told.
-    pub fn tell(&self) {
-        if !self.is_told.replace(true) {
-            self.set(|_| &self.tell);
+    /// From now on the signals are reported.
+    pub fn report(&self) {
+        if !self.reports.replace(true) {
+            self.set(|_| &self.report);
         }
     }
 
-    /// Whether there was one since it was asked last; they are told from now on.
+    /// Whether a signal has arrived since the last call; from now on they are reported.
     pub fn had_any(&self) -> bool {
-        self.tell();
+        self.report();
         let is_pending = self.signals.py().check_signals().is_err();
-        self.has_one.take() || is_pending
+        self.has_pending.take() || is_pending
     }
 
     fn set<'a>(&'a self, to: impl Fn(&'a Bound<'py, PyAny>) -> &'a Bound<'py, PyAny>) {
         for (signal, before) in &self.handlers {
             let set = || self.signals.call_method1("signal", (signal, to(before)));
-            // Another thread than the first may not set it, and does not get it.
+            // Only the main thread may set handlers, and only it gets signals.
             if set().is_err_and(|error| error.is_instance_of::<PyKeyboardInterrupt>(signal.py())) {
-                // Python told of one that was there already, and set nothing.
-                self.has_one.set(true);
+                // Python reported a signal that had arrived already, and set nothing.
+                self.has_pending.set(true);
                 let _ = set();
             }
         }

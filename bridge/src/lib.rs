@@ -1,7 +1,7 @@
-//! The Python module `closecall._closecall`: what it exports, as a list.
+//! The Python module `closecall._closecall` and the list of what it exports.
 //!
-//! The bridge moves data and decides nothing: [`pull`] takes road users out of libsumo or traci, the crate
-//! `closecall` finds the conflicts, [`paint`] shows them in sumo-gui.
+//! The bridge moves data and decides nothing: [`pull`] reads road users from libsumo or traci, the crate `closecall` finds
+//! the conflicts, [`paint`] shows them in sumo-gui.
 
 mod checker;
 mod error;
@@ -12,12 +12,14 @@ mod paint;
 mod provenance;
 mod pull;
 mod run;
+mod session;
+mod spent;
 mod start;
 mod sweep;
 
 use pyo3::prelude::*;
 
-/// What `import closecall` gets from Rust.
+/// What `import closecall` loads from Rust.
 #[pymodule]
 mod _closecall {
     #[pymodule_export]

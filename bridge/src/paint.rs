@@ -1,5 +1,5 @@
-//! Conflicts in sumo-gui: a vehicle takes the colour of its worst conflict's severity and a highlight ring of the
-//! kind's own colour, for as long as the conflict lasts; afterwards its former colour is back and the ring gone.
+//! Conflicts in sumo-gui. While a conflict lasts, a vehicle has the colour of its worst conflict's severity and a highlight
+//! ring in the colour of the kind; afterwards its former colour is restored and the ring removed.
 
 use std::collections::hash_map::Entry;
 
@@ -30,10 +30,10 @@ fn ring_of(kind: Kind) -> Colour {
     }
 }
 
-/// How much larger than a vehicle its ring is, in m.
+/// The distance between a vehicle and its ring, in m.
 const RING_MARGIN: f64 = 2.0;
 
-/// Who is painted, and how they looked before.
+/// The road users that are painted, and their former colours.
 pub struct Painter {
     source: Py<PyAny>,
     painted: FxHashMap<UserIndex, Painted>,
@@ -52,7 +52,7 @@ impl Painter {
         Self { source: source.clone().unbind(), painted: FxHashMap::default() }
     }
 
-    /// Paints those in conflict, and those no longer in conflict as they were.
+    /// Paints the road users in conflict and restores those that no longer are.
     pub fn paint(&mut self, py: Python, run: &Run) -> PyResult<()> {
         let worst = worst_of_each(run.alarms());
         let over = self.painted.keys().filter(|user| !worst.contains_key(user)).copied().collect::<Vec<_>>();
@@ -67,7 +67,7 @@ impl Painter {
         Ok(())
     }
 
-    /// Everything as it was.
+    /// Restores all colours.
     pub fn clear(&mut self, py: Python) -> PyResult<()> {
         let all = self.painted.keys().copied().collect::<Vec<_>>();
         all.into_iter().try_for_each(|user| self.restore(py, user))
@@ -92,7 +92,10 @@ impl Painter {
             domain.call_method1("highlight", (&id, ring_of(kind), size))?;
         }
         match self.painted.entry(user) {
-            Entry::Occupied(mut known) => (known.get_mut().severity, known.get_mut().kind) = (severity, kind),
+            Entry::Occupied(mut known) => {
+                known.get_mut().severity = severity;
+                known.get_mut().kind = kind;
+            }
             Entry::Vacant(entry) => {
                 let former = domain.call_method1("getColor", (&id,))?.unbind();
                 entry.insert(Painted { id: id.clone(), domain: name, former, severity, kind });
@@ -105,15 +108,15 @@ impl Painter {
     fn restore(&mut self, py: Python, user: UserIndex) -> PyResult<()> {
         let Some(painted) = self.painted.remove(&user) else { return Ok(()) };
         let domain = self.source.bind(py).getattr(painted.domain)?;
-        // Who has left the simulation has taken its colour along, but its ring's polygon stays.
-        let there = domain.call_method0("getIDList")?.contains(&painted.id)?;
-        if there {
+        // A vehicle that has left no longer has a colour, but the polygon of its ring stays.
+        let is_present = domain.call_method0("getIDList")?.contains(&painted.id)?;
+        if is_present {
             domain.call_method1("setColor", (&painted.id, painted.former))?;
         }
         if painted.domain == "vehicle" { self.remove_ring(py, &painted.id) } else { Ok(()) }
     }
 
-    /// SUMO draws a ring as polygon `<vehicle>_hl0`.
+    /// Removes the polygon `<vehicle>_hl0`, as which SUMO draws a ring.
     fn remove_ring(&self, py: Python, id: &str) -> PyResult<()> {
         let polygons = self.source.bind(py).getattr("polygon")?;
         let ring = format!("{id}_hl0");
@@ -124,7 +127,7 @@ impl Painter {
     }
 }
 
-/// The worst of each road user's conflicts, of equal ones that of the first kind.
+/// The worst of each road user's conflicts; of equally severe ones, that of the first kind.
 fn worst_of_each(alarms: impl Iterator<Item = Alarm>) -> FxHashMap<UserIndex, (Severity, Kind)> {
     let mut worst: FxHashMap<UserIndex, (Severity, Kind)> = FxHashMap::default();
     for Alarm { ego, foe, severity, kind } in alarms {

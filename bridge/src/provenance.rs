@@ -1,4 +1,4 @@
-//! What a run was made from: SUMO's version and seed, the files that it reads.
+//! What a run was made from: SUMO's version and seed, and the files that it reads.
 
 use std::path::{Path, PathBuf};
 
@@ -12,39 +12,40 @@ use pyo3::prelude::*;
 use crate::error::exception;
 use crate::pull::option;
 
-/// The files that SUMO names itself.
-pub struct Files {
+/// The input files that SUMO reports.
+pub struct SumoFiles {
     pub net: Option<PathBuf>,
-    /// Routes and additional files.
+    /// Route and additional files.
     pub others: Vec<PathBuf>,
 }
 
-impl Files {
-    /// All of them, beside the configuration.
+impl SumoFiles {
+    /// The configuration and all of them.
     pub fn with(&self, scenario: &Path) -> Vec<PathBuf> {
         let mut all =
             [Some(scenario), self.net.as_deref()].into_iter().flatten().map(Path::to_owned).collect::<Vec<_>>();
         all.extend_from_slice(&self.others);
-        // A script may have named the net alone.
+        // In a script without a configuration, the net is the scenario.
         all.dedup();
         all
     }
 }
 
 /// The files that a simulation reads.
-pub fn files(sumo: &Bound<PyAny>) -> PyResult<Files> {
+pub fn files(sumo: &Bound<PyAny>) -> PyResult<SumoFiles> {
     let named = |name: &str| -> PyResult<Vec<PathBuf>> {
         let names = option(sumo, name)?;
         let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
         Ok(names.map(PathBuf::from).collect())
     };
     let net = named("net-file")?.into_iter().next();
-    let (routes, additional) = (named("route-files")?, named("additional-files")?);
-    let others = routes.into_iter().chain(additional).filter(|path| path.is_file()).collect();
-    Ok(Files { net, others })
+    let mut others = named("route-files")?;
+    others.extend(named("additional-files")?);
+    let others = others.into_iter().filter(|path| path.is_file()).collect();
+    Ok(SumoFiles { net, others })
 }
 
-/// The record of a run that begins, its inputs and SUMO's words left empty; without `sumo`, nothing is simulated.
+/// The record of a run that begins, without its inputs and SUMO's command line. Nothing is simulated without `sumo`.
 pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options: &Options) -> PyResult<RunRecord> {
     let version = |sumo: &Bound<PyAny>| sumo.call_method0("getVersion")?.get_item(1)?.extract::<String>();
     let seed = |sumo: &Bound<PyAny>| match option(sumo, "random").ok()?.as_str() {
@@ -67,7 +68,7 @@ pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options
     })
 }
 
-/// The same of a simulation that a script has started, or of its own frames on this net.
+/// The record for a simulation that a script has started, or for frames of its own on this net.
 pub fn record_of_script(
     sumo: Option<&Bound<PyAny>>,
     net: Option<PathBuf>,
@@ -84,7 +85,7 @@ pub fn record_of_script(
         }
         None => (net.clone().unwrap_or_default(), net.into_iter().collect()),
     };
-    // traci's simulation may run elsewhere.
+    // The simulation of traci may run on another machine.
     let inputs = paths.iter().filter(|path| path.is_file()).map(|path| Input::of(path));
     let inputs = inputs.collect::<closecall::Result<_>>().map_err(exception)?;
     Ok(RunRecord { inputs, ..record(sumo, scenario, run, options)? })

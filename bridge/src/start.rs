@@ -1,4 +1,4 @@
-//! SUMO started and closed, and its net read meanwhile.
+//! Starts and closes SUMO; the net is read meanwhile.
 
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::RecvTimeoutError;
@@ -14,21 +14,21 @@ use pyo3::prelude::*;
 
 use crate::error::message;
 
-/// sumo-gui that does not close within this time never will.
+/// A sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
 
-/// The net that the configuration names, if it does, and its path: read by another thread while SUMO starts.
+/// The net that the configuration names, and its path. Another thread reads it while SUMO starts.
 pub struct NetAhead(JoinHandle<Option<(PathBuf, Result<Net>)>>);
 
 impl NetAhead {
-    /// Begins to read it, where there is a thread for that.
+    /// Begins to read the net if the request allows a second thread.
     pub fn begin(request: &RunRequest) -> Option<Self> {
         let configuration = request.scenario.clone();
         let read = move || sumo_files::net_of(&configuration).map(|path| (path.clone(), Net::read(&path)));
         (usize::from(request.threads) > 1).then(|| Self(std::thread::spawn(read)))
     }
 
-    /// The net at this path, that one or another: SUMO's options may name another than the configuration.
+    /// The net at this path. It is read now if SUMO's options name another net than the configuration does.
     pub fn finish(ahead: Option<Self>, path: &Path) -> Result<Net> {
         match ahead.map(|Self(net)| net.join()) {
             Some(Ok(Some((read, net)))) if read == path => net,
@@ -37,7 +37,7 @@ impl NetAhead {
     }
 }
 
-/// SUMO with the request's scenario, ready for its first step.
+/// Starts SUMO with the scenario, ready for its first step.
 pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
     let refused = |error: PyErr| {
         if error.is_instance_of::<PyImportError>(py) {
@@ -55,12 +55,12 @@ pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, Py
     starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
 }
 
-/// Closes SUMO; whatever went wrong is told already.
+/// Closes SUMO. Errors are ignored, because what matters is reported by now.
 pub fn close(py: Python, gui: bool) {
-    let (closed, waits) = std::sync::mpsc::channel::<()>();
+    let (closed, waiting) = std::sync::mpsc::channel::<()>();
     let watch = gui.then(|| {
         std::thread::spawn(move || {
-            if waits.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
+            if waiting.recv_timeout(CLOSES_WITHIN) == Err(RecvTimeoutError::Timeout) {
                 eprintln!("closecall: sumo-gui does not close; the log is complete");
                 std::process::exit(1);
             }

@@ -1,25 +1,25 @@
-//! `closecall sweep`: tasks go to Python's Dask, what became of them comes back.
+//! `closecall sweep`: hands the tasks to Dask and reports their results.
 
 use std::path::{Path, PathBuf};
 
 use closecall::batch::sweep::Task;
-use closecall::cli::{Ended, Workers};
+use closecall::cli::{ReportEnd, Workers};
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 
-/// Makes the log of a task's run a part of the sweep's data set.
+/// Adds the log of a task's run to the sweep's data set.
 #[pyfunction]
 pub fn finish_run(py: Python, task: &str, log: PathBuf) -> PyResult<()> {
     let task: Task = serde_json::from_str(task).map_err(|error| PyValueError::new_err(error.to_string()))?;
     py.detach(|| task.finish(&log)).map_err(exception)
 }
 
-/// Has tasks done by `closecall.sweep`.
-pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut Ended) -> Result<()> {
-    let said = |error: PyErr| {
+/// Has `closecall.sweep` do the tasks.
+pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd) -> Result<()> {
+    let failed = |error: PyErr| {
         if error.is_instance_of::<PyKeyboardInterrupt>(py) {
             Error::Stopped
         } else if error.is_instance_of::<PyImportError>(py) {
@@ -38,11 +38,11 @@ pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task],
         Workers::Local(workers) => (*workers, None),
         Workers::Scheduler(address) => (0, Some(address)),
     };
-    let results = py.import("closecall.sweep").map_err(said)?;
-    let results = results.call_method1("results", (tasks, folder, workers, scheduler)).map_err(said)?;
-    for result in results.try_iter().map_err(said)? {
+    let results = py.import("closecall.sweep").map_err(failed)?;
+    let results = results.call_method1("results", (tasks, folder, workers, scheduler)).map_err(failed)?;
+    for result in results.try_iter().map_err(failed)? {
         let result = result.and_then(|result| result.extract::<(String, Option<String>)>());
-        let (name, error) = result.map_err(said)?;
+        let (name, error) = result.map_err(failed)?;
         ended(&name, error.as_deref());
     }
     Ok(())

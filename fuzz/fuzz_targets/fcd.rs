@@ -5,12 +5,12 @@
 use std::path::Path;
 
 use closecall::input::replay::recording::Recording;
-use closecall::input::replay::rows::Step;
+use closecall::input::replay::rows::RecordedStep;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
     let Ok(mut recording) = Recording::parse(Path::new("fuzz"), bytes) else { return };
-    let mut step = Step::default();
+    let mut step = RecordedStep::default();
     while let Ok(true) = recording.next_step(&mut step) {
         assert!(step.time.is_finite());
         assert!(step.rows().iter().all(|row| !recording.id(row.user).is_empty()));

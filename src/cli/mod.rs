@@ -1,8 +1,9 @@
 //! The command line: parse, call the library, print.
 //!
-//! `closecall run` needs Python, which this crate does not know: whoever calls [`main`] passes in how to run a
-//! simulation ([`Sumo`]), or nothing.
+//! `closecall run` needs Python, which this crate does not know. The caller of [`main`] may pass in how to run a simulation
+//! ([`Sumo`]).
 
+mod ending;
 mod files;
 mod mu;
 mod parse;
@@ -27,26 +28,26 @@ use std::path::Path;
 
 use crate::batch::regress::Scenario;
 use crate::{Error, Result};
-use parse::{Command, Stop, command, parse, parse_run, usage};
+use parse::{Command, ParseError, command, parse, parse_run, usage};
 
-pub use sumo::{Distribute, Ended, RunRequest, Simulate, Sumo, Workers};
+pub use sumo::{Distribute, ReportEnd, RunRequest, Simulate, Sumo, Workers};
 
-/// Runs the command that `words` (the program's name first) say; returns the exit status.
+/// Runs the command line `words`, which begins with the program's name; returns the exit status.
 ///
-/// Messages go to standard error, one clear line each, results to standard output.
+/// Results go to standard output, messages to standard error, one line each.
 pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
     let words = words.into_iter().collect::<Vec<_>>();
     let cli = match parse(words) {
         Ok(cli) => cli,
-        Err(Stop::Clap(error)) => {
+        Err(ParseError::Clap(error)) => {
             if error.use_stderr() {
                 return failed(&usage(&error));
             }
-            // Nothing can be done where even this cannot be printed.
+            // If even this cannot be printed, there is nothing else to do.
             let _ = error.print();
             return 0;
         }
-        Err(Stop::Error(error)) => return failed(&error),
+        Err(ParseError::File(error)) => return failed(&error),
     };
     let done = match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),

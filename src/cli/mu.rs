@@ -1,4 +1,4 @@
-//! `closecall mu`: the minimal collision distance of two road users, by all three models.
+//! `closecall mu`: the minimal collision distance of two road users by all three models.
 
 use clap::{Args, ValueEnum};
 
@@ -10,42 +10,42 @@ use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, not_negative, positive}
 use crate::traffic::sumo_type::SumoType;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
-/// Two road users that brake.
+/// Two braking road users.
 #[derive(Args)]
 pub struct MuArgs {
-    /// The ego's speed in m/s.
+    /// Speed of the ego, in m/s.
     #[arg(long, value_name = "V", value_parser = not_negative)]
     speed: MetrePerSecond,
-    /// The foe's speed in m/s.
+    /// Speed of the foe, in m/s.
     #[arg(long, value_name = "V", value_parser = not_negative)]
     foe_speed: MetrePerSecond,
-    /// The ego's deceleration in m/s² (SUMO's emergencyDecel of a car).
+    /// Deceleration of the ego, in m/s². The default is SUMO's emergencyDecel of a car.
     #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
     decel: MetrePerSecondSquared,
-    /// The foe's deceleration in m/s².
+    /// Deceleration of the foe, in m/s².
     #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
     foe_decel: MetrePerSecondSquared,
-    /// Response time t1 + t2 of both in s.
+    /// Response time t1 + t2 of both, in s.
     #[arg(long, value_name = "T", default_value_t = RESPONSE, value_parser = not_negative)]
     response_time: Second,
-    /// Build-up time t3 of both in s.
+    /// Time t3 in which the deceleration of both builds up, in s.
     #[arg(long, value_name = "T3", default_value_t = BUILD_UP, value_parser = not_negative)]
     build_up: Second,
-    /// Redundancy ε in m.
+    /// Redundancy ε, in m.
     #[arg(long, value_name = "E", default_value_t = EPSILON, value_parser = not_negative)]
     epsilon: Metre,
-    /// Kind, which gives σ = cos α: 1 for rear_end, 0 for side, −1 for frontal.
+    /// Kind of encounter, which sets σ = cos α: 1 for rear_end, 0 for side, −1 for frontal.
     #[arg(long, value_enum, default_value = "rear_end")]
     kind: Kind,
-    /// Angle α between the headings in rad, instead of the kind.
+    /// Angle α between the headings, in rad; replaces the kind.
     #[arg(long, value_name = "RAD", value_parser = angle)]
     angle: Option<Radian>,
-    /// Print JSON.
+    /// Print the result as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Prints the three models.
+/// Prints μ by all three models.
 pub fn run(arguments: &MuArgs) -> Result<()> {
     let brakes =
         Brakes { response: arguments.response_time, build_up: arguments.build_up, deceleration: arguments.decel };

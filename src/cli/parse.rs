@@ -1,4 +1,4 @@
-//! The command line as clap reads it, with the settings of a TOML file.
+//! The command line as clap reads it, with the options of a TOML file.
 
 use std::ffi::OsString;
 
@@ -20,50 +20,50 @@ pub(super) struct Cli {
 
 #[derive(Subcommand)]
 pub(super) enum Command {
-    /// Run a SUMO scenario with the checker attached
+    /// Run a SUMO scenario and check every step for conflicts
     #[command(args_override_self = true)]
     Run(Box<run::RunArgs>),
-    /// Run a scenario with many seeds and options, in parallel, into one data set
+    /// Run a scenario with many seeds and options in parallel and collect the conflicts in one data set
     Sweep(Box<sweep::SweepArgs>),
-    /// Check a recording: SUMO's fcd-output, in XML or CSV, also gzipped
+    /// Check a recording (SUMO's fcd-output) for conflicts
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
-    /// Run scenarios and compare the conflicts with those blessed
+    /// Run scenarios and compare their conflicts with the blessed ones
     Regress(regress::RegressArgs),
-    /// Print the minimal collision distance μ of two road users, by all three models
+    /// Print the minimal collision distance μ of two road users by all three models
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
     /// Check stiff and extreme cases against exact references
     #[cfg(feature = "study")]
     Stress(stress::StressArgs),
-    /// Measure error against run time, for every choice that closecall makes
+    /// Measure error against run time for every choice that closecall makes
     #[cfg(feature = "study")]
     Study(study::StudyArgs),
-    /// Statistics of logs: rates, quantiles, the worst conflicts, before and after
+    /// Print statistics of logs: rates, quantiles, the worst conflicts, before and after
     Stats(stats::StatsArgs),
-    /// Make one HTML page of logs: map, time line, distributions, hot spots, the worst conflicts
+    /// Make an HTML page from logs: map, time line, distributions, hot spots, the worst conflicts
     #[command(args_override_self = true)]
     Report(report::ReportArgs),
-    /// Draw the same charts as PNG or SVG, for papers
+    /// Draw the charts of the report as PNG or SVG files
     #[command(args_override_self = true)]
     Plot(plot::PlotArgs),
 }
 
 /// Why a command line does not lead to a command.
-pub(super) enum Stop {
-    /// clap's own: help, version, a usage error.
+pub(super) enum ParseError {
+    /// clap's help, version or usage error.
     Clap(clap::Error),
-    /// The TOML file's.
-    Error(Error),
+    /// The TOML file cannot be used.
+    File(Error),
 }
 
-impl From<clap::Error> for Stop {
+impl From<clap::Error> for ParseError {
     fn from(error: clap::Error) -> Self {
         Self::Clap(error)
     }
 }
 
-/// clap's command; a negative number is a value, which the option's own check may refuse.
+/// The clap command. A negative number counts as a value, so that the option's own check can refuse it.
 pub(super) fn command() -> clap::Command {
     Cli::command().mut_subcommands(|command| {
         command.mut_args(|argument| {
@@ -73,19 +73,20 @@ pub(super) fn command() -> clap::Command {
     })
 }
 
-/// Parses the words; those of a TOML file that they name stand before them, so that what was typed wins.
-pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
+/// Parses the words. The options of a TOML file come before them, so that what was typed wins.
+pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, ParseError> {
     let matches = command().try_get_matches_from(&words)?;
     let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
     let known = settings::long_options(&command(), name);
     let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
-        Ok(Some(path)) => settings::read(&command(), path).map_err(Stop::Error)?,
+        Ok(Some(path)) => settings::read(&command(), path).map_err(ParseError::File)?,
         _ => return Ok(Cli::from_arg_matches(&matches)?),
     };
     let place = words.iter().position(|word| word == name).map_or(words.len(), |place| place + 1);
-    let here = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
+    let is_known = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
     let (before, after) = words.split_at(place);
-    let all = before.iter().cloned().chain(file.words.iter().filter(here).map(OsString::from)).chain(after.to_vec());
+    let all =
+        before.iter().cloned().chain(file.words.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
     let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
     match &mut cli.command {
         Command::Run(arguments) => arguments.options.types = file.types,
@@ -95,23 +96,23 @@ pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, Stop> {
     Ok(cli)
 }
 
-/// clap's message in one line, without the usage.
+/// clap's message as one line, without the usage.
 pub(super) fn usage(error: &clap::Error) -> Error {
     let text = error.to_string();
-    let said = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
-    let line = said.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ").replace(" tip: ", "; tip: ");
+    let parts = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
+    let line = parts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ").replace(" tip: ", "; tip: ");
     value(line.trim_start_matches("error: "))
 }
 
-/// Parses the words of `closecall run`, which begin with the program's name.
+/// Parses a command line of `closecall run`, which begins with the program's name.
 ///
 /// # Errors
-/// clap's in one line; those of the TOML file that the words name.
+/// clap's error as one line, and the errors of the TOML file.
 pub(super) fn parse_run(words: Vec<OsString>) -> Result<run::RunArgs> {
     match parse(words) {
         Ok(Cli { command: Command::Run(arguments) }) => Ok(*arguments),
         Ok(_) => Err(value("these are not the words of closecall run")),
-        Err(Stop::Clap(error)) => Err(usage(&error)),
-        Err(Stop::Error(error)) => Err(error),
+        Err(ParseError::Clap(error)) => Err(usage(&error)),
+        Err(ParseError::File(error)) => Err(error),
     }
 }

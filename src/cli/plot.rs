@@ -1,4 +1,4 @@
-//! `closecall plot`: the report's charts as pictures.
+//! `closecall plot`: the charts of the report as image files.
 
 use std::path::PathBuf;
 
@@ -8,27 +8,27 @@ use super::say::say;
 use crate::Result;
 use crate::analysis::plot::{self, Format};
 
-/// Which logs, and where the pictures go.
+/// Which logs to draw, and where to.
 #[derive(Args)]
 pub struct PlotArgs {
-    /// Folders of logs: each a log itself, or a folder with logs in it.
+    /// Log folders, or folders that contain log folders.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// Folder of the pictures.
+    /// Folder for the images.
     #[arg(short, long, value_name = "FOLDER", default_value = "plots")]
     out: PathBuf,
-    /// Pixels or lines.
+    /// File format of the images.
     #[arg(long, value_enum, default_value = "svg")]
     format: Format,
-    /// The net for the map [default: where the first log says that it was].
+    /// Net for the map [default: the net file named in the first log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
-    /// Print nothing but errors.
+    /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// Draws the pictures and names them.
+/// Draws the charts and prints the files' names.
 pub fn run(arguments: &PlotArgs) -> Result<()> {
     let files = plot::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, arguments.format)?;
     if !arguments.quiet {

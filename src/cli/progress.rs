@@ -1,4 +1,4 @@
-//! The progress bar on a terminal: simulated time, vehicles, conflicts so far, real-time factor. None in a pipe.
+//! The progress bar: simulated time, road users, conflicts so far, real-time factor. Only on a terminal.
 
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -7,10 +7,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::util::units::Second;
 
-/// How often the bar is drawn anew.
+/// Time between two redraws of the bar.
 const PERIOD: Duration = Duration::from_millis(100);
 
-/// Shows how far a run is.
+/// Shows the progress of a run.
 pub struct Progress {
     bar: Option<ProgressBar>,
     begin: Second,
@@ -19,7 +19,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A bar from `begin` to `end` (unknown: none) if standard error is a terminal and it is wanted.
+    /// A bar from `begin` to `end`, or a spinner if the end is unknown; nothing unless wanted and on a terminal.
     pub fn new(begin: Second, end: Option<Second>, wanted: bool) -> Self {
         let bar = (wanted && std::io::stderr().is_terminal()).then(|| match end {
             Some(end) => {
@@ -32,8 +32,8 @@ impl Progress {
         Self { bar, begin, started: now, drawn: now - PERIOD }
     }
 
-    /// Shows a step, if it is time to.
-    pub fn show(&mut self, time: Second, vehicles: usize, conflicts: u64) {
+    /// Shows a step if a redraw is due.
+    pub fn show(&mut self, time: Second, road_users: usize, conflicts: u64) {
         let Some(bar) = &self.bar else { return };
         let now = Instant::now();
         if now - self.drawn < PERIOD {
@@ -42,7 +42,9 @@ impl Progress {
         self.drawn = now;
         let factor = (time - self.begin) / (now - self.started).as_secs_f64().max(1e-3);
         bar.set_position((time - self.begin).max(0.0) as u64);
-        bar.set_message(format!("{time:.0} s, {vehicles} road users, {conflicts} conflicts, {factor:.0} × real time"));
+        bar.set_message(format!(
+            "{time:.0} s, {road_users} road users, {conflicts} conflicts, {factor:.0} × real time"
+        ));
     }
 }
 

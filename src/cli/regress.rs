@@ -1,4 +1,4 @@
-//! `closecall regress`: scenarios in, reports out.
+//! `closecall regress`: runs scenarios and reports what changed.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,37 +12,37 @@ use crate::Result;
 use crate::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
 use crate::util::threads::processors;
 
-/// Scenarios and how to compare them.
+/// Which scenarios to run, and how to compare them.
 #[derive(Args)]
 pub struct RegressArgs {
-    /// Folders of scenarios, or folders that hold such folders.
+    /// Scenario folders, or folders that contain scenario folders.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// Make what is found now what is expected.
+    /// Make the results of this run the expected ones.
     #[arg(long)]
     bless: bool,
-    /// Write the result as JUnit XML too.
+    /// Write the results as JUnit XML as well.
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
-    /// Runs at once [default: one per processor].
+    /// Runs at the same time [default: one per processor].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     jobs: Option<u16>,
-    /// Only the scenario of this name; may be given several times.
+    /// Run only the scenario of this name; may be repeated.
     #[arg(long, value_name = "NAME", action = clap::ArgAction::Append)]
     only: Vec<String>,
-    /// Other seeds than the scenarios' own; compared by statistics then.
+    /// Seeds to use instead of the scenarios' own; the comparison is then statistical.
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     seeds: Vec<u32>,
-    /// Keep the logs of all runs in this folder.
+    /// Folder in which to keep the logs of all runs.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Show every difference, not only the first ten of a sort.
+    /// Show all differences, not only the first ten of each sort.
     #[arg(long)]
     all: bool,
 }
 
-/// Runs the scenarios and prints their reports; returns the exit status. `known` are the long options that a scenario's
-/// settings may name.
+/// Runs the scenarios and prints their reports; returns the exit status. A scenario's settings may name the `known` long
+/// options.
 pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Result<u8> {
     let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
     let mut folders = Vec::new();

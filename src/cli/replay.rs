@@ -1,50 +1,53 @@
-//! `closecall replay`: the same checks on a recording; no SUMO is needed.
+//! `closecall replay`: the same checks on a recording; SUMO is not needed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
 
+use super::ending;
 use super::files::kept;
 use super::progress::Progress;
-use super::say::say;
 use super::sumo::Sumo;
 use crate::input::replay::Replay;
 use crate::options::Options;
-use crate::output::formats::{OutputFiles, Outputs};
+use crate::output::formats::OutputFiles;
 use crate::output::input_hash::Input;
-use crate::output::log::Log;
 use crate::output::record::{RunRecord, Versions};
 use crate::output::summary::Summary;
 use crate::run::Run;
+use crate::run::recorded::{Ending, RecordedRun};
 use crate::traffic::net::Net;
 use crate::{Error, Result};
 
 /// A recording and how to check it.
 #[derive(Args)]
 pub struct ReplayArgs {
-    /// SUMO's fcd-output: XML, CSV, or either gzipped.
+    /// Recording to check: SUMO's fcd-output as XML or CSV, also gzipped.
     #[arg(value_name = "FCD")]
     recording: PathBuf,
-    /// The net on which it was recorded.
+    /// Net on which the recording was made.
     #[arg(short = 'n', long, value_name = "NET")]
     net: PathBuf,
-    /// Route and additional files with the vehicle types; others are SUMO's own.
+    /// Route and additional files that define the vehicle types; types they do not define are SUMO's default ones.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
-    /// The recording is of SUMO's sublane model (--lateral-resolution): road users move to the side within their lane.
+    /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Folder of the log [default: closecall-out beside the recording].
+    /// Folder for the log [default: closecall-out next to the recording].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// TOML file of options.
+    /// TOML file with options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Threads that look at the pairs of a step: worth more than one where there are thousands of road users.
+    /// Threads that test the pairs of a step. More than one pays off with thousands of road users.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
-    /// Print nothing but errors.
+    /// List the tests that were skipped because they could not change the result, and why.
+    #[arg(long)]
+    explain: bool,
+    /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
@@ -56,60 +59,57 @@ pub struct ReplayArgs {
 /// Checks the recording and prints the summary.
 pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let options = arguments.options.clone().checked()?;
-    let recording = &arguments.recording;
-    let beside = recording.parent().unwrap_or(Path::new("")).join("closecall-out");
-    let out = arguments.out.unwrap_or(beside);
-    arguments.outputs.check(&kept(arguments.config, &options, &out))?;
+    let folder = arguments.recording.parent().unwrap_or(Path::new(""));
+    let out = arguments.out.clone().unwrap_or_else(|| folder.join("closecall-out"));
+    arguments.outputs.check(&kept(arguments.config.clone(), &options, &out))?;
     let net = Arc::new(Net::read(&arguments.net)?);
-    let mut replay = Replay::open(recording, &arguments.route_files, &net, &options)?;
-    let mut run = Run::new(&options, Some(net.clone()))?;
+    let mut replay = Replay::open(&arguments.recording, &arguments.route_files, &net, &options)?;
+    let mut run = Run::new(&options, Some(net))?;
     run.set_threads(arguments.threads.into());
     run.set_fixed_routes(true);
-    if arguments.sublane {
-        run.set_sublane(true);
+    run.set_sublane(arguments.sublane);
+    run.drop_closed_conflicts();
+    let record = record(&arguments, options)?;
+    // Interrupts are caught from the first question on, so it is asked only once there is something to lose.
+    let mut never = || false;
+    let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
+    let mut recorded = RecordedRun::open(run, record, &out, &arguments.outputs)?;
+    let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.quiet);
+    let summary = recorded.close(Ending {
+        error: ended.as_ref().err().map(ToString::to_string),
+        remarks: replay.remark().into_iter().collect(),
+        ..Ending::default()
+    })?;
+    if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
+        ending::print(&summary, &out, arguments.explain)?;
     }
-    let files = [recording.clone(), arguments.net.clone()].into_iter().chain(arguments.route_files.clone());
-    let mut record = RunRecord {
+    ended
+}
+
+/// The record of a replay that begins.
+fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
+    let files = [&arguments.recording, &arguments.net].into_iter().chain(&arguments.route_files);
+    Ok(RunRecord {
         versions: Versions::with_sumo(None),
-        scenario: recording.clone(),
+        scenario: arguments.recording.clone(),
         seed: None,
         step_length: None,
         sublane: arguments.sublane,
         options,
         sumo_words: Vec::new(),
-        inputs: files.map(|path| Input::of(&path)).collect::<Result<_>>()?,
+        inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,
         complete: false,
         error: None,
         summary: Summary::default(),
-    };
-    // Only who would lose what was found asks.
-    let mut interrupted = || false;
-    let interrupted = sumo.map_or(&mut interrupted as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
-    let outputs = Outputs::create(&arguments.outputs, Some(&net), &record.inputs)?;
-    let log = Log::create(&out, arguments.options.log_encounters)?;
-    log.write_record(&record)?;
-    run.log_to(log, false);
-    run.write_to(outputs);
-    let ended = steps(&mut replay, &mut run, interrupted, arguments.quiet);
-    record.summary = run.finish(Vec::new())?;
-    record.summary.remarks.extend(replay.remark());
-    record.complete = ended.is_ok();
-    record.error = ended.as_ref().err().map(ToString::to_string);
-    if let Some(log) = run.take_log() {
-        log.write_record(&record)?;
-    }
-    if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        say(format_args!("{}", record.summary))?;
-        say(format_args!("log in {}\n", out.display()))?;
-    }
-    ended
+    })
 }
 
-fn steps(replay: &mut Replay, run: &mut Run, interrupted: &mut dyn FnMut() -> bool, quiet: bool) -> Result<()> {
+/// Checks every step.
+fn check(replay: &mut Replay, run: &mut Run, interrupted: &mut dyn FnMut() -> bool, quiet: bool) -> Result<()> {
     let mut progress = None;
     while let Some(time) = replay.next(run)? {
         let progress = progress.get_or_insert_with(|| Progress::new(time, None, !quiet));
-        progress.show(time, replay.road_users(), run.conflicts_so_far());
+        progress.show(time, replay.road_users(), run.closed_conflicts());
         if interrupted() {
             return Err(Error::Interrupted { time });
         }

@@ -9,24 +9,24 @@ use crate::Result;
 use crate::analysis::report;
 use crate::util::units::counted;
 
-/// Which logs, and where the page goes.
+/// Which logs to show, and where to write the page.
 #[derive(Args)]
 pub struct ReportArgs {
-    /// Folders of logs: each a log itself, or a folder with logs in it.
+    /// Log folders, or folders that contain log folders.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// The page.
+    /// HTML file to write.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
     out: PathBuf,
-    /// The net for the map [default: where the first log says that it was].
+    /// Net for the map [default: the net file named in the first log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
-    /// Print nothing but errors.
+    /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
 }
 
-/// Makes the page and says how large it is.
+/// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let made = report::write(&arguments.folders, arguments.net.as_deref(), &arguments.out)?;
     if !arguments.quiet {

@@ -1,11 +1,11 @@
-//! `closecall run`: what is asked for, handed to whoever can run SUMO.
+//! `closecall run`: checks the arguments and hands them to the bridge, which runs SUMO.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::ending;
 use super::files::kept;
-use super::say::say;
 use super::sumo::{RunRequest, Sumo, no_sumo};
 use crate::options::{Options, not_negative, positive};
 use crate::output::formats::OutputFiles;
@@ -18,42 +18,45 @@ pub struct RunArgs {
     /// SUMO configuration file.
     #[arg(value_name = "CONFIG", required_unless_present = "configuration_file")]
     scenario: Option<PathBuf>,
-    /// The same, as SUMO spells it.
+    /// SUMO configuration file, under SUMO's own option name.
     #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
     configuration_file: Option<PathBuf>,
-    /// Show the run in sumo-gui, conflicts painted.
+    /// Show the run in sumo-gui and paint the conflicts.
     #[arg(long)]
     gui: bool,
-    /// Folder of the log [default: closecall-out beside the scenario].
+    /// Folder for the log [default: closecall-out next to the scenario].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// First simulated second.
+    /// Simulated time at which the run begins, in s.
     #[arg(short = 'b', long, value_name = "S", value_parser = not_negative)]
     begin: Option<Second>,
-    /// Simulated second at which the run ends.
+    /// Simulated time at which the run ends, in s.
     #[arg(short = 'e', long, value_name = "S", value_parser = not_negative)]
     end: Option<Second>,
-    /// SUMO's random seed.
+    /// Random seed for SUMO.
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
-    /// Length of a step in s.
+    /// Length of a simulation step, in s.
     #[arg(long, value_name = "S", value_parser = positive)]
     step_length: Option<Second>,
-    /// TOML file of options.
+    /// TOML file with options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// 2: accurate tests, events and log beside SUMO's next step, more: with all but SUMO's own; 1: after it, for many
-    /// runs at once.
+    /// Threads, SUMO's own included. With 2, closecall works while SUMO computes its next step; use 1 when running many
+    /// simulations at once.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
-    /// Print nothing but errors.
+    /// List the tests that were skipped because they could not change the result, and the time each part took.
+    #[arg(long)]
+    explain: bool,
+    /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
     outputs: OutputFiles,
     #[command(flatten)]
     pub(super) options: Options,
-    /// Options for SUMO itself.
+    /// Options passed on to SUMO.
     #[arg(last = true, value_name = "SUMO OPTIONS")]
     sumo_options: Vec<String>,
 }
@@ -61,25 +64,25 @@ pub struct RunArgs {
 /// Runs the scenario and prints its summary.
 pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let Some(sumo) = sumo else { return no_sumo() };
+    let explain = arguments.explain;
     let request = request(arguments)?;
     let summary = (sumo.simulate)(&request)?;
     if !request.quiet {
-        say(format_args!("{summary}"))?;
-        say(format_args!("log in {}\n", request.out.display()))?;
+        ending::print(&summary, &request.out, explain)?;
     }
     Ok(())
 }
 
-/// What is asked for, checked as far as that can be done before SUMO starts.
+/// The request for the bridge, with everything checked that can be before SUMO starts.
 pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
     let scenario = arguments.configuration_file.or(arguments.scenario).unwrap_or_default();
-    // Opened here for the operating system's own words on why it cannot be.
+    // Opened here so that an error carries the operating system's own message.
     std::fs::File::open(&scenario).map_err(|source| Error::file(&scenario, source))?;
     if scenario.is_dir() {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
     }
-    let beside = scenario.parent().unwrap_or(Path::new("")).join("closecall-out");
-    let out = arguments.out.unwrap_or(beside);
+    let folder = scenario.parent().unwrap_or(Path::new(""));
+    let out = arguments.out.unwrap_or_else(|| folder.join("closecall-out"));
     let options = arguments.options.checked()?;
     arguments.outputs.check(&kept(arguments.config, &options, &out))?;
     let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];

@@ -1,11 +1,11 @@
-//! How a command prints its results, and how it reports a wrong value.
+//! How a command prints its results and reports a wrong value.
 
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
 use crate::{Error, Result};
 
-/// Prints results. A reader that has seen enough is no error.
+/// Prints results. A reader that closes its end of the pipe early is not an error.
 pub(super) fn say(text: impl Display) -> Result<()> {
     let mut output = std::io::stdout();
     match write!(output, "{text}").and_then(|()| output.flush()) {
@@ -14,7 +14,7 @@ pub(super) fn say(text: impl Display) -> Result<()> {
     }
 }
 
-/// One line for a value that is out of its range.
+/// The error for a value that cannot be used.
 pub(super) fn value(message: impl Into<String>) -> Error {
     Error::Value(message.into())
 }

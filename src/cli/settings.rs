@@ -1,4 +1,4 @@
-//! Options from a TOML file, for every command.
+//! Options from a TOML file, for all commands.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use clap::Command;
 use crate::Result;
 use crate::options::OptionsFile;
 
-/// Reads a TOML file whose keys may name any command's long options: one file can serve several commands.
+/// Reads a TOML file. Its keys may be long options of any command, so that one file can serve several commands.
 pub fn read(all: &Command, path: &Path) -> Result<OptionsFile> {
     OptionsFile::read(path, &known(all))
 }
@@ -22,7 +22,7 @@ pub fn long_options(all: &Command, name: &str) -> Vec<String> {
     all.find_subcommand(name).map(options_of).unwrap_or_default()
 }
 
-/// The option's name in a word such as `--mu=paper`.
+/// The name of the option in a word such as `--mu=paper`.
 pub fn option_of(word: &str) -> &str {
     let name = word.trim_start_matches('-');
     name.split_once('=').map_or(name, |(name, _)| name)

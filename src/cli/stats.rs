@@ -8,22 +8,22 @@ use super::say::{say, value};
 use crate::Result;
 use crate::analysis::statistics::{By, Request, Statistics, table};
 
-/// Log folders and what is wanted of them.
+/// Which logs to analyse, and how to print the result.
 #[derive(Args)]
 pub struct StatsArgs {
-    /// Log folders, or folders that hold some at any depth, as a sweep writes them.
+    /// Log folders, or folders that contain log folders at any depth, such as the results of a sweep.
     #[arg(value_name = "DIR", required = true)]
     folders: Vec<PathBuf>,
-    /// By what conflicts are grouped.
+    /// What to group the conflicts by.
     #[arg(long, value_enum, default_value = "kind")]
     by: By,
-    /// Format of what is printed.
+    /// Output format.
     #[arg(long, value_enum, default_value = "text")]
     format: Format,
-    /// The runs to compare with: log folders, or folders that hold some.
+    /// Runs to compare with: log folders, or folders that contain log folders.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
-    /// How many of the worst conflicts, and of the hot spots, are listed.
+    /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
 }
@@ -33,11 +33,11 @@ pub struct StatsArgs {
 enum Format {
     /// Tables for a terminal.
     Text,
-    /// A line per value.
+    /// One row per value.
     Csv,
-    /// One object, every digit.
+    /// One object with all digits.
     Json,
-    /// A page for a browser.
+    /// Page for a browser.
     Html,
 }
 

@@ -6,21 +6,21 @@ use super::say::say;
 use crate::study::stress::{self, Group};
 use crate::{Error, Result};
 
-/// How many cases, and which.
+/// Which cases to run, and how many.
 #[derive(Args)]
 pub struct StressArgs {
-    /// Inputs in all, shared out to the named cases.
+    /// Total number of inputs, distributed over the named cases.
     #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1..))]
     cases: u64,
-    /// Seed of the random inputs.
+    /// Random seed for the inputs.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Only the cases of one group.
+    /// Run only the cases of one group.
     #[arg(long, value_enum, value_name = "GROUP")]
     only: Option<Group>,
 }
 
-/// Prints the table of worst errors; fails where a bound is exceeded.
+/// Prints the table of worst errors; fails if a bound is exceeded.
 pub fn run(arguments: &StressArgs) -> Result<()> {
     let rows = stress::run(arguments.cases, arguments.seed, arguments.only);
     say(format_args!("{}", stress::table(&rows)))?;

@@ -18,18 +18,18 @@ pub struct StudyArgs {
     /// Folder for study.csv, study.md and the charts.
     #[arg(short, long, value_name = "DIR", default_value = "closecall-study")]
     out: PathBuf,
-    /// Fewer items and repetitions: under two minutes.
+    /// Use fewer items and repetitions, so that it takes under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Only this axis.
+    /// Measure only this axis.
     #[arg(long, value_enum, value_name = "AXIS")]
     only: Option<Axis>,
-    /// Folder of the scenarios that the path axis runs.
+    /// Folder with the scenarios for the path axis.
     #[arg(long, value_name = "DIR", default_value = "sumo_nets")]
     nets: PathBuf,
 }
 
-/// Measures and writes; each axis is written as soon as it is measured.
+/// Measures the axes; writes each as soon as it is measured.
 pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
     let plan = Plan { quick: arguments.quick, nets: arguments.nets.clone() };
     let mut rows = Vec::new();
@@ -59,7 +59,7 @@ pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
     Ok(())
 }
 
-/// A run of a scenario whose every step goes to an fcd-output.
+/// A run of a scenario that records every step as fcd-output.
 fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
     let words = [
         "-c",

@@ -1,4 +1,4 @@
-//! What the commands that run SUMO ask of the bridge, which knows SUMO.
+//! The interface between the commands that run SUMO and the bridge that can.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -10,36 +10,36 @@ use crate::options::Options;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
 
-/// What the commands that run SUMO need of whoever knows it.
+/// What the bridge offers the commands that run SUMO.
 pub struct Sumo<'a> {
     /// Runs a simulation in this process.
     pub simulate: &'a mut Simulate<'a>,
-    /// Has the runs of a sweep done.
+    /// Distributes the runs of a sweep to workers.
     pub distribute: &'a mut Distribute<'a>,
-    /// The command line that starts closecall in a process of its own, without arguments; it ends when its standard input
-    /// does.
+    /// The command line that starts closecall in a separate process, without arguments. The process ends when its standard
+    /// input closes.
     pub closecall: Vec<OsString>,
-    /// Whether the user has asked to stop; who never asked is ended at once.
+    /// Whether the user has interrupted the command. Until the first call, an interrupt ends the process at once.
     pub interrupted: &'a mut dyn FnMut() -> bool,
 }
 
-/// What the command returns where SUMO is not at hand.
+/// The error of a binary without Python.
 pub(super) fn no_sumo() -> Result<()> {
     Err(value("this binary was built without Python and cannot run SUMO; `pip install closecall` gives one that can"))
 }
 
-/// What `closecall run` was asked to do.
+/// A run of SUMO that was asked for.
 #[derive(Clone, Debug)]
 pub struct RunRequest {
     /// The SUMO configuration file.
     pub scenario: PathBuf,
     /// Whether to show the run in sumo-gui.
     pub gui: bool,
-    /// Folder of the log.
+    /// Folder for the log.
     pub out: PathBuf,
-    /// How many threads to use, SUMO's own included: the results are the same.
+    /// Threads, SUMO's own included. The number does not change the results.
     pub threads: u8,
-    /// Whether to print nothing but errors.
+    /// Whether to print only errors.
     pub quiet: bool,
     /// Files to write besides the log.
     pub outputs: OutputFiles,
@@ -52,17 +52,17 @@ pub struct RunRequest {
 /// Runs SUMO with the checker attached.
 pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
 
-/// Who does the runs.
+/// The workers that do the runs of a sweep.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Workers {
-    /// So many processes of this machine.
+    /// This number of processes on this machine.
     Local(usize),
-    /// Those of the Dask scheduler at this address.
+    /// The workers of the Dask scheduler at this address.
     Scheduler(String),
 }
 
-/// Takes the name of a task that has ended, and why it failed if it did.
-pub type Ended<'a> = dyn FnMut(&str, Option<&str>) + 'a;
+/// Takes the name of a task that has ended and, if it failed, why.
+pub type ReportEnd<'a> = dyn FnMut(&str, Option<&str>) + 'a;
 
-/// Does the tasks, in a working folder, and tells of each one's end.
-pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut Ended) -> Result<()> + 'a;
+/// Does the tasks in a working folder and reports the end of each.
+pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut ReportEnd) -> Result<()> + 'a;

@@ -1,4 +1,4 @@
-//! `closecall sweep`: many runs, each a task; planned here, handed to whoever can distribute them.
+//! `closecall sweep`: plans many runs, each a task, and hands them to the bridge, which distributes them.
 
 use std::ffi::OsString;
 use std::io::IsTerminal;
@@ -17,38 +17,38 @@ use crate::util::threads::processors;
 use crate::util::units::counted;
 use crate::{Error, Result};
 
-/// A SUMO scenario, its seeds, and what is varied.
+/// A SUMO scenario, its seeds, and the options to vary.
 #[derive(Args)]
 pub struct SweepArgs {
     /// SUMO configuration file.
     #[arg(value_name = "CONFIG")]
     scenario: PathBuf,
-    /// SUMO's random seeds, a run for each: 1-100, or 1,2,5-9.
+    /// Random seeds for SUMO, one run each, such as 1-100 or 1,2,5-9.
     #[arg(long, value_name = "SEEDS")]
     seeds: Seeds,
-    /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), a run for each; several: every combination.
+    /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), one run each. If repeated, every combination is run.
     #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
     vary: Vec<Vary>,
-    /// Folder of the results [default: closecall-sweep beside the scenario].
+    /// Folder for the results [default: closecall-sweep next to the scenario].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Runs at once on this machine [default: one per processor].
+    /// Runs at the same time on this machine [default: one per processor].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     workers: Option<u16>,
-    /// Address of a Dask scheduler whose workers do the runs, instead of this machine.
+    /// Address of a Dask scheduler whose workers do the runs instead of this machine.
     #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
     scheduler: Option<String>,
-    /// Print nothing but errors.
+    /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
     #[command(flatten)]
     passed: Passed,
 }
 
-/// Parses the words of `closecall run`, those of its TOML file included.
+/// Parses a command line of `closecall run`, including its TOML file.
 pub type ParseRun = dyn Fn(Vec<OsString>) -> Result<RunArgs>;
 
-/// The arguments of `closecall run` that are the same in all runs, as they were typed.
+/// Arguments of `closecall run` that are the same in all runs, as they were typed.
 #[derive(Debug, Default)]
 struct Passed {
     words: Vec<String>,
@@ -57,11 +57,12 @@ struct Passed {
     files: Vec<PathBuf>,
 }
 
-/// What of `closecall run` a sweep sets itself.
-const OWN: [&str; 8] = ["scenario", "configuration_file", "gui", "out", "seed", "quiet", "ssm_output", "trj_output"];
+/// Arguments of `closecall run` that a sweep sets itself or has no use for.
+const OWN: [&str; 9] =
+    ["scenario", "configuration_file", "gui", "out", "seed", "quiet", "explain", "ssm_output", "trj_output"];
 /// Options that name a file whose content matters.
 const FILES: [&str; 2] = ["config", "filter"];
-/// What follows `--`.
+/// The argument for the words after `--`.
 const FOR_SUMO: &str = "sumo_options";
 
 /// The arguments of `closecall run` that a sweep passes on.
@@ -72,7 +73,7 @@ fn passed() -> Vec<Arg> {
 
 impl Args for Passed {
     fn augment_args(command: clap::Command) -> clap::Command {
-        // What was typed wins over what stands in a TOML file.
+        // What was typed wins over the TOML file.
         command.args(passed().into_iter().map(|argument| {
             let name = argument.get_id().clone();
             if argument.is_positional() { argument } else { argument.overrides_with(name) }
@@ -115,15 +116,15 @@ impl FromArgMatches for Passed {
     }
 }
 
-/// Does the runs that are missing; returns the exit status: 1 where some failed.
+/// Does the missing runs; returns the exit status, 1 if some failed.
 pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
     let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
-    let beside = arguments.scenario.parent().unwrap_or(Path::new("")).join("closecall-sweep");
-    let out = absolute(arguments.out.as_deref().unwrap_or(&beside))?;
-    // Opened here for the operating system's own words on why it cannot be.
+    let default_out = arguments.scenario.parent().unwrap_or(Path::new("")).join("closecall-sweep");
+    let out = absolute(arguments.out.as_deref().unwrap_or(&default_out))?;
+    // Opened here so that an error carries the operating system's own message.
     std::fs::File::open(&arguments.scenario).map_err(|source| Error::file(&arguments.scenario, source))?;
     arguments.vary.iter().try_for_each(check)?;
-    // The workers share the processor's threads among themselves: more of them per run would only be in their way.
+    // The workers already use all processors, so one thread per run is fastest.
     let mut words = vec![text(&absolute(&arguments.scenario)?)?, "--threads=1".to_owned()];
     words.extend(arguments.passed.words);
     let mut files = arguments.passed.files;
@@ -135,17 +136,17 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
     check_runs(&plan, &arguments.seeds, &arguments.vary, parse_run)?;
     let missing = plan.missing()?;
-    let there = plan.tasks.len() - missing.len();
+    let done = plan.tasks.len() - missing.len();
     let workers = match arguments.scheduler {
         Some(address) => Workers::Scheduler(address),
         None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
     };
-    let failed = distribute(sumo, &workers, &missing, there, arguments.quiet, &out)?;
+    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &out)?;
     if !arguments.quiet {
         let runs = counted((plan.tasks.len() - failed) as u64, "run");
         say(format_args!("{runs} in {}\n", plan.data_set().display()))?;
-        if there > 0 {
-            say(format_args!("{there} of them were there already\n"))?;
+        if done > 0 {
+            say(format_args!("{done} of them were there already\n"))?;
         }
         if failed > 0 {
             say(format_args!("{failed} failed; the same command tries them again\n"))?;
@@ -154,18 +155,18 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     Ok(u8::from(failed > 0))
 }
 
-/// The selection file that a file of options names.
+/// The selection file that a TOML file of options names.
 fn filter_in(file: &Path) -> Option<PathBuf> {
     let table = std::fs::read_to_string(file).ok()?.parse::<toml::Table>().ok()?;
     Some(table.get("filter")?.as_str()?.into())
 }
 
-/// Has the missing runs done; how many failed.
+/// Has the missing runs done; returns how many failed.
 fn distribute(
     sumo: Sumo,
     workers: &Workers,
     missing: &[&Task],
-    there: usize,
+    done_before: usize,
     quiet: bool,
     out: &Path,
 ) -> Result<usize> {
@@ -174,8 +175,9 @@ fn distribute(
     }
     let unfinished = out.join(".unfinished");
     std::fs::create_dir_all(&unfinished).map_err(|source| Error::file(&unfinished, source))?;
-    let bar = bar(there, there + missing.len(), quiet);
-    let (mut done, mut failed) = (there, 0);
+    let bar = bar(done_before, done_before + missing.len(), quiet);
+    let mut done = done_before;
+    let mut failed = 0;
     let ended = (sumo.distribute)(workers, &unfinished, missing, &mut |name, error| {
         done += 1;
         if let Some(error) = error {
@@ -185,27 +187,27 @@ fn distribute(
         bar.inc(1);
     });
     bar.finish_and_clear();
-    // What a killed worker has left there; where it cannot be removed it is hidden at least.
+    // Removes what killed workers left; if that fails, the folder is at least hidden.
     let _ = std::fs::remove_dir_all(&unfinished);
     match ended {
         Ok(()) => Ok(failed),
-        Err(Error::Stopped) => Err(Error::Paused { done, all: there + missing.len() }),
+        Err(Error::Stopped) => Err(Error::Paused { done, all: done_before + missing.len() }),
         Err(error) => Err(error),
     }
 }
 
-/// How far the sweep is, on a terminal.
-fn bar(there: usize, all: usize, quiet: bool) -> ProgressBar {
+/// The progress bar of the sweep; only on a terminal.
+fn bar(done: usize, all: usize, quiet: bool) -> ProgressBar {
     if quiet || !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{bar:30} {pos} of {len} runs, {elapsed}, {eta} to go");
     let bar = ProgressBar::new(all as u64).with_style(style.unwrap_or(ProgressStyle::default_bar()));
     bar.enable_steady_tick(std::time::Duration::from_secs(1));
-    bar.with_position(there as u64)
+    bar.with_position(done as u64)
 }
 
-/// Whether an option can be varied.
+/// Checks that an option can be varied.
 fn check(vary: &Vary) -> Result<()> {
     if vary.is_sumos() {
         return match vary.option() {
@@ -225,7 +227,7 @@ fn check(vary: &Vary) -> Result<()> {
     }
 }
 
-/// Whether `closecall run` will take the words: each variant with the first seed.
+/// Checks that `closecall run` accepts the words of each variant, with the first seed.
 fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary], parse_run: &ParseRun) -> Result<()> {
     let variants = varied.iter().map(|vary| vary.values.len()).product::<usize>().min(plan.tasks.len() / seeds.0.len());
     for task in &plan.tasks[..variants] {
@@ -237,7 +239,7 @@ fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary], parse_run: &ParseRun
 
 fn text(path: &Path) -> Result<String> {
     let text = path.to_str().map(str::to_owned);
-    text.ok_or_else(|| Error::content(path, "its name is no UTF-8: a sweep cannot pass it on"))
+    text.ok_or_else(|| Error::content(path, "its name is not UTF-8, so a sweep cannot pass it on"))
 }
 
 #[cfg(test)]
@@ -251,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_typed_for_closecall_run_is_passed_on_and_nothing_else() {
+    fn only_typed_options_of_closecall_run_are_passed_on() {
         let passed =
             passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--keep-all", "--", "--scale", "2"]);
         let mut words = passed.words;

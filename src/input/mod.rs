@@ -1,4 +1,4 @@
-//! Files that come from SUMO: recordings that are replayed, and the inputs of a simulation.
+//! Files that come from SUMO: recordings to replay, and the inputs of a simulation.
 
 pub mod replay;
 pub mod sumo_files;

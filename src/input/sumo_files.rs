@@ -1,4 +1,4 @@
-//! The input files of a run: whether they are whole, and their SHA-256, so that `run.json` says what was run.
+//! The input files that a SUMO configuration names, and whether they are complete.
 
 use std::path::{Path, PathBuf};
 
@@ -8,8 +8,8 @@ use quick_xml::events::Event;
 use crate::traffic::net::Net;
 use crate::{Error, Result};
 
-/// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only in
-/// mid-run.
+/// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only during
+/// the run.
 ///
 /// # Errors
 /// An error that names the file, the line and what is wrong.
@@ -22,7 +22,10 @@ pub fn check_xml(path: &Path) -> Result<()> {
     loop {
         buffer.clear();
         match reader.read_event_into(&mut buffer) {
-            Ok(Event::Start(_)) => (depth, elements) = (depth + 1, elements + 1),
+            Ok(Event::Start(_)) => {
+                depth += 1;
+                elements += 1;
+            }
             Ok(Event::Empty(_)) => elements += 1,
             Ok(Event::End(_)) => depth -= 1,
             Ok(Event::Eof) => break,
@@ -39,8 +42,8 @@ pub fn check_xml(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// What is wrong with the files that a SUMO configuration names, if that can be told: SUMO's own messages do not always
-/// name the file.
+/// The fault in the files that a SUMO configuration names, if one is found: SUMO's own messages do not always name the
+/// file.
 pub fn fault(configuration: &Path) -> Option<Error> {
     check_xml(configuration).err().or_else(|| {
         let named = files_of(configuration).ok()?;
@@ -51,7 +54,7 @@ pub fn fault(configuration: &Path) -> Option<Error> {
     })
 }
 
-/// The net that a SUMO configuration names, if that can be told.
+/// The net that a SUMO configuration names, if it can be read.
 pub fn net_of(configuration: &Path) -> Option<PathBuf> {
     let named = files_of(configuration).ok()?;
     named.into_iter().find(|(option, _)| *option == "net-file").map(|(_, path)| path)
@@ -108,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fault_at_the_end_of_a_route_file_is_named_with_its_line() {
+    fn a_late_fault_in_a_route_file_has_its_line_number() {
         let message =
             with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", check_xml).unwrap_err().to_string();
         assert!(message.contains("bad.rou.xml, line 3: "), "{message}");

@@ -1,4 +1,4 @@
-//! The input files of a run with their SHA-256, so that `run.json` tells what was run.
+//! The input files of a run with their SHA-256, so that `run.json` identifies what was run.
 
 use std::path::{Path, PathBuf};
 
@@ -12,15 +12,15 @@ use crate::{Error, Result};
 pub struct Input {
     /// Its path as it was given.
     pub path: PathBuf,
-    /// Its SHA-256 in hexadecimal digits.
+    /// Its SHA-256 as hexadecimal digits.
     pub sha256: String,
 }
 
 impl Input {
-    /// Reads a file for its hash.
+    /// Reads a file and hashes it.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read.
+    /// [`Error::File`] if it cannot be read.
     pub fn of(path: &Path) -> Result<Self> {
         let fail = |source| Error::file(path, source);
         let mut file = std::fs::File::open(path).map_err(fail)?;
@@ -49,7 +49,7 @@ mod tests {
     use crate::output::input_hash::*;
 
     #[test]
-    fn the_hash_is_that_of_sha256sum() {
+    fn the_hash_equals_that_of_sha256sum() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("abc");
         std::fs::write(&path, "abc").unwrap();

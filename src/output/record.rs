@@ -1,4 +1,4 @@
-//! `run.json`: how a run was made and what it found, in counts.
+//! `run.json`: how a run was made, and the counts of what it found.
 
 use std::path::PathBuf;
 
@@ -12,41 +12,41 @@ use crate::util::units::Second;
 /// How a run was made and what it found.
 #[derive(Clone, Debug, Serialize)]
 pub struct RunRecord {
-    /// Versions of what took part.
+    /// Versions of closecall and SUMO.
     pub versions: Versions,
     /// The SUMO configuration, or the recording that was replayed.
     pub scenario: PathBuf,
-    /// SUMO's random seed; none where nothing was simulated, or SUMO chose one that it does not tell (its option random).
+    /// SUMO's random seed; none for a replay, and where SUMO chose one that it does not report (its option random).
     pub seed: Option<String>,
-    /// Length of a step in s.
+    /// Length of a step, in s.
     pub step_length: Option<Second>,
-    /// Whether road users may move to the side without changing lanes (SUMO's sublane model).
+    /// Whether road users may move sideways without changing lanes (SUMO's sublane model).
     pub sublane: bool,
     /// The options.
     pub options: Options,
-    /// Words for SUMO, after the program's name.
+    /// SUMO's command line, without the program's name.
     pub sumo_words: Vec<String>,
     /// Input files with their hashes.
     pub inputs: Vec<Input>,
-    /// Whether the run came to its end.
+    /// Whether the run reached its end.
     pub complete: bool,
-    /// Why it did not.
+    /// Why it did not reach its end.
     pub error: Option<String>,
     /// What it found.
     pub summary: Summary,
 }
 
-/// Versions of what took part in a run.
+/// The versions that a run was made with.
 #[derive(Clone, Debug, Serialize)]
 pub struct Versions {
     /// closecall's.
     pub closecall: &'static str,
-    /// SUMO's; none where nothing was simulated.
+    /// SUMO's; none for a replay.
     pub sumo: Option<String>,
 }
 
 impl Versions {
-    /// This closecall and that SUMO.
+    /// This closecall with this version of SUMO.
     pub fn with_sumo(sumo: Option<String>) -> Self {
         Self { closecall: env!("CARGO_PKG_VERSION"), sumo }
     }

@@ -1,13 +1,14 @@
-//! What a run found, in numbers: the table at its end and the counts in `run.json`.
+//! The numbers of a run: the table at its end and the counts in `run.json`.
 
 use std::fmt;
 
+use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
-use crate::detection::detector::LeftOut;
+use crate::detection::detector::{LeftOut, Work};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;
-use crate::util::units::Second;
+use crate::util::units::{Metre, Second};
 
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -22,40 +23,148 @@ pub struct Summary {
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// How much traffic it was.
+    /// The amount of traffic.
     pub exposure: Exposure,
     /// What the scene did not need.
     pub left_out: Vec<LeftOut>,
-    /// What may have been meant otherwise, a line each; not part of the result.
+    /// The conflict to look at first; not written to `run.json`.
+    #[serde(skip)]
+    pub worst: Option<WorstConflict>,
+    /// The share of tests that was skipped; not written to `run.json`.
+    #[serde(skip)]
+    pub skipped: Skipped,
+    /// Settings that may not do what the user meant, a line each; not written to `run.json`.
     #[serde(skip)]
     pub remarks: Vec<String>,
-    /// Where the time went: what, and how many seconds; not part of the result.
+    /// Each part of the work and the seconds it took; not written to `run.json`.
     #[serde(skip)]
     pub spent: Vec<(&'static str, f64)>,
 }
 
-/// How many conflicts of one kind and severity.
+/// The number of conflicts of one kind and severity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Count {
     /// The kind.
     pub kind: Kind,
     /// The severity.
     pub severity: Severity,
-    /// How many.
+    /// The number of conflicts.
     pub count: u64,
 }
 
-/// How much traffic a run had.
+/// The amount of traffic in a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Exposure {
     /// Vehicles that were in the scene.
     pub vehicles: u64,
     /// Persons that were in the scene.
     pub persons: u64,
-    /// Way of all vehicles, in km.
+    /// Distance driven by all vehicles, in km.
     pub vehicle_kilometres: f64,
-    /// Time of all vehicles in the scene, in h.
+    /// Time that all vehicles spent in the scene, in h.
     pub vehicle_hours: f64,
+}
+
+/// The worst conflict of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WorstConflict {
+    /// Its id in `conflicts.csv`.
+    pub id: u64,
+    /// SUMO's id of the ego.
+    pub ego: EcoString,
+    /// SUMO's id of the foe.
+    pub foe: EcoString,
+    /// Its kind.
+    pub kind: Kind,
+    /// Its severity.
+    pub severity: Severity,
+    /// Whether the rectangles overlapped.
+    pub collision: bool,
+    /// The step with the smallest margin, in s.
+    pub time: Second,
+    ttc: Second,
+    margin: Metre,
+}
+
+impl WorstConflict {
+    fn of(conflict: &Conflict, id: u64) -> Self {
+        Self {
+            id,
+            ego: conflict.ego.clone(),
+            foe: conflict.foe.clone(),
+            kind: conflict.kind,
+            severity: conflict.severity,
+            collision: conflict.collision,
+            time: conflict.time,
+            ttc: conflict.ttc.unwrap_or(Second::INFINITY),
+            margin: conflict.margin,
+        }
+    }
+
+    /// Collisions are worst, then the severity decides, then the TTC, then the margin: the order of `closecall stats`.
+    fn is_milder_than(&self, conflict: &Conflict) -> bool {
+        let ttc = conflict.ttc.unwrap_or(Second::INFINITY);
+        (self.collision, self.severity)
+            .cmp(&(conflict.collision, conflict.severity))
+            .then_with(|| ttc.total_cmp(&self.ttc))
+            .then_with(|| conflict.margin.total_cmp(&self.margin))
+            .is_lt()
+    }
+}
+
+impl fmt::Display for WorstConflict {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { id, ego, foe, kind, severity, collision, time, .. } = self;
+        let what = if *collision { "collision" } else { "conflict" };
+        let (severity, kind, time) = (severity.name(), kind.name(), rounded(*time));
+        write!(f, "no. {id}, a {severity} {kind} {what} of {ego} (ego) and {foe} (foe) at {time} s")
+    }
+}
+
+/// The tests that a run skipped because they could not change its result.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Skipped {
+    /// Pairs that were not tested in full, of all pairs.
+    pub pair_tests: Share,
+    /// Lanes that were not asked for, of all lanes of moving vehicles.
+    pub lane_lookups: Share,
+}
+
+/// A part of a whole, in counts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Share {
+    /// The part.
+    pub part: u64,
+    /// The whole.
+    pub whole: u64,
+}
+
+impl Skipped {
+    /// The shares of the detector's work, when this many lanes were asked for.
+    pub(crate) fn of(work: &Work, lane_lookups: u64) -> Self {
+        let Work { areas_apart, paths_apart, in_line, pairs, known_paths, .. } = *work;
+        Self {
+            pair_tests: Share { part: areas_apart + paths_apart + in_line, whole: areas_apart + pairs },
+            lane_lookups: Share { part: known_paths, whole: known_paths + lane_lookups },
+        }
+    }
+}
+
+impl fmt::Display for Share {
+    /// Per cent, rounded down: 100 only where all is part of it.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let per_mille = 1000 * u128::from(self.part) / u128::from(self.whole.max(1));
+        write!(f, "{}.{} %", per_mille / 10, per_mille % 10)
+    }
+}
+
+impl fmt::Display for Skipped {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let shares = [(self.pair_tests, "pair tests"), (self.lane_lookups, "lane lookups")];
+        let shares = shares.iter().filter(|(share, _)| share.part > 0);
+        let shares = shares.map(|(share, what)| format!("{share} of {what}")).collect::<Vec<_>>();
+        write!(f, "{}", shares.join(" and "))
+    }
 }
 
 impl Summary {
@@ -71,9 +180,12 @@ impl Summary {
                 self.conflicts.sort_by_key(|count| (count.kind, count.severity));
             }
         }
+        if self.worst.as_ref().is_none_or(|worst| worst.is_milder_than(conflict)) {
+            self.worst = Some(WorstConflict::of(conflict, self.count(None, None)));
+        }
     }
 
-    /// How many conflicts of a kind, of a severity, or of both; all where neither is given.
+    /// The number of conflicts of a kind, of a severity, or of both; of all where neither is given.
     pub fn count(&self, kind: Option<Kind>, severity: Option<Severity>) -> u64 {
         let wanted = |count: &&Count| {
             kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)
@@ -83,6 +195,7 @@ impl Summary {
 }
 
 impl fmt::Display for Summary {
+    /// The table of conflicts, the amount of traffic, and the remarks.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{:<10}", "conflicts")?;
         for severity in Severity::ALL {
@@ -105,21 +218,23 @@ impl fmt::Display for Summary {
             rounded(self.begin),
             rounded(self.end)
         )?;
-        for left_out in &self.left_out {
-            writeln!(f, "{left_out}")?;
-        }
-        for remark in &self.remarks {
-            writeln!(f, "{remark}")?;
-        }
-        let parts = self.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.3} s"));
-        if !self.spent.is_empty() {
-            writeln!(f, "time: {}", parts.collect::<Vec<_>>().join(", "))?;
-        }
-        Ok(())
+        self.remarks.iter().try_for_each(|remark| writeln!(f, "{remark}"))
     }
 }
 
-/// A time without the digits that sums of steps leave behind.
+/// A time without the digits that adding up steps leaves behind.
 fn rounded(time: Second) -> f64 {
     (time * 1e6).round() / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::output::summary::*;
+
+    #[test]
+    fn a_share_is_rounded_down() {
+        let shares = [(0, 0), (1, 3), (9999, 10_000), (7, 7)];
+        let texts = shares.map(|(part, whole)| Share { part, whole }.to_string());
+        assert_eq!(texts, ["0.0 %", "33.3 %", "99.9 %", "100.0 %"]);
+    }
 }

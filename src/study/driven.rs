@@ -17,7 +17,7 @@ use crate::geometry::bisection::Bisection;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, Vector, cross};
 use crate::input::replay::recording::Recording;
-use crate::input::replay::rows::Step;
+use crate::input::replay::rows::RecordedStep;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::roster::{Roster, UserIndex};
@@ -58,7 +58,7 @@ pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> Pair {
 impl Driven {
     /// Reads a recording.
     pub fn read(path: &Path) -> Result<Self> {
-        let (mut recording, mut step) = (Recording::open(path)?, Step::default());
+        let (mut recording, mut step) = (Recording::open(path)?, RecordedStep::default());
         let mut traces: FxHashMap<String, Vec<_>> = FxHashMap::default();
         while recording.next_step(&mut step)? {
             for row in step.rows() {

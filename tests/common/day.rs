@@ -1,7 +1,7 @@
-//! A day of traffic on a real junction, made without SUMO: on every way through it a car enters twice a minute and drives
-//! through, so that road users come and go, each with an id of its own, and their number stays the same.
+//! A day of traffic on a real junction, made without SUMO. On every course through the junction a car enters twice a minute
+//! and drives through. Road users come and go, each with an id of its own, and their number stays the same.
 //!
-//! All that repeats every [`PERIOD`] steps, but for the ids and the time: what a run keeps must repeat too.
+//! Everything except the ids and the time repeats every [`PERIOD`] steps, so what a run keeps must repeat too.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -16,12 +16,12 @@ use closecall::traffic::placement::Placement;
 use closecall::traffic::profile::Profile;
 use closecall::traffic::roster::{ProfileIndex, UserIndex};
 
-/// Steps of 1 s that a car needs from one end of its way to the other.
+/// Steps of 1 s that a car needs from one end of its course to the other.
 const PERIOD: usize = 60;
-/// Cars on each way.
+/// Cars on each course.
 const CARS: usize = 4;
 
-/// A way through the net.
+/// A course through the net.
 struct Course {
     /// Lanes, and where each begins.
     lanes: Vec<(f64, LaneIndex)>,
@@ -29,7 +29,7 @@ struct Course {
     route: Arc<[EdgeIndex]>,
 }
 
-/// A run that can be stepped for as long as one likes.
+/// A run with an unlimited number of steps.
 pub struct Day {
     net: Arc<Net>,
     courses: Vec<Course>,
@@ -47,26 +47,27 @@ impl Day {
         let options = Options::default();
         let net = Arc::new(Net::read(net).unwrap());
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
-        run.log_to(Log::create(log, false).unwrap(), false);
+        run.set_log(Log::create(log, false).unwrap());
+        run.drop_closed_conflicts();
         run.set_fixed_routes(true);
         let profile = run.roster.profile(car).unwrap();
         let courses = courses(&net);
         Self { net, courses, run, profile, cars: Vec::new(), rows: Vec::new(), steps: 0, entered: 0 }
     }
 
-    /// Cars in the scene, always as many.
+    /// The number of cars in the scene, which is constant.
     pub fn cars(&self) -> usize {
         self.courses.len() * CARS
     }
 
-    /// Conflicts that have closed.
+    /// The number of conflicts that have closed.
     pub fn conflicts(&self) -> u64 {
-        self.run.conflicts_so_far()
+        self.run.closed_conflicts()
     }
 
     /// One step of 1 s.
     pub fn step(&mut self) {
-        self.run.begin(self.steps as f64);
+        self.run.begin_step(self.steps as f64);
         self.cars.resize(self.cars(), None);
         self.rows.clear();
         let length = self.run.roster.profile_at(self.profile).length;
@@ -80,18 +81,21 @@ impl Day {
             }
             let course = &self.courses[course];
             let speed = (course.end() - length) / PERIOD as f64;
-            let way = length + speed * age as f64;
-            let (front, rear) = (course.at(way), course.at(way - length));
+            let distance = length + speed * age as f64;
+            let (front, rear) = (course.at(distance), course.at(distance - length));
             let heading = (front.y - rear.y).atan2(front.x - rear.x);
             let state = State { x: front.x, y: front.y, z: 0.0, heading, speed };
             self.run.frame.push(self.cars[place].unwrap(), state);
-            self.rows.push((place % self.courses.len(), way));
+            self.rows.push((place % self.courses.len(), distance));
         }
-        for row in self.run.track_paths().to_vec() {
-            let (course, way) = self.rows[row as usize];
-            self.run.set_placement(row, &self.courses[course].placement(&self.net, way));
-        }
-        self.run.finish_step().unwrap();
+        let place = |run: &mut Run, rows: &[u32]| -> closecall::Result<()> {
+            for &row in rows {
+                let (course, distance) = self.rows[row as usize];
+                run.set_placement(row, &self.courses[course].placement(&self.net, distance));
+            }
+            Ok(())
+        };
+        self.run.step(place).unwrap();
         self.steps += 1;
     }
 }
@@ -101,22 +105,22 @@ impl Course {
         self.points.last().unwrap().0
     }
 
-    fn at(&self, way: f64) -> Point {
-        let next = self.points.partition_point(|(start, _)| *start <= way).clamp(1, self.points.len() - 1);
+    fn at(&self, distance: f64) -> Point {
+        let next = self.points.partition_point(|(start, _)| *start <= distance).clamp(1, self.points.len() - 1);
         let [(start, from), (end, to)] = [self.points[next - 1], self.points[next]];
-        from + (to - from) * ((way - start) / (end - start))
+        from + (to - from) * ((distance - start) / (end - start))
     }
 
-    fn placement(&self, net: &Net, way: f64) -> Placement {
-        let index = self.lanes.partition_point(|(start, _)| *start <= way).max(1) - 1;
+    fn placement(&self, net: &Net, distance: f64) -> Placement {
+        let index = self.lanes.partition_point(|(start, _)| *start <= distance).max(1) - 1;
         let (start, lane) = self.lanes[index];
         let (drawn, edge) = (net.lines.length(lane.0), |lane: LaneIndex| net.lanes[lane.0 as usize].edge);
-        // Within a junction it is on the way from the edge before.
+        // Inside a junction, the position is that of the edge before it.
         let before = self.lanes[..=index].iter().rev().map(|(_, lane)| edge(*lane));
         let last = before.filter_map(|edge| self.route.iter().position(|known| *known == edge)).next();
         Placement {
             lane,
-            position: (way - start) * net.lanes[lane.0 as usize].length / drawn,
+            position: (distance - start) * net.lanes[lane.0 as usize].length / drawn,
             route: Some(self.route.clone()),
             route_position: last.unwrap(),
             lateral_speed: 0.0,
@@ -124,17 +128,17 @@ impl Course {
     }
 }
 
-/// Every way from a lane that nothing leads to, to one that leads nowhere.
+/// Every course from a lane that nothing leads to, to one that leads nowhere.
 fn courses(net: &Net) -> Vec<Course> {
     let lane = |index: LaneIndex| &net.lanes[index.0 as usize];
     let is_normal = |index: LaneIndex| net.edges[lane(index).edge.0 as usize].function == EdgeFunction::Normal;
     let starts = (0..net.lanes.len() as u32).map(LaneIndex);
     let starts = starts.filter(|&start| is_normal(start) && lane(start).from.is_empty());
-    let mut ways = starts.map(|start| vec![start]).collect::<Vec<_>>();
+    let mut chains = starts.map(|start| vec![start]).collect::<Vec<_>>();
     let mut courses = Vec::new();
-    while let Some(lanes) = ways.pop() {
+    while let Some(lanes) = chains.pop() {
         let last = lane(*lanes.last().unwrap());
-        ways.extend(last.links.iter().map(|link| [&lanes[..], &[link.via.unwrap_or(link.to)]].concat()));
+        chains.extend(last.links.iter().map(|link| [&lanes[..], &[link.via.unwrap_or(link.to)]].concat()));
         if last.links.is_empty() && lanes.len() > 1 {
             courses.push(course(net, &lanes));
         }
@@ -147,14 +151,15 @@ fn course(net: &Net, lanes: &[LaneIndex]) -> Course {
     let mut route = Vec::new();
     for &index in lanes {
         let lane = &net.lanes[index.0 as usize];
-        course.lanes.push((course.points.last().map_or(0.0, |(way, _)| *way), index));
+        course.lanes.push((course.points.last().map_or(0.0, |(distance, _)| *distance), index));
         if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
             route.push(lane.edge);
         }
         for &point in &lane.shape {
-            let way = course.points.last().map_or(0.0, |(way, last): &(f64, Point)| way + (point - last).norm());
-            if course.points.last().is_none_or(|(before, _)| way > *before) {
-                course.points.push((way, point));
+            let distance =
+                course.points.last().map_or(0.0, |(distance, last): &(f64, Point)| distance + (point - last).norm());
+            if course.points.last().is_none_or(|(before, _)| distance > *before) {
+                course.points.push((distance, point));
             }
         }
     }

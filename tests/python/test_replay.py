@@ -123,7 +123,7 @@ def test_a_gzip_and_a_csv_cut_short_are_noticed_too(scenario: Copy, tmp_path: Pa
     ("text", "said"),
     [
         ("", "the file is empty"),
-        ("<routes/>", "no fcd-output"),
+        ("<routes/>", "not an fcd-output"),
         ("a;b\n1;2\n", "timestep_time"),
         ('<fcd-export><timestep time="0"><vehicle id="a" x="1"/></timestep></fcd-export>', '"a" has no attribute y'),
         ("timestep_time;vehicle_id;vehicle_x\n", "vehicle_y"),

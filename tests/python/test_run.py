@@ -193,7 +193,7 @@ def test_settings_of_a_type_that_nobody_is_of_are_told(scenario: Copy, tmp_path:
     settings.write_text("".join(f"[type.'{kind}']\ndecel = 5.0\n" for kind in [*kinds, "cra", "car@one"]))
     words = ("--config", settings, "--obstacles", "kiosk", "--out", tmp_path)
     done = closecall("run", config, *words)
-    told = [line for line in done.stdout.splitlines() if "nobody of this type" in line]
+    told = [line for line in done.stdout.splitlines() if "no road user of this type" in line]
     assert [line.split(":")[0] for line in told] == ["[type.car@one]", "[type.cra]", "obstacles kiosk"]
     quiet = closecall("run", config, *words, "--quiet")
     assert (quiet.returncode, quiet.stdout) == (0, "")

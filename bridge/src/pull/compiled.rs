@@ -1,11 +1,13 @@
-//! libsumo's C++ functions, called directly: measured on SUMO 1.28, 0.25 to 0.29 µs for a vehicle's position, angle and
-//! speed, against 0.68 to 0.71 through the same module's Python getters. Half of that is SUMO looking up the id anew for
-//! each: where its own functions behind them are known, 0.15 µs with one look-up. Of a person, who may also be inside a
-//! vehicle, 0.5 to 0.7 µs instead of 0.7 to 1.3: SUMO works out where it is on its lane. Where road users are then found
-//! where they were, all that a step reads takes 0.09 to 0.14 µs a vehicle instead of 0.21 to 0.33 (SUMO's A10, a grid),
-//! and among persons a third less (a grid with 1,500 of them).
+//! libsumo's C++ functions, called directly. All times were measured with SUMO 1.28.
+//!
+//! A vehicle's position, angle and speed take 0.25 to 0.29 µs, against 0.68 to 0.71 µs through the Python getters of the same
+//! module. Half of that is SUMO looking up the id for each value. With the functions behind the getters, where they are
+//! known, one look-up is enough: 0.15 µs. A person (it may be inside a vehicle) takes 0.5 to 0.7 µs instead of 0.7 to
+//! 1.3, because SUMO computes its position on the lane. With the addresses of road users kept between steps, all that a
+//! step reads takes 0.09 to 0.14 µs per vehicle instead of 0.21 to 0.33 (SUMO's A10, a grid), and a third less with persons
+//! (a grid with 1,500 of them).
 
-#![allow(unsafe_code, reason = "calls compiled.cpp; halves what reading a road user costs, see above")]
+#![allow(unsafe_code, reason = "calls compiled.cpp; halves the cost of reading a road user, see above")]
 
 use std::ffi::CString;
 use std::os::raw::c_char;
@@ -14,10 +16,10 @@ use std::ptr::null_mut;
 
 use super::reading::{Domain, Reading};
 
-/// A function pointer that only compiled.cpp calls; its real type stands there.
+/// A function pointer that only compiled.cpp calls; its real type is declared there.
 type Function = Option<unsafe extern "C" fn()>;
 
-/// `ClosecallGetters` of compiled.cpp, filled by `closecall_find`, which found all that it needs.
+/// `ClosecallGetters` of compiled.cpp, filled by `closecall_find`.
 #[repr(C)]
 pub struct Compiled {
     position: Function,
@@ -28,21 +30,21 @@ pub struct Compiled {
     direct: [Function; 7],
 }
 
-/// How the versions begin of the SUMO whose functions behind libsumo's getters are those that compiled.cpp declares: they
-/// are not part of libsumo's interface.
+/// The version prefix of the SUMO whose functions behind libsumo's getters are those that compiled.cpp declares. They are
+/// not part of libsumo's interface.
 const KNOWN: &str = "SUMO 1.28.";
 
-/// `User` of compiled.cpp: where SUMO has a road user in memory; 0 is nowhere yet.
+/// `User` of compiled.cpp: the address of a road user in SUMO's memory; 0 if not known yet.
 type Address = usize;
 
-/// Where SUMO has a road user in memory, once that was asked for. Who holds it drops it when the road user has gone.
+/// The address of a road user in SUMO's memory, known once it has been read. The holder drops it when the road user leaves.
 #[derive(Default)]
-pub struct Kept(Address);
+pub struct KeptAddress(Address);
 
 /// `ClosecallReading` of compiled.cpp.
 #[repr(C)]
 #[derive(Default)]
-struct Read {
+struct RawReading {
     x: f64,
     y: f64,
     z: f64,
@@ -71,13 +73,12 @@ unsafe extern "C" {
         id: *const c_char,
         length: usize,
         kept: *mut Address,
-        reading: *mut Read,
+        reading: *mut RawReading,
     ) -> bool;
 }
 
 impl Compiled {
-    /// Those of the module of this SUMO that Python has loaded from this file; none where it has not, or a function is
-    /// missing.
+    /// The functions of the libsumo that Python has loaded from this file; none if it has not, or if one is missing.
     pub fn of(file: &Path, version: &str, domain: Domain) -> Option<Self> {
         let path = CString::new(file.as_os_str().as_encoded_bytes()).ok()?;
         let (name, may_be_inside) = match domain {
@@ -87,33 +88,33 @@ impl Compiled {
         let direct = [None; 7];
         let mut found = Self { position: None, angle: None, speed: None, inside: None, route: None, direct };
         let (file, name, is_known) = (path.as_ptr(), name.as_ptr(), version.starts_with(KNOWN));
-        // SAFETY: both strings end with a zero and live until the call returns, and `found` has the layout of what is
-        // written to it, in which a null pointer is `None`.
+        // SAFETY: both strings end with a zero and live until the call returns. `found` has the layout of what is written to
+        // it, in which a null pointer is `None`.
         let is_complete = unsafe { closecall_find(file, name, may_be_inside, is_known, &raw mut found) };
         is_complete.then_some(found)
     }
 
-    /// What libsumo says of a road user; none where it knows none of this id.
-    pub fn read(&self, id: &str, kept: Option<&mut Kept>) -> Option<Reading> {
-        let mut read = Read::default();
-        let kept = kept.map_or(null_mut(), |Kept(address)| &raw mut *address);
-        // SAFETY: `self` is complete, since `of` gives no other, and its functions stay where they are: the module is
-        // never unloaded. Those of `direct` are there only in a SUMO in which they are what compiled.cpp declares, and who
-        // was looked up is asked right after that: before SUMO's next step it does not go. `id` is as long as said
-        // and `read` has the layout of what is written to it; neither is kept. No exception comes out: the function is
-        // `noexcept` and catches all. libsumo itself knows no threads; Python's lock is held by every caller, as for its
-        // Python getters. `kept` is null or has what this function has written there for the same road user: where
-        // nobody but closecall makes steps (`Source::set_exclusive`), SUMO deletes it in a step alone, and says then that it has
-        // arrived (MSVehicleControl::removePending, MSTransportableControl::erase), so that `Domain::update` drops it
-        // before anybody is read.
+    /// The state of a road user; none if libsumo does not know this id.
+    pub fn read(&self, id: &str, kept: Option<&mut KeptAddress>) -> Option<Reading> {
+        let mut read = RawReading::default();
+        let kept = kept.map_or(null_mut(), |KeptAddress(address)| &raw mut *address);
+        // SAFETY: `self` is complete, since `of` returns nothing else, and its functions keep their addresses: the module is
+        // never unloaded. Those of `direct` are set only for a SUMO in which they are what compiled.cpp declares, and a road
+        // user is read right after it was looked up: it does not go away before SUMO's next step. `id` has the given length
+        // and `read` has the layout of what is written to it; neither is kept. No exception leaves the function: it is
+        // `noexcept` and catches all. libsumo itself is not threaded, and every caller holds Python's lock, as for the Python
+        // getters. `kept` is null or what this function has written there for the same road user. If only closecall makes
+        // steps (`Source::set_exclusive`), SUMO deletes a road user only in a step, and then reports that it has arrived
+        // (MSVehicleControl::removePending, MSTransportableControl::erase), so that `LibsumoDomain::update` drops the
+        // address before any road user is read.
         let is_known = unsafe { closecall_read(&raw const *self, id.as_ptr().cast(), id.len(), kept, &raw mut read) };
-        let Read { x, y, z, angle, speed, is_inside } = read;
+        let RawReading { x, y, z, angle, speed, is_inside } = read;
         is_known.then_some(if is_inside { Reading::Inside } else { Reading::At { x, y, z, angle, speed } })
     }
 
-    /// Whether a vehicle has the route of this id: 0.1 µs, Python's getter takes twice that and a string.
+    /// Whether a vehicle has the route with this id. Takes 0.1 µs; Python's getter takes twice that and makes a string.
     pub fn has_route(&self, id: &str, route: &str) -> bool {
-        // SAFETY: as in `read`; both strings are as long as said, and neither is kept.
+        // SAFETY: as in `read`; both strings have the given lengths, and neither is kept.
         unsafe {
             closecall_has_route(&raw const *self, id.as_ptr().cast(), id.len(), route.as_ptr().cast(), route.len())
         }

@@ -1,5 +1,5 @@
-//! Where a road user is, how it is turned and how fast: asked of libsumo's C++ functions where they can be called and
-//! say what its Python getters say, else of the Python getters.
+//! Position, angle and speed of a road user, from libsumo's C++ functions if they can be called and agree with its Python
+//! getters, otherwise from the Python getters.
 
 use std::path::PathBuf;
 
@@ -7,14 +7,9 @@ use closecall::traffic::frame::{SUMO_INVALID, State};
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 
+use super::compiled::{Compiled, KeptAddress};
 use super::reading::{Domain, Reading};
 use super::sumo;
-
-#[cfg(compiled_getters)]
-pub use super::compiled::Kept;
-
-#[cfg(compiled_getters)]
-use super::compiled::Compiled;
 
 /// The getters of one domain.
 pub struct Getters {
@@ -25,32 +20,8 @@ pub struct Getters {
     compiled: Option<Compiled>,
 }
 
-/// Stands where compiled.cpp is not compiled: there is none.
-#[cfg(not(compiled_getters))]
-enum Compiled {}
-
-/// And nothing to keep.
-#[cfg(not(compiled_getters))]
-#[derive(Default)]
-pub struct Kept;
-
-#[cfg(not(compiled_getters))]
-impl Compiled {
-    fn of(_: &std::path::Path, _: &str, _: Domain) -> Option<Self> {
-        None
-    }
-
-    fn read(&self, _: &str, _: Option<&mut Kept>) -> Option<Reading> {
-        match *self {}
-    }
-
-    fn has_route(&self, _: &str, _: &str) -> bool {
-        match *self {}
-    }
-}
-
 impl Getters {
-    /// Those of the compiled module inside libsumo.
+    /// The getters of the compiled module inside libsumo.
     pub fn new(module: &Bound<PyAny>, domain: Domain) -> PyResult<Self> {
         let name = match domain {
             Domain::Vehicle => "vehicle",
@@ -68,21 +39,21 @@ impl Getters {
         })
     }
 
-    /// Compares both ways for a road user that enters: from the first difference on, Python's getters are asked.
-    pub fn enters(&mut self, py: Python, id: &str) {
+    /// Reads a road user that enters with both kinds of getters. After the first difference only Python's are used.
+    pub fn compare(&mut self, py: Python, id: &str) {
         if let Some(compiled) = &self.compiled
-            && let Ok(said) = self.ask(py, id)
-            && compiled.read(id, None).is_none_or(|read| !same(read, said))
+            && let Ok(asked) = self.ask(py, id)
+            && compiled.read(id, None).is_none_or(|read| !same(read, asked))
         {
             self.compiled = None;
         }
     }
 
-    /// The state of a road user; none for one inside a vehicle.
-    pub fn state(&self, py: Python, id: &str, kept: Option<&mut Kept>) -> PyResult<Option<State>> {
+    /// The state of a road user; none if it is inside a vehicle.
+    pub fn state(&self, py: Python, id: &str, kept: Option<&mut KeptAddress>) -> PyResult<Option<State>> {
         let reading = match self.compiled.as_ref().and_then(|compiled| compiled.read(id, kept)) {
             Some(reading) => reading,
-            // Python says of an unknown id what is wrong with it.
+            // For an unknown id, Python's getters raise the error to report.
             None => self.ask(py, id)?,
         };
         Ok(match reading {
@@ -91,7 +62,7 @@ impl Getters {
         })
     }
 
-    /// Whether a vehicle certainly still has the route of this id.
+    /// Whether a vehicle certainly still has the route with this id.
     pub fn has_route(&self, id: &str, route: &str) -> bool {
         self.compiled.as_ref().is_some_and(|compiled| compiled.has_route(id, route))
     }
@@ -109,7 +80,7 @@ impl Getters {
         Ok(Reading::At {
             x: point.get_item(0)?.extract()?,
             y: point.get_item(1)?.extract()?,
-            // libsumo says nothing of the height of who is nowhere, on a teleport say.
+            // A road user without a position, during a teleport for example, has no height either.
             z: point.get_item(2).map_or(Ok(SUMO_INVALID), |z| z.extract())?,
             angle: ask(&self.angle)?.extract()?,
             speed: ask(&self.speed)?.extract()?,
@@ -117,7 +88,7 @@ impl Getters {
     }
 }
 
-/// Whether two readings are the same to the last bit.
+/// Whether two readings are bitwise equal.
 fn same(one: Reading, other: Reading) -> bool {
     let numbers = |reading| match reading {
         Reading::Inside => None,

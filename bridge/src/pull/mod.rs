@@ -1,9 +1,13 @@
-//! From libsumo or traci into a [`closecall::run::Run`]: who is in the scene, and where.
+//! Reads road users from libsumo or traci into a [`Run`].
 
 #[cfg(compiled_getters)]
 mod compiled;
+#[cfg(not(compiled_getters))]
+#[path = "not_compiled.rs"]
+mod compiled;
 mod getters;
 mod libsumo;
+mod libsumo_domain;
 mod reading;
 mod sumo;
 mod traci;
@@ -19,7 +23,7 @@ use self::traci::Traci;
 
 pub use sumo::{add_obstacles, net_of, option};
 
-/// Where road users come from.
+/// A simulation that is being read.
 pub enum Source {
     /// libsumo, in this process: through its getters.
     Libsumo(Box<Libsumo>),
@@ -28,11 +32,11 @@ pub enum Source {
 }
 
 impl Source {
-    /// The source that a Python object is: the module libsumo, the module traci or one of traci's connections; the
-    /// run is told what the simulation says of itself. A mesoscopic one is refused: all of a queue are in one place there.
+    /// The source for a Python object: the module libsumo, the module traci or a traci connection. Sets the run up for the
+    /// simulation's lateral model. A mesoscopic simulation is refused, because it does not locate single vehicles.
     pub fn new(source: &Bound<PyAny>, run: &mut Run, options: &Options) -> PyResult<Self> {
         if option(source, "mesosim")? == "true" {
-            let message = "mesosim: the mesoscopic model says of a queue where it is, not of each road user in it; \
+            let message = "mesosim: the mesoscopic model locates queues, not the road users in them; \
                            closecall needs the microscopic one";
             return Err(PyValueError::new_err(message));
         }
@@ -46,8 +50,7 @@ impl Source {
         })
     }
 
-    /// Says that nobody but the caller makes steps, none of them is missed, and nobody takes road users out of the
-    /// simulation but SUMO itself.
+    /// States that only the caller makes steps and reads each of them, and that only SUMO itself removes road users.
     pub fn set_exclusive(&mut self) {
         match self {
             Self::Libsumo(source) => source.set_exclusive(),
@@ -55,7 +58,7 @@ impl Source {
         }
     }
 
-    /// The time of the states of now, as SUMO's own outputs have it.
+    /// The time of the current states, as in SUMO's own outputs.
     pub fn time(&self, py: Python) -> PyResult<Second> {
         match self {
             Self::Libsumo(source) => source.time(py),
@@ -63,7 +66,7 @@ impl Source {
         }
     }
 
-    /// Begins a step of the run with every road user's state of now, whose time this is.
+    /// Begins a step of the run with the current states of all road users, whose time is `time`.
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         match self {
             Self::Libsumo(source) => source.pull(py, run, time),
@@ -71,8 +74,13 @@ impl Source {
         }
     }
 
-    /// Tells the run where the road users of these rows are on the net.
-    pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
+    /// Updates the run's paths and sets the placements that it asks for.
+    pub fn update_paths(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        py.detach(|| run.update_paths(|run, rows| Python::attach(|py| self.place(py, run, rows))))
+    }
+
+    /// Sets the placements of these rows.
+    fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
         match self {
             Self::Libsumo(source) => source.place(py, run, rows),
             Self::Traci(source) => source.place(py, run, rows),

@@ -1,4 +1,4 @@
-//! What libsumo reports of one road user in one step.
+//! What libsumo reports about one road user in one step.
 
 /// Vehicles or persons.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -7,11 +7,11 @@ pub enum Domain {
     Person,
 }
 
-/// What libsumo says of a road user.
+/// The state of a road user.
 #[derive(Clone, Copy)]
 pub enum Reading {
-    /// It is inside a vehicle: no road user of its own.
+    /// It is inside a vehicle, and so not a road user of its own.
     Inside,
-    /// Position in m, angle in degrees as SUMO has it, speed in m/s.
+    /// Position in m, SUMO's angle in degrees, speed in m/s.
     At { x: f64, y: f64, z: f64, angle: f64, speed: f64 },
 }

@@ -1,4 +1,4 @@
-//! What is asked of SUMO once, in the same words for libsumo and traci: options, types, polygons, routes.
+//! Requests that are the same for libsumo and traci: options, types, polygons, routes.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -17,12 +17,12 @@ use rustc_hash::FxHashMap;
 
 use crate::error::{exception, message};
 
-/// The value of a SUMO option; empty where it is not set. Without a simulation SUMO has none.
+/// The value of a SUMO option; empty if it is not set. SUMO has no options before a simulation is started.
 pub fn option(source: &Bound<PyAny>, name: &str) -> PyResult<String> {
     let simulation = source.getattr("simulation")?;
     let unknown = |error: PyErr| {
-        let said = message(source.py(), &error);
-        PyRuntimeError::new_err(format!("SUMO does not say its option {name}; is a simulation started? ({said})"))
+        let message = message(source.py(), &error);
+        PyRuntimeError::new_err(format!("SUMO does not report its option {name}; is a simulation started? ({message})"))
     };
     simulation.call_method1("getOption", (name,)).map_err(unknown)?.extract()
 }
@@ -54,8 +54,8 @@ pub fn add_obstacles(source: &Bound<PyAny>, run: &mut Run, types: &[String]) -> 
     Ok(())
 }
 
-/// The types that were asked for once.
-pub struct Types {
+/// The profiles of SUMO's types; each type is asked for once.
+pub struct TypeProfiles {
     domain: Py<PyAny>,
     options: Options,
     step_length: Second,
@@ -63,7 +63,7 @@ pub struct Types {
     persons: FxHashMap<String, ProfileIndex>,
 }
 
-impl Types {
+impl TypeProfiles {
     pub fn new(source: &Bound<PyAny>, options: &Options) -> PyResult<Self> {
         Ok(Self {
             domain: source.getattr("vehicletype")?.unbind(),
@@ -112,7 +112,7 @@ impl Types {
     }
 }
 
-/// A route as the net's edges; what the net does not know ends it.
+/// A route as the net's edges. It ends at an edge that the net does not have.
 pub fn route(net: &Net, edges: &Bound<PyAny>) -> PyResult<Arc<[EdgeIndex]>> {
     let mut route = Vec::new();
     for edge in edges.try_iter()? {
@@ -122,7 +122,7 @@ pub fn route(net: &Net, edges: &Bound<PyAny>) -> PyResult<Arc<[EdgeIndex]>> {
     Ok(route.into())
 }
 
-/// The time that SUMO's own outputs give to the states of now: `getTime` is one step ahead of them.
+/// The time of the current states in SUMO's own outputs: `getTime` is one step ahead of them.
 pub fn time_of_states(time: Second, step_length: Second) -> Second {
     // SUMO counts whole milliseconds.
     ((time - step_length) * 1e3).round() / 1e3

@@ -1,32 +1,31 @@
-//! From traci, over its socket: everything by subscription, since each single question costs a round trip.
+//! From traci, over its socket: everything by subscription, because each single request costs a round trip.
 //!
-//! The names of its functions are interned: whatever name Python is asked for anew in every step stays in its cache of
-//! attributes.
+//! The names of its functions are interned: Python's attribute cache keeps every name that is looked up in every step.
 
 use closecall::options::Options;
 use closecall::run::Run;
 use closecall::traffic::frame::State;
 use closecall::traffic::placement::Placement;
-use closecall::traffic::roster::UserIndex;
+use closecall::traffic::roster::{ProfileIndex, UserIndex};
 use closecall::util::units::Second;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use rustc_hash::FxHashMap;
 
-use super::sumo::{self, Types};
+use super::sumo::{self, TypeProfiles};
 
-/// A traci connection and who is in the scene.
+/// A traci connection and the road users in the scene.
 pub struct Traci {
     source: Py<PyAny>,
-    vehicles: Domain,
-    persons: Domain,
-    types: Types,
+    vehicles: TraciDomain,
+    persons: TraciDomain,
+    types: TypeProfiles,
     step_length: Second,
     variable: Variables,
 }
 
-/// traci's numbers of what is subscribed to.
+/// traci's numbers of the variables that are subscribed to.
 struct Variables {
     position: i32,
     angle: i32,
@@ -40,21 +39,21 @@ struct Variables {
     vehicle: i32,
 }
 
-/// The bit of traci's stop state that says: parked off the road.
+/// The bit of traci's stop state for a vehicle parked off the road.
 const PARKED: i32 = 2;
 
 /// Vehicles or persons.
-struct Domain {
+struct TraciDomain {
     domain: Py<PyAny>,
     variables: Vec<i32>,
-    live: FxHashMap<String, Live>,
-    /// The id of who stands in each row of the frame from `first_row` on.
+    live: FxHashMap<String, SubscribedUser>,
+    /// The ids of the road users in the rows of the frame, from `first_row` on.
     rows: Vec<String>,
     first_row: u32,
 }
 
-/// Somebody in the scene.
-struct Live {
+/// A road user in the scene.
+struct SubscribedUser {
     user: UserIndex,
     seen: bool,
     route: Option<String>,
@@ -79,16 +78,16 @@ impl Traci {
         };
         let Variables { position, angle, speed, lane, lane_position, .. } = variable;
         let Variables { lateral_speed, route_id, route_index, stop_state, vehicle, .. } = variable;
-        let domain = |name: &str, variables: Vec<i32>| -> PyResult<Domain> {
+        let domain = |name: &str, variables: Vec<i32>| -> PyResult<TraciDomain> {
             let domain = source.getattr(name)?.unbind();
-            Ok(Domain { domain, variables, live: FxHashMap::default(), rows: Vec::new(), first_row: 0 })
+            Ok(TraciDomain { domain, variables, live: FxHashMap::default(), rows: Vec::new(), first_row: 0 })
         };
         let of_vehicles =
             vec![position, angle, speed, lane, lane_position, lateral_speed, route_id, route_index, stop_state];
         Ok(Self {
             vehicles: domain("vehicle", of_vehicles)?,
             persons: domain("person", vec![position, angle, speed, vehicle])?,
-            types: Types::new(source, options)?,
+            types: TypeProfiles::new(source, options)?,
             step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
             source: source.clone().unbind(),
             variable,
@@ -102,7 +101,7 @@ impl Traci {
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
-        run.begin(time);
+        run.begin_step(time);
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;
@@ -141,13 +140,13 @@ impl Traci {
     }
 }
 
-impl Domain {
+impl TraciDomain {
     fn read(
         &mut self,
         py: Python,
         run: &mut Run,
         variable: &Variables,
-        mut profile: impl FnMut(&mut Run, &str) -> PyResult<closecall::traffic::roster::ProfileIndex>,
+        mut profile: impl FnMut(&mut Run, &str) -> PyResult<ProfileIndex>,
     ) -> PyResult<()> {
         let domain = self.domain.bind(py);
         for live in self.live.values_mut() {
@@ -158,14 +157,15 @@ impl Domain {
         let ids = domain.call_method0(intern!(py, "getIDList"))?.cast_into::<PyTuple>()?;
         let subscribe =
             |id: &Bound<PyAny>| domain.call_method1(intern!(py, "subscribe"), (id, self.variables.clone())).map(drop);
-        let mut enter = |live: &mut FxHashMap<String, Live>, run: &mut Run, id: &Bound<PyAny>| -> PyResult<()> {
-            let type_id = domain.call_method1(intern!(py, "getTypeID"), (id,))?;
-            let profile = profile(run, type_id.extract::<&str>()?)?;
-            let user = run.enter(id.extract::<&str>()?, profile);
-            let gone = live.insert(id.extract()?, Live { user, seen: false, route: None, latest: None });
-            gone.into_iter().for_each(|gone| run.leave(gone.user));
-            Ok(())
-        };
+        let mut enter =
+            |live: &mut FxHashMap<String, SubscribedUser>, run: &mut Run, id: &Bound<PyAny>| -> PyResult<()> {
+                let type_id = domain.call_method1(intern!(py, "getTypeID"), (id,))?;
+                let profile = profile(run, type_id.extract::<&str>()?)?;
+                let user = run.enter(id.extract::<&str>()?, profile);
+                let gone = live.insert(id.extract()?, SubscribedUser { user, seen: false, route: None, latest: None });
+                gone.into_iter().for_each(|gone| run.leave(gone.user));
+                Ok(())
+            };
         for id in ids.iter() {
             if !self.live.contains_key(id.extract::<&str>()?) {
                 subscribe(&id)?;
@@ -174,7 +174,7 @@ impl Domain {
         }
         let ask = || domain.call_method0(intern!(py, "getAllSubscriptionResults"));
         let mut results = ask()?;
-        // Whose subscription SUMO has ended has left, and another has its id.
+        // If SUMO has ended the subscription of an id, its road user has left and another one has the id.
         let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
         if !others.is_empty() {
             others.iter().try_for_each(&subscribe)?;

@@ -1,55 +1,55 @@
 //! fcd-output in CSV: one row per road user and step, the time in each.
 //!
-//! SUMO's xml2csv gives vehicles and persons columns of their own. SUMO itself gives both the same, and calls them after
-//! whoever came first.
+//! SUMO's xml2csv writes separate columns for vehicles and persons. SUMO itself writes the same columns for both, named
+//! after the kind of the first road user.
 
 use std::path::{Path, PathBuf};
 
 use super::names::Users;
 use super::number::number;
-use super::rows::{Attribute, Extent, Fields, Step, cut_short, in_order};
-use super::source::{Source, find_all};
+use super::rows::{Attribute, Fields, RecordedStep, Scope, cut_short, in_order};
+use super::source::{ByteWindow, find_all};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
-/// A CSV recording that is being read.
+/// A CSV recording being read.
 pub(super) struct CsvRecording {
     path: PathBuf,
-    source: Source,
-    extent: Extent,
+    source: ByteWindow,
+    scope: Scope,
     separator: u8,
     time: usize,
-    /// The columns that say something.
-    columns: Vec<Column>,
+    /// The columns that matter.
+    columns: Vec<CsvColumn>,
     /// Whether vehicles and persons share them.
     shared: bool,
-    /// So many columns are looked at.
-    looked_at: usize,
-    /// Where the values of the row under way end.
+    /// The number of columns up to the last one that matters.
+    columns_read: usize,
+    /// The ends of the values of the current row.
     ends: Vec<usize>,
-    /// The time of the step under way, as it is written: most rows have the same.
+    /// The time of the current step as it is written: most rows repeat it.
     time_text: Vec<u8>,
     last: Option<Second>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Column {
-    /// Which one it is, from the left.
+struct CsvColumn {
+    /// Its position, from the left.
     place: usize,
     attribute: Option<Attribute>,
     person: bool,
 }
 
 impl CsvRecording {
-    pub fn new(path: &Path, mut source: Source, extent: Extent) -> Result<Self> {
+    pub fn new(path: &Path, mut source: ByteWindow, scope: Scope) -> Result<Self> {
         source.look_out_for(b'"');
         let unusable = |error| Error::file(path, error);
         let header = loop {
-            match record(&mut source).map_err(unusable)? {
-                Record::Whole(length) if is_empty(&source.rest()[..length]) => source.consume(length),
-                Record::Whole(length) => break length,
-                Record::Incomplete => break source.rest().len(),
-                Record::None => return Err(Error::content(path, "the file is empty")),
+            match next_row(&mut source).map_err(unusable)? {
+                NextRow::Whole(length) if is_empty(&source.rest()[..length]) => source.consume(length),
+                NextRow::Whole(length) => break length,
+                NextRow::Incomplete => break source.rest().len(),
+                NextRow::None => return Err(Error::content(path, "the file is empty")),
             }
         };
         let line = trimmed(&source.rest()[..header]);
@@ -58,41 +58,41 @@ impl CsvRecording {
         let names = names.iter().map(|name| String::from_utf8_lossy(name)).collect::<Vec<_>>();
         let time = names.iter().position(|name| name == "timestep_time");
         let Some(time) = time else {
-            return Err(Error::content(path, "it is no fcd-output: there is no column timestep_time"));
+            return Err(Error::content(path, "it is not an fcd-output: it has no column timestep_time"));
         };
         for needed in ["id", "x", "y", "angle", "speed"] {
             if !names.iter().any(|name| *name == format!("vehicle_{needed}") || *name == format!("person_{needed}")) {
-                return Err(Error::content(path, format!("there is no column vehicle_{needed}")));
+                return Err(Error::content(path, format!("it has no column vehicle_{needed}")));
             }
         }
         let columns =
-            names.iter().enumerate().filter_map(|(place, name)| column(place, name, extent)).collect::<Vec<_>>();
-        let looked_at = 1 + columns.last().map_or(0, |last| last.place).max(time);
+            names.iter().enumerate().filter_map(|(place, name)| column(place, name, scope)).collect::<Vec<_>>();
+        let columns_read = 1 + columns.last().map_or(0, |last| last.place).max(time);
         let shared = ["vehicle_id", "person_id"].iter().any(|id| !names.iter().any(|name| name == id));
         source.consume(header);
         Ok(Self {
             path: path.to_owned(),
             source,
-            extent,
+            scope,
             separator,
             time,
             columns,
             shared,
-            looked_at,
+            columns_read,
             ends: Vec::new(),
             time_text: Vec::new(),
             last: None,
         })
     }
 
-    pub fn next_step(&mut self, step: &mut Step, users: &mut Users) -> Result<bool> {
+    pub fn next_step(&mut self, step: &mut RecordedStep, users: &mut Users) -> Result<bool> {
         let mut begun = false;
         loop {
             let cut = |message: &str| cut_short(&self.path, self.last, message);
-            let length = match record(&mut self.source).map_err(|error| cut(&error.to_string()))? {
-                Record::Whole(length) => length,
-                Record::Incomplete => return Err(cut("the last row is incomplete")),
-                Record::None => break,
+            let length = match next_row(&mut self.source).map_err(|error| cut(&error.to_string()))? {
+                NextRow::Whole(length) => length,
+                NextRow::Incomplete => return Err(cut("the last row is incomplete")),
+                NextRow::None => break,
             };
             let line = trimmed(&self.source.rest()[..length]);
             if line.is_empty() {
@@ -103,7 +103,7 @@ impl CsvRecording {
             let quoted = match self.source.is_marked() && line.contains(&b'"') {
                 true => Some(quoted(line, self.separator).map_err(wrong)?),
                 false => {
-                    split(self.source.rest(), line.len(), self.separator, self.looked_at, &mut self.ends);
+                    split(self.source.rest(), line.len(), self.separator, self.columns_read, &mut self.ends);
                     None
                 }
             };
@@ -112,8 +112,8 @@ impl CsvRecording {
             let time_text = value(self.time).unwrap_or_default();
             if !begun || time_text != self.time_text {
                 let time = number(time_text);
-                let said = || format!("timestep_time is \"{}\"", String::from_utf8_lossy(time_text));
-                let time = time.ok_or_else(|| wrong(said()))?;
+                let message = || format!("timestep_time is \"{}\"", String::from_utf8_lossy(time_text));
+                let time = time.ok_or_else(|| wrong(message()))?;
                 if begun && time != step.time {
                     break;
                 }
@@ -125,13 +125,13 @@ impl CsvRecording {
                 self.time_text.clear();
                 self.time_text.extend_from_slice(time_text);
             }
-            let mut fields = self.extent.fields();
+            let mut fields = self.scope.fields();
             set(&mut fields, &self.columns, value).map_err(wrong)?;
             if self.shared {
                 fields.tell_apart();
             }
-            // A step without anybody in it has a row of nobody.
-            if !fields.is_of_nobody() {
+            // A step without road users has one row without an id.
+            if fields.has_id() {
                 step.add(&fields, users, "value in column").map_err(wrong)?;
             }
             self.source.consume(length);
@@ -144,22 +144,22 @@ impl CsvRecording {
     }
 }
 
-fn column(place: usize, name: &str, extent: Extent) -> Option<Column> {
+fn column(place: usize, name: &str, scope: Scope) -> Option<CsvColumn> {
     let (person, attribute) = match name.split_once('_') {
         Some(("vehicle", attribute)) => (false, attribute),
         Some(("person", attribute)) => (true, attribute),
         _ => return None,
     };
-    let attribute = extent.attribute(attribute.as_bytes());
-    // A person's column says that it is a person, if nothing else.
-    (person || attribute.is_some()).then_some(Column { place, attribute, person })
+    let attribute = scope.attribute(attribute.as_bytes());
+    // A value in any person column shows that the row is a person's.
+    (person || attribute.is_some()).then_some(CsvColumn { place, attribute, person })
 }
 
-/// Sets what a row says, given its values by their places.
+/// Sets the fields of a row from its values by position.
 #[inline]
 fn set<'a>(
     fields: &mut Fields<'a>,
-    columns: &[Column],
+    columns: &[CsvColumn],
     value: impl Fn(usize) -> Option<&'a [u8]>,
 ) -> std::result::Result<(), String> {
     for column in columns {
@@ -174,7 +174,7 @@ fn set<'a>(
     Ok(())
 }
 
-/// The values of a row without quotation marks.
+/// The values of a row that has no quotation marks.
 struct Values<'a> {
     line: &'a [u8],
     ends: &'a [usize],
@@ -188,7 +188,7 @@ impl<'a> Values<'a> {
     }
 }
 
-/// Where the first values of a row end, `most` of them; the row is the first `length` bytes.
+/// Finds the ends of the first `most` values of a row, which is the first `length` bytes.
 #[inline]
 fn split(rest: &[u8], length: usize, separator: u8, most: usize, ends: &mut Vec<usize>) {
     ends.clear();
@@ -201,7 +201,7 @@ fn split(rest: &[u8], length: usize, separator: u8, most: usize, ends: &mut Vec<
     }
 }
 
-/// The values of a row with quotation marks.
+/// The values of a row that has quotation marks.
 fn quoted(line: &[u8], separator: u8) -> std::result::Result<csv::ByteRecord, String> {
     let mut reader = csv::ReaderBuilder::new().delimiter(separator).has_headers(false).flexible(true).from_reader(line);
     let mut record = csv::ByteRecord::new();
@@ -209,28 +209,28 @@ fn quoted(line: &[u8], separator: u8) -> std::result::Result<csv::ByteRecord, St
     Ok(record)
 }
 
-/// How much of the rest is the next row, its line end included.
-enum Record {
+/// The length of the next row, line end included.
+enum NextRow {
     Whole(usize),
-    /// The file ends within it.
+    /// The file ends within the row.
     Incomplete,
     None,
 }
 
 #[inline]
-fn record(source: &mut Source) -> std::io::Result<Record> {
+fn next_row(source: &mut ByteWindow) -> std::io::Result<NextRow> {
     let mut from = 0;
     loop {
         let rest = source.rest();
         let end = memchr::memchr(b'\n', &rest[from..]).map(|place| from + place + 1);
         match end {
-            // A line end between quotation marks belongs to a value.
+            // A line end between quotation marks is part of a value.
             Some(end) if source.is_marked() && memchr::memchr_iter(b'"', &rest[..end]).count() % 2 == 1 => from = end,
-            Some(end) => return Ok(Record::Whole(end)),
+            Some(end) => return Ok(NextRow::Whole(end)),
             None => {
                 from = if source.is_marked() { from } else { rest.len() };
                 if !source.more()? {
-                    return Ok(if is_empty(source.rest()) { Record::None } else { Record::Incomplete });
+                    return Ok(if is_empty(source.rest()) { NextRow::None } else { NextRow::Incomplete });
                 }
             }
         }

@@ -1,26 +1,26 @@
-//! The recording's lanes in the net.
+//! Finds the recording's lanes in the net.
 
 use super::recording::Recording;
 use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 
-/// Which lane of the net each of a recording's lanes is; looked up once.
+/// The net's lane for each of the recording's lanes; each is looked up once.
 #[derive(Debug, Default)]
 pub(super) struct Lanes {
     known: Vec<Option<LaneIndex>>,
 }
 
 impl Lanes {
-    /// The lane of this [`Row::lane`](super::recording::Row::lane), if the net has it.
+    /// The lane for a [`RecordedRow::lane`](super::rows::RecordedRow::lane), if the net has it.
     #[inline]
     pub fn lane(&mut self, lane: u32, recording: &Recording, net: &Net) -> Option<LaneIndex> {
-        // The recording counts its lanes as they come up.
+        // The recording numbers its lanes in the order in which they appear.
         while self.known.len() <= lane as usize {
             self.known.push(net.lane(recording.lane(self.known.len() as u32)));
         }
         self.known[lane as usize]
     }
 
-    /// Its edge, where that is a road between junctions.
+    /// Its edge, if that is a road between junctions.
     #[inline]
     pub fn edge(&mut self, lane: u32, recording: &Recording, net: &Net) -> Option<EdgeIndex> {
         let edge = net.lanes[self.lane(lane, recording, net)?.0 as usize].edge;

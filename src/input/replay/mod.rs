@@ -1,6 +1,6 @@
-//! Replay: SUMO's fcd-output as frames, through the same checks as a live run. No SUMO is needed.
+//! Replay: SUMO's fcd-output as frames, through the same checks as a live run. SUMO is not needed.
 //!
-//! The recording is read twice: once for the routes that everybody drove, then step by step.
+//! The recording is read twice: once for the routes that the vehicles drove, then step by step.
 
 mod csv;
 mod lanes;
@@ -10,7 +10,9 @@ pub mod recording;
 pub mod routes;
 pub mod rows;
 mod source;
+mod tags;
 pub mod types;
+mod user;
 mod xml;
 
 use std::collections::BTreeSet;
@@ -23,7 +25,7 @@ use crate::geometry::{Bounds, Point};
 use crate::options::{Options, PathModel};
 use crate::run::Run;
 use crate::traffic::frame::State;
-use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
@@ -32,53 +34,41 @@ use crate::{Error, Result};
 use lanes::Lanes;
 use recording::Recording;
 use routes::Routes;
-use rows::{Row, Step};
-use types::Types;
+use rows::{RecordedRow, RecordedStep};
+use types::VehicleTypes;
+use user::ReplayedUser;
 
-/// Who is further than this from where its lane is, in m, is on another net, or in degrees.
+/// A vehicle further than this from its lane, in m, was recorded on another net, or in degrees.
 const ELSEWHERE: Metre = 100.0;
 
-/// Of types that are defined nowhere so many are named.
-const NAMED: usize = 5;
+/// The number of undefined types that a remark names.
+const NAMED_TYPES: usize = 5;
 
-/// A recording that is being replayed into a run.
+/// A recording that is replayed into a run.
 pub struct Replay {
     path: PathBuf,
     recording: Recording,
-    /// Whether anybody was found to be where its lane is.
+    /// Whether a vehicle was found to be near its lane, so that the net is the right one.
     is_on_net: bool,
-    step: Step,
-    following: Step,
-    has_following: bool,
-    types: Types,
-    /// Types that are defined nowhere, and so are SUMO's default car or pedestrian.
+    step: RecordedStep,
+    second_step: RecordedStep,
+    has_second_step: bool,
+    types: VehicleTypes,
+    /// Types that no file defines: they are SUMO's default car or pedestrian.
     undefined: BTreeSet<String>,
     lanes: Lanes,
-    /// None where paths are not laid along lanes.
+    /// None where paths do not follow lanes.
     routes: Option<Routes>,
     options: Options,
     step_length: Second,
     steps: u64,
-    /// By the recording's number of the user.
-    live: Vec<Option<Live>>,
-    /// Where the vehicles of the step are, if there are persons.
-    vehicles: FxHashSet<Stand>,
-    /// Which of the step's rows stands in each row of the frame.
+    /// The road users in the scene, by the recording's number.
+    users: Vec<Option<ReplayedUser>>,
+    /// The states of the step's vehicles, if there are persons.
+    vehicles: FxHashSet<ExactState>,
+    /// For each row of the frame, the index of its row in the step.
     rows: Vec<u32>,
-    approaching: Vec<u32>,
     gone: Vec<UserIndex>,
-}
-
-/// Somebody in the scene.
-struct Live {
-    user: UserIndex,
-    /// Which of the recording's vehicles it is; none of a person, and where paths are not laid along lanes.
-    number: Option<u64>,
-    /// Read when it is first needed.
-    route: Option<Arc<[EdgeIndex]>>,
-    route_position: usize,
-    /// The recording's number of the lane that it was on last.
-    lane: u32,
 }
 
 impl Replay {
@@ -87,40 +77,40 @@ impl Replay {
     /// # Errors
     /// An error that names the file and what is wrong with it.
     pub fn open(path: &Path, type_files: &[PathBuf], net: &Net, options: &Options) -> Result<Self> {
-        let types = Types::read(type_files)?;
+        let types = VehicleTypes::read(type_files)?;
         let mut recording = Recording::open(path)?;
-        let (mut step, mut following) = (Step::default(), Step::default());
-        // Two steps say how long one lasts: as long as a person walks on.
+        let mut step = RecordedStep::default();
+        let mut second_step = RecordedStep::default();
+        // The step length, which is how long a person walks on, follows from the first two steps.
         if !recording.next_step(&mut step)? {
             return Err(Error::content(path, "the recording has no steps"));
         }
-        let has_following = match recording.next_step(&mut following) {
+        let has_second_step = match recording.next_step(&mut second_step) {
             Ok(more) => more,
             Err(Error::CutShort { .. }) => {
                 return Err(Error::content(path, "the recording is cut short within its first two steps"));
             }
             Err(error) => return Err(error),
         };
-        let step_length = if has_following { following.time - step.time } else { 1.0 };
-        let by_lanes = options.path == PathModel::Lanes;
+        let step_length = if has_second_step { second_step.time - step.time } else { 1.0 };
+        let follows_lanes = options.path == PathModel::Lanes;
         Ok(Self {
             path: path.to_path_buf(),
             recording,
             is_on_net: false,
             step,
-            following,
-            has_following,
+            second_step,
+            has_second_step,
             types,
             undefined: BTreeSet::new(),
             lanes: Lanes::default(),
-            routes: if by_lanes { Some(Routes::read(path, net)?) } else { None },
+            routes: if follows_lanes { Some(Routes::read(path, net)?) } else { None },
             options: options.clone(),
             step_length,
             steps: 0,
-            live: Vec::new(),
+            users: Vec::new(),
             vehicles: FxHashSet::default(),
             rows: Vec::new(),
-            approaching: Vec::new(),
             gone: Vec::new(),
         })
     }
@@ -128,33 +118,28 @@ impl Replay {
     /// Checks the next step; returns its time, or none where the recording has ended.
     ///
     /// # Errors
-    /// As [`Recording`] and [`Run`] have them.
+    /// Those of [`Recording::next_step`] and [`Run::step`].
     pub fn next(&mut self, run: &mut Run) -> Result<Option<Second>> {
         self.steps += 1;
         if self.steps == 2 {
-            if !self.has_following {
+            if !self.has_second_step {
                 return Ok(None);
             }
-            std::mem::swap(&mut self.step, &mut self.following);
+            std::mem::swap(&mut self.step, &mut self.second_step);
         } else if self.steps > 2 && !self.recording.next_step(&mut self.step)? {
             return Ok(None);
         }
-        run.begin(self.step.time);
+        run.begin_step(self.step.time);
         self.fill(run)?;
-        self.approaching.clear();
-        self.approaching.extend_from_slice(run.track_paths());
-        for index in 0..self.approaching.len() {
-            self.place(run, self.approaching[index])?;
-        }
-        run.finish_step()?;
+        run.step(|run, rows| rows.iter().try_for_each(|row| self.place(run, *row)))?;
         Ok(Some(self.step.time))
     }
 
-    /// What there is to say of the types so far: which of them are defined nowhere.
+    /// A line that names the types that no file defines, if there are any so far.
     pub fn remark(&self) -> Option<String> {
-        let named = |name: &String| if name.is_empty() { "(none)".to_owned() } else { format!("\"{name}\"") };
-        let names = self.undefined.iter().take(NAMED).map(named).collect::<Vec<_>>().join(", ");
-        let more = match self.undefined.len().saturating_sub(NAMED) {
+        let quoted = |name: &String| if name.is_empty() { "(none)".to_owned() } else { format!("\"{name}\"") };
+        let names = self.undefined.iter().take(NAMED_TYPES).map(quoted).collect::<Vec<_>>().join(", ");
+        let more = match self.undefined.len().saturating_sub(NAMED_TYPES) {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
@@ -168,48 +153,50 @@ impl Replay {
         self.step.rows().len()
     }
 
+    /// Fills the run's frame with the rows of the step.
     fn fill(&mut self, run: &mut Run) -> Result<()> {
         self.vehicles.clear();
         if self.step.persons() > 0 {
-            self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(stand));
+            self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(exact_state));
         }
         self.rows.clear();
         self.rows.resize(run.frame.len(), u32::MAX);
-        for place in 0..self.step.rows().len() {
-            let row = self.step.rows()[place];
-            let user = match self.live.get_mut(row.user as usize) {
-                Some(Some(live)) => {
-                    // In every lane, also where nobody asks for its place: a route may use an edge twice.
-                    if live.lane != row.lane && live.route.is_some() {
-                        live.lane = row.lane;
+        for index in 0..self.step.rows().len() {
+            let row = self.step.rows()[index];
+            let user = match self.users.get_mut(row.user as usize) {
+                Some(Some(user)) => {
+                    // On each new lane, whether or not the placement is needed: a route may use an edge twice.
+                    if user.lane != row.lane && user.route.is_some() {
+                        user.lane = row.lane;
                         if let Some(net) = run.net()
                             && let Some(lane) = self.lanes.lane(row.lane, &self.recording, net)
                         {
-                            live.go_on(net, lane);
+                            user.advance_to(net, lane);
                         }
                     }
-                    live.user
+                    user.index
                 }
                 _ => self.enter(&row, run)?,
             };
-            // Who rides in a vehicle has the vehicle's place in SUMO, and is no road user of its own.
-            if row.person && self.vehicles.contains(&stand(&row)) {
+            // SUMO gives a person that rides in a vehicle the vehicle's position; it is not a road user of its own.
+            if row.person && self.vehicles.contains(&exact_state(&row)) {
                 continue;
             }
             let heading = (90.0 - row.angle).to_radians();
             if run.frame.push(user, State { x: row.x, y: row.y, z: row.z, heading, speed: row.speed }) {
-                self.rows.push(place as u32);
+                self.rows.push(index as u32);
             }
         }
         for user in self.step.gone() {
-            self.gone.extend(self.live.get_mut(*user as usize).and_then(Option::take).map(|live| live.user));
+            self.gone.extend(self.users.get_mut(*user as usize).and_then(Option::take).map(|user| user.index));
         }
         self.gone.sort_unstable();
         self.gone.drain(..).for_each(|user| run.leave(user));
         Ok(())
     }
 
-    fn enter(&mut self, row: &Row, run: &mut Run) -> Result<UserIndex> {
+    /// A road user enters the scene.
+    fn enter(&mut self, row: &RecordedRow, run: &mut Run) -> Result<UserIndex> {
         let type_name = self.recording.type_name(row);
         let category = if row.person { Category::Person } else { Category::Vehicle };
         let profile = match run.roster.profile_named(type_name, category) {
@@ -232,81 +219,68 @@ impl Replay {
             Some(routes) if !row.person => Some(routes.enter()?),
             _ => None,
         };
-        let index = row.user as usize;
-        if self.live.len() <= index {
-            self.live.resize_with(index + 1, || None);
+        let place = row.user as usize;
+        if self.users.len() <= place {
+            self.users.resize_with(place + 1, || None);
         }
-        self.live[index] = Some(Live { user, number, route: None, route_position: 0, lane: u32::MAX });
+        self.users[place] = Some(ReplayedUser::new(user, number));
         Ok(user)
     }
 
+    /// Sets the placement of a row of the frame, if the net has its lane.
     fn place(&mut self, run: &mut Run, row: u32) -> Result<()> {
-        let Some(&place) = self.rows.get(row as usize) else { return Ok(()) };
-        let (Some(recorded), Some(net)) = (self.step.rows().get(place as usize), run.net()) else { return Ok(()) };
-        let Some(Some(live)) = self.live.get_mut(recorded.user as usize) else { return Ok(()) };
+        let Some(&index) = self.rows.get(row as usize) else { return Ok(()) };
+        let (Some(recorded), Some(net)) = (self.step.rows().get(index as usize), run.net()) else { return Ok(()) };
+        let Some(Some(user)) = self.users.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
         if !self.is_on_net {
             if !is_near(recorded, &net.lanes[lane.0 as usize].shape) {
-                let (id, lane) = (self.recording.id(recorded.user), self.recording.lane(recorded.lane));
-                let message = format!(
-                    "\"{id}\" is said to be on lane {lane} at ({}, {}), where the net does not have it: recorded on another \
-                     net, or in degrees (--fcd-output.geo)?",
-                    recorded.x, recorded.y
-                );
-                return Err(Error::content(&self.path, message));
+                return Err(self.on_another_net(recorded));
             }
             self.is_on_net = true;
         }
-        let route = match (&live.route, &mut self.routes, live.number) {
+        let route = match (&user.route, &mut self.routes, user.number) {
             (Some(route), ..) => route.clone(),
             (None, Some(routes), Some(number)) => routes.of(number)?,
             _ => Arc::new([]),
         };
-        live.route = Some(route.clone());
-        live.go_on(net, lane);
-        let is_new = !run.knows_route(live.user, live.route_position);
+        user.route = Some(route.clone());
+        user.advance_to(net, lane);
+        let is_new = !run.knows_route(user.index, user.route_position);
         let placement = Placement {
             lane,
             position: recorded.position,
             route: is_new.then_some(route),
-            route_position: live.route_position,
+            route_position: user.route_position,
             lateral_speed: recorded.lateral_speed,
         };
         run.set_placement(row, &placement);
         Ok(())
     }
+
+    fn on_another_net(&self, row: &RecordedRow) -> Error {
+        let id = self.recording.id(row.user);
+        let lane = self.recording.lane(row.lane);
+        let (x, y) = (row.x, row.y);
+        let message = format!(
+            "\"{id}\" is on lane {lane} at ({x}, {y}), but the net has that lane elsewhere: recorded on another net, or in \
+             degrees (--fcd-output.geo)?"
+        );
+        Error::content(&self.path, message)
+    }
 }
 
-/// Whether somebody is about where a lane is.
-fn is_near(row: &Row, lane: &[Point]) -> bool {
+/// Whether a road user is near the shape of its lane.
+fn is_near(row: &RecordedRow, lane: &[Point]) -> bool {
     let mut reach = Bounds::EMPTY;
     lane.iter().for_each(|point| reach.include(*point));
     let place = Point::new(row.x, row.y);
     reach.grown(ELSEWHERE).meet(&Bounds { low: place, high: place })
 }
 
-/// Position, angle and speed, to the last bit.
-type Stand = [u64; 4];
+/// Position, angle and speed as bits.
+type ExactState = [u64; 4];
 
-fn stand(row: &Row) -> Stand {
+fn exact_state(row: &RecordedRow) -> ExactState {
     [row.x, row.y, row.angle, row.speed].map(f64::to_bits)
-}
-
-impl Live {
-    /// Moves on along its route to this lane.
-    fn go_on(&mut self, net: &Net, lane: LaneIndex) {
-        let Some(route) = &self.route else { return };
-        let edge = net.lanes[lane.0 as usize].edge;
-        let find = |edge: EdgeIndex| route[self.route_position..].iter().position(|known| *known == edge);
-        let further = if net.edges[edge.0 as usize].function == EdgeFunction::Normal {
-            find(edge).unwrap_or(0)
-        } else if let Some(link) = net.lanes[lane.0 as usize].links.first() {
-            // Within a junction it is on the way from the edge before.
-            let to = net.lanes[link.to.0 as usize].edge;
-            find(to).map_or(0, |further| further.saturating_sub(1))
-        } else {
-            0
-        };
-        self.route_position += further;
-    }
 }

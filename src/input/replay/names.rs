@@ -1,8 +1,8 @@
-//! Ids, types and lanes as small numbers: who drives on is recognised by comparing, not by looking up.
+//! Ids, types and lanes as small numbers. A road user that was there before is recognised by comparison, without a look-up.
 
 use rustc_hash::FxHashMap;
 
-/// Texts, each once, numbered in the order in which they came up.
+/// Distinct texts, numbered in the order in which they appeared.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     texts: Vec<String>,
@@ -14,10 +14,11 @@ impl Names {
         self.texts.get(name as usize).map_or("", String::as_str)
     }
 
-    /// The number of a text, which most probably is `guess`.
+    /// The number of a text, which is most likely `guess`.
     #[inline]
     fn number(&mut self, text: &[u8], guess: u32) -> Result<u32, String> {
-        // Comparing two empty texts, by a masked load from where nothing is, took 60 to 80 ns on an AMD EPYC.
+        // Empty texts are tested first: comparing two of them, a masked load from an invalid address, took 60 to 80 ns on an
+        // AMD EPYC.
         let is_known = |known: &String| known.len() == text.len() && (text.is_empty() || known.as_bytes() == text);
         if self.texts.get(guess as usize).is_some_and(is_known) {
             return Ok(guess);
@@ -36,28 +37,29 @@ impl Names {
     }
 }
 
-/// Those in the scene, each with a number that it keeps while it is there, and their types and lanes.
+/// The road users in the scene, each with a number that it keeps while it is there, and their types and lanes.
 #[derive(Debug, Default)]
 pub(super) struct Users {
-    users: Vec<User>,
-    /// Vehicles by their ids, and persons by theirs: both may have the same.
+    users: Vec<NamedUser>,
+    /// The numbers of vehicles and of persons by id: a vehicle and a person may have the same id.
     known: [FxHashMap<Box<[u8]>, u32>; 2],
     free: Vec<u32>,
     gone: Vec<u32>,
     step: u64,
-    /// Those of the step before and of this one, in the recording's order.
+    /// The road users of the previous step and of this one, in the recording's order.
     before: Vec<u32>,
     now: Vec<u32>,
-    /// Who stood here in the step before is expected next.
+    /// The place in `before` of the road user that is expected next.
     expected: usize,
     pub types: Names,
     pub lanes: Names,
 }
 
 #[derive(Debug)]
-struct User {
+struct NamedUser {
     id: String,
     person: bool,
+    /// The last step that it was in.
     step: u64,
     /// Its place in the order of that step.
     place: u32,
@@ -65,13 +67,13 @@ struct User {
     lane: u32,
 }
 
-/// A user, its type and its lane.
+/// The numbers of a road user, its type and its lane.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Known {
+pub(super) struct Numbers {
     pub user: u32,
     pub type_name: u32,
     pub lane: u32,
-    /// Whether it was on this lane in the step before.
+    /// Whether it was on this lane in the previous step.
     pub keeps_lane: bool,
 }
 
@@ -80,7 +82,7 @@ impl Users {
         self.users.get(user as usize).map_or("", |user| &user.id)
     }
 
-    /// Begins a step. Only now the numbers of those who were not in the last one are given to others.
+    /// Begins a step. The numbers of road users that were not in the previous one become free only now.
     pub fn begin(&mut self) {
         for user in self.gone.drain(..) {
             let left = &self.users[user as usize];
@@ -93,7 +95,7 @@ impl Users {
         self.step += 1;
     }
 
-    /// Ends a step; returns those of the step before who are not in it.
+    /// Ends a step; returns the road users of the previous step that are not in it.
     pub fn end(&mut self) -> &[u32] {
         let (users, step) = (&self.users, self.step);
         self.gone.extend(self.before.iter().filter(|user| users[**user as usize].step != step));
@@ -102,9 +104,9 @@ impl Users {
         &self.gone
     }
 
-    /// Who this is.
+    /// The numbers of the road user with this id.
     #[inline]
-    pub fn know(&mut self, id: &[u8], person: bool, type_name: &[u8], lane: &[u8]) -> Result<Known, String> {
+    pub fn number(&mut self, id: &[u8], person: bool, type_name: &[u8], lane: &[u8]) -> Result<Numbers, String> {
         let index = self.find(id, person)?;
         let user = &mut self.users[index as usize];
         if user.step == self.step {
@@ -116,12 +118,12 @@ impl Users {
         user.step = self.step;
         user.place = self.now.len() as u32;
         self.now.push(index);
-        Ok(Known { user: index, type_name: user.type_name, lane: user.lane, keeps_lane: user.lane == lane_before })
+        Ok(Numbers { user: index, type_name: user.type_name, lane: user.lane, keeps_lane: user.lane == lane_before })
     }
 
     #[inline]
     fn find(&mut self, id: &[u8], person: bool) -> Result<u32, String> {
-        // Whoever is not the expected one: that one has left, and it is the one behind.
+        // If it is not the expected one, that one has probably left, and this is the next.
         for place in self.expected..self.expected + 2 {
             let Some(&index) = self.before.get(place) else { break };
             let user = &self.users[index as usize];
@@ -141,7 +143,8 @@ impl Users {
             }
             return Ok(index);
         }
-        let user = User { id: utf8(id)?.to_owned(), person, step: 0, place: 0, type_name: u32::MAX, lane: u32::MAX };
+        let user =
+            NamedUser { id: utf8(id)?.to_owned(), person, step: 0, place: 0, type_name: u32::MAX, lane: u32::MAX };
         let index = self.free.pop().unwrap_or(self.users.len() as u32);
         match self.users.get_mut(index as usize) {
             Some(free) => *free = user,

@@ -1,14 +1,17 @@
-//! Numbers as SUMO writes them, "-123.45", to the same bits as `str::parse`, several times as fast.
+//! Numbers as SUMO writes them, "-123.45": the same bits as `str::parse`, several times faster.
+//!
+//! fast-float2 and lexical-core take 14 and 15 ns for a number with two decimals, this 8; with nine decimals all three take
+//! 17 ns, and `str::parse` 67.
 
 /// Powers of ten that an f64 holds exactly.
 const TENS: [f64; 16] = [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
-/// With so many digits at most, their whole number is below 2⁵³: an f64 holds it exactly.
+/// A whole number of at most this many digits is below 2⁵³, so that an f64 holds it exactly.
 const DIGITS: usize = 15;
 
-/// The number in a text; none where it is no number, or not finite.
+/// The number in a text; none if it is not a number or not finite.
 ///
-/// A short decimal is a whole number over a power of ten. Both are exact, and one division rounds once, so this is the
-/// nearest f64: what `str::parse` gives. All other texts are left to it.
+/// A short decimal is a whole number divided by a power of ten. Both are exact and the division rounds once, so the result
+/// is the nearest f64, as from `str::parse`. All other texts are left to `str::parse`.
 #[inline]
 pub fn number(text: &[u8]) -> Option<f64> {
     let (negative, digits) = match text {
@@ -17,12 +20,12 @@ pub fn number(text: &[u8]) -> Option<f64> {
     };
     let size = match hundredths(digits) {
         Some(hundredths) => hundredths as f64 / 100.0,
-        None => return decimal(negative, digits).or_else(|| slowly(text)),
+        None => return decimal(negative, digits).or_else(|| by_std(text)),
     };
     Some(if negative { -size } else { size })
 }
 
-/// How many hundredths a number with two decimals is, "1.23" to "12345.67": SUMO's default. All eight bytes at once.
+/// A number with two decimals (SUMO's default), "1.23" to "12345.67", in hundredths. Reads all eight bytes at once.
 #[inline]
 fn hundredths(digits: &[u8]) -> Option<u64> {
     const ZEROS: u64 = 0x3030_3030_3030_3030;
@@ -30,28 +33,29 @@ fn hundredths(digits: &[u8]) -> Option<u64> {
     let (4..=8, Some(first), Some(last)) = (digits.len(), digits.first_chunk::<4>(), digits.last_chunk::<4>()) else {
         return None;
     };
-    // The text in the upper bytes, its first digit lowest, zeros below it.
+    // The text fills the upper bytes, its first digit lowest, with zeros below.
     let above = 8 * (8 - digits.len());
     let text = u64::from(u32::from_le_bytes(*first)) << above | u64::from(u32::from_le_bytes(*last)) << 32;
     let text = text | (ZEROS & ((1 << above) - 1));
     if text & (0xff << 40) != POINT {
         return None;
     }
-    // The point is taken out from between the digits, and another zero put in below.
+    // Removes the point from between the digits, and adds another zero below.
     let text = (text << 8 & 0x0000_ffff_ffff_ff00) | (text & 0xffff_0000_0000_0000) | 0x30;
     let digits = text ^ ZEROS;
     if (digits | digits.wrapping_add(0x0606_0606_0606_0606)) & 0xf0f0_f0f0_f0f0_f0f0 != 0 {
         return None;
     }
-    // Neighbours are joined: to pairs, to fours, to eight.
+    // Joins neighbours: digits to pairs, pairs to fours, fours to eight.
     let pairs = (digits * 10 + (digits >> 8)) & 0x00ff_00ff_00ff_00ff;
     let fours = (pairs * 100 + (pairs >> 16)) & 0x0000_ffff_0000_ffff;
     Some((fours * 10_000 + (fours >> 32)) & 0xffff_ffff)
 }
 
-/// A number of up to fifteen digits.
+/// A number of at most fifteen digits.
 fn decimal(negative: bool, digits: &[u8]) -> Option<f64> {
-    let (mut whole, mut decimals) = (0_u64, None);
+    let mut whole = 0_u64;
+    let mut decimals = None;
     if digits.is_empty() || digits.len() > DIGITS + 1 {
         return None;
     }
@@ -65,7 +69,7 @@ fn decimal(negative: bool, digits: &[u8]) -> Option<f64> {
             return None;
         }
     }
-    // Sixteen digits without a point are too many; a point alone is no number.
+    // Sixteen digits without a point are too many, and a point alone is not a number.
     if digits.len() - usize::from(decimals.is_some()) > DIGITS || digits == b"." {
         return None;
     }
@@ -74,7 +78,7 @@ fn decimal(negative: bool, digits: &[u8]) -> Option<f64> {
 }
 
 #[cold]
-fn slowly(text: &[u8]) -> Option<f64> {
+fn by_std(text: &[u8]) -> Option<f64> {
     std::str::from_utf8(text).ok()?.parse().ok().filter(|number: &f64| number.is_finite())
 }
 
@@ -83,13 +87,13 @@ mod tests {
     use crate::input::replay::number::*;
     use proptest::prelude::*;
 
-    fn is_what_std_says(text: &str) {
+    fn is_what_std_reads(text: &str) {
         let expected = text.parse::<f64>().ok().filter(|number| number.is_finite()).map(f64::to_bits);
         assert_eq!(number(text.as_bytes()).map(f64::to_bits), expected, "{text}");
     }
 
     #[test]
-    fn unusual_texts_are_read_as_std_reads_them() {
+    fn unusual_texts_are_read_as_by_std() {
         for text in [
             "",
             "-",
@@ -120,7 +124,7 @@ mod tests {
             "１",
             "1_000",
         ] {
-            is_what_std_says(text);
+            is_what_std_reads(text);
         }
     }
 
@@ -129,28 +133,28 @@ mod tests {
 
         #[test]
         fn decimals_have_the_bits_of_std(text in "-?[0-9]{0,12}(\\.[0-9]{0,9})?") {
-            is_what_std_says(&text);
+            is_what_std_reads(&text);
         }
 
         #[test]
         fn two_decimals_have_the_bits_of_std(text in "-?[0-9]{0,6}\\.[0-9]{2}", at in 0..9_usize, byte in 0..128_u8) {
-            is_what_std_says(&text);
-            // And one byte of it anything else.
+            is_what_std_reads(&text);
+            // And with one byte changed to anything.
             let mut bytes = text.into_bytes();
             if let Some(place) = bytes.get_mut(at) {
                 *place = byte;
             }
-            is_what_std_says(&String::from_utf8(bytes).unwrap());
+            is_what_std_reads(&String::from_utf8(bytes).unwrap());
         }
 
         #[test]
-        fn any_text_is_read_as_std_reads_it(text in "[-+0-9.eEinfa ]{0,20}") {
-            is_what_std_says(&text);
+        fn any_text_is_read_as_by_std(text in "[-+0-9.eEinfa ]{0,20}") {
+            is_what_std_reads(&text);
         }
 
         #[test]
         fn every_double_comes_back(value in proptest::num::f64::NORMAL) {
-            is_what_std_says(&value.to_string());
+            is_what_std_reads(&value.to_string());
         }
     }
 }

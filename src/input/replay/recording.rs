@@ -1,16 +1,16 @@
-//! SUMO's fcd-output, step by step: XML or CSV, plain or gzipped, in memory that does not grow with the file.
+//! SUMO's fcd-output, step by step: XML or CSV, plain or gzipped. Its memory does not grow with the file.
 
 use std::io::BufRead;
 use std::path::Path;
 
 use super::csv::CsvRecording;
 use super::names::Users;
-use super::rows::{Extent, Row, Step};
-use super::source::Source;
+use super::rows::{RecordedRow, RecordedStep, Scope};
+use super::source::ByteWindow;
 use super::xml::XmlRecording;
 use crate::{Error, Result};
 
-/// A recording that is being read.
+/// A recording being read.
 pub struct Recording {
     format: Format,
     users: Users,
@@ -22,31 +22,31 @@ enum Format {
 }
 
 impl Recording {
-    /// Opens a recording; its first bytes say whether it is XML or CSV.
+    /// Opens a recording; its first bytes decide whether it is XML or CSV.
     ///
     /// # Errors
-    /// An error that names the file: unreadable, empty, no fcd-output, a column that is missing.
+    /// [`Error::File`] if it cannot be read, [`Error::Content`] if it is empty, not an fcd-output, or lacks a column.
     pub fn open(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::util::input_file::open(path)?, Extent::All)
+        Self::from_source(path, crate::util::input_file::open(path)?, Scope::All)
     }
 
-    /// Opens a recording for its lanes only: a step has rows of those who came into the scene or onto another lane, and
-    /// all types and numbers in them are empty.
+    /// Opens a recording for its lanes only. A step then has rows only for road users that entered the scene or changed
+    /// lanes, with empty types and numbers.
     pub(super) fn open_for_lanes(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::util::input_file::open(path)?, Extent::Lanes)
+        Self::from_source(path, crate::util::input_file::open(path)?, Scope::Lanes)
     }
 
-    /// The recording in a text; `path` is what errors call it.
+    /// Opens a recording in memory; errors call it `path`.
     ///
     /// # Errors
-    /// As [`Recording::open`] has them.
+    /// As [`Recording::open`].
     pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
-        Self::from_source(path, Box::new(std::io::Cursor::new(text.into())), Extent::All)
+        Self::from_source(path, Box::new(std::io::Cursor::new(text.into())), Scope::All)
     }
 
-    fn from_source(path: &Path, reader: Box<dyn BufRead>, extent: Extent) -> Result<Self> {
+    fn from_source(path: &Path, reader: Box<dyn BufRead>, scope: Scope) -> Result<Self> {
         const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
-        let mut source = Source::new(reader);
+        let mut source = ByteWindow::new(reader);
         let first = loop {
             let rest = source.rest();
             let text = rest.strip_prefix(BYTE_ORDER_MARK).unwrap_or(rest);
@@ -63,34 +63,34 @@ impl Recording {
         }
         let format = match first {
             None => return Err(Error::content(path, "the file is empty")),
-            Some(b'<') => Format::Xml(Box::new(XmlRecording::new(path, source, extent)?)),
-            Some(_) => Format::Csv(Box::new(CsvRecording::new(path, source, extent)?)),
+            Some(b'<') => Format::Xml(Box::new(XmlRecording::new(path, source, scope)?)),
+            Some(_) => Format::Csv(Box::new(CsvRecording::new(path, source, scope)?)),
         };
         Ok(Self { format, users: Users::default() })
     }
 
-    /// Reads the next step; `false` where the recording ends.
+    /// Reads the next step; `false` at the end of the recording.
     ///
     /// # Errors
-    /// [`Error::CutShort`] where the file ends before its format does, [`Error::Line`] for what is not as it should be.
-    pub fn next_step(&mut self, step: &mut Step) -> Result<bool> {
+    /// [`Error::CutShort`] if the file ends before its format does, [`Error::Line`] for a row that cannot be used.
+    pub fn next_step(&mut self, step: &mut RecordedStep) -> Result<bool> {
         match &mut self.format {
             Format::Xml(recording) => recording.next_step(step, &mut self.users),
             Format::Csv(recording) => recording.next_step(step, &mut self.users),
         }
     }
 
-    /// SUMO's id of a road user of the last step read, or of those who had just gone then.
+    /// SUMO's id of a road user that is in the last step read or had just left in it.
     pub fn id(&self, user: u32) -> &str {
         self.users.id(user)
     }
 
-    /// SUMO's id of a type; empty where it is not given.
-    pub fn type_name(&self, row: &Row) -> &str {
+    /// SUMO's id of a row's type; empty if it is not given.
+    pub fn type_name(&self, row: &RecordedRow) -> &str {
         self.users.types.text(row.type_name)
     }
 
-    /// The id of a lane by [`Row::lane`]; empty where it is not given.
+    /// The id of a lane by [`RecordedRow::lane`]; empty if it is not given.
     pub fn lane(&self, lane: u32) -> &str {
         self.users.lanes.text(lane)
     }

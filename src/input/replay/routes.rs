@@ -1,7 +1,7 @@
-//! Routes for a replay: an fcd-output does not have them, but where everybody drove.
+//! Routes for a replay: an fcd-output does not contain them, but they follow from where the vehicles drove.
 //!
-//! They are read before the replay begins, and wait in temporary files until their vehicles enter the scene: in memory
-//! are only those of the vehicles that are there.
+//! They are collected before the replay begins and wait in temporary files until their vehicles enter the scene. Only the
+//! routes of vehicles in the scene are in memory.
 
 use std::collections::VecDeque;
 use std::io::{BufReader, BufWriter, ErrorKind, Read, Seek, SeekFrom, Write};
@@ -13,17 +13,17 @@ use tempfile::{SpooledTempFile, spooled_tempfile};
 
 use super::lanes::Lanes;
 use super::recording::Recording;
-use super::rows::{Row, Step};
+use super::rows::{RecordedRow, RecordedStep};
 use crate::traffic::net::{EdgeIndex, Net};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
-/// Who comes back within this time drives on, in s: SUMO takes a vehicle that is stuck off the net, and puts it back
-/// further on.
+/// A vehicle that comes back within this time, in s, continues its route: SUMO takes a stuck vehicle off the net and puts
+/// it back further along.
 const ABSENCE: Second = 600.0;
-/// Routes up to this size are not written to the disk, in bytes.
+/// Up to this size, in bytes, a temporary file stays in memory.
 const IN_MEMORY: usize = 1 << 14;
-/// An entry in the list of places, in bytes: where the route is and how many edges it has.
+/// The size of an entry of `places`, in bytes: where the route begins and its number of edges.
 const ENTRY: u64 = 16;
 
 /// The edges that each vehicle drove, in order.
@@ -31,23 +31,24 @@ pub struct Routes {
     recording: PathBuf,
     /// The edges of all routes, one after the other.
     edges: SpooledTempFile,
-    /// For every vehicle, in the order of their coming, where its route begins there, and its number of edges.
+    /// For every vehicle, in the order of arrival, where its route begins in `edges`, and its number of edges.
     places: SpooledTempFile,
-    /// Which vehicle that is, for everyone who enters the scene, one after the other: who comes back does so again.
+    /// The vehicle's number for each time that a vehicle enters the scene. One that comes back enters again.
     entering: BufReader<SpooledTempFile>,
 }
 
 impl Routes {
-    /// Reads a recording for its routes. What is cut short ends where it is cut.
+    /// Reads the routes of a recording. In one that is cut short, they end there.
     ///
     /// # Errors
-    /// As [`Recording`] has them; [`Error::File`] where the temporary file cannot be written.
+    /// Those of [`Recording`]; [`Error::File`] if a temporary file cannot be written.
     pub fn read(path: &Path, net: &Net) -> Result<Self> {
         let mut recording = Recording::open_for_lanes(path)?;
-        let mut step = Step::default();
-        let (mut lanes, mut vehicles) = (Lanes::default(), Vehicles::default());
-        let mut writer = Writer::default();
-        // By the recording's number of the user.
+        let mut step = RecordedStep::default();
+        let mut lanes = Lanes::default();
+        let mut vehicles = Vehicles::default();
+        let mut writer = RouteWriter::default();
+        // By the recording's number of the road user.
         let mut driven: Vec<Vec<EdgeIndex>> = Vec::new();
         loop {
             match recording.next_step(&mut step) {
@@ -83,11 +84,11 @@ impl Routes {
         writer.finish(path).map_err(unwritable)
     }
 
-    /// The number of the vehicle that enters the scene next; asked once for each, in the recording's order.
+    /// The number of the vehicle that enters the scene next; to be called once for each, in the recording's order.
     ///
     /// # Errors
-    /// [`Error::Content`] where more enter than did when the routes were read; [`Error::File`] where the temporary file
-    /// cannot be read.
+    /// [`Error::Content`] if more vehicles enter than when the routes were read; [`Error::File`] if the temporary file cannot
+    /// be read.
     pub fn enter(&mut self) -> Result<u64> {
         let mut number = [0; 8];
         match self.entering.read_exact(&mut number) {
@@ -100,10 +101,10 @@ impl Routes {
         }
     }
 
-    /// The route of a vehicle by its number; empty where it was never on a normal edge.
+    /// The route of a vehicle by its number; empty if it was never on a normal edge.
     ///
     /// # Errors
-    /// [`Error::File`] where the temporary file cannot be read.
+    /// [`Error::File`] if the temporary file cannot be read.
     pub fn of(&mut self, number: u64) -> Result<Arc<[EdgeIndex]>> {
         self.read_back(number).map_err(unwritable)
     }
@@ -132,21 +133,21 @@ fn unwritable(error: std::io::Error) -> Error {
     Error::file(&std::env::temp_dir(), error)
 }
 
-struct Writer {
+struct RouteWriter {
     edges: BufWriter<SpooledTempFile>,
     places: SpooledTempFile,
     entering: BufWriter<SpooledTempFile>,
     length: u64,
 }
 
-impl Default for Writer {
+impl Default for RouteWriter {
     fn default() -> Self {
         let [edges, entering] = [(); 2].map(|()| BufWriter::new(spooled_tempfile(IN_MEMORY)));
         Self { edges, places: spooled_tempfile(IN_MEMORY), entering, length: 0 }
     }
 }
 
-impl Writer {
+impl RouteWriter {
     fn enter(&mut self, number: u64) -> std::io::Result<()> {
         self.entering.write_all(&number.to_le_bytes())
     }
@@ -164,20 +165,20 @@ impl Writer {
 
     fn finish(self, recording: &Path) -> std::io::Result<Routes> {
         let written = |file: BufWriter<SpooledTempFile>| file.into_inner().map_err(std::io::IntoInnerError::into_error);
-        let (edges, mut entering) = (written(self.edges)?, written(self.entering)?);
+        let edges = written(self.edges)?;
+        let mut entering = written(self.entering)?;
         entering.rewind()?;
-        let (recording, entering) = (recording.to_owned(), BufReader::new(entering));
-        Ok(Routes { recording, edges, places: self.places, entering })
+        Ok(Routes { recording: recording.to_owned(), edges, places: self.places, entering: BufReader::new(entering) })
     }
 }
 
-/// The vehicles of a recording, numbered in the order of their coming.
+/// The vehicles of a recording, numbered in the order of arrival.
 #[derive(Debug, Default)]
 struct Vehicles {
     count: u64,
-    /// The vehicle's number by the recording's number of the user.
+    /// The vehicle's number, by the recording's number of the road user.
     present: Vec<Option<u64>>,
-    /// Those that were in the scene lately.
+    /// Vehicles that left less than [`ABSENCE`] ago.
     absent: FxHashMap<Arc<str>, Absent>,
     by_time: VecDeque<(Second, Arc<str>)>,
 }
@@ -196,8 +197,8 @@ impl Vehicles {
         self.present.get(user as usize).copied().flatten()
     }
 
-    /// Numbers a vehicle that has come; its route so far has edges if it comes back.
-    fn enter(&mut self, row: &Row, recording: &Recording) -> (u64, Vec<EdgeIndex>) {
+    /// Numbers a vehicle that enters; one that comes back has a route already.
+    fn enter(&mut self, row: &RecordedRow, recording: &Recording) -> (u64, Vec<EdgeIndex>) {
         let (number, route) = match self.absent.remove(recording.id(row.user)) {
             Some(before) => (before.number, before.route),
             None => {
@@ -213,7 +214,7 @@ impl Vehicles {
         (number, route)
     }
 
-    /// Lets a vehicle leave; its route waits for its return.
+    /// A vehicle leaves; its route is kept in case it comes back.
     fn leave(&mut self, user: u32, id: &str, time: Second, route: Vec<EdgeIndex>) {
         let Some(number) = self.present.get_mut(user as usize).and_then(Option::take) else { return };
         let id: Arc<str> = id.into();
@@ -221,7 +222,7 @@ impl Vehicles {
         self.by_time.push_back((time, id));
     }
 
-    /// Forgets those who have been away for too long.
+    /// Forgets the vehicles that have been absent for too long.
     fn forget(
         &mut self,
         time: Second,
@@ -229,7 +230,7 @@ impl Vehicles {
     ) -> std::io::Result<()> {
         while self.by_time.front().is_some_and(|(since, _)| *since < time - ABSENCE) {
             let Some((since, id)) = self.by_time.pop_front() else { break };
-            // Who came back and left again waits from then on.
+            // A vehicle that came back and left again has a later entry.
             if self.absent.get(&id).is_some_and(|absent| absent.since == since)
                 && let Some(absent) = self.absent.remove(&id)
             {
@@ -239,7 +240,7 @@ impl Vehicles {
         Ok(())
     }
 
-    /// Those in the scene: the vehicle's number and the recording's.
+    /// The vehicles in the scene: the vehicle's number and the recording's.
     fn present(&self) -> impl Iterator<Item = (u64, usize)> {
         self.present.iter().zip(0..).filter_map(|(number, user)| number.map(|number| (number, user)))
     }

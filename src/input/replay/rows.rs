@@ -1,16 +1,16 @@
-//! One step of a recording, row by row: what both formats give out.
+//! One step of a recording, row by row: what the readers of both formats return.
 
 use std::path::Path;
 
-use super::names::Users;
+use super::names::{Numbers, Users};
 use super::number::number;
 use crate::Error;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
-/// What a recording says of one road user in one step, in SUMO's own terms.
+/// One road user in one step of a recording, in SUMO's own terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Row {
-    /// Who it is: a number that nobody else has while it is in the scene. [`Recording::id`] is SUMO's id.
+pub struct RecordedRow {
+    /// The road user: a number that is unique while it is in the scene. [`Recording::id`] is SUMO's id.
     pub user: u32,
     /// Whether it is a person.
     pub person: bool,
@@ -28,34 +28,34 @@ pub struct Row {
     pub angle: f64,
     /// Speed in m/s.
     pub speed: MetrePerSecond,
-    /// The way from the lane's beginning, in m.
+    /// Distance from the lane's beginning, in m.
     pub position: Metre,
-    /// Speed to the left, in m/s; 0 where it is not given.
+    /// Speed to the left, in m/s; 0 if it is not given.
     pub lateral_speed: MetrePerSecond,
 }
 
-/// One step of a recording; its memory is used again for the next.
+/// One step of a recording; its memory is reused for the next.
 #[derive(Clone, Debug, Default)]
-pub struct Step {
+pub struct RecordedStep {
     /// Simulated time in s.
     pub time: Second,
-    rows: Vec<Row>,
+    rows: Vec<RecordedRow>,
     persons: usize,
     gone: Vec<u32>,
 }
 
-impl Step {
-    /// Who is in the scene.
-    pub fn rows(&self) -> &[Row] {
+impl RecordedStep {
+    /// The road users in the scene.
+    pub fn rows(&self) -> &[RecordedRow] {
         &self.rows
     }
 
-    /// How many of them are persons.
+    /// The number of persons among them.
     pub fn persons(&self) -> usize {
         self.persons
     }
 
-    /// Who was there in the step before and is not in this one, by [`Row::user`], in ascending order.
+    /// The road users of the previous step that are not in this one, by [`RecordedRow::user`], in ascending order.
     pub fn gone(&self) -> &[u32] {
         &self.gone
     }
@@ -72,22 +72,22 @@ impl Step {
         self.gone.extend_from_slice(users.end());
     }
 
-    /// Adds a row; `place` is what its format calls a place for a value.
+    /// Adds a row; `holder` is what the format calls the holder of a value.
     #[inline]
-    pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, place: &str) -> std::result::Result<(), String> {
+    pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, holder: &str) -> std::result::Result<(), String> {
         let [id, type_name, lane, _] = fields.texts;
         let [x, y, angle, speed, z, position, lateral_speed] = fields.numbers;
         if id.is_empty() || (x + y + angle + speed).is_nan() {
-            fields.check(place)?;
+            fields.check(holder)?;
         }
-        let known = users.know(id, fields.person, type_name, lane)?;
-        if fields.extent == Extent::Lanes && known.keeps_lane {
+        let numbers = users.number(id, fields.person, type_name, lane)?;
+        if fields.scope == Scope::Lanes && numbers.keeps_lane {
             return Ok(());
         }
-        let (user, type_name, lane) = (known.user, known.type_name, known.lane);
+        let Numbers { user, type_name, lane, .. } = numbers;
         let person = fields.person;
         self.persons += usize::from(person);
-        self.rows.push(Row { user, person, type_name, lane, x, y, z, angle, speed, position, lateral_speed });
+        self.rows.push(RecordedRow { user, person, type_name, lane, x, y, z, angle, speed, position, lateral_speed });
         Ok(())
     }
 }
@@ -95,26 +95,26 @@ impl Step {
 /// An attribute or column that matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Attribute {
-    /// Of [`TEXTS`].
+    /// The index of one of [`TEXTS`].
     Text(u8),
-    /// Of [`NUMBERS`].
+    /// The index of one of [`NUMBERS`].
     Number(u8),
 }
 
 const TEXTS: [&str; 4] = ["id", "type", "lane", "edge"];
 
-/// The first four have to be given.
+/// The first four are required.
 const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
 
-/// What is read of every row.
+/// How much of every row is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Extent {
+pub(super) enum Scope {
     All,
-    /// Of those who came into the scene or onto another lane: who, and which lane.
+    /// Only the id and the lane, and only for road users that entered the scene or changed lanes.
     Lanes,
 }
 
-impl Extent {
+impl Scope {
     const ID: Attribute = Attribute::Text(0);
     const LANE: Attribute = Attribute::Text(2);
     const EDGE: Attribute = Attribute::Text(3);
@@ -128,12 +128,12 @@ impl Extent {
     #[inline]
     pub fn fields<'a>(self) -> Fields<'a> {
         let given = if self == Self::All { f64::NAN } else { 0.0 };
-        Fields { extent: self, person: false, texts: [b""; 4], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
+        Fields { scope: self, person: false, texts: [b""; 4], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
     }
 }
 
 impl Attribute {
-    /// Another bit for each.
+    /// A bit of its own for each attribute.
     #[inline]
     pub fn bit(self) -> u32 {
         match self {
@@ -143,10 +143,10 @@ impl Attribute {
     }
 }
 
-/// A row as its text is read.
+/// The values of a row while it is read.
 #[derive(Debug)]
 pub(super) struct Fields<'a> {
-    extent: Extent,
+    scope: Scope,
     pub person: bool,
     texts: [&'a [u8]; 4],
     numbers: [f64; 7],
@@ -159,13 +159,13 @@ impl<'a> Fields<'a> {
             Attribute::Text(text) => self.texts[usize::from(text)] = value,
             Attribute::Number(place) => match number(value) {
                 Some(number) => self.numbers[usize::from(place)] = number,
-                None => return Err(no_number(NUMBERS[usize::from(place)], value)),
+                None => return Err(not_a_number(NUMBERS[usize::from(place)], value)),
             },
         }
         Ok(())
     }
 
-    /// Says by where it is whether it is a person: SUMO has vehicles on a lane and persons on an edge.
+    /// Decides whether the row is a person's: SUMO gives vehicles a lane and persons an edge.
     #[inline]
     pub fn tell_apart(&mut self) {
         let [_, _, lane, edge] = self.texts;
@@ -174,39 +174,39 @@ impl<'a> Fields<'a> {
         }
     }
 
-    pub fn is_of_nobody(&self) -> bool {
-        self.texts[0].is_empty()
+    pub fn has_id(&self) -> bool {
+        !self.texts[0].is_empty()
     }
 
-    /// Whether all is given that has to be.
+    /// Checks that the required values are given.
     #[cold]
-    fn check(&self, place: &str) -> std::result::Result<(), String> {
+    fn check(&self, holder: &str) -> std::result::Result<(), String> {
         let missing = NUMBERS.iter().zip(&self.numbers).take(4).find(|(_, number)| number.is_nan());
-        match missing.map(|(name, _)| *name).filter(|_| !self.is_of_nobody()) {
-            None if !self.is_of_nobody() => Ok(()),
+        match missing.map(|(name, _)| *name).filter(|_| self.has_id()) {
+            None if self.has_id() => Ok(()),
             missing => {
                 let id = String::from_utf8_lossy(self.texts[0]);
-                Err(format!("\"{id}\" has no {place} {}", missing.unwrap_or(TEXTS[0])))
+                Err(format!("\"{id}\" has no {holder} {}", missing.unwrap_or(TEXTS[0])))
             }
         }
     }
 }
 
 #[cold]
-fn no_number(name: &str, value: &[u8]) -> String {
+fn not_a_number(name: &str, value: &[u8]) -> String {
     format!("{name} is \"{}\", not a number", String::from_utf8_lossy(value))
 }
 
-/// Times must not go back.
+/// Checks that times increase.
 pub(super) fn in_order(last: Option<Second>, time: Second) -> std::result::Result<(), String> {
     match last {
-        Some(last) if time <= last => Err(format!("time {time} s follows on {last} s")),
+        Some(last) if time <= last => Err(format!("time {time} s follows {last} s")),
         _ if !time.is_finite() => Err(format!("time is {time}")),
         _ => Ok(()),
     }
 }
 
-/// The error of a file that ends in mid-step.
+/// The error for a file that ends within a step.
 pub(super) fn cut_short(path: &Path, last: Option<Second>, message: &str) -> Error {
     Error::CutShort { path: path.to_owned(), time: last.unwrap_or(f64::NAN), message: message.replace('\n', " ") }
 }

@@ -1,4 +1,4 @@
-//! Vehicle types for a replay: an fcd-output names them only. From route and additional files, and SUMO's defaults.
+//! Vehicle types for a replay, from route and additional files and SUMO's defaults: an fcd-output only names them.
 
 use std::path::{Path, PathBuf};
 
@@ -11,13 +11,13 @@ use crate::traffic::sumo_type::SumoType;
 use crate::util::input_file::LineCounter;
 use crate::{Error, Result};
 
-/// Types by their id.
+/// VehicleTypes by their id.
 #[derive(Clone, Debug, Default)]
-pub struct Types {
+pub struct VehicleTypes {
     known: FxHashMap<String, SumoType>,
 }
 
-impl Types {
+impl VehicleTypes {
     /// Reads the `<vType>` elements of route and additional files.
     ///
     /// # Errors
@@ -46,13 +46,13 @@ impl Types {
         }
     }
 
-    /// Whether a file defines this type or the one that it was made from, or SUMO has one of that name.
+    /// Whether a file or SUMO itself defines this type or the type from which it was made.
     pub fn define(&self, name: &str) -> bool {
         origins(name).any(|name| self.known.contains_key(name) || OWN.iter().any(|(own, _)| *own == name))
     }
 
-    /// The type of this id: as it, or the one that it was made from, was read, else SUMO's default type of that name, else
-    /// a car (or a pedestrian).
+    /// The type with this id: as a file defines it or the type from which it was made, otherwise SUMO's default type of that
+    /// name, otherwise a car (or a pedestrian).
     pub fn named(&self, name: &str, person: bool) -> SumoType {
         let any = if person { "pedestrian" } else { "passenger" };
         let own = |name| OWN.iter().find(|(own, _)| *own == name).map(|(_, class)| *class);
@@ -74,14 +74,14 @@ fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
         let parse = |text: String| text.parse().map_err(|_| format!("{name} is \"{text}\", not a number"));
         text(name)?.map(parse).transpose()
     };
-    let id = text("id")?.ok_or("a vType without id")?;
+    let id = text("id")?.ok_or("a vType has no id")?;
     let mut found = SumoType::of_class(&id, text("vClass")?.as_deref().unwrap_or("passenger"));
     found.shape = text("guiShape")?.unwrap_or(found.shape);
     found.length = number("length")?.unwrap_or(found.length);
     found.width = number("width")?.unwrap_or(found.width);
     found.mass = number("mass")?.unwrap_or(found.mass);
     found.decel = number("decel")?.unwrap_or(found.decel);
-    // As SUMO has it: no emergency braking is weaker than ordinary braking.
+    // As in SUMO, emergency braking is never weaker than ordinary braking.
     found.emergency_decel = number("emergencyDecel")?.unwrap_or(found.emergency_decel.max(found.decel));
     Ok(found)
 }
@@ -90,7 +90,7 @@ fn unescaped(text: &str) -> std::result::Result<String, String> {
     quick_xml::escape::unescape(text).map(std::borrow::Cow::into_owned).map_err(|error| error.to_string())
 }
 
-/// The types that SUMO itself has, and the vehicle class of each.
+/// SUMO's own types, with the vehicle class of each.
 const OWN: [(&str, &str); 6] = [
     ("DEFAULT_VEHTYPE", "passenger"),
     ("DEFAULT_PEDTYPE", "pedestrian"),

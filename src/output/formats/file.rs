@@ -1,4 +1,4 @@
-//! A file that is being written.
+//! An output file being written, whose errors name it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::{Error, Result};
 
-/// A file under way.
+/// A file being written.
 #[derive(Debug)]
 pub(super) struct OutputFile {
     pub path: PathBuf,

@@ -1,4 +1,4 @@
-//! Files in the formats of other tools, written beside the log: SUMO's SSM device, FHWA's SSAM.
+//! Files in the formats of other tools, written next to the log: SUMO's SSM device, FHWA's SSAM.
 
 mod file;
 mod ssm;
@@ -18,22 +18,22 @@ use crate::{Error, Result};
 use ssm::Ssm;
 use trajectories::Trajectories;
 
-/// Files to write besides the log.
+/// Which files to write besides the log.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Args)]
 pub struct OutputFiles {
-    /// Write the conflicts in the format of SUMO's SSM device, each once.
+    /// Write each conflict once in the format of SUMO's SSM device.
     #[arg(long, value_name = "FILE")]
     pub ssm_output: Option<PathBuf>,
-    /// Write all vehicles' trajectories in SSAM's format (.trj, version 3).
+    /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
     #[arg(long, value_name = "FILE")]
     pub trj_output: Option<PathBuf>,
 }
 
 impl OutputFiles {
-    /// Whether each may be written, where these files are to be kept.
+    /// Checks that writing them overwrites none of the files to be kept.
     ///
     /// # Errors
-    /// [`Error::Value`] where one would be written over another or over one of those.
+    /// [`Error::Value`] if one would overwrite another or one of those.
     pub(crate) fn check<P: AsRef<Path>>(&self, kept: &[P]) -> Result<()> {
         let [ssm, trajectories] = [&self.ssm_output, &self.trj_output];
         let refused =
@@ -51,14 +51,14 @@ impl OutputFiles {
     }
 }
 
-/// Whether two paths are of the same file; of /dev/null and its like it does not matter.
+/// Whether two paths name the same regular file. Devices such as /dev/null may be named twice.
 fn are_same(a: &Path, b: &Path) -> bool {
     let is_device = a.exists() && !a.is_file();
-    !is_device && (a == b || known(a).is_some_and(|a| known(b) == Some(a)))
+    !is_device && (a == b || canonical(a).is_some_and(|a| canonical(b) == Some(a)))
 }
 
-/// The one name of a file, which need not be there yet in a folder that is.
-fn known(path: &Path) -> Option<PathBuf> {
+/// The canonical path of a file, which need not exist yet if its folder does.
+fn canonical(path: &Path) -> Option<PathBuf> {
     let in_its_folder = || {
         let folder = Path::new(".").join(path.parent()?);
         Some(folder.canonicalize().ok()?.join(path.file_name()?))
@@ -74,11 +74,11 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Makes the files.
+    /// Creates the files.
     ///
     /// # Errors
-    /// [`Error::File`] that names what cannot be written; [`Error::Value`] where trajectories have no net, or where a file
-    /// would be written over another or over one of the run's inputs.
+    /// [`Error::File`] that names what cannot be written; [`Error::Value`] if trajectories are wanted without a net, or if a
+    /// file would overwrite another or one of the run's inputs.
     pub fn create(files: &OutputFiles, net: Option<&Net>, inputs: &[Input]) -> Result<Self> {
         files.check(&inputs.iter().map(|input| &input.path).collect::<Vec<_>>())?;
         let trajectories = match (&files.trj_output, net) {
@@ -89,27 +89,27 @@ impl Outputs {
         Ok(Self { ssm: files.ssm_output.as_deref().map(Ssm::create).transpose()?, trajectories })
     }
 
-    /// Whether any of them says who was on which lane.
+    /// Whether any of them reports the vehicles' lanes.
     pub(crate) fn want_lanes(&self) -> bool {
         self.trajectories.is_some()
     }
 
-    /// Whether any of them says when and where the extremes of a conflict were found.
+    /// Whether any of them reports when and where the extremes of a conflict occurred.
     pub(crate) fn want_moments(&self) -> bool {
         self.ssm.is_some()
     }
 
-    /// Says where on the net the road user of a row is.
+    /// Notes where on the net the road user of a row is.
     pub(crate) fn place(&mut self, row: u32, placement: &Placement) {
         if let Some(trajectories) = &mut self.trajectories {
             trajectories.place(row, placement.lane);
         }
     }
 
-    /// Takes the road users of a step.
-    pub(crate) fn step(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
+    /// Writes the road users of a step.
+    pub(crate) fn write_step(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
         match (&mut self.trajectories, net) {
-            (Some(trajectories), Some(net)) => trajectories.step(frame, roster, net),
+            (Some(trajectories), Some(net)) => trajectories.write_step(frame, roster, net),
             _ => Ok(()),
         }
     }
@@ -121,23 +121,23 @@ impl Outputs {
         }
     }
 
-    /// Takes conflicts that have closed.
-    pub(crate) fn conflicts(&mut self, closed: &[Conflict]) -> Result<()> {
-        self.ssm.as_mut().map_or(Ok(()), |ssm| closed.iter().try_for_each(|conflict| ssm.conflict(conflict)))
+    /// Writes conflicts that have closed.
+    pub(crate) fn write_conflicts(&mut self, closed: &[Conflict]) -> Result<()> {
+        self.ssm.as_mut().map_or(Ok(()), |ssm| closed.iter().try_for_each(|conflict| ssm.write_conflict(conflict)))
     }
 
-    /// Ends the files.
+    /// Completes the files.
     pub(crate) fn finish(&mut self) -> Result<()> {
         self.ssm.as_mut().map_or(Ok(()), Ssm::finish)?;
         self.trajectories.as_mut().map_or(Ok(()), Trajectories::finish)
     }
 
-    /// Takes back what was written.
+    /// Removes the files.
     pub(crate) fn discard(self) {
         let files = [self.ssm.map(|ssm| ssm.file), self.trajectories.map(|trajectories| trajectories.file)];
-        // /dev/null, which root could remove, is no file of ours.
+        // Only regular files: root could remove /dev/null.
         for file in files.into_iter().flatten().filter(|file| file.path.is_file()) {
-            // What cannot be removed stays: the error that led here is the one to be told.
+            // A file that cannot be removed stays: the error that led here is the one to report.
             let _ = std::fs::remove_file(file.path);
         }
     }

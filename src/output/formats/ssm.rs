@@ -1,7 +1,7 @@
-//! Conflicts as SUMO's SSM device writes them, so that scripts for its files go on working.
+//! Conflicts in the format of SUMO's SSM device, so that scripts for its files keep working.
 //!
-//! Each conflict is there once, with closecall's ego and foe, where the device writes it for both. `type` is the
-//! device's code of the encounter (SUMO's `MSDevice_SSM.h`).
+//! Each conflict is written once, with closecall's ego and foe; the device writes it once for each of the two. `type` is
+//! the device's code for the encounter (SUMO's `MSDevice_SSM.h`).
 
 use std::fmt::Write;
 use std::path::Path;
@@ -16,23 +16,23 @@ use crate::util::decimal::shortest;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;
-/// For an ego that crosses its foe's way and is the later of the two.
+/// The code for an ego that crosses its foe's path behind it.
 const CROSSING_FOLLOWER: u32 = 11;
-/// For two that have both left the conflict area: what a PET is of.
+/// The code for two that have both left the conflict area: that of a PET.
 const BOTH_LEFT: u32 = 17;
-/// For two that drive towards each other.
+/// The code for two that drive towards each other.
 const ONCOMING: u32 = 20;
-/// For a collision.
+/// The code for a collision.
 const COLLISION: u32 = 111;
 
-/// The file.
+/// The SSM file of a run.
 #[derive(Debug)]
 pub struct Ssm {
     pub(super) file: OutputFile,
 }
 
 impl Ssm {
-    /// Makes the file and its first lines.
+    /// Creates the file with its first lines.
     pub fn create(path: &Path) -> Result<Self> {
         let mut file = OutputFile::create(path)?;
         let made_by = concat!("<!-- closecall ", env!("CARGO_PKG_VERSION"), " -->\n");
@@ -41,11 +41,11 @@ impl Ssm {
     }
 
     /// Appends a conflict.
-    pub fn conflict(&mut self, conflict: &Conflict) -> Result<()> {
+    pub fn write_conflict(&mut self, conflict: &Conflict) -> Result<()> {
         self.file.write(element(conflict).as_bytes())
     }
 
-    /// Ends the file.
+    /// Completes the file.
     pub fn finish(&mut self) -> Result<()> {
         self.file.write(b"</SSMLog>\n")?;
         self.file.flush()
@@ -71,7 +71,7 @@ fn element(conflict: &Conflict) -> String {
         ("maxDRAC", conflict.drac, drac, code),
         ("PET", conflict.pet, pet, BOTH_LEFT),
     ] {
-        // Writing to a String does not fail.
+        // Writing to a String cannot fail.
         let _ = match (value, moment) {
             (Some(value), Some(Moment { time, x, y, speed })) => writeln!(
                 text,
@@ -88,7 +88,7 @@ fn element(conflict: &Conflict) -> String {
     text + "    </conflict>\n"
 }
 
-/// A number with two decimals at least, as SUMO's, and six at most.
+/// A number with at least two decimals, as SUMO writes it, and at most six.
 fn decimal(value: f64) -> String {
     let mut digits = String::new();
     shortest(value, &mut digits);
@@ -101,7 +101,7 @@ mod tests {
     use crate::output::formats::ssm::*;
 
     #[test]
-    fn numbers_have_two_decimals_at_least() {
+    fn numbers_have_at_least_two_decimals() {
         assert_eq!([1.0, 1.5, 1.25, 0.1234567].map(decimal), ["1.00", "1.50", "1.25", "0.123457"]);
     }
 }

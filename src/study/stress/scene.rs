@@ -90,22 +90,22 @@ impl Scene {
     }
 
     fn advance(&mut self, time: Second, states: &[(UserIndex, State)], placement: Option<&Placement>) -> usize {
-        self.run.begin(time);
+        self.run.begin_step(time);
         for &(user, state) in states {
             self.run.frame.push(user, state);
         }
-        let unplaced = self.run.track_paths().to_vec();
-        if let Some(placement) = placement {
-            unplaced.into_iter().for_each(|row| self.run.set_placement(row, placement));
-        }
-        self.finite &= self.run.finish_step().is_ok() && self.run.in_conflict().all(is_finite);
+        let checked = self.run.step(|run, rows| -> crate::Result<()> {
+            placement.into_iter().for_each(|placement| rows.iter().for_each(|row| run.set_placement(*row, placement)));
+            Ok(())
+        });
+        self.finite &= checked.is_ok() && self.run.in_conflict().all(is_finite);
         self.run.in_conflict().len()
     }
 
     /// All conflicts, after the last step.
     pub fn finish(mut self) -> Vec<Conflict> {
         // Without a log nothing can fail.
-        let _ = self.run.finish(Vec::new());
+        let _ = self.run.finish();
         self.run.conflicts()
     }
 }

@@ -1,0 +1,80 @@
+//! The life cycle of a run with a log: open, step by step, close.
+//!
+//! `run.json` is written twice: incomplete when the run opens, so that a killed run is recognised as one, and with the
+//! summary when it closes.
+
+use std::path::Path;
+
+use super::Run;
+use crate::Result;
+use crate::detection::detector::LeftOut;
+use crate::output::formats::{OutputFiles, Outputs};
+use crate::output::log::Log;
+use crate::output::record::RunRecord;
+use crate::output::summary::Summary;
+
+/// A run and the record of how it was made.
+pub struct RecordedRun {
+    /// The run to be stepped.
+    pub run: Run,
+    /// None without a log.
+    record: Option<Box<RunRecord>>,
+}
+
+/// How a run ended, and what its source adds to the summary.
+#[derive(Debug, Default)]
+pub struct Ending {
+    /// Why the run did not reach its end; none where it did.
+    pub error: Option<String>,
+    /// What the source skipped.
+    pub left_out: Vec<LeftOut>,
+    /// Lines for the user.
+    pub remarks: Vec<String>,
+    /// Each part of the work and the seconds it took.
+    pub spent: Vec<(&'static str, f64)>,
+}
+
+impl RecordedRun {
+    /// Opens the log in a folder and the other files; from here on the run writes to them.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] that names what cannot be written, and the errors of [`Outputs::create`].
+    pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
+        let outputs = Outputs::create(files, run.net(), &record.inputs)?;
+        let log = Log::create(folder, record.options.log_encounters)?;
+        log.write_record(&record)?;
+        run.set_log(log);
+        run.set_outputs(outputs);
+        Ok(Self { run, record: Some(Box::new(record)) })
+    }
+
+    /// A run without a log, whose conflicts stay in memory.
+    pub fn in_memory(run: Run) -> Self {
+        Self { run, record: None }
+    }
+
+    /// Closes the open conflicts and completes the log; returns the summary.
+    ///
+    /// # Errors
+    /// [`crate::Error::File`] that names what cannot be written.
+    pub fn close(&mut self, ending: Ending) -> Result<Summary> {
+        let Ending { error, left_out, remarks, spent } = ending;
+        let mut summary = self.run.finish()?;
+        summary.left_out.extend(left_out);
+        summary.remarks.extend(remarks);
+        summary.spent = spent;
+        self.run.summary.clone_from(&summary);
+        if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
+            log.write_record(&RunRecord { summary: summary.clone(), complete: error.is_none(), error, ..*record })?;
+        }
+        Ok(summary)
+    }
+
+    /// Removes the log and the other files: the input could not be used after all.
+    pub fn discard(mut self) {
+        std::mem::take(&mut self.run.outputs).discard();
+        if let Some(log) = self.run.log.take() {
+            log.discard();
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! One step of a run, in the order of the flow: paths, placements, broad phase, narrow phase, events, log.
+
+use super::{Run, count};
+use crate::geometry::Point;
+use crate::{Error, Result};
+
+/// The parts of a step that follow once every road user is placed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StepPart {
+    /// Finds the pairs that may meet.
+    BroadPhase,
+    /// Tests these pairs.
+    NarrowPhase,
+    /// Opens and closes conflicts.
+    Events,
+    /// Writes the log and the other files.
+    Log,
+}
+
+impl Run {
+    /// Checks the frame: updates the paths, asks for placements, then runs both phases, the events and the log.
+    ///
+    /// `place` sets the placement ([`Run::set_placement`]) of the rows that it is given. A row may stay without one.
+    ///
+    /// # Errors
+    /// Those of `place`, and [`Error::File`] that names an output that cannot be written.
+    pub fn step<E: From<Error>>(
+        &mut self,
+        place: impl FnOnce(&mut Self, &[u32]) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
+        self.update_paths(place)?;
+        Ok(self.finish_step(|_| ())?)
+    }
+
+    /// The first half of [`Run::step`]: what needs the source of the road users.
+    ///
+    /// # Errors
+    /// Those of `place`.
+    pub fn update_paths<E>(
+        &mut self,
+        place: impl FnOnce(&mut Self, &[u32]) -> std::result::Result<(), E>,
+    ) -> std::result::Result<(), E> {
+        let mut rows = std::mem::take(&mut self.unplaced);
+        rows.clear();
+        rows.extend_from_slice(self.track_paths());
+        self.lane_lookups += rows.len() as u64;
+        let placed = place(self, &rows);
+        self.unplaced = rows;
+        placed
+    }
+
+    /// The second half of [`Run::step`]: both phases, the events and the log. `ended` is called after each part.
+    ///
+    /// # Errors
+    /// [`Error::File`] that names an output that cannot be written.
+    pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
+        self.broad_phase();
+        ended(StepPart::BroadPhase);
+        self.narrow_phase();
+        ended(StepPart::NarrowPhase);
+        self.close_conflicts();
+        ended(StepPart::Events);
+        self.write()?;
+        ended(StepPart::Log);
+        Ok(())
+    }
+
+    /// Follows every road user along its predicted path; returns the rows that need a placement.
+    fn track_paths(&mut self) -> &[u32] {
+        self.detector.track_paths(&self.frame, &self.roster)
+    }
+
+    /// Finds the pairs that may meet.
+    fn broad_phase(&mut self) {
+        self.detector.broad_phase(&self.frame, &self.roster);
+    }
+
+    /// Tests these pairs and keeps those in conflict, on the filter's lanes if there is a filter.
+    fn narrow_phase(&mut self) {
+        let Self { detector, net, filter, .. } = self;
+        _ = detector.narrow_phase(&self.frame, &self.roster);
+        detector.retain(|found| {
+            if let (true, None, Some(net)) = (found.in_conflict(), found.lane, &net) {
+                found.lane = net.lane_at(Point::new(found.x, found.y));
+            }
+            found.in_conflict() && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
+        });
+    }
+
+    /// Updates the events and closes those that are over.
+    fn close_conflicts(&mut self) {
+        let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
+        let path = |row| detector.path(frame, roster, row);
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path);
+        count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+    }
+
+    /// Writes the log and the other files, and ends the step.
+    ///
+    /// # Errors
+    /// [`Error::File`] that names what cannot be written.
+    fn write(&mut self) -> Result<()> {
+        let closed = self.tracker.closed();
+        if let Some(log) = &mut self.log {
+            if !closed.is_empty() {
+                log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
+            }
+            log.append_encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
+        }
+        self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
+        self.outputs.write_conflicts(closed)?;
+        self.tracker.forget_closed();
+        // The indices become free only now: this step's events had to see that the road users are gone.
+        for user in self.leaving.drain(..) {
+            self.roster.leave(user);
+            self.detector.forget(user);
+            self.outputs.forget(user);
+        }
+        Ok(())
+    }
+}
