@@ -1,4 +1,4 @@
-"""What the tests of the command and the Python module share."""
+"""Helpers and fixtures shared by the tests of the command and the Python module."""
 
 from __future__ import annotations
 
@@ -20,32 +20,32 @@ NETS = Path(__file__).parents[2] / "sumo_nets"
 
 Row = dict[str, str]
 
-# A shell that starts the tests in the background has them ignore Ctrl-C, and so would all that they start.
+# Tests started in the background by a shell ignore Ctrl-C, and so would every process that they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def forbid_skip(report: Any) -> None:
-    """Where nothing may be skipped, a skip is a failure."""
+    """With CLOSECALL_SKIP_NOTHING set, turn a skip into a failure."""
     if report.skipped and os.environ.get("CLOSECALL_SKIP_NOTHING"):
         report.outcome = "failed"
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item: Any, call: Any) -> Any:
-    """Of a test."""
+    """A skipped test."""
     outcome = yield
     forbid_skip(outcome.get_result())
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_make_collect_report(collector: Any) -> Any:
-    """Of a whole file."""
+    """A skipped file."""
     outcome = yield
     forbid_skip(outcome.get_result())
 
 
 def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run the command and return what it said."""
+    """Run the command to its end, with its output captured."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
     return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, **options)
 
@@ -59,21 +59,21 @@ def python(script: str, *words: str | Path, **options: Any) -> subprocess.Comple
 
 
 def begin(*words: str | Path) -> subprocess.Popen[str]:
-    """The command, which goes on, in a session of its own as in another terminal."""
+    """Start the command in a session of its own, as from another terminal, and do not wait for it."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
-def until(is_so: Callable[[], object], seconds: float = 60) -> None:
-    """Wait until something is so."""
+def until(condition: Callable[[], object], seconds: float = 60) -> None:
+    """Wait until the condition holds."""
     end = time.monotonic() + seconds
-    while not is_so():
+    while not condition():
         assert time.monotonic() < end
         time.sleep(0.02)
 
 
 def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
-    """Until so many rows are on disk."""
+    """Wait until the log has `count` lines on disk."""
     end = time.monotonic() + 60
     while not log.exists() or log.read_bytes().count(b"\n") < count:
         assert process.poll() is None
@@ -82,7 +82,7 @@ def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None
 
 
 def is_alive(process: psutil.Process) -> bool:
-    """Whether a process runs."""
+    """Whether a process is running."""
     try:
         return bool(process.status() != psutil.STATUS_ZOMBIE)
     except psutil.NoSuchProcess:
@@ -108,7 +108,7 @@ def parked(stops: Path) -> Callable[[str, float], bool]:
 
 @pytest.fixture
 def scenario(tmp_path: Path) -> Callable[[str], Path]:
-    """A copy of a scenario in sumo_nets, to be changed at will: the path of its configuration."""
+    """Copies a scenario of sumo_nets, which the test may change, and returns the path of its configuration."""
 
     def copy(name: str) -> Path:
         folder = tmp_path / name
