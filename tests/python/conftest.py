@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import fcntl
 import os
 import shutil
 import signal
@@ -19,6 +20,9 @@ import pytest
 NETS = Path(__file__).parents[2] / "sumo_nets"
 
 Row = dict[str, str]
+
+TIMEOUT = 300
+"""In s: after it a process that a test waits for is taken to hang, even on a machine that is busy with other work."""
 
 # Tests started in the background by a shell ignore Ctrl-C, and so would every process that they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -47,7 +51,7 @@ def pytest_make_collect_report(collector: Any) -> Any:
 def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run the command to its end, with its output captured."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, **options)
+    return subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False, **options)
 
 
 def python(script: str, *words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
@@ -55,7 +59,9 @@ def python(script: str, *words: str | Path, **options: Any) -> subprocess.Comple
     command = [sys.executable, "-c", script, *map(str, words)]
     beside = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     environment = {**os.environ, **beside}
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, env=environment, **options)
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=TIMEOUT, check=False, env=environment, **options
+    )
 
 
 def begin(*words: str | Path) -> subprocess.Popen[str]:
@@ -104,6 +110,29 @@ def parked(stops: Path) -> Callable[[str, float], bool]:
             span = float(stop.get("started", "nan")), ended if ended >= 0 else float("inf")
             spans.setdefault(stop.get("id", ""), []).append(span)
     return lambda name, time: any(begin - 1e-6 <= time < end - 1e-6 for begin, end in spans.get(name, []))
+
+
+Once = Callable[[str, Callable[[Path], None]], Path]
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """Fills a folder once for all workers of pytest-xdist: the first that needs it fills it, the others wait."""
+    own = tmp_path_factory.getbasetemp()
+    base = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+    def make(name: str, fill: Callable[[Path], None]) -> Path:
+        folder, complete = base / name, base / f"{name}.complete"
+        with (base / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not complete.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                fill(folder)
+                complete.touch()
+        return folder
+
+    return make
 
 
 @pytest.fixture

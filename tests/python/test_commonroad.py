@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import NETS, closecall, rows
 
-pytest.importorskip("commonroad_crime", reason="commonroad-crime has no wheel for this Python")
-
-import numpy as np
-from commonroad.geometry.shape import Rectangle
-from commonroad.prediction.prediction import TrajectoryPrediction
-from commonroad.scenario.lanelet import Lanelet
-from commonroad.scenario.obstacle import DynamicObstacle, ObstacleType
-from commonroad.scenario.scenario import Scenario
-from commonroad.scenario.state import CustomState, InitialState
-from commonroad.scenario.trajectory import Trajectory
-from commonroad_crime.data_structure.configuration import CriMeConfiguration
-from commonroad_crime.measure import TTC
+# commonroad is imported inside the functions: its 6 s would else delay every worker that collects this file.
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("commonroad_crime") is None, reason="commonroad-crime has no wheel for this Python"
+)
 
 LENGTH, WIDTH = 5.0, 1.8
 STEP = 0.1
@@ -30,6 +24,11 @@ EGO, FOE, LANELET = 10, 11, 1
 
 def car(number: int, front: float, speed: float) -> Any:
     """A car on the x axis that keeps its speed, as TTC assumes; commonroad-crime would extrapolate its acceleration."""
+    from commonroad.geometry.shape import Rectangle
+    from commonroad.prediction.prediction import TrajectoryPrediction
+    from commonroad.scenario.obstacle import DynamicObstacle, ObstacleType
+    from commonroad.scenario.state import CustomState, InitialState
+    from commonroad.scenario.trajectory import Trajectory
 
     def state(step: int) -> dict[str, Any]:
         place = np.array([front - LENGTH / 2 + speed * STEP * step, 0.0])
@@ -47,6 +46,11 @@ def car(number: int, front: float, speed: float) -> Any:
 
 def their_ttc(ego: tuple[float, float], foe: tuple[float, float]) -> float:
     """commonroad-crime's TTC of two cars, each given by its front position and its speed."""
+    from commonroad.scenario.lanelet import Lanelet
+    from commonroad.scenario.scenario import Scenario
+    from commonroad_crime.data_structure.configuration import CriMeConfiguration
+    from commonroad_crime.measure import TTC
+
     scenario = Scenario(STEP)
     line = np.linspace(-100.0, 1000.0, 200)
     right, centre, left = (np.column_stack([line, np.full_like(line, y)]) for y in (-1.6, 0.0, 1.6))

@@ -21,7 +21,8 @@ from conftest import NETS, python
 
 CHECK = """
 import collections, json, sys
-import libsumo
+from closecall import _sumo
+libsumo = _sumo.import_libsumo()
 from libsumo import _libsumo
 import closecall
 

@@ -7,7 +7,6 @@ import os
 import shutil
 import signal
 import subprocess
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Callable
@@ -56,25 +55,19 @@ _sumo.close(gui=True)
 
 
 @pytest.fixture
-def display() -> Iterator[None]:
+def display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """An X server for this test alone, named in DISPLAY."""
-    name = f":{100 + os.getpid() % 900}"
-    command = ["Xvfb", name, "-screen", "0", "1000x700x24"]
-    server = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    former = os.environ.get("DISPLAY")
-    try:
-        while not Path(f"/tmp/.X11-unix/X{name[1:]}").exists():
-            assert server.poll() is None
-            time.sleep(0.05)
-        os.environ["DISPLAY"] = name
-        yield
-    finally:
-        server.kill()
-        server.wait()
-        if former is None:
-            del os.environ["DISPLAY"]
-        else:
-            os.environ["DISPLAY"] = former
+    # Xvfb chooses a free number and prints it once it accepts clients.
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1000x700x24"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+        assert server.stdout
+        try:
+            number = server.stdout.readline().strip()
+            assert number
+            monkeypatch.setenv("DISPLAY", f":{number}")
+            yield
+        finally:
+            server.kill()
 
 
 def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:

@@ -186,9 +186,21 @@ def test_types_that_no_file_defines_are_reported(scenario: Copy, tmp_path: Path)
     assert [line.split(":")[0] for line in told] == ['types (none), "a", "b", "c", "d" and 2 more'], done.stderr
 
 
+def repeat(recording: Path, times: int, seconds: float) -> None:
+    """Repeat the steps of a recording of `seconds` s, each time that much later."""
+    head, step, rest = recording.read_text().partition("<timestep")
+    body, end, tail = (step + rest).rpartition("</timestep>")
+
+    def later(by: float) -> str:
+        return re.sub(r'<timestep time="([^"]+)"', lambda time: f'<timestep time="{float(time[1]) + by}"', body + end)
+
+    recording.write_text(head + "".join(later(number * seconds) for number in range(times)) + tail)
+
+
 def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    recording = record(config, "fcd.xml", "--end", "200")
+    recording = record(config, "fcd.xml", "--end", "40")
+    repeat(recording, 5, 40)
     process = begin("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
     wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)
     process.send_signal(signal.SIGINT)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import pickle
 import re
 import xml.etree.ElementTree as ET
 from functools import cache
 from pathlib import Path
 from typing import Callable, NamedTuple
 
+import numpy as np
 import pytest
-from conftest import NETS, Row, closecall, rows
-from shapely import Polygon, box, prepare, unary_union
-from shapely.affinity import rotate, translate
+import shapely
+from conftest import NETS, Once, Row, closecall, rows
+from numpy.typing import NDArray
 
 FOLLOWER, CROSSING_FOLLOWER = "2", "11"
 
@@ -43,33 +45,45 @@ def maybe(text: str | None) -> float | None:
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
+def compared(once: Once) -> Compared:
     """Runs a scenario once, with closecall and the device in the same steps."""
 
-    @cache
-    def run(name: str) -> Run:
-        out: Path = tmp_path_factory.mktemp(name)
+    def run(name: str, out: Path) -> Run:
         words = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC DRAC PET", "--precision", "6"]
-        words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "200"]
+        words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "100"]
         words += ["--device.ssm.trajectories", "true", "--device.ssm.file", str(out / "ssm.xml"), "--no-warnings"]
         words += ["--fcd-output", str(out / "fcd.xml"), "--fcd-output.attributes", "x,y,angle,lane,pos"]
         done = closecall("run", NETS / name / f"{name}.sumocfg", "--out", out, "--log-encounters", "--", *words)
         assert done.returncode == 0, done.stderr
+        encounters = rows(out / "encounters.csv")
+        pairs = {(row["ego"], row["foe"]) for row in encounters}
         steps: dict[tuple[float, str, str], Step] = {}
         pets: dict[frozenset[str], float] = {}
-        for conflict in ET.parse(out / "ssm.xml").getroot():
+        for _, conflict in ET.iterparse(out / "ssm.xml"):
+            if conflict.tag != "conflict":
+                continue
             ego, foe = conflict.get("ego", ""), conflict.get("foe", "")
             spans = (conflict.find(name) for name in ("timeSpan", "typeSpan", "TTCSpan", "DRACSpan"))
-            columns = [(span.get("values") or "").split() for span in spans if span is not None]
+            columns = [(span.get("values") or "").split() for span in spans if span is not None and (ego, foe) in pairs]
             for time, kind, ttc, drac in zip(*columns):
                 steps[round(float(time), 3), ego, foe] = Step(kind, maybe(ttc), maybe(drac))
             pet = conflict.find("PET")
             if pet is not None and (value := maybe(pet.get("value"))) is not None:
                 pair = frozenset((ego, foe))
                 pets[pair] = min(value, pets.get(pair, value))
-        return Run(rows(out / "conflicts.csv"), rows(out / "encounters.csv"), steps, pets, out / "fcd.xml")
+            conflict.clear()
+        return Run(rows(out / "conflicts.csv"), encounters, steps, pets, out / "fcd.xml")
 
-    return run
+    @cache
+    def found(name: str) -> Run:
+        def fill(out: Path) -> None:
+            (out / "run.pickle").write_bytes(pickle.dumps(run(name, out)))
+
+        loaded = pickle.loads((once(f"ssm_{name}", fill) / "run.pickle").read_bytes())
+        assert isinstance(loaded, Run)
+        return loaded
+
+    return found
 
 
 def pairs_of(run: Run, kind: str, device_type: str) -> list[tuple[Row, Step]]:
@@ -155,18 +169,31 @@ PARTS = 50
 """Parts into which each step is divided."""
 
 
-def driven(course: list[Place], length: float, begin: float, end: float) -> list[tuple[float, Polygon]]:
+class Driven(NamedTuple):
+    """The rectangles of a car over time."""
+
+    times: NDArray[np.float64]
+    rectangles: NDArray[np.object_]
+
+
+def driven(course: list[Place], length: float, begin: float, end: float) -> Driven:
     """The rectangles of a car between two times, moved and turned linearly within each step."""
-    found = []
-    places = [place for place in course if begin - 1e-6 <= place.time <= end]
-    for before, after in zip(places, places[1:]):
-        turn = (after.heading - before.heading + math.pi) % (2 * math.pi) - math.pi
-        for part in range(PARTS):
-            time, x, y = (a + (b - a) * part / PARTS for a, b in zip(before[:3], after[:3]))
-            heading = before.heading + turn * part / PARTS
-            car = box(-length, -WIDTH / 2, 0.0, WIDTH / 2)
-            found.append((time, translate(rotate(car, heading, (0, 0), use_radians=True), x, y)))
-    return found
+    places = np.array([place[:4] for place in course if begin - 1e-6 <= place.time <= end])
+    steps = np.diff(places, axis=0)
+    steps[:, 3] = (steps[:, 3] + np.pi) % (2 * np.pi) - np.pi
+    parts = np.arange(PARTS)[:, None] / PARTS
+    times, x, y, heading = (places[:-1, None] + steps[:, None] * parts).reshape(-1, 4).T
+    front = np.stack([x, y], -1)
+    rear = front - length * np.stack([np.cos(heading), np.sin(heading)], -1)
+    aside = WIDTH / 2 * np.stack([-np.sin(heading), np.cos(heading)], -1)
+    corners = np.stack([front + aside, rear + aside, rear - aside, front - aside], 1)
+    return Driven(times, shapely.polygons(corners))
+
+
+def span(car: Driven, other: Driven) -> tuple[float, float]:
+    """The first and the last time at which a car is anywhere where the other one is at any time."""
+    inside = np.unique(shapely.STRtree(other.rectangles).query(car.rectangles, predicate="intersects")[0])
+    return float(car.times[inside[0]]), float(car.times[inside[-1]])
 
 
 @pytest.mark.parametrize(("name", "least"), [("side", 1), ("signals", 4), ("left_turn", 3), ("priority", 10)])
@@ -179,14 +206,8 @@ def test_pet_equals_that_of_the_rectangles_in_fcd(name: str, least: int, compare
         if not row["pet"]:
             continue
         begin, end = float(row["begin"]), float(row["end"]) + 7.0
-        cars = [driven(places[row[user]], length, begin, end) for user in ("ego", "foe")]
-        corridors = [unary_union([rectangle for _, rectangle in car]) for car in cars]
-        spans = []
-        for car, other in zip(cars, reversed(corridors)):
-            prepare(other)
-            times = [time for time, rectangle in car if rectangle.intersects(other)]
-            spans.append((min(times), max(times)))
-        (_, leaves), (enters, _) = sorted(spans)
+        ego, foe = (driven(places[row[user]], length, begin, end) for user in ("ego", "foe"))
+        (_, leaves), (enters, _) = sorted([span(ego, foe), span(foe, ego)])
         assert float(row["pet"]) == pytest.approx(enters - leaves, abs=0.02), row
         compared_pets += 1
     assert compared_pets >= least

@@ -13,7 +13,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import NETS, closecall, parked, rows
+from conftest import NETS, Once, closecall, parked, rows
 from scipy import stats as scipy_stats
 
 Copy = Callable[[str], Path]
@@ -34,15 +34,17 @@ def stats(*words: str | Path) -> Any:
 
 
 @pytest.fixture(scope="module")
-def plans(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def plans(once: Once) -> Path:
     """Runs of both signal programs of left_turn: sixteen seeds of `left_turn`, eight of `protected`."""
-    folder = tmp_path_factory.mktemp("plans")
-    for plan, seeds in (("left_turn", range(1, 17)), ("protected", range(1, 9))):
-        for seed in seeds:
-            half = "first" if seed <= 8 else "second"
-            out = folder / plan / half / f"seed={seed}"
-            simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
-    return folder
+
+    def fill(folder: Path) -> None:
+        for plan, seeds in (("left_turn", range(1, 17)), ("protected", range(1, 9))):
+            for seed in seeds:
+                half = "first" if seed <= 8 else "second"
+                out = folder / plan / half / f"seed={seed}"
+                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
+
+    return once("plans", fill)
 
 
 def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None:

@@ -6,17 +6,19 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
-from conftest import NETS, begin, closecall, is_alive, python, rows, until
+from conftest import NETS, Once, begin, closecall, is_alive, python, rows, until
 
 Copy = Callable[[str], Path]
 
@@ -90,13 +92,20 @@ def cluster() -> Iterator[Cluster]:
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def done(once: Once) -> Path:
     """The folder of a sweep over two seeds, two values of a closecall option, and two of a SUMO option."""
-    out = tmp_path_factory.mktemp("sweep")
-    varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
-    said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
-    assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
-    return out
+
+    def fill(out: Path) -> None:
+        varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
+        with socket.socket() as other:
+            # Dask's usual port, which another sweep may use, as perhaps already here.
+            with suppress(OSError):
+                other.bind(("127.0.0.1", 8787))
+                other.listen()
+            said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
+        assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
+
+    return once("sweep", fill)
 
 
 def test_a_sweep_runs_every_combination_of_values(done: Path) -> None:
@@ -345,6 +354,8 @@ def test_a_sweep_runs_on_a_scheduler_given_by_address(cluster: Cluster, tmp_path
 
 def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
+    # Dask tries an address for 30 s unless it is told otherwise.
+    impatient = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "1s"}
     for words, said in (
         (("gone.sumocfg", "--seeds", "1"), "gone.sumocfg: No such file"),
         ((config,), "--seeds"),
@@ -359,7 +370,7 @@ def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -
         ((config, "--seeds", "1", "--scheduler", "tcp://127.0.0.1:9"), "127.0.0.1:9"),
         ((config, "--seeds", "1", "--scheduler", "a", "--workers", "1"), "cannot be used with"),
     ):
-        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path)
+        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path, env=impatient)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
         assert said in done.stderr, (words, done.stderr)
     assert not files(tmp_path / "out")

@@ -49,7 +49,9 @@ def results(
                 threads_per_worker=workers,
                 processes=False,
                 memory_limit=0,
-                dashboard_address=None,
+                # The scheduler's server always listens; on its usual port it would warn of another sweep's.
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
                 silence_logs=logging.CRITICAL,
             )
             stack.enter_context(cluster)
