@@ -1,4 +1,4 @@
-"""Checks that every relative link in the project's Markdown files leads somewhere."""
+"""Checks that the target of every relative link in the project's Markdown files exists."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
 
 
 def broken(page: Path) -> list[str]:
-    """The links of one page that lead nowhere."""
+    """The broken links of a page."""
     targets = [match.group(1) for match in LINK.finditer(page.read_text(encoding="utf-8"))]
     local = [target for target in targets if not re.match(r"[a-z]+:", target)]
     return [f"{page}: {target}" for target in local if not (page.parent / target).exists()]
 
 
 def main() -> int:
-    """Exit status 1 if any link is broken."""
+    """Print the broken links; exit status 1 if there are any."""
     listed = subprocess.run(["git", "ls-files", "*.md"], capture_output=True, text=True, check=True)
     found = [line for page in listed.stdout.split() for line in broken(Path(page))]
     print("\n".join(found) or "no broken links")

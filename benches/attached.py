@@ -1,15 +1,14 @@
-"""What the checker costs an attached run: SUMO with it, or with its own device.ssm, over plain SUMO through libsumo.
-
-How much longer than the program `sumo` it takes is told too: libsumo alone takes longer than that.
+"""The cost of the checker in an attached run: SUMO with closecall, or with its device.ssm, over plain SUMO in libsumo.
 
     python benches/attached.py [--runs N] [CONFIG ...]
 
-On the bench's own simulations, or on those of these configurations, 600 s of each.
+Measures the bench's simulations, or 600 s of each CONFIG. closecall is also compared with the program `sumo`, which is
+faster than libsumo.
 
-Whole processes, start-up included. Each is compared with a plain run beside it: in slices of 50 ms one of the two runs
-while the other is stopped, so that what slows the machine down slows both. The figure is the median of the runs,
-beside the program of half as many, of device.ssm, which takes long, of a third. Of twelve pairs of plain runs the two
-differed by 2 % (median), 13 % at worst.
+Times are those of whole processes, start-up included. Each run is compared with a plain run beside it: the two run in
+alternate slices of 50 ms, so that whatever slows the machine down slows both. The figure is the median over N pairs,
+over half as many for the program, and over a third for the slow device.ssm. In twelve pairs of plain runs the two
+differed by 2 % in the median and 13 % at worst.
 """
 
 from __future__ import annotations
@@ -28,14 +27,14 @@ from pathlib import Path
 from scenarios import attached, end, plain, program, scenarios, ssm
 
 SLICE = 0.05
-"""How long one runs before the other does, in s."""
+"""Length of a slice in s."""
 
 
 class Stopped:
-    """A process that runs when it is its turn, with all its threads."""
+    """A process that runs, with all its threads, only in its own slices."""
 
     def __init__(self, command: list[str]) -> None:
-        """Start it, and stop it at once."""
+        """Start the process and stop it at once."""
         self.seconds = 0.0
         self.process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         self.process.send_signal(signal.SIGSTOP)
@@ -44,7 +43,7 @@ class Stopped:
         self.end.register(self.descriptor)
 
     def run(self) -> bool:
-        """Let it run for a slice; whether there is more to do."""
+        """Run the process for a slice; returns whether it is still alive."""
         started = time.perf_counter()
         self.process.send_signal(signal.SIGCONT)
         has_ended = bool(self.end.poll(SLICE * 1000))
@@ -56,14 +55,14 @@ class Stopped:
         return not has_ended
 
     def close(self) -> None:
-        """Kill it if it has not ended."""
+        """Kill the process if it has not ended."""
         self.process.kill()
         self.process.wait()
         os.close(self.descriptor)
 
 
 def in_turns(*commands: list[str]) -> list[float]:
-    """Wall time of each of these, slice after slice until all have ended."""
+    """The wall time of each command in s, all run in alternate slices."""
     processes = [Stopped(command) for command in commands]
     try:
         running = processes
@@ -76,11 +75,11 @@ def in_turns(*commands: list[str]) -> list[float]:
 
 
 def main() -> None:
-    """Print one line per scenario and way to run it."""
+    """Print one line per scenario and comparison."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=9)
     parser.add_argument(
-        "configs", metavar="CONFIG", nargs="*", type=Path, help="SUMO configurations to measure instead"
+        "configs", metavar="CONFIG", nargs="*", type=Path, help="SUMO configurations to measure instead of the bench's"
     )
     options = parser.parse_args()
     runs = options.runs

@@ -1,4 +1,4 @@
-"""The chart of the benches: attached runs, the detector beside what else finds who is near whom, replay."""
+"""The chart of the benches: attached runs, the detector beside other methods that find close pairs, and replay."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ OURS, OTHER = "#1f6feb", "#9aa4b2"
 LIMIT = "#d1242f"
 METHODS = {
     "closecall": ("closecall", OURS, "-"),
-    "parry2d": ("parry2d, tree made anew and tests", "#8250df", "-"),
+    "parry2d": ("parry2d, tree rebuilt and tests", "#8250df", "-"),
     "parry2d (kept)": ("the same, tree kept", "#8250df", "--"),
-    "parry2d (kept; straight)": ("and straight ways known", "#8250df", ":"),
+    "parry2d (kept; straight)": ("and straight paths known", "#8250df", ":"),
     "commonroad": ("commonroad-drivability-checker", "#bf8700", "-"),
     "all pairs": ("all pairs of circles", "#57606a", "-"),
 }
 
 
 class Lines(Protocol):
-    """What the benches printed, as table.py reads it."""
+    """The lines that the benches printed, as table.py reads them."""
 
     rows: list[dict[str, str]]
 
@@ -38,7 +38,7 @@ class Lines(Protocol):
 
 
 def draw(lines: Lines, path: Path) -> None:
-    """Draw what there is; what was not measured is missing."""
+    """Draw the measured values; those not measured are left out."""
     figure, (runs, steps, replays) = plt.subplots(
         1, 3, figsize=(11, 3.4), layout="constrained", width_ratios=[1.1, 1.3, 0.9], facecolor="white"
     )
@@ -50,12 +50,12 @@ def draw(lines: Lines, path: Path) -> None:
 
 
 def bars(axes: Axes, groups: list[str], series: dict[str, list[float]], colours: list[str]) -> None:
-    """Groups of bars, each with its value on top."""
+    """Draw groups of bars, each with its value on top."""
     width = 0.8 / len(series)
     for place, ((label, values), colour) in enumerate(zip(series.items(), colours)):
         left = [group + (place - (len(series) - 1) / 2) * width for group in range(len(values))]
         drawn = axes.bar(left, values, width, label=label, color=colour)
-        # A goal's line may cross a number, which stays legible.
+        # A white background keeps a number legible where a goal's line crosses it.
         ground = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
         axes.bar_label(drawn, fmt="%.2f", padding=2, fontsize=8, bbox=ground, zorder=3)
     axes.set_xticks(range(len(groups)), groups)
@@ -63,7 +63,7 @@ def bars(axes: Axes, groups: list[str], series: dict[str, list[float]], colours:
 
 
 def attached(axes: Axes, lines: Lines) -> None:
-    """How many times longer a run takes."""
+    """Draw the time of a whole run, relative to plain SUMO."""
     scenes = [row["scene"] for row in lines.rows if row["what"] == "run" and row["method"] == "plain"]
     over = {method: [lines("over plain", scene, method) for scene in scenes] for method in ("closecall", "device.ssm")}
     bars(axes, scenes, over, [OURS, OTHER])
@@ -72,7 +72,7 @@ def attached(axes: Axes, lines: Lines) -> None:
 
 
 def detector(axes: Axes, lines: Lines) -> None:
-    """Time per road user and step: from the least to the most of the three scenes."""
+    """Draw the time per road user and step: the range and the median over the three scenes."""
     for method, (label, colour, style) in METHODS.items():
         found: dict[int, list[float]] = {}
         for row in lines.rows:
@@ -88,13 +88,13 @@ def detector(axes: Axes, lines: Lines) -> None:
     axes.axhline(150, color=LIMIT, linewidth=1, linestyle="--")
     axes.set(xscale="log", yscale="log", xlabel="road users")
     axes.set_title("Detector alone, ns per road user and step (goal: 150)", fontsize=9)
-    # Above what is drawn there is room for the legend.
+    # Leave room for the legend above the curves.
     axes.set_ylim(top=30 * axes.get_ylim()[1])
     axes.legend(frameon=False, fontsize=7, loc="upper left")
 
 
 def replay(axes: Axes, lines: Lines) -> None:
-    """Vehicle-steps per second of a replay."""
+    """Draw the vehicle-steps per second of a replay."""
     scenes = ["sparse", "platoons"]
     if any(row["what"] == "replay" for row in lines.rows):
         rates = {form: [lines("replay", scene, form) / 1e6 for scene in scenes] for form in ("CSV", "XML")}

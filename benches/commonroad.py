@@ -1,10 +1,10 @@
-"""commonroad-drivability-checker on the scenes of benches/detector.rs: which of the rectangles collide now.
+"""commonroad-drivability-checker on the scenes of benches/detector.rs: which rectangles collide in the current step.
 
     python benches/commonroad.py FOLDER
 
-FOLDER has the scenes (`cargo bench --bench detector -- --scenes FOLDER`). Its query for many at once, all against all
-through Box2D's tree: for each rectangle whether it touches any (itself included). It knows no braking, no way ahead, no
-kind of conflict. Making its objects is not counted.
+FOLDER contains the scenes (`cargo bench --bench detector -- --scenes FOLDER`). The bench uses the batch query of all
+rectangles against all through Box2D's tree, which tells for each rectangle whether it touches any, itself included. The
+query knows no braking, no path ahead and no kind of conflict. Building its objects is not timed.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def main() -> None:
     """Print one line per scene."""
     print("what,scene,method,size,value,unit")
     if importlib.util.find_spec("commonroad_dc") is None:
-        sys.exit("commonroad-drivability-checker is not installed: there is no wheel for this Python or system")
+        sys.exit("commonroad-drivability-checker is not installed: it has no wheel for this Python or system")
     from commonroad_dc import pycrcc
     from commonroad_dc.collision.trajectory_queries.trajectory_queries import trajectories_collision_dynamic_obstacles
 
@@ -44,7 +44,7 @@ def main() -> None:
             times.append(time.perf_counter() - started)
         each = statistics.median(times) / len(objects) * 1e9
         print(f"step,{scene},commonroad,{size},{each:.1f},ns per road user")
-    # Its own clean-up tells of every object.
+    # The clean-up at exit would print a line per object.
     sys.stdout.flush()
     os._exit(0)
 

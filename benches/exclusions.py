@@ -1,9 +1,9 @@
-"""What leaving out saves, thing by thing: runs with one computed all the same, against runs without any of them.
+"""The time that each exclusion saves: runs that keep one exclusion's work, against runs that leave all of it out.
 
     python benches/exclusions.py [--runs N] [--town S] [--motorway S]
 
-The town of sumo_nets, and SUMO's own motorway (tools/game/A10KW). Attached, on one thread, headless, interleaved. A
-figure is the smallest of its runs: the time of all parts but SUMO's own, in ns per vehicle and step.
+Runs the town of sumo_nets and SUMO's motorway (tools/game/A10KW), attached, on one thread, headless, in turns. Each
+figure is the fastest run: the time of all parts but SUMO's, in ns per road user and step.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
 
 
 def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
-    """Time per road user and step of all parts but SUMO's."""
+    """The time of all parts but SUMO's, in ns per road user and step."""
     words = ["run", config, "--end", end, "--out", out, "--threads", 1, "--explain", *(["--keep", keep] if keep else [])]
     command = [sys.executable, "-m", "closecall", *map(str, words), "--", "--no-warnings"]
-    said = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    parts = dict(PART.findall(said.rsplit("time:", 1)[1].splitlines()[0]))
+    output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    parts = dict(PART.findall(output.rsplit("time:", 1)[1].splitlines()[0]))
     spent = sum(float(seconds) for part, seconds in parts.items() if part.strip(" ,") != "SUMO")
     summary = json.loads((out / "run.json").read_text())["summary"]
     step = (summary["end"] - summary["begin"]) / (summary["steps"] - 1)

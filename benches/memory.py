@@ -1,12 +1,12 @@
-"""Bytes that an attached run holds per road user, beside SUMO's own: the system's allocator is asked, before every step
-of the same simulation, how much is in use, with the checker and without.
+"""Bytes per road user that an attached run holds in addition to SUMO's.
 
     python benches/memory.py
 
-What does not depend on the traffic (the net, the program) falls out: the figure is the growth of the difference from
-the first step with a tenth of the most road users to the one with the most. Both are run nine times, of which the
-median counts: with other addresses SUMO alone holds up to 50 kB less. Python's own allocator is switched off, so that
-what it holds is counted too, and so is glibc's cache per thread: what is free in it counts as in use. glibc only.
+Before every step of the same simulation, with the checker and without, the system's allocator reports the bytes in use.
+The figure is the growth of the difference, per road user, from the first step with a tenth of the maximal number of
+road users to the step with the maximum, so that the program and the net cancel out. Both simulations run nine times and
+the median counts, because SUMO alone holds up to 50 kB less with other addresses. Python's allocator is off, so that
+its blocks count too, and so is glibc's per-thread cache, whose free blocks would count as in use. Needs glibc.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class MallInfo(ctypes.Structure):
 
 
 def sample() -> None:
-    """In the process that is measured: every step says how many road users there are and what is in use."""
+    """Make every step of this process append the number of road users and the bytes in use to a file."""
     import libsumo
 
     glibc = ctypes.CDLL(None)
@@ -48,7 +48,7 @@ def sample() -> None:
 
 
 def median(command: list[str], folder: Path) -> list[tuple[int, float]]:
-    """Road users and bytes before every step, in the median of nine runs."""
+    """Road users and bytes before every step: the median of nine runs."""
     runs = [samples(command, folder) for _ in range(9)]
     return [(step[0][0], statistics.median(held for _, held in step)) for step in zip(*runs)]
 

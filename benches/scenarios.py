@@ -1,7 +1,7 @@
-"""The simulations on which attached runs are measured, and how they are run with the checker and without.
+"""The simulations of the benches for attached runs, and the commands that run them with the checker and without.
 
-grid: 10 by 10 signalised junctions with up to 1,700 vehicles. town: sumo_nets/town. motorway: SUMO's own A10, as its
-configuration says, in which nobody teleports. The town ends after 300 s, since device.ssm takes so long there.
+grid: 10 by 10 signalised junctions with up to 1,700 vehicles. town: sumo_nets/town. motorway: SUMO's A10, with its own
+configuration, which disables teleporting. The town ends after 300 s, because device.ssm is slow there.
 """
 
 from __future__ import annotations
@@ -32,12 +32,12 @@ libsumo.close()
 
 
 def scenarios(folder: Path) -> dict[str, Path]:
-    """The configurations; what has to be made is made in the folder."""
+    """The configurations; those that have to be generated are written to the folder."""
     return {"grid": grid(folder), "town": Path("sumo_nets/town/town.sumocfg"), "motorway": motorway(folder)}
 
 
 def grid(folder: Path) -> Path:
-    """Make the grid and its demand."""
+    """Generate the grid and its demand."""
     net, routes, config = folder / "grid.net.xml", folder / "grid.rou.xml", folder / "grid.sumocfg"
     tools = Path(sumo.SUMO_HOME) / "tools"
     environment = {**os.environ, "SUMO_HOME": str(sumo.SUMO_HOME), "PATH": f"{BIN}:{os.environ['PATH']}"}
@@ -53,35 +53,35 @@ def grid(folder: Path) -> Path:
 
 
 def motorway(folder: Path) -> Path:
-    """Copy the motorway from the installed SUMO: it writes beside its configuration."""
+    """Copy the motorway of the installed SUMO, whose configuration writes files beside itself."""
     shutil.copytree(Path(sumo.SUMO_HOME) / "tools" / "game", folder / "game")
     return folder / "game" / "A10KW.sumocfg"
 
 
 def end(config: Path) -> str:
-    """When a run ends, in s: 600 s after its begin, the town 300."""
+    """The end of a run in s: 600 s after its begin, or 300 s in the town."""
     begin = ET.parse(config).getroot().find(".//begin")
     return f"{parseTime('0' if begin is None else begin.attrib['value']) + (300 if config.stem == 'town' else 600):g}"
 
 
 def plain(config: Path) -> list[str]:
-    """SUMO alone, through libsumo as in every other run, imported as closecall does: without numpy and lxml, 0.1 s."""
+    """SUMO alone in libsumo, imported as closecall imports it: without numpy and lxml, which saves 0.1 s."""
     return [sys.executable, "-c", PLAIN, "-c", str(config), "--end", end(config), "--no-warnings"]
 
 
 def program(config: Path) -> list[str]:
-    """SUMO alone, its own program: the compiled one, not Python's that starts it."""
+    """SUMO alone as a program: the binary itself, not the Python script that starts it."""
     binary = str(Path(sumo.SUMO_HOME) / "bin" / "sumo")
     return [binary, "-c", str(config), "--end", end(config), "--no-warnings", "--no-step-log"]
 
 
 def attached(config: Path, out: Path, *options: str) -> list[str]:
-    """SUMO with every road user checked in every step and the conflicts logged."""
+    """SUMO with closecall: every road user checked in every step, and the conflicts logged."""
     checked = [sys.executable, "-m", "closecall", "run", str(config), "--end", end(config)]
     return [*checked, "--quiet", "--out", str(out), *options, "--", "--no-warnings"]
 
 
 def ssm(config: Path, out: Path) -> list[str]:
-    """SUMO with its own device.ssm on all vehicles, TTC alone."""
+    """SUMO with device.ssm on all vehicles, for TTC alone."""
     device = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC", "--device.ssm.file", str(out)]
     return [*plain(config), *device]

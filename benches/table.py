@@ -1,9 +1,9 @@
-"""From what the benches printed to one table of the goals, and one chart.
+"""Turns the output of the benches into a table of the goals and a chart.
 
     python benches/table.py FOLDER [--readme]
 
 Reads the lines `what,scene,method,size,value,unit` of the benches from FOLDER/parts/*.csv, prints the table and writes
-FOLDER/bench.csv and FOLDER/bench.svg. With --readme the table and the chart go into README.md and docs/pictures too.
+FOLDER/bench.csv and FOLDER/bench.svg. With --readme it also updates README.md and docs/pictures/bench.svg.
 """
 
 from __future__ import annotations
@@ -29,16 +29,16 @@ MARKS = ("<!-- make bench: begin -->\n", "<!-- make bench: end -->")
 
 
 class Lines:
-    """What the benches printed."""
+    """The lines that the benches printed."""
 
     def __init__(self, rows: list[dict[str, str]]) -> None:
         self.rows = rows
 
     def __call__(self, what: str, scene: str, method: str, size: int | None = None) -> float:
-        """The value of a line; of a `size` only where several differ by it.
+        """The value of a line; `size` is needed only where several lines differ by it.
 
         Raises:
-            LookupError: there is no such line.
+            LookupError: no line matches.
         """
         for row in self.rows:
             is_it = (row["what"], row["scene"], row["method"]) == (what, scene, method)
@@ -47,8 +47,8 @@ class Lines:
         raise LookupError(what, scene, method, size)
 
     def longer(self, scene: str, method: str, size: int) -> float:
-        """How many times as long as the detector another method takes for a step: in the same turn, where both have
-        turns, else the least of one over the least of the other.
+        """The time of a step with another method over the detector's: from the same rounds where both have rounds, else
+        the fastest of one over the fastest of the other.
         """
         try:
             return self("longer", scene, method, size)
@@ -58,7 +58,7 @@ class Lines:
 
 @dataclass
 class Goal:
-    """One row of the table: it is held where every value is."""
+    """A row of the table; a goal is held if every value is within the limits."""
 
     name: str
     values: Callable[[Lines], dict[str, float]]
@@ -68,7 +68,7 @@ class Goal:
     beside: Callable[[Lines], str] | None = None
 
     def row(self, lines: Lines) -> list[str]:
-        """Goal, measured, limit, held."""
+        """The cells of the row: goal, measured, limit, held."""
         limit = f"≤ {self.at_most:,g}" if self.at_most < math.inf else f"≥ {self.at_least:,g}"
         try:
             values = self.values(lines)
@@ -81,12 +81,12 @@ class Goal:
 
 
 def steps(method: str, *sizes: int) -> Callable[[Lines], dict[str, float]]:
-    """How many times longer than the detector another method takes for a step: the least of these sizes."""
+    """The time of a step with another method over the detector's: the smallest ratio of these sizes."""
     return lambda lines: {scene: min(lines.longer(scene, method, size) for size in sizes) for scene in SCENES}
 
 
 def saving(lines: Lines, exclusion: str) -> dict[str, float]:
-    """How many times longer what closecall does in a step takes where this is not left out, the largest first."""
+    """The time of a step without an exclusion over the time with it, per scene, the largest ratio first."""
     kept = {
         row["scene"]: float(row["value"])
         for row in lines.rows
@@ -98,9 +98,9 @@ def saving(lines: Lines, exclusion: str) -> dict[str, float]:
 
 
 def left_out(name: str, exclusion: str) -> Goal:
-    """The row of an exclusion: one that saves nothing anywhere would have to go."""
+    """The row of an exclusion: one that saves nothing in any scene should be removed."""
     return Goal(
-        f"left out: {name}; times longer without",
+        f"times slower without leaving out {name}",
         lambda lines: dict([*saving(lines, exclusion).items()][:1]),
         at_least=1.05,
         beside=lambda lines: ", ".join(
@@ -110,19 +110,19 @@ def left_out(name: str, exclusion: str) -> Goal:
 
 
 def growth(lines: Lines, scene: str) -> float:
-    """The exponent with which the time of a step grows from 10³ to 10⁶ road users."""
+    """The exponent with which the time of a step grows between 10³ and 10⁶ road users."""
     few, many = (lines("step", scene, "closecall", size) * size for size in (10**3, 10**6))
     return math.log10(many / few) / 3
 
 
 def cheaper(lines: Lines, scenario: str) -> float:
-    """What device.ssm adds to SUMO's run over what closecall adds; infinite where that cannot be told from nothing."""
+    """The time that device.ssm adds to a run over the time that closecall adds; infinite if closecall adds none."""
     ssm, closecall = (lines("over plain", scenario, method) - 1 for method in ("device.ssm", "closecall"))
     return ssm / closecall if closecall > 0 else math.inf
 
 
 def peaks(lines: Lines) -> dict[str, float]:
-    """Memory of the largest recording over that of the smallest."""
+    """The peak memory of the replay of the largest recording over that of the smallest."""
     sizes = sorted(
         (row["scene"] for row in lines.rows if row["what"] == "peak"), key=lambda size: float(size.split()[0])
     )
@@ -137,12 +137,12 @@ GOALS = [
         beside=lambda lines: (
             "device.ssm, TTC alone: "
             + ", ".join(f"{lines('over plain', scene, 'device.ssm'):.2f}" for scene in SCENARIOS)
-            + "; closecall over the program `sumo`, which is quicker than libsumo: "
+            + "; closecall over the program `sumo`, which is faster than libsumo: "
             + ", ".join(f"{lines('over program', scene, 'closecall'):.2f}" for scene in SCENARIOS)
         ),
     ),
     Goal(
-        "what device.ssm adds to the run over what closecall adds",
+        "time that device.ssm adds to a run over time that closecall adds",
         lambda lines: {scenario: cheaper(lines, scenario) for scenario in SCENARIOS},
         at_least=20,
         form=".0f",
@@ -152,26 +152,31 @@ GOALS = [
         lambda lines: {scene: lines("step", scene, "closecall", 10**5) for scene in DENSE},
         at_most=150,
         form=".0f",
-        beside=lambda lines: f"uniform, which is no traffic: {lines('step', 'uniform', 'closecall', 10**5):.0f}",
+        beside=lambda lines: f"uniform, not realistic traffic: {lines('step', 'uniform', 'closecall', 10**5):.0f}",
     ),
     Goal(
-        "its growth exponent, 10³ to 10⁶ road users",
+        "growth exponent of that time, 10³ to 10⁶ road users",
         lambda lines: {scene: growth(lines, scene) for scene in SCENES},
         at_most=1.1,
     ),
     Goal(
-        "times faster than parry2d's tree, made anew in each step, and its tests, 10⁴ and 10⁵",
+        "times faster than parry2d's tests with its tree rebuilt in each step, 10⁴ and 10⁵",
         steps("parry2d", 10**4, 10**5),
         at_least=3,
     ),
-    Goal("the same, where the tree is kept from step to step", steps("parry2d (kept)", 10**4, 10**5), at_least=3),
+    Goal("the same, with the tree kept between steps", steps("parry2d (kept)", 10**4, 10**5), at_least=3),
     Goal(
-        "the same, where it also knows that all ways are straight",
+        "the same, with all paths also known to be straight",
         steps("parry2d (kept; straight)", 10**4, 10**5),
         at_least=3,
     ),
-    Goal("times faster than all pairs by parry2d's test, 10⁵", steps("all tested", 10**5), at_least=1000, form=",.0f"),
-    Goal("the same, by two circles, several at once, 10⁵", steps("all pairs", 10**5), at_least=1000, form=".0f"),
+    Goal("times faster than parry2d's test of all pairs, 10⁵", steps("all tested", 10**5), at_least=1000, form=",.0f"),
+    Goal(
+        "times faster than a vectorised test of all pairs by two circles, 10⁵",
+        steps("all pairs", 10**5),
+        at_least=1000,
+        form=".0f",
+    ),
     Goal(
         "times faster than commonroad-drivability-checker, 10³ and 10⁴", steps("commonroad", 10**3, 10**4), at_least=1
     ),
@@ -180,15 +185,15 @@ GOALS = [
         lambda lines: {scene: 1 / lines.longer(scene, "two threads", 10**5) for scene in SCENES},
         at_least=1.7,
         beside=lambda lines: (
-            "two detectors at once, each on a thread of its own: "
+            "two detectors at once, each on its own thread: "
             + ", ".join(f"{2 / lines.longer(scene, 'two at once', 10**5):.2f}" for scene in SCENES)
-            + " times one's work"
+            + " times the work of one"
         ),
     ),
     left_out("pairs too far apart", "areas-apart"),
-    left_out("tests where the boxes around both ways do not meet", "paths-apart"),
-    left_out("sweeps of who drives in line", "in-line"),
-    left_out("lanes of who is on the path laid before", "known-paths"),
+    left_out("tests of paths whose bounding boxes are apart", "paths-apart"),
+    left_out("sweeps of road users that drive in line", "in-line"),
+    left_out("lane lookups of vehicles still on their predicted path", "known-paths"),
     Goal(
         "replay from CSV, 10⁶ vehicle-steps per s",
         lambda lines: {scene: lines("replay", scene, "CSV") / 1e6 for scene in ("sparse", "platoons")},
@@ -199,10 +204,10 @@ GOALS = [
         lambda lines: {scene: lines("replay", scene, "XML") / 1e6 for scene in ("sparse", "platoons")},
         at_least=1.5,
     ),
-    # A few pages more or less are the system's.
-    Goal("memory of a replay, 100 times the file over the small one", peaks, at_most=1.05),
+    # The system accounts for a few pages more or less.
+    Goal("memory of a replay of a file 100 times larger over that of the small file", peaks, at_most=1.05),
     Goal(
-        "bytes per road user, beside SUMO's own",
+        "bytes per road user, in addition to SUMO's",
         lambda lines: {scene: lines("held", scene, "closecall") for scene in SCENARIOS},
         at_most=400,
         form=",.0f",
@@ -217,7 +222,7 @@ GOALS = [
 
 
 def machine() -> str:
-    """The processor's name, how many cores it has here, the system, and SUMO's version."""
+    """The processor, its number of cores, the system, and SUMO's version."""
     information = Path("/proc/cpuinfo")
     lines = information.read_text().splitlines() if information.exists() else []
     models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
@@ -226,14 +231,14 @@ def machine() -> str:
 
 
 def fill(page: Path, text: str) -> None:
-    """Put a text between the page's two marks."""
+    """Replace the text between the page's two marks."""
     before, rest = page.read_text(encoding="utf-8").split(MARKS[0])
     after = rest.split(MARKS[1])[1]
     page.write_text(before + MARKS[0] + text + MARKS[1] + after, encoding="utf-8")
 
 
 def main() -> None:
-    """Table, chart, README."""
+    """Write the table and the chart, and update the README on request."""
     folder = Path(sys.argv[1])
     rows: list[dict[str, str]] = []
     for part in sorted((folder / "parts").glob("*.csv")):

@@ -1,8 +1,8 @@
-"""Takes the pictures in the scenarios' READMEs: sumo-gui at the worst step of the conflict that stands out.
+"""Takes the pictures in the scenarios' READMEs: sumo-gui at the worst step of the most striking conflict.
 
     xvfb-run -a .venv/bin/python sumo_nets/pictures.py [NAME ...]
 
-Without a conflict (as it should be in some) the picture is of the moment with the most road users.
+Some scenarios have no conflict; the picture then shows the step with the most vehicles.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ HERE = Path(__file__).parent
 RANK = {"critical": 2, "serious": 1, "caution": 0}
 
 
-def spot(config: Path) -> tuple[float, float, float] | None:
-    """Time and place of the conflict that stands out."""
+def find_spot(config: Path) -> tuple[float, float, float] | None:
+    """Time and position of the most striking conflict, or None without conflicts."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sys.executable, "-m", "closecall", "run", str(config), "--quiet", "--out", folder]
         options = config.with_name("closecall.toml")
@@ -33,8 +33,8 @@ def spot(config: Path) -> tuple[float, float, float] | None:
     return float(worst["time"]), float(worst["x"]), float(worst["y"])
 
 
-def shoot(config: Path, place: tuple[float, float, float] | None) -> None:
-    """Run it in sumo-gui until then and take the picture."""
+def shoot(config: Path, spot: tuple[float, float, float] | None) -> None:
+    """Run the scenario in sumo-gui up to that time and take the picture."""
     from closecall import Checker, _sumo
 
     sumo = _sumo.start(["-c", str(config), "--no-warnings", "--window-size", "800,520"], gui=True)
@@ -46,9 +46,9 @@ def shoot(config: Path, place: tuple[float, float, float] | None) -> None:
         checker.step()
         time = sumo.simulation.getTime() - step
         vehicles = sumo.vehicle.getIDList()
-        if place is not None and abs(time - place[0]) < step / 2:
-            _, x, y = place
-        elif place is None and len(vehicles) > busiest:
+        if spot is not None and abs(time - spot[0]) < step / 2:
+            _, x, y = spot
+        elif spot is None and len(vehicles) > busiest:
             busiest = len(vehicles)
             x, y = sumo.vehicle.getPosition(vehicles[0])
         else:
@@ -56,23 +56,23 @@ def shoot(config: Path, place: tuple[float, float, float] | None) -> None:
         sumo.gui.setBoundary("View #0", x - 50, y - 30, x + 50, y + 30)
         sumo.gui.screenshot("View #0", picture)
         sumo.simulationStep()
-        if place is not None:
+        if spot is not None:
             break
     _sumo.close(gui=True)
 
 
 def main() -> None:
-    """One process for each scenario: libsumo allows one simulation per process."""
+    """Take the pictures, each in a process of its own, because libsumo allows one simulation per process."""
     if sys.argv[1:2] == ["--shoot"]:
         words = sys.argv[2:]
         shoot(Path(words[0]), tuple(map(float, words[1:])) if words[1:] else None)  # type: ignore[arg-type]
         return
     for name in sys.argv[1:] or sorted(path.name for path in HERE.iterdir() if path.is_dir()):
         config = HERE / name / f"{name}.sumocfg"
-        place = spot(config)
-        command = [sys.executable, __file__, "--shoot", str(config), *map(str, place or ())]
+        spot = find_spot(config)
+        command = [sys.executable, __file__, "--shoot", str(config), *map(str, spot or ())]
         done = subprocess.run(command, timeout=60, check=False)
-        print(name, place, "done" if done.returncode == 0 else f"exit status {done.returncode}", flush=True)
+        print(name, spot, "done" if done.returncode == 0 else f"exit status {done.returncode}", flush=True)
 
 
 if __name__ == "__main__":

@@ -1,117 +1,31 @@
-"""Makes the plain sources and the demand of `town`, always the same: python3 town.py"""
+"""Generates the plain sources and the demand of `town`, always the same bytes: python3 town.py
+
+The town is a bent grid of junctions: arterial roads with two lanes each way, collectors, and streets, of which some are
+left out. The centre has pavements. netconvert builds the net from these sources (`sumo_nets/build.sh town`).
+"""
+
+from __future__ import annotations
 
 import math
-import os
 import random
+from pathlib import Path
+from typing import NamedTuple
 
-R = random.Random(7)
-NX, NY, D = 13, 9, 115.0
-out = os.path.join(os.path.dirname(os.path.abspath(__file__)), "town.")
-cols = "ABCDEFGHIJKLM"
-AC = {3, 9}
-AR = {2, 6}  # arterial columns and rows
-CC = {0, 6, 12}
-CR = {4}  # collectors
-pos = {}
-for i in range(NX):
-    for j in range(NY):
-        s = 0.13 if (i in AC or j in AR) else 0.2
-        dx = R.uniform(-s, s) * D
-        dy = R.uniform(-s, s) * D
-        if i in AC:
-            dx *= 0.3
-        if j in AR:
-            dy *= 0.3
-        # the whole town bends a little
-        x = i * D + dx
-        y = j * D + dy + 25 * math.sin(i / 2.2)
-        pos[i, j] = (round(x, 1), round(y, 1))
+FOLDER = Path(__file__).parent
+COLUMNS, ROWS = 13, 9
+SPACING = 115.0
+"""Distance of neighbouring junctions in the grid before it is distorted, in m."""
+ARTERIAL_COLUMNS, ARTERIAL_ROWS = {3, 9}, {2, 6}
+COLLECTOR_COLUMNS, COLLECTOR_ROWS = {0, 6, 12}, {4}
+CENTRE = {(column, row) for column in range(4, 9) for row in range(3, 6)}
+"""Junctions whose roads have pavements."""
+END = 600
+"""End of the demand in s."""
+VEHICLES_AT_START = 440
+VEHICLES_PER_SECOND = 1.7
+WALKERS, WALKERS_AT_START = 150, 60
 
-
-def cls(a, b):
-    (i, j), (k, l) = a, b
-    if i == k and i in AC or j == l and j in AR:
-        return "arterial"
-    if i == k and i in CC or j == l and j in CR:
-        return "collector"
-    return "street"
-
-
-links = []
-for i in range(NX):
-    for j in range(NY):
-        if i + 1 < NX:
-            links.append(((i, j), (i + 1, j)))
-        if j + 1 < NY:
-            links.append(((i, j), (i, j + 1)))
-park = {(6, 7), (7, 7), (6, 8), (7, 8)}
-keep = []
-deg = {}
-for a, b in links:
-    for n in (a, b):
-        deg[n] = deg.get(n, 0) + 1
-R.shuffle(links)
-for a, b in links:
-    c = cls(a, b)
-    if c == "street" and R.random() < 0.2 and deg[a] > 3 and deg[b] > 3:
-        deg[a] -= 1
-        deg[b] -= 1
-        continue
-    keep.append((a, b, c))
-keep.sort()
-nm = lambda n: f"{cols[n[0]]}{n[1] + 1}"
-kinds = {}
-for a, b, c in keep:
-    kinds.setdefault(a, []).append(c)
-    kinds.setdefault(b, []).append(c)
-tl = set()
-f = open(out + "nod.xml", "w")
-f.write("<nodes>\n")
-for n in sorted(pos):
-    k = kinds[n]
-    big = k.count("arterial")
-    if (big >= 2 and "collector" in k) or big == 4:
-        t = "traffic_light"
-        tl.add(n)
-    elif k.count("collector") == 4:
-        t = "traffic_light"
-        tl.add(n)
-    elif big >= 2 and len(k) == 4 and R.random() < 0.4:
-        t = "traffic_light"
-        tl.add(n)
-    elif big or "collector" in k:
-        t = "priority"
-    else:
-        t = "right_before_left"
-    f.write(f'    <node id="{nm(n)}" x="{pos[n][0]}" y="{pos[n][1]}" type="{t}"/>\n')
-f.write("</nodes>\n")
-f.close()
-core = {(i, j) for i in range(4, 9) for j in range(3, 6)}
-f = open(out + "edg.xml", "w")
-f.write("<edges>\n")
-E = []
-for a, b, c in keep:
-    for p, q in ((a, b), (b, a)):
-        t = c
-        if a in core and b in core:
-            t = c + "_walk"
-        f.write(f'    <edge id="{nm(p)}{nm(q)}" from="{nm(p)}" to="{nm(q)}" type="{t}"/>\n')
-        E.append((p, q, c, t))
-f.write("</edges>\n")
-f.close()
-f = open(out + "typ.xml", "w")
-f.write("""<types>
-    <!-- Two lanes each way, no bicycles. -->
-    <type id="arterial" numLanes="2" speed="13.89" priority="9" disallow="bicycle pedestrian"/>
-    <type id="collector" numLanes="1" speed="13.89" priority="6"/>
-    <type id="street" numLanes="1" speed="8.33" priority="3"/>
-    <!-- The centre has pavements. -->
-    <type id="collector_walk" numLanes="1" speed="13.89" priority="6" sidewalkWidth="2"/>
-    <type id="street_walk" numLanes="1" speed="8.33" priority="3" sidewalkWidth="2"/>
-</types>
-""")
-f.close()
-open(out + "netccfg", "w").write("""<configuration>
+NETCONVERT = """<configuration>
     <node-files value="town.nod.xml"/>
     <edge-files value="town.edg.xml"/>
     <type-files value="town.typ.xml"/>
@@ -121,75 +35,20 @@ open(out + "netccfg", "w").write("""<configuration>
     <tls.default-type value="static"/>
     <junctions.corner-detail value="2"/>
 </configuration>
-""")
-# demand
-eid = lambda e: nm(e[0]) + nm(e[1])
-W = {"arterial": 3, "collector": 1.5, "street": 1}
+"""
 
+EDGE_TYPES = """<types>
+    <!-- Two lanes each way, no bicycles. -->
+    <type id="arterial" numLanes="2" speed="13.89" priority="9" disallow="bicycle pedestrian"/>
+    <type id="collector" numLanes="1" speed="13.89" priority="6"/>
+    <type id="street" numLanes="1" speed="8.33" priority="3"/>
+    <!-- The centre has pavements. -->
+    <type id="collector_walk" numLanes="1" speed="13.89" priority="6" sidewalkWidth="2"/>
+    <type id="street_walk" numLanes="1" speed="8.33" priority="3" sidewalkWidth="2"/>
+</types>
+"""
 
-def mid(e):
-    (x, y), (u, v) = pos[e[0]], pos[e[1]]
-    return ((x + u) / 2, (y + v) / 2)
-
-
-def pick(w):
-    return R.choices(E, w)[0]
-
-
-w = [W[e[2]] for e in E]
-wt = [{"arterial": 5, "collector": 2, "street": 0.3}[e[2]] for e in E]
-ws = [{"arterial": 0, "collector": 1.5, "street": 2}[e[2]] for e in E]
-END = 600
-succ = {}
-for e in E:
-    if e[2] != "arterial":
-        succ[e[:2]] = [g[:2] for g in E if g[2] != "arterial" and g[0] == e[1] and g[1] != e[0]]
-
-
-def bikable(a, b):
-    seen = {a[:2]}
-    todo = [a[:2]]
-    while todo:
-        n = todo.pop()
-        if n == b[:2]:
-            return True
-        for m in succ[n]:
-            if m not in seen:
-                seen.add(m)
-                todo.append(m)
-    return False
-
-
-trips = []
-
-
-def trip(t, typ):
-    ww = {"truck": wt, "bicycle": ws}.get(typ, w)
-    lo, hi = (300, 900) if typ == "bicycle" else (500, 1500)
-    while True:
-        a, b = pick(ww), pick(ww)
-        (x, y), (u, v) = mid(a), mid(b)
-        if lo < math.hypot(x - u, y - v) < hi and a[:2] != b[1::-1] and (typ != "bicycle" or bikable(a, b)):
-            break
-    trips.append((t, typ, eid(a), eid(b)))
-
-
-def typ():
-    return R.choices(["car", "van", "truck", "motorcycle", "bicycle"], [70, 9, 7, 3, 11])[0]
-
-
-INIT = 440
-RATE = 1.7
-for _ in range(INIT):
-    trip(0.0, typ())
-t = 0
-while True:
-    t += R.expovariate(RATE)
-    if t > END:
-        break
-    trip(round(t, 1), typ())
-f = open(out + "rou.xml", "w")
-f.write("""<routes>
+VEHICLE_TYPES = """<routes>
     <vTypeDistribution id="cars">
         <vType id="car" length="4.6" width="1.8" speedDev="0.1" sigma="0.5" probability="0.6"/>
         <vType id="hurried_car" length="4.6" width="1.8" tau="0.7" minGap="1.5" speedFactor="1.15" speedDev="0.05" sigma="0.7" probability="0.25"/>
@@ -203,108 +62,9 @@ f.write("""<routes>
     <vType id="walker" vClass="pedestrian" speedFactor="normc(1,0.15,0.6,1.5)"/>
 
     <!-- Two bus lines, there and back along the arterial roads. -->
-""")
+"""  # noqa: E501
 
-
-def rowroute(j, rev):
-    ns = [(i, j) for i in range(NX)]
-    if rev:
-        ns = ns[::-1]
-    return [nm(a) + nm(b) for a, b in zip(ns, ns[1:])]
-
-
-def colroute(i, rev):
-    ns = [(i, j) for j in range(NY)]
-    if rev:
-        ns = ns[::-1]
-    return [nm(a) + nm(b) for a, b in zip(ns, ns[1:])]
-
-
-lines = {
-    "line1_east": rowroute(2, 0),
-    "line1_west": rowroute(2, 1),
-    "line2_north": colroute(9, 0),
-    "line2_south": colroute(9, 1),
-}
-stops = []
-items = []
-for L, r in lines.items():
-    f.write(f'    <route id="{L}" edges="{" ".join(r)}">\n')
-    for k, e in enumerate(r):
-        if k % 3 == 1:
-            stops.append((f"stop_{e}", e))
-            f.write(f'        <stop busStop="stop_{e}" duration="12"/>\n')
-    f.write("    </route>\n")
-f.write("\n")
-for L in lines:
-    items.append(
-        (0.0, f'    <flow id="{L}" type="bus" route="{L}" begin="0" end="{END}" period="90" departSpeed="max"/>\n')
-    )
-for n, (t, ty, a, b) in enumerate(trips):
-    ini = ' departPos="random_free"' if t == 0 else ""
-    T = "cars" if ty == "car" else ty
-    items.append(
-        (
-            t,
-            f'    <trip id="{ty[0] if ty != "truck" else "t"}{n}" type="{T}" depart="{t:g}"{ini} departLane="best" departSpeed="max" from="{a}" to="{b}"/>\n',
-        )
-    )
-walk = [e for e in E if e[3].endswith("_walk")]
-for k in range(150):
-    a = R.choice(walk)
-    b = R.choice(walk)
-    t = 0.0 if k < 60 else round(R.uniform(0, END - 60), 1)
-    items.append(
-        (
-            t,
-            f'    <person id="w{k}" type="walker" depart="{t:g}" departPos="random"><walk from="{eid(a)}" to="{eid(b)}"/></person>\n',
-        )
-    )
-# parked cars: some stay for the whole run, some leave; vans that deliver stop in the lane
-P = random.Random(11)
-kerb = [e for e in E if e[3] in ("street", "collector") and math.dist(pos[e[0]], pos[e[1]]) > 90]
-lots = P.sample(kerb, 12)
-n = 0
-for q, e in enumerate(lots):
-    for k in range(4):
-        if P.random() < 0.7:
-            d = P.choice([600, 600, P.randrange(120, 500, 10)])
-            nxt = [g for g in E if g[0] == e[1] and g[1] != e[0]]
-            t = f"{eid(e)} {eid(P.choice(nxt))}"
-            items.append(
-                (
-                    0.0,
-                    f'    <vehicle id="p{n}" type="cars" depart="0" departPos="stop"><route edges="{t}"/><stop parkingArea="lot_{eid(e)}" duration="{d}"/></vehicle>\n',
-                )
-            )
-            n += 1
-art = [e for e in E if e[2] == "arterial" and math.dist(pos[e[0]], pos[e[1]]) > 90]
-for k in range(10):
-    e = P.choice(art)
-    j = P.choice([g for g in E if g[1] == e[0] and g[0] != e[1] and g[2] != "street"])
-    m = P.choice([g for g in E if g[0] == e[1] and g[1] != e[0] and g[2] != "street"])
-    items.append(
-        (
-            round(20 + k * 45.0, 1),
-            f'    <trip id="d{k}" type="van" depart="{20 + k * 45}" departLane="best" departSpeed="max" from="{eid(j)}" to="{eid(m)}"><stop lane="{eid(e)}_0" endPos="70" duration="30"/></trip>\n',
-        )
-    )
-items.sort(key=lambda x: x[0])
-for _, s in items:
-    f.write(s)
-f.write("</routes>\n")
-f.close()
-f = open(out + "add.xml", "w")
-f.write("<additional>\n")
-for s, e in stops:
-    f.write(f'    <busStop id="{s}" lane="{e}_0" startPos="30" endPos="55"/>\n')
-for e in lots:
-    f.write(
-        f'    <parkingArea id="lot_{eid(e)}" lane="{eid(e)}_0" startPos="25" endPos="55" roadsideCapacity="4" width="2.2"/>\n'
-    )
-f.write("</additional>\n")
-f.close()
-open(out + "sumocfg", "w").write(f'''<configuration>
+CONFIGURATION = f"""<configuration>
     <net-file value="town.net.xml"/>
     <route-files value="town.rou.xml"/>
     <additional-files value="town.add.xml"/>
@@ -318,4 +78,314 @@ open(out + "sumocfg", "w").write(f'''<configuration>
     <collision.action value="warn"/>
     <collision.check-junctions value="true"/>
 </configuration>
-''')
+"""
+
+Junction = tuple[int, int]
+"""Column and row in the grid."""
+Item = tuple[float, str]
+"""Departure in s and XML of one entry of the route file."""
+
+
+class Edge(NamedTuple):
+    """One direction of a road."""
+
+    start: Junction
+    end: Junction
+    road: str
+    """arterial, collector or street"""
+    has_pavement: bool
+
+    @property
+    def id(self) -> str:
+        """Its id in the net."""
+        return name(self.start) + name(self.end)
+
+    @property
+    def type(self) -> str:
+        """Its type in the net."""
+        return self.road + "_walk" * self.has_pavement
+
+
+def name(junction: Junction) -> str:
+    """The id of a junction: a letter for the column and a number for the row."""
+    column, row = junction
+    return f"{'ABCDEFGHIJKLM'[column]}{row + 1}"
+
+
+def place_junctions(chance: random.Random) -> dict[Junction, tuple[float, float]]:
+    """The positions of the junctions in m: a grid, distorted at random, less so along arterial roads, and bent."""
+    positions = {}
+    for column in range(COLUMNS):
+        for row in range(ROWS):
+            in_arterial_column, in_arterial_row = column in ARTERIAL_COLUMNS, row in ARTERIAL_ROWS
+            spread = 0.13 if in_arterial_column or in_arterial_row else 0.2
+            dx, dy = chance.uniform(-spread, spread) * SPACING, chance.uniform(-spread, spread) * SPACING
+            dx *= 0.3 if in_arterial_column else 1
+            dy *= 0.3 if in_arterial_row else 1
+            x = column * SPACING + dx
+            y = row * SPACING + dy + 25 * math.sin(column / 2.2)
+            positions[column, row] = (round(x, 1), round(y, 1))
+    return positions
+
+
+def road_between(a: Junction, b: Junction) -> str:
+    """The kind of the road between two neighbouring junctions."""
+    same_column, same_row = a[0] == b[0], a[1] == b[1]
+    if (same_column and a[0] in ARTERIAL_COLUMNS) or (same_row and a[1] in ARTERIAL_ROWS):
+        return "arterial"
+    if (same_column and a[0] in COLLECTOR_COLUMNS) or (same_row and a[1] in COLLECTOR_ROWS):
+        return "collector"
+    return "street"
+
+
+def choose_roads(chance: random.Random) -> list[tuple[Junction, Junction, str]]:
+    """The roads of the grid, without up to a fifth of the streets; each junction keeps at least three roads."""
+    links: list[tuple[Junction, Junction]] = []
+    for column in range(COLUMNS):
+        for row in range(ROWS):
+            if column + 1 < COLUMNS:
+                links.append(((column, row), (column + 1, row)))
+            if row + 1 < ROWS:
+                links.append(((column, row), (column, row + 1)))
+    degrees: dict[Junction, int] = {}
+    for junction in (end for link in links for end in link):
+        degrees[junction] = degrees.get(junction, 0) + 1
+    chance.shuffle(links)
+    roads = []
+    for a, b in links:
+        road = road_between(a, b)
+        if road == "street" and chance.random() < 0.2 and degrees[a] > 3 and degrees[b] > 3:
+            degrees[a] -= 1
+            degrees[b] -= 1
+        else:
+            roads.append((a, b, road))
+    return sorted(roads)
+
+
+def junction_type(roads: list[str], chance: random.Random) -> str:
+    """The right of way at a junction of these roads."""
+    arterials, collectors = roads.count("arterial"), roads.count("collector")
+    if (arterials >= 2 and collectors) or arterials == 4 or collectors == 4:
+        return "traffic_light"
+    if arterials >= 2 and len(roads) == 4 and chance.random() < 0.4:
+        return "traffic_light"
+    return "priority" if arterials or collectors else "right_before_left"
+
+
+class Demand:
+    """The trips, drawn at random, between edges far enough apart."""
+
+    def __init__(
+        self, edges: list[Edge], positions: dict[Junction, tuple[float, float]], chance: random.Random
+    ) -> None:
+        self.edges, self.positions, self.chance = edges, positions, chance
+        by_road = {
+            "truck": {"arterial": 5, "collector": 2, "street": 0.3},
+            "bicycle": {"arterial": 0, "collector": 1.5, "street": 2},
+            "": {"arterial": 3, "collector": 1.5, "street": 1},
+        }
+        self.weights = {kind: [weights[edge.road] for edge in edges] for kind, weights in by_road.items()}
+        self.trips: list[tuple[float, str, str, str]] = []
+
+    def middle(self, edge: Edge) -> tuple[float, float]:
+        """The middle of an edge."""
+        (x, y), (u, v) = self.positions[edge.start], self.positions[edge.end]
+        return (x + u) / 2, (y + v) / 2
+
+    def is_bikable(self, origin: Edge, destination: Edge) -> bool:
+        """Whether a bicycle gets from one edge to the other without arterial roads and turnarounds."""
+        seen = {(origin.start, origin.end)}
+        open_ends = list(seen)
+        while open_ends:
+            start, end = open_ends.pop()
+            if (start, end) == (destination.start, destination.end):
+                return True
+            for edge in self.edges:
+                follows = edge.start == end and edge.end != start and edge.road != "arterial"
+                if follows and (edge.start, edge.end) not in seen:
+                    seen.add((edge.start, edge.end))
+                    open_ends.append((edge.start, edge.end))
+        return False
+
+    def add(self, time: float) -> None:
+        """Add a trip of a random vehicle type at a time in s."""
+        kinds = ["car", "van", "truck", "motorcycle", "bicycle"]
+        kind = self.chance.choices(kinds, [70, 9, 7, 3, 11])[0]
+        weights = self.weights.get(kind, self.weights[""])
+        shortest, longest = (300, 900) if kind == "bicycle" else (500, 1500)
+        while True:
+            origin, destination = (self.chance.choices(self.edges, weights)[0] for _ in range(2))
+            (x, y), (u, v) = self.middle(origin), self.middle(destination)
+            is_way_back = (origin.start, origin.end) == (destination.end, destination.start)
+            if not shortest < math.hypot(x - u, y - v) < longest or is_way_back:
+                continue
+            if kind != "bicycle" or self.is_bikable(origin, destination):
+                break
+        self.trips.append((time, kind, origin.id, destination.id))
+
+    def items(self) -> list[Item]:
+        """The trips as XML."""
+        found = []
+        for number, (time, kind, origin, destination) in enumerate(self.trips):
+            vehicle = ("t" if kind == "truck" else kind[0]) + str(number)
+            position = ' departPos="random_free"' if time == 0 else ""
+            found.append(
+                (
+                    time,
+                    f'    <trip id="{vehicle}" type="{"cars" if kind == "car" else kind}" depart="{time:g}"{position} '
+                    f'departLane="best" departSpeed="max" from="{origin}" to="{destination}"/>\n',
+                )
+            )
+        return found
+
+
+def bus_lines() -> dict[str, list[str]]:
+    """The edges of the two bus lines in both directions: along an arterial row and an arterial column."""
+    row, column = [(at, 2) for at in range(COLUMNS)], [(9, at) for at in range(ROWS)]
+    junctions = {
+        "line1_east": row,
+        "line1_west": row[::-1],
+        "line2_north": column,
+        "line2_south": column[::-1],
+    }
+    return {line: [name(a) + name(b) for a, b in zip(path, path[1:])] for line, path in junctions.items()}
+
+
+def walkers(edges: list[Edge], chance: random.Random) -> list[Item]:
+    """Persons who walk between edges with pavements."""
+    pavements = [edge for edge in edges if edge.has_pavement]
+    found = []
+    for number in range(WALKERS):
+        origin, destination = chance.choice(pavements), chance.choice(pavements)
+        time = 0.0 if number < WALKERS_AT_START else round(chance.uniform(0, END - 60), 1)
+        found.append(
+            (
+                time,
+                f'    <person id="w{number}" type="walker" depart="{time:g}" departPos="random">'
+                f'<walk from="{origin.id}" to="{destination.id}"/></person>\n',
+            )
+        )
+    return found
+
+
+def parked_cars(lots: list[Edge], edges: list[Edge], chance: random.Random) -> list[Item]:
+    """Cars that are parked at the start; some leave, some stay to the end."""
+    found: list[Item] = []
+    for edge in lots:
+        for _ in range(4):
+            if chance.random() >= 0.7:
+                continue
+            duration = chance.choice([END, END, chance.randrange(120, 500, 10)])
+            onward = chance.choice([other for other in edges if other.start == edge.end and other.end != edge.start])
+            found.append(
+                (
+                    0.0,
+                    f'    <vehicle id="p{len(found)}" type="cars" depart="0" departPos="stop">'
+                    f'<route edges="{edge.id} {onward.id}"/>'
+                    f'<stop parkingArea="lot_{edge.id}" duration="{duration}"/></vehicle>\n',
+                )
+            )
+    return found
+
+
+def delivery_vans(edges: list[Edge], is_long: dict[Edge, bool], chance: random.Random) -> list[Item]:
+    """Vans that stop in a lane of an arterial road."""
+    arterials = [edge for edge in edges if edge.road == "arterial" and is_long[edge]]
+    found = []
+    for number in range(10):
+        edge = chance.choice(arterials)
+        main = [other for other in edges if other.road != "street"]
+        before = chance.choice([other for other in main if other.end == edge.start and other.start != edge.end])
+        after = chance.choice([other for other in main if other.start == edge.end and other.end != edge.start])
+        time = 20 + number * 45
+        found.append(
+            (
+                float(time),
+                f'    <trip id="d{number}" type="van" depart="{time}" departLane="best" departSpeed="max" '
+                f'from="{before.id}" to="{after.id}"><stop lane="{edge.id}_0" endPos="70" duration="30"/></trip>\n',
+            )
+        )
+    return found
+
+
+def write(suffix: str, *lines: str) -> None:
+    """Write one of the town's files."""
+    (FOLDER / f"town.{suffix}").write_text("".join(lines))
+
+
+def main() -> None:
+    """Write all files; the order of the random draws decides what the town looks like."""
+    chance = random.Random(7)
+    positions = place_junctions(chance)
+    roads = choose_roads(chance)
+    meeting: dict[Junction, list[str]] = {}
+    for a, b, road in roads:
+        meeting.setdefault(a, []).append(road)
+        meeting.setdefault(b, []).append(road)
+    nodes = [
+        f'    <node id="{name(junction)}" x="{x}" y="{y}" type="{junction_type(meeting[junction], chance)}"/>\n'
+        for junction, (x, y) in sorted(positions.items())
+    ]
+    write("nod.xml", "<nodes>\n", *nodes, "</nodes>\n")
+    edges = [
+        Edge(start, end, road, has_pavement=a in CENTRE and b in CENTRE)
+        for a, b, road in roads
+        for start, end in ((a, b), (b, a))
+    ]
+    drawn = [
+        f'    <edge id="{edge.id}" from="{name(edge.start)}" to="{name(edge.end)}" type="{edge.type}"/>\n'
+        for edge in edges
+    ]
+    write("edg.xml", "<edges>\n", *drawn, "</edges>\n")
+    write("typ.xml", EDGE_TYPES)
+    write("netccfg", NETCONVERT)
+
+    demand = Demand(edges, positions, chance)
+    for _ in range(VEHICLES_AT_START):
+        demand.add(0.0)
+    time = chance.expovariate(VEHICLES_PER_SECOND)
+    while time <= END:
+        demand.add(round(time, 1))
+        time += chance.expovariate(VEHICLES_PER_SECOND)
+
+    lines = bus_lines()
+    stops = {line: path[1::3] for line, path in lines.items()}
+    routes = [
+        f'    <route id="{line}" edges="{" ".join(path)}">\n'
+        + "".join(f'        <stop busStop="stop_{edge}" duration="12"/>\n' for edge in stops[line])
+        + "    </route>\n"
+        for line, path in lines.items()
+    ]
+    buses = [
+        (
+            0.0,
+            f'    <flow id="{line}" type="bus" route="{line}" begin="0" end="{END}" period="90" departSpeed="max"/>\n',
+        )
+        for line in lines
+    ]
+    walks = walkers(edges, chance)
+
+    standing = random.Random(11)
+    is_long = {edge: math.dist(positions[edge.start], positions[edge.end]) > 90 for edge in edges}
+    kerbs = [edge for edge in edges if edge.type in ("street", "collector") and is_long[edge]]
+    lots = standing.sample(kerbs, 12)
+    parked = parked_cars(lots, edges, standing)
+    vans = delivery_vans(edges, is_long, standing)
+    items = sorted([*buses, *demand.items(), *walks, *parked, *vans], key=lambda item: item[0])
+    write("rou.xml", VEHICLE_TYPES, *routes, "\n", *(xml for _, xml in items), "</routes>\n")
+    additional = [
+        f'    <busStop id="stop_{edge}" lane="{edge}_0" startPos="30" endPos="55"/>\n'
+        for line in lines
+        for edge in stops[line]
+    ]
+    additional += [
+        f'    <parkingArea id="lot_{edge.id}" lane="{edge.id}_0" startPos="25" endPos="55" roadsideCapacity="4" '
+        'width="2.2"/>\n'
+        for edge in lots
+    ]
+    write("add.xml", "<additional>\n", *additional, "</additional>\n")
+    write("sumocfg", CONFIGURATION)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,4 +1,4 @@
-"""Precision and recall of closecall on a scenario, against the paths that were really driven.
+"""Precision and recall of closecall on scenarios, against the paths that the road users drove afterwards.
 
 python tests/accuracy/accuracy.py SCENARIO.sumocfg ... [--end S] [--every S] [--at-least PERCENT]
 """
@@ -20,7 +20,7 @@ KINDS = ("rear_end", "frontal", "side")
 
 
 def reported(words: list[str], options: list[str]) -> dict[tuple[int, frozenset[str]], dict[str, str]]:
-    """What closecall says, by time in ms and pair."""
+    """closecall's encounters, by time in ms and pair."""
     with tempfile.TemporaryDirectory() as folder:
         config, rest = words[1], words[2:]
         command = [sys.executable, "-m", "closecall", "run", config, "--quiet", "--log-encounters", "--out", folder]
@@ -35,19 +35,18 @@ class Tally:
 
     def __init__(self) -> None:
         self.counts: Counter[tuple[str, str]] = Counter()
-        self.aside: Counter[str] = Counter()
+        self.excluded: Counter[str] = Counter()
         self.wrong: list[tuple[float, str, Verdict | None, dict[str, str] | None]] = []
 
     def add(self, time: float, truth: Verdict | None, row: dict[str, str] | None) -> None:
-        """One pair in one step."""
-        if truth is not None and truth.aside:
-            self.aside[truth.aside] += 1
+        """Count one pair in one step."""
+        if truth is not None and truth.excluded:
+            self.excluded[truth.excluded] += 1
             return
-        if truth is not None and abs(truth.margin) <= NEAR:
-            self.aside["near the limit"] += 1
-            return
-        if row is not None and abs(float(row["margin"])) <= NEAR:
-            self.aside["near the limit"] += 1
+        margins = [] if truth is None else [truth.margin]
+        margins += [] if row is None else [float(row["margin"])]
+        if any(abs(margin) <= NEAR for margin in margins):
+            self.excluded["near the limit"] += 1
             return
         is_true = truth is not None and truth.margin < 0
         if row is not None:
@@ -66,7 +65,7 @@ class Tally:
 
 
 def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[str, str]], every: float) -> Tally:
-    """Truth and report, pair by pair, in steps that are `every` s apart."""
+    """Compare truth and report pair by pair, in steps that are `every` s apart."""
     tally = Tally()
     stride = max(round(every / recording.step), 1)
     for step in range(0, recording.steps, stride):
@@ -80,14 +79,14 @@ def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[st
 
 
 def main() -> int:
-    """Exit status 1 where a figure of 20 cases or more is too low."""
+    """Print the table; exit status 1 if a figure from at least 20 cases is below the limit."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
     parser.add_argument("scenarios", nargs="+", type=Path)
     parser.add_argument("--end", type=float, default=100.0, help="simulated second at which to end")
     parser.add_argument("--every", type=float, default=1.0, help="seconds between the steps that are compared")
     parser.add_argument("--step-length", type=float, default=0.1, help="length of a step in s")
-    parser.add_argument("--at-least", type=float, default=0.0, help="percent that each figure must reach")
-    parser.add_argument("--show", type=int, default=0, help="how many disagreements to print")
+    parser.add_argument("--at-least", type=float, default=0.0, help="limit for each figure, in percent")
+    parser.add_argument("--show", type=int, default=0, help="number of disagreements to print")
     parser.add_argument("--path", default="lanes", help="closecall's path model")
     options = parser.parse_args()
     low = 0
@@ -104,7 +103,7 @@ def main() -> int:
             )
             low += right + false >= 20 and precision < options.at_least
             low += right + missed >= 20 and recall < options.at_least
-        print(f"{scenario.stem:<12} left aside: {dict(tally.aside)}", flush=True)
+        print(f"{scenario.stem:<12} excluded: {dict(tally.excluded)}", flush=True)
         for time, what, truth, row in tally.wrong[: options.show]:
             print(f"  {time:.1f} s {what}: truth {truth}, closecall {row}")
     return 1 if low else 0

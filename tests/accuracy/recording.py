@@ -1,4 +1,4 @@
-"""What really happened: every road user's states at full precision, from libsumo, in a process of its own."""
+"""Every road user's states in a run, at full precision, from libsumo in a process of its own."""
 
 from __future__ import annotations
 
@@ -14,10 +14,13 @@ from numpy.typing import NDArray
 
 Numbers = NDArray[np.float64]
 
+INVALID = -(2.0**30)
+"""A road user whose x is at or below this, in m, has no valid position."""
+
 
 @dataclass
-class Kind:
-    """A type: dimensions in m, deceleration in m/s², response in s (t1 + t2)."""
+class Profile:
+    """A vehicle type: dimensions in m, deceleration in m/s², response (t1 + t2) and build-up (t3) in s."""
 
     length: float
     width: float
@@ -29,9 +32,9 @@ class Kind:
 
 @dataclass
 class Track:
-    """One road user: its states in consecutive steps, as columns, and whether it left before the recording ended."""
+    """A road user's states in consecutive steps from `first` on, and whether it left before the recording ended."""
 
-    kind: Kind
+    profile: Profile
     first: int
     x: Numbers
     y: Numbers
@@ -42,7 +45,7 @@ class Track:
 
 @dataclass
 class Recording:
-    """A run: the time of step k is `begin + k * step`, in SUMO's own outputs' terms."""
+    """A run: step k has the time `begin + k * step`, as in SUMO's outputs."""
 
     begin: float
     step: float
@@ -51,7 +54,7 @@ class Recording:
 
 
 def record(words: list[str]) -> Recording:
-    """Run SUMO with these words in another process and record it."""
+    """Record a run of SUMO with these command-line words, in another process."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "recording.pickle"
         subprocess.run([sys.executable, __file__, str(file), *words], stdout=subprocess.DEVNULL, check=True)
@@ -61,52 +64,52 @@ def record(words: list[str]) -> Recording:
 
 
 def run(words: list[str]) -> Recording:
-    """Run SUMO in this process."""
+    """Record a run of SUMO in this process."""
     import libsumo
 
     libsumo.start(["sumo", *words, "--no-warnings", "--no-step-log"])
     simulation, vehicle, person = libsumo.simulation, libsumo.vehicle, libsumo.person
     step, begin, end = simulation.getDeltaT(), simulation.getTime(), simulation.getEndTime()
     rows: dict[str, list[tuple[int, float, float, float, float]]] = {}
-    kinds: dict[str, Kind] = {}
+    profiles: dict[str, Profile] = {}
     count = 0
     while simulation.getMinExpectedNumber() > 0 and (end < 0 or simulation.getTime() < end):
         libsumo.simulationStep()
         for domain, is_person in ((vehicle, False), (person, True)):
-            for who in domain.getIDList():
-                if (is_person and domain.getVehicle(who)) or (not is_person and domain.isStoppedParking(who)):
+            for user in domain.getIDList():
+                if domain.getVehicle(user) if is_person else domain.isStoppedParking(user):
                     continue
-                x, y = domain.getPosition(who)
-                if x <= -(2**30):
+                x, y = domain.getPosition(user)
+                if x <= INVALID:
                     continue
-                if who not in kinds:
-                    kinds[who] = kind_of(libsumo, domain.getTypeID(who), is_person, step)
-                heading = np.radians(90.0 - domain.getAngle(who))
-                rows.setdefault(who, []).append((count, x, y, heading, domain.getSpeed(who)))
+                if user not in profiles:
+                    profiles[user] = profile(libsumo, domain.getTypeID(user), is_person, step)
+                heading = np.radians(90.0 - domain.getAngle(user))
+                rows.setdefault(user, []).append((count, x, y, heading, domain.getSpeed(user)))
         count += 1
     libsumo.close()
-    tracks = {who: split(np.array(states), kinds[who], step, count) for who, states in rows.items()}
+    tracks = {user: split(np.array(states), profiles[user], step, count) for user, states in rows.items()}
     return Recording(begin, step, count, tracks)
 
 
-def kind_of(libsumo: object, name: str, person: bool, step: float) -> Kind:
-    """A type by the defaults: t1 0.8 s, t2 0.25 or (air brakes) 0.35 s, t3 0.1 s; persons stop in a step."""
+def profile(libsumo: object, name: str, person: bool, step: float) -> Profile:
+    """A type with closecall's defaults: t1 + t2 is 1.05 s, or 1.15 s with air brakes; a person stops within a step."""
     types = libsumo.vehicletype  # type: ignore[attr-defined]
     length, width = types.getLength(name), types.getWidth(name)
     if person:
-        return Kind(length, width, 1e3, step, 0.0, True)
+        return Profile(length, width, 1e3, step, 0.0, True)
     air = types.getVehicleClass(name) in ("truck", "trailer", "bus", "coach")
-    return Kind(length, width, types.getEmergencyDecel(name), 0.8 + (0.35 if air else 0.25), 0.1, False)
+    return Profile(length, width, types.getEmergencyDecel(name), 0.8 + (0.35 if air else 0.25), 0.1, False)
 
 
-def split(states: Numbers, kind: Kind, step: float, steps: int) -> list[Track]:
-    """Tracks without a gap or a jump: a teleport or a leap ends one and begins another."""
+def split(states: Numbers, profile: Profile, step: float, steps: int) -> list[Track]:
+    """Split a road user's states into tracks at each missing step and each jump, such as a teleport."""
     index, x, y, _, speed = states.T
     far = np.hypot(np.diff(x), np.diff(y)) > np.maximum(speed[1:], speed[:-1]) * step * 1.5 + 5.0
     cuts = np.flatnonzero((np.diff(index) > 1) | far) + 1
     pieces = np.split(states, cuts)
     return [
-        Track(kind, int(piece[0, 0]), *piece.T[1:].copy(), left=piece is pieces[-1] and piece[-1, 0] < steps - 1)
+        Track(profile, int(piece[0, 0]), *piece.T[1:].copy(), left=piece is pieces[-1] and piece[-1, 0] < steps - 1)
         for piece in pieces
     ]
 

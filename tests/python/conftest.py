@@ -1,8 +1,9 @@
-"""What the tests of the command and the Python module share."""
+"""Helpers and fixtures shared by the tests of the command and the Python module."""
 
 from __future__ import annotations
 
 import csv
+import fcntl
 import os
 import shutil
 import signal
@@ -20,34 +21,37 @@ NETS = Path(__file__).parents[2] / "sumo_nets"
 
 Row = dict[str, str]
 
-# A shell that starts the tests in the background has them ignore Ctrl-C, and so would all that they start.
+TIMEOUT = 300
+"""In s: after it a process that a test waits for is taken to hang, even on a machine that is busy with other work."""
+
+# Tests started in the background by a shell ignore Ctrl-C, and so would every process that they start.
 signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def forbid_skip(report: Any) -> None:
-    """Where nothing may be skipped, a skip is a failure."""
+    """With CLOSECALL_SKIP_NOTHING set, turn a skip into a failure."""
     if report.skipped and os.environ.get("CLOSECALL_SKIP_NOTHING"):
         report.outcome = "failed"
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item: Any, call: Any) -> Any:
-    """Of a test."""
+    """A skipped test."""
     outcome = yield
     forbid_skip(outcome.get_result())
 
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_make_collect_report(collector: Any) -> Any:
-    """Of a whole file."""
+    """A skipped file."""
     outcome = yield
     forbid_skip(outcome.get_result())
 
 
 def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run the command and return what it said."""
+    """Run the command to its end, with its output captured."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, **options)
+    return subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False, **options)
 
 
 def python(script: str, *words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
@@ -55,25 +59,27 @@ def python(script: str, *words: str | Path, **options: Any) -> subprocess.Comple
     command = [sys.executable, "-c", script, *map(str, words)]
     beside = {"PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}
     environment = {**os.environ, **beside}
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False, env=environment, **options)
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=TIMEOUT, check=False, env=environment, **options
+    )
 
 
 def begin(*words: str | Path) -> subprocess.Popen[str]:
-    """The command, which goes on, in a session of its own as in another terminal."""
+    """Start the command in a session of its own, as from another terminal, and do not wait for it."""
     command = [sys.executable, "-m", "closecall", *map(str, words)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
 
 
-def until(is_so: Callable[[], object], seconds: float = 60) -> None:
-    """Wait until something is so."""
+def until(condition: Callable[[], object], seconds: float = 60) -> None:
+    """Wait until the condition holds."""
     end = time.monotonic() + seconds
-    while not is_so():
+    while not condition():
         assert time.monotonic() < end
         time.sleep(0.02)
 
 
 def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None:
-    """Until so many rows are on disk."""
+    """Wait until the log has `count` lines on disk."""
     end = time.monotonic() + 60
     while not log.exists() or log.read_bytes().count(b"\n") < count:
         assert process.poll() is None
@@ -82,7 +88,7 @@ def wait_for_rows(log: Path, process: subprocess.Popen[str], count: int) -> None
 
 
 def is_alive(process: psutil.Process) -> bool:
-    """Whether a process runs."""
+    """Whether a process is running."""
     try:
         return bool(process.status() != psutil.STATUS_ZOMBIE)
     except psutil.NoSuchProcess:
@@ -106,9 +112,32 @@ def parked(stops: Path) -> Callable[[str, float], bool]:
     return lambda name, time: any(begin - 1e-6 <= time < end - 1e-6 for begin, end in spans.get(name, []))
 
 
+Once = Callable[[str, Callable[[Path], None]], Path]
+
+
+@pytest.fixture(scope="session")
+def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
+    """Fills a folder once for all workers of pytest-xdist: the first that needs it fills it, the others wait."""
+    own = tmp_path_factory.getbasetemp()
+    base = own.parent if "PYTEST_XDIST_WORKER" in os.environ else own
+
+    def make(name: str, fill: Callable[[Path], None]) -> Path:
+        folder, complete = base / name, base / f"{name}.complete"
+        with (base / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not complete.exists():
+                shutil.rmtree(folder, ignore_errors=True)
+                folder.mkdir()
+                fill(folder)
+                complete.touch()
+        return folder
+
+    return make
+
+
 @pytest.fixture
 def scenario(tmp_path: Path) -> Callable[[str], Path]:
-    """A copy of a scenario in sumo_nets, to be changed at will: the path of its configuration."""
+    """Copies a scenario of sumo_nets, which the test may change, and returns the path of its configuration."""
 
     def copy(name: str) -> Path:
         folder = tmp_path / name

@@ -1,4 +1,4 @@
-"""Bad input gets one clear line that names the file and what is wrong, exit status 2, and nothing half-written."""
+"""Bad input ends with exit status 2, one line that names the file and the fault, and no half-written output."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ Copy = Callable[[str], Path]
 
 
 def refused(config: Path, *words: str, names: str) -> None:
-    """Run it and expect a refusal."""
+    """Run the configuration and expect that closecall refuses it."""
     done = closecall("run", config, *words)
     assert done.returncode == 2, (done.returncode, done.stderr)
     assert done.stdout == ""
@@ -26,22 +26,22 @@ def refused(config: Path, *words: str, names: str) -> None:
 
 
 def change(path: Path, pattern: str, to: str) -> None:
-    """Replace something in a file that must be there."""
+    """Replace the first match of a pattern, which the file must contain."""
     text = path.read_text()
     changed = re.sub(pattern, to, text, count=1)
     assert changed != text
     path.write_text(changed)
 
 
-def test_a_missing_configuration(tmp_path: Path) -> None:
+def test_a_missing_configuration_is_refused(tmp_path: Path) -> None:
     refused(tmp_path / "none.sumocfg", names=r"none\.sumocfg: No such file")
 
 
-def test_a_misspelt_option_is_told_the_one_that_was_meant(scenario: Copy) -> None:
+def test_a_misspelt_option_gets_a_suggestion(scenario: Copy) -> None:
     refused(scenario("rear_end"), "--modus", "paper", names="'--modus' found; tip: a similar .* exists: '--mode'; tip:")
 
 
-def test_results_that_cannot_be_printed(scenario: Copy) -> None:
+def test_a_full_output_is_reported_and_a_closed_pipe_accepted(scenario: Copy) -> None:
     config = scenario("rear_end")
     for words in (("mu", "--speed", "30", "--foe-speed", "25"), ("run", config), ("stats", config.parent)):
         command = [sys.executable, "-m", "closecall", *map(str, words)]
@@ -55,49 +55,49 @@ def test_results_that_cannot_be_printed(scenario: Copy) -> None:
             assert (process.stderr.read(), process.wait(60)) == ("", 0)
 
 
-def test_a_malformed_configuration(scenario: Copy) -> None:
+def test_a_malformed_configuration_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     config.write_text("<configuration><input>")
     refused(config, names=r"rear_end\.sumocfg")
 
 
-def test_a_mesoscopic_simulation(scenario: Copy) -> None:
+def test_a_mesoscopic_simulation_is_refused(scenario: Copy) -> None:
     refused(scenario("rear_end"), "--", "--mesosim", names=r"rear_end\.sumocfg: mesosim: .* needs the microscopic one")
 
 
-def test_a_missing_net(scenario: Copy) -> None:
+def test_a_missing_net_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     (config.parent / "rear_end.net.xml").unlink()
     refused(config, names=r"rear_end\.net\.xml")
 
 
-def test_a_malformed_net(scenario: Copy) -> None:
+def test_a_malformed_net_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     net = config.parent / "rear_end.net.xml"
     net.write_text(net.read_text()[:-200])
     refused(config, names=r"rear_end\.net\.xml")
 
 
-def test_a_net_without_geometry(scenario: Copy) -> None:
+def test_a_net_without_geometry_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     change(config.parent / "rear_end.net.xml", r'(<lane id="road_0"[^>]*shape=)"[^"]*"', r'\1""')
     refused(config, names=r"road_0")
 
 
-def test_a_missing_route_file(scenario: Copy) -> None:
+def test_a_missing_route_file_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     (config.parent / "rear_end.rou.xml").unlink()
     refused(config, names=r"rear_end\.rou\.xml")
 
 
-def test_a_route_file_that_is_malformed_at_its_end(scenario: Copy) -> None:
+def test_a_route_file_malformed_at_its_end_is_refused(scenario: Copy) -> None:
     config = scenario("rear_end")
     routes = config.parent / "rear_end.rou.xml"
     routes.write_text(routes.read_text().replace("</routes>", "<vehicle>\n</routes>"))
     refused(config, names=r"rear_end\.rou\.xml")
 
 
-def test_an_empty_scenario(scenario: Copy) -> None:
+def test_an_empty_scenario_is_refused_and_leaves_outputs_alone(scenario: Copy) -> None:
     config = scenario("rear_end")
     (config.parent / "rear_end.rou.xml").write_text("<routes/>\n")
     refused(config, names=r"rear_end\.sumocfg: the scenario is empty")
@@ -106,11 +106,11 @@ def test_an_empty_scenario(scenario: Copy) -> None:
     for output in (file, device):
         assert closecall("run", config, "--ssm-output", output).returncode == 2
     assert not file.exists()
-    assert device.is_symlink(), "an output that is no file was taken away"
+    assert device.is_symlink(), "closecall removed an output that is not a regular file"
 
 
 @pytest.mark.parametrize(("name", "value"), [("length", "-5"), ("width", "nan"), ("emergencyDecel", "0")])
-def test_impossible_dimensions(name: str, value: str, scenario: Copy) -> None:
+def test_impossible_dimensions_are_refused(name: str, value: str, scenario: Copy) -> None:
     config = scenario("rear_end")
     routes = config.parent / "rear_end.rou.xml"
     text = re.sub(rf' {name}="[^"]*"', "", routes.read_text())
@@ -119,18 +119,18 @@ def test_impossible_dimensions(name: str, value: str, scenario: Copy) -> None:
 
 
 @pytest.mark.parametrize(("option", "value"), [("--mu", "big"), ("--epsilon", "-1"), ("--step-length", "0")])
-def test_an_impossible_option(option: str, value: str, scenario: Copy) -> None:
+def test_an_impossible_option_is_refused(option: str, value: str, scenario: Copy) -> None:
     refused(scenario("rear_end"), option, value, names=option)
 
 
-def test_an_output_folder_that_cannot_be_written(scenario: Copy, tmp_path: Path) -> None:
+def test_an_output_folder_that_cannot_be_written_is_refused(scenario: Copy, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     refused(scenario("rear_end"), "--out", str(tmp_path / "file" / "out"), names="file/out")
 
 
-def test_a_disk_that_is_full(scenario: Copy, tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_and_no_row_is_cut(scenario: Copy, tmp_path: Path) -> None:
     def limit() -> None:
-        # To the program the same as a full disk: a write beyond this fails.
+        # A write beyond this size fails, as it does on a full disk.
         resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 
     done = closecall("run", scenario("reckless"), "--out", tmp_path, "--", "--no-warnings", preexec_fn=limit)
@@ -141,7 +141,7 @@ def test_a_disk_that_is_full(scenario: Copy, tmp_path: Path) -> None:
     assert len({line.count(",") for line in written.splitlines()}) == 1
 
 
-def test_libsumo_that_is_not_installed(scenario: Copy) -> None:
+def test_a_missing_libsumo_is_named_with_its_remedy(scenario: Copy) -> None:
     script = """
 import sys
 sys.modules["libsumo"] = None
@@ -154,10 +154,10 @@ sys.exit(main())
     assert "pip install libsumo" in done.stderr
 
 
-def test_sumo_that_fails_in_mid_run(scenario: Copy, tmp_path: Path) -> None:
+def test_a_failure_of_sumo_during_a_run_keeps_the_log(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     routes = config.parent / "rear_end.rou.xml"
-    # SUMO finds out that there is no such lane when the vehicle is to depart.
+    # SUMO notices the missing lane only when the vehicle departs.
     late = '<vehicle id="late" depart="10" departLane="7"><route edges="road"/></vehicle>\n</routes>'
     text = re.sub(r"</routes>", late, routes.read_text())
     routes.write_text(text)

@@ -1,4 +1,4 @@
-"""The step listener, with libsumo, with traci and with plain frames."""
+"""The checker as a step listener of libsumo and traci, and with plain frames."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ print(json.dumps(summary), file=sys.stderr)
 
 
 def listen(module: str, config: Path) -> list[list[Any]]:
-    """The conflicts that a listener finds."""
+    """The conflicts that a step listener finds."""
     done = python(LISTEN.replace("{module}", module), config)
     assert done.returncode == 0, done.stderr
     found: list[list[Any]] = json.loads(done.stdout.splitlines()[-1])
     return found
 
 
-def test_a_listener_finds_with_libsumo_and_traci_what_the_command_finds(scenario: Copy, tmp_path: Path) -> None:
+def test_a_listener_finds_what_the_command_finds(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("reckless")
     with_libsumo, with_traci = listen("libsumo", config), listen("traci", config)
     assert len(with_libsumo) > 10
@@ -59,7 +59,7 @@ except RuntimeError as error:
 
 
 @pytest.mark.parametrize("module", ["libsumo", "traci"])
-def test_a_simulation_has_to_be_started_first(module: str) -> None:
+def test_a_checker_needs_a_started_simulation(module: str) -> None:
     done = python(NOT_STARTED.replace("{module}", module))
     assert "is a simulation started?" in done.stdout, (done.stdout, done.stderr)
 
@@ -78,7 +78,7 @@ sumo.close()
 
 
 @pytest.mark.parametrize("module", ["libsumo", "traci"])
-def test_a_checkers_log_is_as_good_as_the_commands(module: str, scenario: Copy, tmp_path: Path) -> None:
+def test_a_checkers_log_equals_the_commands(module: str, scenario: Copy, tmp_path: Path) -> None:
     config, own, ran = scenario("reckless"), tmp_path / "own", tmp_path / "ran"
     done = python(LOGGED.replace("{module}", module), config, own)
     assert done.returncode == 0, done.stderr
@@ -89,13 +89,15 @@ def test_a_checkers_log_is_as_good_as_the_commands(module: str, scenario: Copy, 
         assert one[key] == other[key], key
     for key in ("begin", "end", "steps", "conflicts", "collisions"):
         assert one["summary"][key] == other["summary"][key], key
-    # A sum over road users in another order.
+    # The sums run over the road users in different orders.
     assert one["summary"]["exposure"] == pytest.approx(other["summary"]["exposure"], rel=1e-12)
     assert one["complete"]
     done = closecall("stats", own, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
     worst = json.loads(done.stdout)["worst"]
-    assert worst and all(conflict["command"] is None for conflict in worst), "nobody knows the script's words for SUMO"
+    assert worst and all(conflict["command"] is None for conflict in worst), (
+        "SUMO's options are the script's, unknown to closecall"
+    )
     assert closecall("report", own, "-o", tmp_path / "report.html").returncode == 0
 
 
@@ -113,7 +115,7 @@ sumo.close()
 
 
 @pytest.mark.parametrize("module", ["libsumo", "traci"])
-def test_a_mesoscopic_simulation_is_refused_before_there_is_a_log(module: str, scenario: Copy, tmp_path: Path) -> None:
+def test_a_mesoscopic_simulation_is_refused_without_a_log(module: str, scenario: Copy, tmp_path: Path) -> None:
     done = python(MESOSCOPIC.replace("{module}", module), scenario("rear_end"), tmp_path / "out")
     assert "needs the microscopic one" in done.stdout, (done.stdout, done.stderr)
     assert not (tmp_path / "out").exists()
@@ -138,7 +140,7 @@ assert first == second and len(first) > 5, (first, second)
 
 
 @pytest.mark.parametrize("end", ["checkers[-1].close()", "pass"])
-def test_simulations_one_after_the_other_have_a_checker_each(scenario: Copy, end: str) -> None:
+def test_each_of_consecutive_simulations_has_its_own_checker(scenario: Copy, end: str) -> None:
     done = python(AGAIN.replace("{end}", end), scenario("reckless"))
     assert done.returncode == 0, done.stderr
 
@@ -161,7 +163,7 @@ sumo.close()
 """
 
 
-def test_a_vehicle_that_the_script_takes_away_leaves_the_scene(scenario: Copy) -> None:
+def test_a_vehicle_removed_by_the_script_leaves_the_scene(scenario: Copy) -> None:
     config = scenario("left_turn")
     with_libsumo, with_traci = (python(REMOVE.replace("{module}", module), config) for module in ("libsumo", "traci"))
     assert (with_libsumo.returncode, with_traci.returncode) == (0, 0), with_libsumo.stderr + with_traci.stderr
@@ -201,13 +203,13 @@ print(after["vehicles"] - before["vehicles"] - departed, after["vehicle_kilometr
 
 
 @pytest.mark.parametrize("module", ["libsumo", "traci"])
-def test_another_vehicle_with_the_id_of_one_that_left_is_another_road_user(module: str, scenario: Copy) -> None:
+def test_a_reused_id_is_a_new_road_user(module: str, scenario: Copy) -> None:
     done = python(ANOTHER.replace("{module}", module), scenario("curves"))
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[-1] == "0 True"
 
 
-def test_in_plain_frames_time_does_not_go_back() -> None:
+def test_plain_frames_refuse_a_time_that_goes_back() -> None:
     checker = cc.Checker()
     checker.step(1.0, {**CAR, "x": [0.0, 20.0]})
     with pytest.raises(ValueError, match=r"time is 0\.5, after 1"):
@@ -232,7 +234,7 @@ def test_plain_frames_give_one_conflict_per_pair_and_episode() -> None:
         checker.step(9.9, {**CAR, "x": [0.0, 40.0]})
 
 
-def test_a_row_that_is_not_finite_is_no_road_user() -> None:
+def test_a_row_that_is_not_finite_is_ignored() -> None:
     checker = cc.Checker()
     checker.step(0.0, {**CAR, "x": [0.0, np.nan]})
     assert checker.conflicts == []
@@ -258,12 +260,12 @@ def test_an_unknown_option_is_named() -> None:
             cc.Checker(colour=value)
 
 
-def test_a_net_that_is_missing_is_a_file_that_is_not_found(tmp_path: Path) -> None:
+def test_a_missing_net_raises_file_not_found(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError):
         cc.Checker(net=tmp_path / "none.net.xml")
 
 
-def test_a_script_that_fails_leaves_a_log_that_says_so(tmp_path: Path) -> None:
+def test_a_failed_scripts_log_records_the_error(tmp_path: Path) -> None:
     with pytest.raises(ZeroDivisionError), cc.Checker(out=tmp_path) as checker:
         checker.step(1 / 2, {**CAR, "x": [0.0, 20.0]})
         checker.step(1 / 0, {**CAR, "x": [0.0, 20.0]})

@@ -1,27 +1,21 @@
-"""TTC against commonroad-crime's, on what the leader and the follower of `rear_end` really drove."""
+"""TTC against commonroad-crime's, on the trajectories that leader and follower of `rear_end` drove."""
 
 from __future__ import annotations
 
+import importlib.util
 import math
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from conftest import NETS, closecall, rows
 
-pytest.importorskip("commonroad_crime", reason="there is no wheel of commonroad-crime for this Python")
-
-import numpy as np
-from commonroad.geometry.shape import Rectangle
-from commonroad.prediction.prediction import TrajectoryPrediction
-from commonroad.scenario.lanelet import Lanelet
-from commonroad.scenario.obstacle import DynamicObstacle, ObstacleType
-from commonroad.scenario.scenario import Scenario
-from commonroad.scenario.state import CustomState, InitialState
-from commonroad.scenario.trajectory import Trajectory
-from commonroad_crime.data_structure.configuration import CriMeConfiguration
-from commonroad_crime.measure import TTC
+# commonroad is imported inside the functions: its 6 s would else delay every worker that collects this file.
+pytestmark = pytest.mark.skipif(
+    importlib.util.find_spec("commonroad_crime") is None, reason="commonroad-crime has no wheel for this Python"
+)
 
 LENGTH, WIDTH = 5.0, 1.8
 STEP = 0.1
@@ -29,7 +23,12 @@ EGO, FOE, LANELET = 10, 11, 1
 
 
 def car(number: int, front: float, speed: float) -> Any:
-    """A car on the x axis that keeps its speed, as TTC assumes: commonroad-crime would count its acceleration."""
+    """A car on the x axis that keeps its speed, as TTC assumes; commonroad-crime would extrapolate its acceleration."""
+    from commonroad.geometry.shape import Rectangle
+    from commonroad.prediction.prediction import TrajectoryPrediction
+    from commonroad.scenario.obstacle import DynamicObstacle, ObstacleType
+    from commonroad.scenario.state import CustomState, InitialState
+    from commonroad.scenario.trajectory import Trajectory
 
     def state(step: int) -> dict[str, Any]:
         place = np.array([front - LENGTH / 2 + speed * STEP * step, 0.0])
@@ -46,7 +45,12 @@ def car(number: int, front: float, speed: float) -> Any:
 
 
 def their_ttc(ego: tuple[float, float], foe: tuple[float, float]) -> float:
-    """commonroad-crime's TTC of two cars, from the places of their fronts and their speeds."""
+    """commonroad-crime's TTC of two cars, each given by its front position and its speed."""
+    from commonroad.scenario.lanelet import Lanelet
+    from commonroad.scenario.scenario import Scenario
+    from commonroad_crime.data_structure.configuration import CriMeConfiguration
+    from commonroad_crime.measure import TTC
+
     scenario = Scenario(STEP)
     line = np.linspace(-100.0, 1000.0, 200)
     right, centre, left = (np.column_stack([line, np.full_like(line, y)]) for y in (-1.6, 0.0, 1.6))
@@ -57,7 +61,7 @@ def their_ttc(ego: tuple[float, float], foe: tuple[float, float]) -> float:
     return float(TTC(configuration).compute(FOE, 0, verbose=False))
 
 
-def test_ttc_of_a_follower_is_that_of_commonroad_crime(tmp_path: Path) -> None:
+def test_a_followers_ttc_equals_commonroad_crimes(tmp_path: Path) -> None:
     fcd = tmp_path / "fcd.xml"
     words = ("--log-encounters", "--", "--no-warnings", "--fcd-output", fcd, "--precision", "6")
     done = closecall("run", NETS / "rear_end" / "rear_end.sumocfg", "--out", tmp_path, *words)
@@ -71,5 +75,5 @@ def test_ttc_of_a_follower_is_that_of_commonroad_crime(tmp_path: Path) -> None:
     assert len(compared) > 10
     for row in compared:
         ego, foe = (driven[float(row["time"]), row[name]] for name in ("ego", "foe"))
-        # Theirs is rounded, and measured on a polyline.
+        # commonroad-crime measures along a polyline and rounds.
         assert math.isclose(their_ttc(ego, foe), float(row["ttc"]), abs_tol=0.01), row

@@ -1,4 +1,4 @@
-"""Contact and distance of rectangles, against shapely."""
+"""Contact and distance of rectangles, against shapely and rational arithmetic."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def rectangles(count: int, seed: int) -> Rows:
 
 
 def polygons(rows: Rows) -> NDArray[np.object_]:
-    """The same as shapely's polygons."""
+    """The same rectangles as shapely polygons."""
     x, y, heading, length, width = rows.T
     along = np.stack([np.cos(heading), np.sin(heading)], -1) * (length / 2)[:, None]
     across = np.stack([-np.sin(heading), np.cos(heading)], -1) * (width / 2)[:, None]
@@ -33,7 +33,7 @@ def polygons(rows: Rows) -> NDArray[np.object_]:
     return shapes
 
 
-def test_contact_and_distance_are_those_of_shapely() -> None:
+def test_contact_and_distance_equal_shapelys() -> None:
     a, b = rectangles(100_000, 1), rectangles(100_000, 2)
     ours = geometry.distance(a, b)
     theirs = shapely.distance(polygons(a), polygons(b))
@@ -44,7 +44,7 @@ def test_contact_and_distance_are_those_of_shapely() -> None:
     assert 0.05 < overlap.mean() < 0.95
 
 
-def test_touching_counts() -> None:
+def test_touching_counts_as_contact() -> None:
     first = [[0.0, 0.0, 0.0, 4.0, 2.0]]
     assert geometry.touches(first, [[4.0, 0.0, 0.0, 4.0, 2.0]]).tolist() == [True]
     assert geometry.touches(first, [[4.0 + 1e-12, 0.0, 0.0, 4.0, 2.0]]).tolist() == [False]
@@ -54,7 +54,7 @@ Row = list[float]
 
 
 def exactly_touch(a: Row, b: Row) -> bool:
-    """The definition in rational arithmetic, for the corners that follow from the f64 cosine and sine."""
+    """The definition of contact in rational arithmetic, for the corners given by the f64 cosine and sine."""
     first, second = (
         [Fraction(value) for value in (x, y, math.cos(h), math.sin(h), *size)] for x, y, h, *size in (a, b)
     )
@@ -70,7 +70,7 @@ def exactly_touch(a: Row, b: Row) -> bool:
     return True
 
 
-def test_contact_is_decided_as_in_rational_arithmetic() -> None:
+def test_contact_agrees_with_rational_arithmetic() -> None:
     chance = random.Random(3)
     pairs: list[tuple[Row, Row]] = []
     for _ in range(4000):
@@ -78,9 +78,9 @@ def test_contact_is_decided_as_in_rational_arithmetic() -> None:
         first = [chance.uniform(-9, 9), chance.uniform(-9, 9), heading, chance.uniform(0, 9), chance.uniform(0, 3)]
         turn = chance.choice([0.0, 1e-16, math.pi / 2, chance.uniform(-4, 4)])
         length = chance.choice([0.001, 4.0, 100.0])
-        # One behind the other and touching, but for some units in the last place.
-        way = first[3] / 2 + length / 2 * abs(math.cos(turn)) + abs(math.sin(turn))
-        x, y = first[0] + math.cos(heading) * way, first[1] + math.sin(heading) * way
+        # One rectangle behind the other, touching to within a few units in the last place.
+        offset = first[3] / 2 + length / 2 * abs(math.cos(turn)) + abs(math.sin(turn))
+        x, y = first[0] + math.cos(heading) * offset, first[1] + math.sin(heading) * offset
         nudged = x * (1 + chance.randint(-3, 3) * 2**-52)
         pairs.append((first, [nudged, y, heading + turn, length, 2.0]))
     found = geometry.touches([a for a, _ in pairs], [b for _, b in pairs])
@@ -89,7 +89,7 @@ def test_contact_is_decided_as_in_rational_arithmetic() -> None:
     assert 0.2 < sum(wanted) / len(wanted) < 0.9
 
 
-def test_rows_that_are_no_rectangles_are_refused() -> None:
+def test_rows_that_are_not_rectangles_are_refused() -> None:
     good = [[0.0, 0.0, 0.0, 4.0, 2.0]]
     with pytest.raises(ValueError, match="row 0"):
         geometry.touches(good, [[0.0, np.nan, 0.0, 4.0, 2.0]])

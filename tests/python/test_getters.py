@@ -1,5 +1,7 @@
-"""States through libsumo's C++ functions, or through those behind them: the same as through its Python getters, which
-are asked where those cannot be called or say something else."""
+"""States read through libsumo's C++ interface, through the functions below it, or through its Python getters are equal.
+
+closecall falls back to the Python getters where the C++ functions cannot be called or disagree with them.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +21,8 @@ from conftest import NETS, python
 
 CHECK = """
 import collections, json, sys
-import libsumo
+from closecall import _sumo
+libsumo = _sumo.import_libsumo()
 from libsumo import _libsumo
 import closecall
 
@@ -67,16 +70,16 @@ libsumo.close()
 seen = {"steps": steps, "teleports": teleports, "rides": rides}
 print(json.dumps({"calls": asked, "entered": entered, "taken": taken, **seen}))
 """
-"""Counts how often Python's getters are asked for an angle. `turned`: they say another than C++; `nowhere`: the module
-is not where it says; `unknown`: it is of a SUMO of which only libsumo's interface is known. In the end a vehicle is
-taken away, whose id is then unknown, and the simulation begins anew."""
+"""Counts calls of Python's getter of the angle. `turned`: it returns another angle than C++. `nowhere`: the module is
+not at the path that it states. `unknown`: the module is of a SUMO version of which closecall knows only libsumo's
+interface. At the end the script removes a vehicle, whose id is then unknown, and loads the simulation again."""
 
 SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 20)]
-"""With levels, with persons who walk, with persons who wait for a bus and ride in it, with all kinds of vehicles."""
+"""Scenes with roads on two levels, with pedestrians, with bus passengers, and with all kinds of vehicles."""
 
 
 def checked(scene: str, end: int, out: Path, change: str = "none", *more: str) -> dict[str, Any]:
-    """Check a scene, with more options for SUMO, and tell who was asked."""
+    """Check a scene, with more options for SUMO, and return the counts that the script prints."""
     done = python(CHECK, NETS / scene / f"{scene}.sumocfg", out, str(end), change, *more)
     assert done.returncode == 0, done.stderr
     asked: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
@@ -92,7 +95,7 @@ needs_compiled = pytest.mark.skipif(
     not sys.platform.startswith("linux") or shutil.which("c++") is None,
     reason="libsumo's C++ functions are called on Linux only, where closecall was built with a C++ compiler",
 )
-# The system's to install; .ci/run does.
+# A package of the system, which .ci/run installs.
 needs_valgrind = pytest.mark.skipif(
     shutil.which("valgrind") is None, reason="valgrind is not installed: apt install valgrind"
 )
@@ -100,7 +103,7 @@ needs_valgrind = pytest.mark.skipif(
 
 @needs_compiled
 @pytest.mark.parametrize(("scene", "end"), SCENES)
-def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) -> None:
+def test_every_interface_of_libsumo_gives_the_same_states(scene: str, end: int, tmp_path: Path) -> None:
     compiled = checked(scene, end, tmp_path / "compiled")
     of_unknown = checked(scene, end, tmp_path / "unknown", "unknown")
     through_python = checked(scene, end, tmp_path / "python", "nowhere")
@@ -114,7 +117,7 @@ def test_both_ways_give_the_same_states(scene: str, end: int, tmp_path: Path) ->
         assert through_python["calls"][domain] > asked
 
 
-def test_who_teleports_is_nobody_meanwhile_however_libsumo_is_asked(tmp_path: Path) -> None:
+def test_a_teleporting_vehicle_is_absent_through_every_interface(tmp_path: Path) -> None:
     for change in ("none", "unknown", "nowhere"):
         counted = checked("signals", 120, tmp_path / change, change, "--time-to-teleport", "2")
         assert counted["teleports"] > 0
@@ -122,7 +125,7 @@ def test_who_teleports_is_nobody_meanwhile_however_libsumo_is_asked(tmp_path: Pa
 
 
 @needs_compiled
-def test_a_sumo_that_is_said_to_be_known_has_the_functions_that_need_one_look_up() -> None:
+def test_a_known_sumo_exports_the_functions_called_directly() -> None:
     sources = Path(__file__).parents[2] / "bridge/src/pull"
     (known,) = re.findall(r'const KNOWN: &str = "(.*)";', (sources / "compiled.rs").read_text())
     names = re.findall(r'find\(direct\.\w+, "(\w+)"\)', (sources / "compiled.cpp").read_text())
@@ -134,14 +137,14 @@ def test_a_sumo_that_is_said_to_be_known_has_the_functions_that_need_one_look_up
 
 
 @needs_compiled
-def test_where_the_two_ways_differ_python_is_asked(tmp_path: Path) -> None:
+def test_python_getters_decide_where_compiled_ones_disagree(tmp_path: Path) -> None:
     turned = checked("pedestrian", 60, tmp_path / "turned", "turned")
     assert turned["calls"]["vehicle"] >= turned["steps"]["vehicle"] > 0
     checked("pedestrian", 60, tmp_path / "same")
     assert logged(tmp_path / "turned") != logged(tmp_path / "same")
 
 
-def test_an_id_that_libsumo_does_not_know_any_more_leaves_the_scene_however_it_is_asked(tmp_path: Path) -> None:
+def test_a_removed_vehicle_is_absent_through_every_interface(tmp_path: Path) -> None:
     for change in ("none", "unknown", "nowhere"):
         assert checked("reckless", 30, tmp_path / change, change)["taken"]
     assert logged(tmp_path / "none") == logged(tmp_path / "unknown") == logged(tmp_path / "nowhere")
@@ -149,7 +152,7 @@ def test_an_id_that_libsumo_does_not_know_any_more_leaves_the_scene_however_it_i
 
 @needs_compiled
 @needs_valgrind
-def test_valgrind_finds_no_fault_in_a_call_of_the_compiled_functions(tmp_path: Path) -> None:
+def test_valgrind_finds_no_fault_in_compiled_calls(tmp_path: Path) -> None:
     said = under_valgrind(tmp_path, "-c", CHECK, NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none")
     asked = json.loads(said.splitlines()[-1])
     assert asked["taken"]
@@ -159,22 +162,20 @@ def test_valgrind_finds_no_fault_in_a_call_of_the_compiled_functions(tmp_path: P
 @needs_compiled
 @needs_valgrind
 @pytest.mark.parametrize(("scene", "end", "left"), [("signals", "60", 5), ("town", "20", 1)])
-def test_valgrind_finds_no_fault_where_road_users_are_found_where_they_were(
-    scene: str, end: str, left: int, tmp_path: Path
-) -> None:
+def test_valgrind_finds_no_fault_in_reused_road_users(scene: str, end: str, left: int, tmp_path: Path) -> None:
     trips = tmp_path / "trips.xml"
     run = ["-m", "closecall", "run", NETS / scene / f"{scene}.sumocfg", "--end", end, "--out", tmp_path / "out"]
     under_valgrind(tmp_path, *run, "--", "--tripinfo-output", trips, "--time-to-teleport", "2", "--no-warnings")
     assert json.loads((tmp_path / "out" / "run.json").read_text())["complete"]
-    # Who has left is no longer anywhere.
+    # SUMO deletes a vehicle that has left, so that a pointer kept to it would dangle.
     assert len(ET.parse(trips).getroot()) >= left
 
 
 def under_valgrind(folder: Path, *words: object) -> str:
-    """What Python prints, run with these words, in whose calls through closecall valgrind finds no fault."""
+    """Run Python under valgrind, expect no error in closecall's calls, and return what Python prints."""
     errors = folder / "errors.xml"
     valgrind = ["valgrind", "--leak-check=full", "--xml=yes", f"--xml-file={errors}", sys.executable]
-    # Python's own allocator would hide from valgrind what is read beyond its end.
+    # Python's own allocator would hide reads beyond the end of a block.
     environment = {**os.environ, "PYTHONMALLOC": "malloc"}
     command = [*valgrind, *map(str, words)]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, env=environment)
@@ -185,6 +186,6 @@ def under_valgrind(folder: Path, *words: object) -> str:
 
 
 def is_ours(error: ET.Element) -> bool:
-    """Whether closecall is on the way to an error; what is only possibly lost is not counted."""
+    """Whether closecall is in the stack of an error; blocks that are only possibly lost do not count."""
     objects = [frame.findtext("obj", "") for frame in error.iter("frame")]
     return error.findtext("kind") != "Leak_PossiblyLost" and any("_closecall" in name for name in objects)

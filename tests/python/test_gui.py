@@ -1,4 +1,4 @@
-"""Painting in real sumo-gui, under Xvfb: colours and rings while a conflict lasts, nothing of them afterwards."""
+"""Painting in real sumo-gui, under Xvfb: colours and rings while a conflict lasts, and none afterwards."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import os
 import shutil
 import signal
 import subprocess
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Callable
@@ -21,7 +20,7 @@ Copy = Callable[[str], Path]
 RINGS = {"rear_end": (60, 120, 255), "frontal": (230, 0, 230), "side": (0, 205, 205)}
 SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (235, 0, 0)}
 
-# A display is the system's to install; .ci/run does.
+# A package of the system, which .ci/run installs.
 needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed: apt install xvfb")
 
 WATCH = """
@@ -56,29 +55,23 @@ _sumo.close(gui=True)
 
 
 @pytest.fixture
-def display() -> Iterator[None]:
-    """An X server of our own, in DISPLAY."""
-    name = f":{100 + os.getpid() % 900}"
-    command = ["Xvfb", name, "-screen", "0", "1000x700x24"]
-    server = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    former = os.environ.get("DISPLAY")
-    try:
-        while not Path(f"/tmp/.X11-unix/X{name[1:]}").exists():
-            assert server.poll() is None
-            time.sleep(0.05)
-        os.environ["DISPLAY"] = name
-        yield
-    finally:
-        server.kill()
-        server.wait()
-        if former is None:
-            del os.environ["DISPLAY"]
-        else:
-            os.environ["DISPLAY"] = former
+def display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """An X server for this test alone, named in DISPLAY."""
+    # Xvfb chooses a free number and prints it once it accepts clients.
+    command = ["Xvfb", "-displayfd", "1", "-screen", "0", "1000x700x24"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as server:
+        assert server.stdout
+        try:
+            number = server.stdout.readline().strip()
+            assert number
+            monkeypatch.setenv("DISPLAY", f":{number}")
+            yield
+        finally:
+            server.kill()
 
 
 def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
-    """How many pixels have about this colour (rings are drawn half transparent over the road)."""
+    """The number of pixels of about this colour: rings are drawn half transparent over the road."""
     image = Image.open(picture).convert("RGB")
     data = image.tobytes()
     near = range(0, len(data), 3)
@@ -122,7 +115,7 @@ def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: P
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
 
 
-def test_without_a_display_it_says_so(scenario: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_display_is_reported(scenario: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
     done = closecall("run", scenario("side"), "--gui")
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)

@@ -1,4 +1,4 @@
-"""What a scene does not need changes no result: `--keep-all` gives the same bytes on every scenario."""
+"""Leaving out work that a scene does not need changes no result: `--keep-all` gives the same bytes everywhere."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ import pytest
 from conftest import NETS, closecall
 
 ENDS = {"town": 25, "bridge": 60}
-"""Where a scenario's own end would take long, in s: with every pair kept, a step's time grows with their square."""
+"""Shorter ends in s: with every pair kept, the time of a step grows with the square of the road users."""
 SEEDS = {"town": 44}
-"""Where somebody who had been in no pair for a while was given another path, and the conflict at 23 s another gap."""
+"""With this seed a stale path of a vehicle that had been in no pair for a while would change the conflict at 23 s."""
 
 
 def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """The log of a scenario, and its record without what says only how it was computed."""
+    """The log of a scenario, and its record without the fields that tell only how it was computed."""
     end = ["--end", str(ENDS[config.stem])] if config.stem in ENDS else []
     seed = ["--seed", str(SEEDS[config.stem])] if config.stem in SEEDS else []
     more = ["--config", str(config.parent / "closecall.toml"), *end, *seed, *words]
@@ -28,16 +28,16 @@ def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dic
     return {name: (out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")}, record
 
 
-@pytest.mark.parametrize("way", ["--path lanes", "--path arc", "--mode paper"])
+@pytest.mark.parametrize("method", ["--path lanes", "--path arc", "--mode paper"])
 @pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
-def test_leaving_out_changes_no_result(config: Path, way: str, tmp_path: Path) -> None:
-    log, record = checked(config, tmp_path / "left_out", *way.split())
-    whole_log, whole_record = checked(config, tmp_path / "kept", *way.split(), "--keep-all")
+def test_leaving_out_changes_no_result(config: Path, method: str, tmp_path: Path) -> None:
+    log, record = checked(config, tmp_path / "left_out", *method.split())
+    whole_log, whole_record = checked(config, tmp_path / "kept", *method.split(), "--keep-all")
     assert log == whole_log
     left_out, kept = record.pop("left_out"), whole_record.pop("left_out")
     assert record == whole_record
     by_definition = {"both stand", "both are persons", "more than 2.5 m apart in height"}
     of_the_scene = {"no sumo-gui", "none enters the scene"}
     assert {entry["why"] for entry in kept} <= by_definition | of_the_scene
-    # On paper that is only who is too far apart, and in a small scene nobody is.
-    assert way == "--mode paper" or len(left_out) > len(kept)
+    # Paper mode leaves out only pairs that are too far apart, and a small scene has none.
+    assert method == "--mode paper" or len(left_out) > len(kept)

@@ -1,4 +1,4 @@
-"""μ against an independent model in high precision: the motion itself, its extrema found piece by piece."""
+"""μ against an independent model with 60 digits: the motion itself, with its extrema found piece by piece."""
 
 from __future__ import annotations
 
@@ -19,32 +19,32 @@ Piece = tuple[mp.mpf, list[mp.mpf]]
 
 
 def motion(speed: float, response: float, build_up: float, decel: float) -> list[Piece]:
-    """Travel of a braking road user: pieces (begin, coefficients of a cubic in the time since then)."""
+    """Travel of a braking road user, as pieces: begin, and coefficients of a cubic in the time since then."""
     v, r, t3, a = map(mp.mpf, (speed, response, build_up, decel))
     pieces = [(mp.mpf(0), [mp.mpf(0), v, mp.mpf(0), mp.mpf(0)])]
-    way, now = v * r, r
+    distance, now = v * r, r
     ramp = t3
     if t3 > 0:
         ramp = min(t3, mp.sqrt(2 * v * t3 / a))
-        pieces.append((now, [way, v, mp.mpf(0), -a / (6 * t3)]))
-        way += v * ramp - a / (6 * t3) * ramp**3
+        pieces.append((now, [distance, v, mp.mpf(0), -a / (6 * t3)]))
+        distance += v * ramp - a / (6 * t3) * ramp**3
         now += ramp
     left = v - a * ramp**2 / (2 * t3) if t3 > 0 else v
     if ramp == t3 and left > 0:
-        pieces.append((now, [way, left, -a / 2, mp.mpf(0)]))
-        way += left**2 / (2 * a)
+        pieces.append((now, [distance, left, -a / 2, mp.mpf(0)]))
+        distance += left**2 / (2 * a)
         now += left / a
-    return [*pieces, (now, [way, mp.mpf(0), mp.mpf(0), mp.mpf(0)])]
+    return [*pieces, (now, [distance, mp.mpf(0), mp.mpf(0), mp.mpf(0)])]
 
 
 def shifted(coefficients: list[mp.mpf], by: mp.mpf) -> list[mp.mpf]:
-    """The same cubic in the time since a later moment."""
+    """The same cubic, in the time since a moment `by` later."""
     a, b, c, d = coefficients
     return [a + by * (b + by * (c + by * d)), b + by * (2 * c + 3 * d * by), c + 3 * d * by, d]
 
 
 def minimal(ego: list[Piece], foe: list[Piece], sigma: mp.mpf, epsilon: float) -> mp.mpf:
-    """max over t of travel_ego − σ travel_foe, plus ε, never below ε."""
+    """max over t ≥ 0 of travel_ego − σ travel_foe, plus ε, at least ε."""
     moments = sorted({begin for begin, _ in ego + foe})
     most = mp.mpf(0)
     for begin, end in zip(moments, [*moments[1:], moments[-1] + 1]):
@@ -65,7 +65,7 @@ def minimal(ego: list[Piece], foe: list[Piece], sigma: mp.mpf, epsilon: float) -
 
 
 def reference(case: dict[str, float], sigma: mp.mpf, model: str) -> mp.mpf:
-    """μ of a case in 60 digits."""
+    """μ of a case with 60 digits."""
     own = motion(case["speed"], case["response_time"], case["build_up"], case["decel"])
     late = (case["response_time"], case["build_up"]) if sigma <= 0 else (0.0, 0.0)
     other = motion(case["foe_speed"], *late, case["foe_decel"])
@@ -79,7 +79,7 @@ def reference(case: dict[str, float], sigma: mp.mpf, model: str) -> mp.mpf:
 
 
 def cases(count: int, seed: int) -> list[dict[str, Any]]:
-    """Random ones, and ones where S − Si cancels or something is extreme."""
+    """Random cases, stiff ones, ones in which S − Sᵢ cancels, and ones with extreme speeds."""
     chance = random.Random(seed)
     found = []
     for number in range(count):
@@ -108,7 +108,7 @@ def cases(count: int, seed: int) -> list[dict[str, Any]]:
 
 @pytest.mark.parametrize("model", ["minimal", "at_rest", "paper"])
 @pytest.mark.parametrize("kind", ["rear_end", "side", "frontal"])
-def test_mu_has_twelve_digits_of_the_high_precision_model(kind: str, model: str) -> None:
+def test_mu_has_twelve_correct_digits(kind: str, model: str) -> None:
     sigma = {"rear_end": mp.mpf(1), "side": mp.mpf(0), "frontal": mp.mpf(-1)}[kind]
     some = cases(1500, seed=3)
     columns = {name: np.array([case[name] for case in some]) for name in some[0]}
@@ -126,7 +126,7 @@ def test_mu_has_twelve_digits_of_the_high_precision_model(kind: str, model: str)
     assert worst < 1e-12
 
 
-def test_mu_at_any_angle_has_twelve_digits() -> None:
+def test_mu_at_any_angle_has_twelve_correct_digits() -> None:
     chance = random.Random(5)
     for case in cases(400, seed=4):
         angle = chance.uniform(0, math.pi)
@@ -174,12 +174,12 @@ def test_published_stopping_distances_are_met() -> None:
     mile_per_hour = 0.44704
     speeds = np.arange(20, 71, 10) * mile_per_hour
     found = cc.mu(speeds, decel=6.5, response_time=0.67, **stop)
-    # The table rounds thinking and braking distance each: 12 and 24 of 11.98 and 24.59 m.
+    # The table rounds thinking and braking distance separately: 11.98 and 24.59 m to 12 and 24 m.
     assert np.all(np.abs(found - [12, 23, 36, 53, 73, 96]) < 0.6), found
 
 
 def test_the_german_rule_of_thumb_is_reproduced() -> None:
-    """Hazard braking from 100 km/h: 80 m, of which 30 m of response (V/10 · 3) and 50 m of braking ((V/10)² / 2)."""
+    """Hazard braking from 100 km/h takes 80 m: 30 m of response (V/10 · 3) and 50 m of braking ((V/10)² / 2)."""
     speed = 100 / 3.6
     decel = speed**2 / (2 * 50.0)
     stop: dict[str, Any] = {"kind": "side", "build_up": 0.0, "epsilon": 0.0, "foe_speed": 0.0}

@@ -1,4 +1,4 @@
-"""`--ssm-output` and `--trj-output`: read back, and held against the log and SUMO's own outputs."""
+"""`--ssm-output` and `--trj-output`, read back and compared with the log and SUMO's own outputs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from conftest import NETS, closecall, parked, rows
 Copy = Callable[[str], Path]
 
 
-def test_the_ssm_file_has_every_conflict_once_with_the_values_of_the_log(tmp_path: Path) -> None:
+def test_the_ssm_file_holds_the_conflicts_of_the_log(tmp_path: Path) -> None:
     file = tmp_path / "ssm.xml"
     config = NETS / "left_turn" / "left_turn.sumocfg"
     done = closecall("run", config, "--out", tmp_path, "--log-encounters", "--ssm-output", file, "--", "--no-warnings")
@@ -48,7 +48,7 @@ def test_the_ssm_file_has_every_conflict_once_with_the_values_of_the_log(tmp_pat
                 assert (x, y) == (float(row["x"]), float(row["y"])) and child.get("type") == "17"
                 assert time > float(row["begin"])
             else:
-                # The step that encounters.csv has for this extreme.
+                # encounters.csv has this extreme in the same step.
                 assert float(row[name]) in [float(step[name]) for step in own if float(step["time"]) == time]
                 assert child.get("type") == {"rear_end": "2", "side": "11", "frontal": "20"}[row["kind"]]
 
@@ -72,7 +72,7 @@ class Vehicle(NamedTuple):
 
 
 def trajectories(path: Path) -> tuple[tuple[int, ...], list[tuple[float, list[Vehicle]]]]:
-    """The bounds and the steps of a .trj file of version 3, as its specification has them."""
+    """The bounds and the steps of a .trj file of version 3, read as its specification says."""
     data, at = path.read_bytes(), 0
 
     def take(layout: str) -> tuple[Any, ...]:
@@ -95,7 +95,7 @@ def trajectories(path: Path) -> tuple[tuple[int, ...], list[tuple[float, list[Ve
     return tuple(int(bound) for bound in bounds), steps
 
 
-def test_the_trajectories_are_those_that_sumo_records(scenario: Copy, tmp_path: Path) -> None:
+def test_trajectories_equal_those_that_sumo_records(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
     trj, fcd = tmp_path / "town.trj", tmp_path / "fcd.xml"
     stops = tmp_path / "stops.xml"
@@ -140,7 +140,7 @@ def test_the_trajectories_are_those_that_sumo_records(scenario: Copy, tmp_path: 
     assert len(set(numbers.values())) == len(numbers) > 300
 
 
-def test_the_trajectories_do_not_hang_on_what_is_left_out(scenario: Copy, tmp_path: Path) -> None:
+def test_trajectories_do_not_depend_on_what_is_left_out(scenario: Copy, tmp_path: Path) -> None:
     config, files = scenario("left_turn"), [tmp_path / "some.trj", tmp_path / "all.trj"]
     for file, words in zip(files, ([], ["--keep-all"])):
         done = closecall("run", config, "--end", "120", "--trj-output", file, "--out", tmp_path / "out", *words)
@@ -156,7 +156,7 @@ def test_a_file_that_cannot_be_written_is_named(option: str, scenario: Copy) -> 
     assert not (config.parent / "closecall-out").exists()
 
 
-def test_an_output_is_not_written_over_what_is_read(scenario: Copy, tmp_path: Path) -> None:
+def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("curves")
     routes = config.with_suffix(".rou.xml")
     before = routes.read_bytes()

@@ -1,4 +1,4 @@
-"""The fixture `closecall_scenario`, as somebody else's tests use it."""
+"""The fixture `closecall_scenario`, as the tests of other projects use it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from conftest import NETS
 pytest_plugins = ["pytester"]
 
 
-def test_a_test_asserts_on_conflicts_with_plain_asserts(closecall_scenario: RunScenario) -> None:
+def test_plain_asserts_work_on_conflicts(closecall_scenario: RunScenario) -> None:
     run = closecall_scenario(NETS / "side")
     (conflict,) = run.conflicts
     assert (conflict.ego, conflict.foe, conflict.kind) == ("minor", "major", "side")
@@ -22,7 +22,7 @@ def test_a_test_asserts_on_conflicts_with_plain_asserts(closecall_scenario: RunS
     assert run.summary["collisions"] == 0
 
 
-def test_options_and_settings_beside_the_scenario_count(closecall_scenario: RunScenario) -> None:
+def test_options_and_the_scenarios_own_settings_apply(closecall_scenario: RunScenario) -> None:
     with_crate = closecall_scenario(NETS / "obstacles")
     assert "crate" in {conflict.foe for conflict in with_crate.conflicts}
     short = closecall_scenario(NETS / "rear_end" / "rear_end.sumocfg", end=5, epsilon=1.0, keep_all=True)
@@ -32,7 +32,7 @@ def test_options_and_settings_beside_the_scenario_count(closecall_scenario: RunS
     assert conflict.mu == pytest.approx(as_ever.mu + 0.5)
 
 
-def test_what_cannot_be_used_is_said(closecall_scenario: RunScenario, tmp_path: Path) -> None:
+def test_unusable_arguments_raise_named_errors(closecall_scenario: RunScenario, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="no_such_folder"):
         closecall_scenario("no_such_folder")
     with pytest.raises(ValueError, match="epsilon"):
@@ -41,7 +41,7 @@ def test_what_cannot_be_used_is_said(closecall_scenario: RunScenario, tmp_path: 
         closecall_scenario(tmp_path)
 
 
-def test_a_relative_path_starts_at_the_folder_of_the_test(pytester: pytest.Pytester) -> None:
+def test_a_relative_path_starts_at_the_tests_folder(pytester: pytest.Pytester) -> None:
     nets = pytester.mkdir("nets")
     for file in (NETS / "frontal").iterdir():
         if file.is_file():

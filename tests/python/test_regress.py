@@ -1,4 +1,4 @@
-"""`closecall regress`: what is as blessed passes, what was changed is found and named."""
+"""`closecall regress`: an unchanged scenario passes, and a changed one fails with the change named."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ EIGHT = "[1, 2, 3, 4, 5, 6, 7, 8]"
 
 @pytest.fixture
 def blessed(tmp_path: Path) -> Copy:
-    """A copy of a scenario with what is expected of it, to be changed at will: its folder."""
+    """Copies a scenario with its expected results, which the test may change, and returns its folder."""
 
     def copy(name: str) -> Path:
         return Path(shutil.copytree(NETS / name, tmp_path / name, ignore=shutil.ignore_patterns("closecall-out")))
@@ -45,15 +45,18 @@ def settings(folder: Path, text: str) -> None:
 
 
 def differs(folder: Path, *words: str) -> str:
-    """What is said of a scenario that must differ."""
+    """The report on a scenario that must differ from its expected results."""
     done = closecall("regress", folder, *words)
     assert done.returncode == 1, done.stdout + done.stderr
     assert done.stdout.startswith("FAIL "), done.stdout
     return done.stdout
 
 
-def test_what_is_as_blessed_passes_with_the_same_words_for_any_number_of_jobs(blessed: Copy, tmp_path: Path) -> None:
+def test_any_number_of_jobs_prints_the_same_report(blessed: Copy, tmp_path: Path) -> None:
     folders = [blessed(name) for name in ("frontal", "priority", "side")]
+    for folder in folders:
+        settings(folder, "[regress]\nseeds = [42, 43]\n")
+    assert closecall("regress", *folders, "--bless").returncode == 0
     said = set()
     for jobs in ("1", "2", "4", "2"):
         junit = tmp_path / "junit.xml"
@@ -64,7 +67,7 @@ def test_what_is_as_blessed_passes_with_the_same_words_for_any_number_of_jobs(bl
     assert text.splitlines()[-1] == "3 scenarios: 3 pass"
 
 
-def test_a_folder_of_scenarios_is_all_of_them_and_only_picks_some(blessed: Copy, tmp_path: Path) -> None:
+def test_a_folder_runs_all_scenarios_and_only_selects_some(blessed: Copy, tmp_path: Path) -> None:
     blessed("frontal"), blessed("side")
     done = closecall("regress", tmp_path)
     assert (done.returncode, done.stdout.count("pass ")) == (0, 2), done.stdout
@@ -82,13 +85,13 @@ def test_a_driver_type_with_half_the_headway_is_named(blessed: Copy) -> None:
     assert re.search(r"new: seed \d+ rear_end \S+ with \S+, .* s to .* s, on \S+ at \(.*\): \w+, gap .* m", said)
 
 
-def test_a_signal_phase_of_three_seconds_more_is_named(blessed: Copy) -> None:
+def test_a_signal_phase_lengthened_by_three_seconds_is_named(blessed: Copy) -> None:
     folder = blessed("signals")
     edit(folder / "signals.net.xml", '<phase duration="26"', '<phase duration="29"')
     assert "changed since blessed: signals.net.xml: tlLogic a 0: phase 00 26 s" in differs(folder)
 
 
-def test_a_stop_sign_that_is_gone_is_named(blessed: Copy) -> None:
+def test_a_removed_stop_sign_is_named(blessed: Copy) -> None:
     folder = blessed("priority")
     edit(folder / "priority.nod.xml", "priority_stop", "priority")
     netconvert = Path(sys.executable).with_name("netconvert")
@@ -98,21 +101,21 @@ def test_a_stop_sign_that_is_gone_is_named(blessed: Copy) -> None:
     assert "changed since blessed: priority.net.xml: junction stop: type priority_stop → priority" in said
 
 
-def test_an_epsilon_up_by_half_a_metre_is_named(blessed: Copy) -> None:
+def test_an_epsilon_raised_by_half_a_metre_is_named(blessed: Copy) -> None:
     folder = blessed("left_turn")
     text = (folder / "closecall.toml").read_text()
     settings(folder, f"epsilon = 1.0\n{text}")
     assert "changed since blessed: option epsilon 0.5 → 1.0" in differs(folder)
 
 
-def test_another_length_of_a_vehicle_is_named(blessed: Copy) -> None:
+def test_a_changed_vehicle_length_is_named(blessed: Copy) -> None:
     folder = blessed("roundabout")
     edit(folder / "roundabout.rou.xml", '(<vType id="car"[^>]*) length="4.6"', r'\1 length="4.7"')
     said = differs(folder)
     assert "changed since blessed: roundabout.rou.xml: vType car: length 4.6 → 4.7" in said
 
 
-def test_a_difference_that_nobody_made_is_said_to_be_none_of_the_inputs(blessed: Copy) -> None:
+def test_a_difference_without_changed_inputs_is_reported_as_such(blessed: Copy) -> None:
     folder = blessed("rear_end")
     edit(folder / "expected" / "conflicts.csv", "rear_end,serious", "rear_end,critical")
     said = differs(folder)
@@ -120,15 +123,15 @@ def test_a_difference_that_nobody_made_is_said_to_be_none_of_the_inputs(blessed:
     assert "versions, options and input files are those blessed" in said
 
 
-def test_a_comment_changes_nothing_and_is_told(blessed: Copy) -> None:
+def test_an_added_comment_passes_and_is_reported(blessed: Copy) -> None:
     folder = blessed("rear_end")
-    edit(folder / "rear_end.rou.xml", "</routes>", "<!-- no news --></routes>")
+    edit(folder / "rear_end.rou.xml", "</routes>", "<!-- a comment --></routes>")
     done = closecall("regress", folder)
     assert done.returncode == 0
     assert "changed since blessed: rear_end.rou.xml" in done.stdout
 
 
-def test_what_was_blessed_passes(blessed: Copy) -> None:
+def test_a_blessed_scenario_passes(blessed: Copy) -> None:
     folder = blessed("side")
     shutil.rmtree(folder / "expected")
     missing = closecall("regress", folder)
@@ -161,13 +164,13 @@ def test_a_folder_without_settings_is_exact_with_six_seeds(scenario: Copy) -> No
     assert (done.returncode, "(exact): 6 seeds" in done.stdout) == (0, True), done.stdout
 
 
-def test_another_sumo_is_compared_by_statistics_and_that_is_said(blessed: Copy) -> None:
+def test_another_sumo_version_is_compared_by_statistics(blessed: Copy) -> None:
     folder = blessed("motorway")
     summary = folder / "expected" / "summary.json"
     edit(summary, '"sumo": "SUMO [^"]*"', '"sumo": "SUMO 1.20.0"')
     same = closecall("regress", folder)
     assert (same.returncode, "byte for byte the same" in same.stdout) == (0, True), same.stdout
-    # Another seed stands for the other version's driver: nothing was changed that a test should find.
+    # Other seeds stand for the other version's drivers: no change is there to find.
     other = closecall("regress", folder, "--seeds", "1,2,3,4,5,6")
     assert other.returncode == 0, other.stdout
     assert "compared by statistics, not exactly (SUMO 1." in other.stdout
@@ -176,7 +179,7 @@ def test_another_sumo_is_compared_by_statistics_and_that_is_said(blessed: Copy) 
     assert re.search(r"rear_end conflicts per run: [\d.]+ → [\d.]+ \(p = 0\.00\d+\)", said), said
 
 
-def test_statistics_tolerate_other_seeds_and_find_half_the_headway(blessed: Copy) -> None:
+def test_statistics_tolerate_other_seeds_and_detect_half_the_headway(blessed: Copy) -> None:
     folder = blessed("motorway")
     settings(folder, f'[regress]\nlevel = "statistics"\nseeds = {EIGHT}\n')
     assert closecall("regress", folder, "--bless").returncode == 0
@@ -195,7 +198,7 @@ def test_too_few_seeds_for_a_test_are_refused(blessed: Copy) -> None:
     assert "6 on both sides can" in done.stdout
 
 
-def test_junit_says_what_failed_and_what_could_not_run(blessed: Copy, tmp_path: Path) -> None:
+def test_junit_tells_failures_from_errors(blessed: Copy, tmp_path: Path) -> None:
     good, changed, broken = blessed("frontal"), blessed("side"), blessed("rear_end")
     settings(changed, (changed / "closecall.toml").read_text() + "\n[type.car]\nresponse_time = 2.0\n")
     edit(changed / "side.rou.xml", 'jmIgnoreFoeProb="1"', 'jmIgnoreFoeProb="0"')
@@ -214,7 +217,7 @@ def test_junit_says_what_failed_and_what_could_not_run(blessed: Copy, tmp_path: 
 
 
 @pytest.mark.parametrize("folder", sorted(path.parent for path in NETS.glob("*/closecall.toml")), ids=lambda f: f.name)
-def test_each_readme_states_the_counts_that_are_blessed(folder: Path) -> None:
+def test_each_readme_states_the_blessed_counts(folder: Path) -> None:
     line = re.search(
         r"\*\*Blessed\*\* .*: (\d+) rear-end, (\d+) frontal, (\d+) side conflicts; (\d+) with a collision",
         (folder / "README.md").read_text(),
@@ -240,7 +243,7 @@ def test_each_readme_states_the_counts_that_are_blessed(folder: Path) -> None:
         ("epsilon = -1\n", "epsilon"),
     ],
 )
-def test_a_setting_that_cannot_be_used_is_named(text: str, named: str, blessed: Copy) -> None:
+def test_an_unusable_setting_is_named(text: str, named: str, blessed: Copy) -> None:
     folder = blessed("frontal")
     settings(folder, text)
     done = closecall("regress", folder)
@@ -248,7 +251,7 @@ def test_a_setting_that_cannot_be_used_is_named(text: str, named: str, blessed: 
     assert done.stdout.startswith("ERROR") and named in done.stdout.splitlines()[0], done.stdout
 
 
-def test_what_is_expected_and_cannot_be_read_is_named(blessed: Copy) -> None:
+def test_expected_results_that_cannot_be_read_are_named(blessed: Copy) -> None:
     folder = blessed("frontal")
     (folder / "expected" / "summary.json").write_text('{"closecall": 1')
     done = closecall("regress", folder)
@@ -260,21 +263,21 @@ def test_what_is_expected_and_cannot_be_read_is_named(blessed: Copy) -> None:
     assert done.returncode == 2 and "expected" in done.stdout
 
 
-def test_a_folder_that_is_no_scenario_is_refused_in_one_line(tmp_path: Path) -> None:
+def test_a_folder_without_a_scenario_is_refused(tmp_path: Path) -> None:
     for folder in (tmp_path, tmp_path / "missing"):
         done = closecall("regress", folder)
         assert (done.returncode, done.stderr.count("\n"), done.stdout) == (2, 1, "")
         assert str(folder) in done.stderr
 
 
-def test_kept_logs_are_those_of_the_runs(blessed: Copy, tmp_path: Path) -> None:
+def test_logs_are_kept_on_request(blessed: Copy, tmp_path: Path) -> None:
     folder = blessed("side")
     assert closecall("regress", folder, "--out", "kept", cwd=tmp_path).returncode == 0
     assert (tmp_path / "kept" / "side" / "seed-42" / "run.json").is_file()
     assert not (folder / "closecall-out").exists()
 
 
-def test_ctrl_c_ends_the_runs_too(blessed: Copy, tmp_path: Path) -> None:
+def test_ctrl_c_ends_the_simulations_too(blessed: Copy, tmp_path: Path) -> None:
     folder = blessed("town")
     settings(folder, "[regress]\nseeds = [42, 43]\n")
     process = begin("regress", folder, "--out", tmp_path / "kept")
@@ -289,7 +292,7 @@ def test_ctrl_c_ends_the_runs_too(blessed: Copy, tmp_path: Path) -> None:
     assert log.stat().st_size == size
 
 
-def test_killed_it_leaves_no_run_behind(blessed: Copy, tmp_path: Path) -> None:
+def test_a_killed_regress_leaves_no_simulation_running(blessed: Copy, tmp_path: Path) -> None:
     folder = blessed("town")
     settings(folder, "[regress]\nseeds = [42, 43]\n")
     process = begin("regress", folder, "--out", tmp_path / "kept")
@@ -298,5 +301,5 @@ def test_killed_it_leaves_no_run_behind(blessed: Copy, tmp_path: Path) -> None:
     assert runs
     process.kill()
     process.communicate(timeout=30)
-    # By itself each would go on for seconds.
+    # Left alone, each simulation would run on for seconds.
     until(lambda: not any(map(is_alive, runs)), 1)

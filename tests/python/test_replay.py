@@ -1,4 +1,4 @@
-"""Replay of recordings: the same conflicts as the live run, and what is wrong with a recording."""
+"""A replay finds the conflicts of the live run and names what is wrong with a recording."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ FULL = ("--fcd-output.attributes", "all", "--precision", "9")
 
 
 def record(config: Path, name: str, *words: str) -> Path:
-    """Run a scenario live and record it; the log is in `live`."""
+    """Run a scenario live and record it; its log is in the folder `live` beside it."""
     recording = config.parent / name
     log = config.parent / "live"
     done = closecall("run", config, *words, "--quiet", "--out", log, "--", "--fcd-output", recording, *FULL)
@@ -35,7 +35,7 @@ def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, 
 
 
 def same(live: list[Row], again: list[Row]) -> None:
-    """Equal to the last digit but one of what a recording holds."""
+    """Equal within 2e-6, two units in the log's last place."""
     texts = ("ego", "foe", "ego_type", "foe_type", "kind", "severity", "lane", "collision")
     assert [[row[name] for name in texts] for row in again] == [[row[name] for name in texts] for row in live]
     for name in ("begin", "end", "time", "gap", "mu", "margin", "clearance", "ttc", "pet", "angle", "x", "y"):
@@ -55,7 +55,8 @@ RECORDINGS = [
     ("crowd", "1000", 40, "fcd.xml", ("--sublane",)),
     ("crowd", "1000", 40, "fcd.csv", ("--sublane",)),
 ]
-"""Each has more conflicts than so many. In the crowd are persons too: in CSV SUMO gives them the vehicles' columns."""
+"""Scenario, end, number of conflicts exceeded, file, and options. The crowd has persons too, to which SUMO's CSV gives
+the columns of vehicles."""
 
 
 @pytest.mark.parametrize(("name", "end", "conflicts", "recording", "words"), RECORDINGS)
@@ -82,7 +83,7 @@ RIDE = """<routes>
 
 @pytest.mark.parametrize("depart", ["0", "5"])
 @pytest.mark.parametrize("recording", ["fcd.xml", "fcd.csv"])
-def test_who_rides_in_a_vehicle_is_no_road_user(depart: str, recording: str, scenario: Copy, tmp_path: Path) -> None:
+def test_a_passenger_is_not_a_road_user(depart: str, recording: str, scenario: Copy, tmp_path: Path) -> None:
     config = scenario("pedestrian")
     config.with_suffix(".rou.xml").write_text(RIDE.format(depart=depart))
     assert replay(config, record(config, recording, "--end", "300"), tmp_path) == (0, "")
@@ -93,7 +94,7 @@ def test_who_rides_in_a_vehicle_is_no_road_user(depart: str, recording: str, sce
     assert again["collisions"] == 0
 
 
-def test_a_recording_cut_short_is_checked_as_far_as_it_goes(scenario: Copy, tmp_path: Path) -> None:
+def test_a_truncated_recording_is_checked_up_to_its_end(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     recording = record(config, "fcd.xml")
     text = recording.read_text()
@@ -106,7 +107,7 @@ def test_a_recording_cut_short_is_checked_as_far_as_it_goes(scenario: Copy, tmp_
     assert json.loads((tmp_path / "run.json").read_text())["complete"] is False
 
 
-def test_a_gzip_and_a_csv_cut_short_are_noticed_too(scenario: Copy, tmp_path: Path) -> None:
+def test_truncated_gzip_and_csv_recordings_are_detected(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     plain = record(config, "fcd.xml").read_bytes()
     packed = tmp_path / "fcd.xml.gz"
@@ -134,7 +135,7 @@ def test_a_gzip_and_a_csv_cut_short_are_noticed_too(scenario: Copy, tmp_path: Pa
         (f'<fcd-export><timestep time="0">{STANDING % "inf"}</timestep></fcd-export>', 'x is "inf", not a number'),
     ],
 )
-def test_what_is_no_recording_is_refused(text: str, said: str, scenario: Copy, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_recording_is_refused(text: str, said: str, scenario: Copy, tmp_path: Path) -> None:
     recording = tmp_path / "fcd"
     recording.write_text(text)
     status, message = replay(scenario("rear_end"), recording, tmp_path / "out")
@@ -169,7 +170,7 @@ def test_a_pipe_is_refused_at_once(scenario: Copy, tmp_path: Path) -> None:
     assert "pipe" in message and "has to be a file" in message
 
 
-def test_types_that_no_file_defines_are_told(scenario: Copy, tmp_path: Path) -> None:
+def test_types_that_no_file_defines_are_reported(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     recording = tmp_path / "fcd.xml"
     types = ["", ' type="DEFAULT_VEHTYPE"', ' type="car"', *(f' type="{letter}"' for letter in "fbcade")]
@@ -185,9 +186,21 @@ def test_types_that_no_file_defines_are_told(scenario: Copy, tmp_path: Path) -> 
     assert [line.split(":")[0] for line in told] == ['types (none), "a", "b", "c", "d" and 2 more'], done.stderr
 
 
+def repeat(recording: Path, times: int, seconds: float) -> None:
+    """Repeat the steps of a recording of `seconds` s, each time that much later."""
+    head, step, rest = recording.read_text().partition("<timestep")
+    body, end, tail = (step + rest).rpartition("</timestep>")
+
+    def later(by: float) -> str:
+        return re.sub(r'<timestep time="([^"]+)"', lambda time: f'<timestep time="{float(time[1]) + by}"', body + end)
+
+    recording.write_text(head + "".join(later(number * seconds) for number in range(times)) + tail)
+
+
 def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    recording = record(config, "fcd.xml", "--end", "200")
+    recording = record(config, "fcd.xml", "--end", "40")
+    repeat(recording, 5, 40)
     process = begin("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
     wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)
     process.send_signal(signal.SIGINT)

@@ -1,4 +1,4 @@
-"""μ against ad-rss (Intel's library of the RSS model): no acceleration during the response, no build-up, no ε."""
+"""μ against ad-rss, Intel's library of the RSS model, without acceleration during the response, build-up and ε."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import closecall as cc
 import pytest
 
 with warnings.catch_warnings():
-    # ad-rss's own modules register one converter twice.
+    # ad-rss's modules register one converter twice.
     warnings.simplefilter("ignore", RuntimeWarning)
     rss = pytest.importorskip("ad_rss").rss
 
@@ -21,13 +21,13 @@ def like(example: Any, value: float) -> Any:
 
 
 def fill(target: Any, **values: float) -> None:
-    """Set members of ad-rss's structs, each of a physical type of its own."""
+    """Set members of ad-rss's structs, each of its own physical type."""
     for name, value in values.items():
         setattr(target, name, like(getattr(target, name), value))
 
 
 def road_user(speed: float, decel: float, response: float) -> Any:
-    """A road user that brakes with `decel` after `response`."""
+    """A road user that brakes with `decel` m/s² after `response` s."""
     state = rss.core.RelativeObjectState()
     state.object_type = rss.world.ObjectType.OtherVehicle
     structured = state.structured_object_state
@@ -39,7 +39,7 @@ def road_user(speed: float, decel: float, response: float) -> Any:
     fill(dynamics.alpha_lat, accel_max=0.2, brake_min=-0.8)
     fill(dynamics, lateral_fluctuation_margin=0.0, response_time=response, max_speed_on_acceleration=100.0)
     fill(dynamics, min_longitudinal_safety_distance=0.0)
-    # The unstructured part plays no role here, but must be valid.
+    # The unstructured part has no effect here but must be valid.
     settings = dynamics.unstructured_settings
     fill(settings, pedestrian_turning_radius=2.0, drive_away_max_angle=2.4, vehicle_yaw_rate_change=0.3)
     fill(settings, vehicle_min_radius=3.5, vehicle_trajectory_calculation_step=0.2)
@@ -52,7 +52,7 @@ def road_user(speed: float, decel: float, response: float) -> Any:
 
 
 def safe_distance(function: Any, first: Any, second: Any) -> float:
-    """What ad-rss says."""
+    """The safe distance by ad-rss, in m."""
     distance = like(first.dynamics.min_longitudinal_safety_distance, 0.0)
     assert function(first, second, distance)
     return float(distance.mDistance)
@@ -65,7 +65,7 @@ def safe_distance(function: Any, first: Any, second: Any) -> float:
         ("frontal", "minimal", "calculateSafeLongitudinalDistanceOppositeDirection"),
     ],
 )
-def test_mu_is_the_rss_safe_distance(kind: str, model: str, name: str) -> None:
+def test_mu_equals_the_rss_safe_distance(kind: str, model: str, name: str) -> None:
     chance = random.Random(7)
     for _ in range(300):
         speed, foe_speed = chance.uniform(0.1, 50), chance.uniform(0.1, 50)

@@ -24,7 +24,7 @@ Copy = Callable[[str], Path]
 
 
 @pytest.mark.parametrize("kind", ["frontal", "rear_end", "side"])
-def test_each_kind_is_found_on_its_own_scene(kind: str, scenario: Copy) -> None:
+def test_each_kind_is_found_in_its_own_scene(kind: str, scenario: Copy) -> None:
     config = scenario(kind)
     done = closecall("run", config)
     assert done.returncode == 0, done.stderr
@@ -34,7 +34,7 @@ def test_each_kind_is_found_on_its_own_scene(kind: str, scenario: Copy) -> None:
     assert kind in done.stdout
 
 
-def test_the_log_has_the_columns_and_counts_that_it_promises(scenario: Copy, tmp_path: Path) -> None:
+def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     out = tmp_path / "log"
     done = closecall("run", "-c", config, "--out", out, "--log-encounters", "--quiet", "-e", "8")
@@ -67,8 +67,6 @@ def test_equal_input_gives_equal_bytes(scenario: Copy, tmp_path: Path) -> None:
 
 
 def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_path: Path) -> None:
-    import xml.etree.ElementTree as ET
-
     config = scenario("reckless")
     reported = tmp_path / "collisions.xml"
     done = closecall("run", config, "--", "--collision-output", reported)
@@ -83,7 +81,7 @@ def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_pat
         assert any(begin <= when for begin in announced), (pair, when, announced)
 
 
-def test_options_come_from_toml_too_and_what_is_typed_wins(scenario: Copy, tmp_path: Path) -> None:
+def test_typed_options_override_those_of_the_toml_file(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     settings = tmp_path / "closecall.toml"
     settings.write_text('epsilon = 2.0\nmu = "at-rest"\n[type.truck]\nbuild_up = 0.2\n')
@@ -96,7 +94,7 @@ def test_options_come_from_toml_too_and_what_is_typed_wins(scenario: Copy, tmp_p
     assert "epsilom" in refused.stderr
 
 
-def test_a_filter_keeps_only_what_happens_there(scenario: Copy, tmp_path: Path) -> None:
+def test_a_filter_keeps_only_conflicts_inside_it(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
     wanted = tmp_path / "selection.txt"
     wanted.write_text("junction:crossing\n")
@@ -108,7 +106,7 @@ def test_a_filter_keeps_only_what_happens_there(scenario: Copy, tmp_path: Path) 
     assert "no_such_edge" in refused.stderr
 
 
-def test_the_net_is_the_one_that_sumo_runs_on_whichever_the_configuration_names(scenario: Copy, tmp_path: Path) -> None:
+def test_the_net_is_the_one_that_sumo_runs_on(scenario: Copy, tmp_path: Path) -> None:
     config, other = scenario("side"), scenario("frontal")
     net = config.with_name("side.net.xml")
     assert closecall("run", config, "-o", tmp_path / "named").returncode == 0
@@ -137,7 +135,7 @@ def test_polygons_of_the_named_types_are_obstacles(scenario: Copy, tmp_path: Pat
     assert all(row["kind"] == "frontal" for row in with_them if row["foe"] in polygons)
 
 
-def test_who_is_parked_off_the_road_is_no_road_user(scenario: Copy, tmp_path: Path) -> None:
+def test_a_vehicle_parked_off_the_road_is_ignored(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     routes = config.parent / "rear_end.rou.xml"
     stop = '<stop lane="road_0" endPos="{}" duration="900" parking="{}"/>'
@@ -170,7 +168,7 @@ def test_ctrl_c_and_sigterm_end_a_run_cleanly(asked: signal.Signals, scenario: C
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
 
 
-def test_a_run_with_a_seed_that_sumo_chooses_and_does_not_tell_has_none(scenario: Copy, tmp_path: Path) -> None:
+def test_a_seed_chosen_by_sumo_is_recorded_as_unknown(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("curves")
     outs = [tmp_path / name for name in ("a", "b")]
     for out in outs:
@@ -185,7 +183,7 @@ def test_a_run_with_a_seed_that_sumo_chooses_and_does_not_tell_has_none(scenario
     assert not (tmp_path / "c").exists()
 
 
-def test_settings_of_a_type_that_nobody_is_of_are_told(scenario: Copy, tmp_path: Path) -> None:
+def test_settings_for_unused_types_are_reported(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("curves")
     routes = config.with_suffix(".rou.xml")
     kinds = sorted(set(re.findall(r'<vType id="(\w+)"', routes.read_text())))
@@ -199,16 +197,16 @@ def test_settings_of_a_type_that_nobody_is_of_are_told(scenario: Copy, tmp_path:
     assert (quiet.returncode, quiet.stdout) == (0, "")
 
 
-def test_a_configuration_made_for_traci_runs_alone(scenario: Copy, tmp_path: Path) -> None:
+def test_a_configuration_for_traci_runs_without_a_client(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("curves")
     config.write_text(config.read_text().replace("</configuration>", '<remote-port value="18813"/></configuration>'))
     assert closecall("run", config, "--end", "5", "--out", tmp_path).returncode == 0
     assert json.loads((tmp_path / "run.json").read_text())["summary"]["steps"] == 25
 
 
-def test_a_last_option_without_its_value_means_what_it_means_to_sumo(scenario: Copy, tmp_path: Path) -> None:
+def test_a_last_option_without_value_is_left_to_sumo(scenario: Copy, tmp_path: Path) -> None:
     done = closecall("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
-    # SUMO takes a file of this name, whatever the option.
+    # SUMO takes the missing value as "true", a file name here.
     assert done.returncode == 0 and (tmp_path / "true").is_file(), done.stderr
 
 
@@ -225,18 +223,18 @@ def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) ->
     assert sumos[-1] < float(end) <= sumos[-1] + 0.2 + 1e-9
 
 
-def test_after_a_kill_the_log_begins_as_that_of_the_whole_run(scenario: Copy, tmp_path: Path) -> None:
+def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    process = begin("run", config, "--out", tmp_path / "killed")
+    process = begin("run", config, "--end", "100", "--out", tmp_path / "killed")
     log = tmp_path / "killed" / "conflicts.csv"
     wait_for_rows(log, process, 400)
     os.kill(process.pid, signal.SIGKILL)
     process.communicate(timeout=60)
     killed = log.read_text()
-    assert closecall("run", config, "--out", tmp_path / "whole").returncode == 0
+    assert closecall("run", config, "--end", "100", "--out", tmp_path / "whole").returncode == 0
     assert (tmp_path / "whole" / "conflicts.csv").read_text().startswith(killed)
 
-    # A kill while rows are written may leave the last one half; hardly ever when a test looks.
+    # A kill may cut the last row short, but too rarely for a test: cut it here.
     log.write_text(killed.rstrip()[:-1])
     report = closecall("report", tmp_path / "killed", "-o", tmp_path / "report.html")
     assert report.returncode == 0, report.stderr
@@ -246,8 +244,8 @@ def test_after_a_kill_the_log_begins_as_that_of_the_whole_run(scenario: Copy, tm
     assert "killed: the run has no result: it was killed, or goes on" in stats.stdout + stats.stderr
 
 
-def test_a_libsumo_that_needs_what_is_left_out_gets_it() -> None:
-    # Without traci this one cannot be imported, as another one may not be without what is left out.
+def test_a_libsumo_that_needs_a_blocked_module_gets_it() -> None:
+    # This libsumo cannot be imported without traci; another version may need a module that closecall blocks.
     script = """
 from closecall import _sumo
 _sumo.UNUSED = (*_sumo.UNUSED, "traci")

@@ -1,24 +1,26 @@
-"""TTC, DRAC and PET against SUMO's own device.ssm, step by step; docs/statistics.md explains each difference."""
+"""TTC, DRAC and PET against SUMO's device.ssm, step by step; docs/statistics.md explains each difference."""
 
 from __future__ import annotations
 
 import math
+import pickle
 import re
 import xml.etree.ElementTree as ET
 from functools import cache
 from pathlib import Path
 from typing import Callable, NamedTuple
 
+import numpy as np
 import pytest
-from conftest import NETS, Row, closecall, rows
-from shapely import Polygon, box, prepare, unary_union
-from shapely.affinity import rotate, translate
+import shapely
+from conftest import NETS, Once, Row, closecall, rows
+from numpy.typing import NDArray
 
 FOLLOWER, CROSSING_FOLLOWER = "2", "11"
 
 
 class Step(NamedTuple):
-    """What the device says of an ego and a foe in one step."""
+    """The device's values for an ego and a foe in one step."""
 
     type: str
     ttc: float | None
@@ -26,7 +28,7 @@ class Step(NamedTuple):
 
 
 class Run(NamedTuple):
-    """A run with both."""
+    """What closecall and the device found in the same run."""
 
     conflicts: list[Row]
     encounters: list[Row]
@@ -43,37 +45,49 @@ def maybe(text: str | None) -> float | None:
 
 
 @pytest.fixture(scope="module")
-def compared(tmp_path_factory: pytest.TempPathFactory) -> Compared:
-    """Runs a scenario once with closecall and the device, in the same steps."""
+def compared(once: Once) -> Compared:
+    """Runs a scenario once, with closecall and the device in the same steps."""
 
-    @cache
-    def run(name: str) -> Run:
-        out: Path = tmp_path_factory.mktemp(name)
+    def run(name: str, out: Path) -> Run:
         words = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC DRAC PET", "--precision", "6"]
-        words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "200"]
+        words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "100"]
         words += ["--device.ssm.trajectories", "true", "--device.ssm.file", str(out / "ssm.xml"), "--no-warnings"]
         words += ["--fcd-output", str(out / "fcd.xml"), "--fcd-output.attributes", "x,y,angle,lane,pos"]
         done = closecall("run", NETS / name / f"{name}.sumocfg", "--out", out, "--log-encounters", "--", *words)
         assert done.returncode == 0, done.stderr
+        encounters = rows(out / "encounters.csv")
+        pairs = {(row["ego"], row["foe"]) for row in encounters}
         steps: dict[tuple[float, str, str], Step] = {}
         pets: dict[frozenset[str], float] = {}
-        for conflict in ET.parse(out / "ssm.xml").getroot():
+        for _, conflict in ET.iterparse(out / "ssm.xml"):
+            if conflict.tag != "conflict":
+                continue
             ego, foe = conflict.get("ego", ""), conflict.get("foe", "")
             spans = (conflict.find(name) for name in ("timeSpan", "typeSpan", "TTCSpan", "DRACSpan"))
-            columns = [(span.get("values") or "").split() for span in spans if span is not None]
+            columns = [(span.get("values") or "").split() for span in spans if span is not None and (ego, foe) in pairs]
             for time, kind, ttc, drac in zip(*columns):
                 steps[round(float(time), 3), ego, foe] = Step(kind, maybe(ttc), maybe(drac))
             pet = conflict.find("PET")
             if pet is not None and (value := maybe(pet.get("value"))) is not None:
                 pair = frozenset((ego, foe))
                 pets[pair] = min(value, pets.get(pair, value))
-        return Run(rows(out / "conflicts.csv"), rows(out / "encounters.csv"), steps, pets, out / "fcd.xml")
+            conflict.clear()
+        return Run(rows(out / "conflicts.csv"), encounters, steps, pets, out / "fcd.xml")
 
-    return run
+    @cache
+    def found(name: str) -> Run:
+        def fill(out: Path) -> None:
+            (out / "run.pickle").write_bytes(pickle.dumps(run(name, out)))
+
+        loaded = pickle.loads((once(f"ssm_{name}", fill) / "run.pickle").read_bytes())
+        assert isinstance(loaded, Run)
+        return loaded
+
+    return found
 
 
 def pairs_of(run: Run, kind: str, device_type: str) -> list[tuple[Row, Step]]:
-    """The steps of a kind in which the device sees the pair as of this type, from the same ego."""
+    """The encounters of a kind to which the device gives this type, with the same ego."""
     found = []
     for row in run.encounters:
         step = run.steps.get((round(float(row["time"]), 3), row["ego"], row["foe"]))
@@ -83,7 +97,7 @@ def pairs_of(run: Run, kind: str, device_type: str) -> list[tuple[Row, Step]]:
 
 
 @pytest.mark.parametrize(("name", "least"), [("rear_end", 70), ("signals", 10)])
-def test_followers_have_the_devices_ttc_and_drac(name: str, least: int, compared: Compared) -> None:
+def test_followers_ttc_and_drac_equal_the_devices(name: str, least: int, compared: Compared) -> None:
     equal = 0
     for row, step in pairs_of(compared(name), "rear_end", FOLLOWER):
         for ours, theirs in ((maybe(row["ttc"]), step.ttc), (maybe(row["drac"]), step.drac)):
@@ -91,7 +105,7 @@ def test_followers_have_the_devices_ttc_and_drac(name: str, least: int, compared
                 assert theirs == pytest.approx(ours, abs=2e-6), (row, step)
                 equal += 1
         if row["ttc"] == "" and step.ttc is not None:
-            # closecall looks ahead as far as the ego needs to stop; who closes so slowly gets no further.
+            # closecall looks ahead only over the ego's stopping distance, too short for a gap that closes this slowly.
             assert step.ttc > 5, (row, step)
     assert equal >= 2 * least
 
@@ -100,7 +114,7 @@ STRAIGHT = re.compile(r"([ab]_)?(we|ew|sn|ns)\.")
 
 
 @pytest.mark.parametrize("name", ["signals", "priority"])
-def test_straight_crossings_have_the_devices_ttc_and_drac(name: str, compared: Compared) -> None:
+def test_straight_crossings_ttc_and_drac_equal_the_devices(name: str, compared: Compared) -> None:
     run = compared(name)
     found = [
         (row, step)
@@ -115,14 +129,14 @@ def test_straight_crossings_have_the_devices_ttc_and_drac(name: str, compared: C
         ours, theirs = maybe(row["drac"]), step.drac
         if ours is None or theirs is None:
             continue
-        # The device lets an accelerating foe leave a little earlier: less than a step makes.
+        # With the device an accelerating foe leaves earlier, by less than the change within a step.
         near = [one["drac"] for one, _ in found if (one["ego"], one["foe"]) == (row["ego"], row["foe"])]
         change = max(float(drac) for drac in near if drac) - min(float(drac) for drac in near if drac)
         assert -0.001 <= ours - theirs <= max(0.02, change / 2), (row, step)
 
 
 class Place(NamedTuple):
-    """Where a car is at a time: front, heading in rad, lane, and position on it."""
+    """A car's state at a time: front, heading in rad, lane, and position on the lane."""
 
     time: float
     x: float
@@ -133,7 +147,7 @@ class Place(NamedTuple):
 
 
 def courses(run: Run) -> dict[str, list[Place]]:
-    """Where SUMO's fcd-output has each car."""
+    """The states of each car in SUMO's fcd-output."""
     found: dict[str, list[Place]] = {}
     for _, step in ET.iterparse(run.fcd):
         if step.tag != "timestep":
@@ -152,25 +166,38 @@ def courses(run: Run) -> dict[str, list[Place]]:
 LENGTH, WIDTH = 4.6, 1.8
 LENGTH_IN_SIDE = 5.0
 PARTS = 50
-"""Of a step."""
+"""Parts into which each step is divided."""
 
 
-def driven(course: list[Place], length: float, begin: float, end: float) -> list[tuple[float, Polygon]]:
-    """The rectangles of a car from one time to another, evenly moved and turned between the steps."""
-    found = []
-    places = [place for place in course if begin - 1e-6 <= place.time <= end]
-    for before, after in zip(places, places[1:]):
-        turn = (after.heading - before.heading + math.pi) % (2 * math.pi) - math.pi
-        for part in range(PARTS):
-            time, x, y = (a + (b - a) * part / PARTS for a, b in zip(before[:3], after[:3]))
-            heading = before.heading + turn * part / PARTS
-            car = box(-length, -WIDTH / 2, 0.0, WIDTH / 2)
-            found.append((time, translate(rotate(car, heading, (0, 0), use_radians=True), x, y)))
-    return found
+class Driven(NamedTuple):
+    """The rectangles of a car over time."""
+
+    times: NDArray[np.float64]
+    rectangles: NDArray[np.object_]
+
+
+def driven(course: list[Place], length: float, begin: float, end: float) -> Driven:
+    """The rectangles of a car between two times, moved and turned linearly within each step."""
+    places = np.array([place[:4] for place in course if begin - 1e-6 <= place.time <= end])
+    steps = np.diff(places, axis=0)
+    steps[:, 3] = (steps[:, 3] + np.pi) % (2 * np.pi) - np.pi
+    parts = np.arange(PARTS)[:, None] / PARTS
+    times, x, y, heading = (places[:-1, None] + steps[:, None] * parts).reshape(-1, 4).T
+    front = np.stack([x, y], -1)
+    rear = front - length * np.stack([np.cos(heading), np.sin(heading)], -1)
+    aside = WIDTH / 2 * np.stack([-np.sin(heading), np.cos(heading)], -1)
+    corners = np.stack([front + aside, rear + aside, rear - aside, front - aside], 1)
+    return Driven(times, shapely.polygons(corners))
+
+
+def span(car: Driven, other: Driven) -> tuple[float, float]:
+    """The first and the last time at which a car is anywhere where the other one is at any time."""
+    inside = np.unique(shapely.STRtree(other.rectangles).query(car.rectangles, predicate="intersects")[0])
+    return float(car.times[inside[0]]), float(car.times[inside[-1]])
 
 
 @pytest.mark.parametrize(("name", "least"), [("side", 1), ("signals", 4), ("left_turn", 3), ("priority", 10)])
-def test_pet_is_that_of_the_rectangles_in_fcd(name: str, least: int, compared: Compared) -> None:
+def test_pet_equals_that_of_the_rectangles_in_fcd(name: str, least: int, compared: Compared) -> None:
     run = compared(name)
     places = courses(run)
     length = LENGTH_IN_SIDE if name == "side" else LENGTH
@@ -179,14 +206,8 @@ def test_pet_is_that_of_the_rectangles_in_fcd(name: str, least: int, compared: C
         if not row["pet"]:
             continue
         begin, end = float(row["begin"]), float(row["end"]) + 7.0
-        cars = [driven(places[row[user]], length, begin, end) for user in ("ego", "foe")]
-        corridors = [unary_union([rectangle for _, rectangle in car]) for car in cars]
-        spans = []
-        for car, other in zip(cars, reversed(corridors)):
-            prepare(other)
-            times = [time for time, rectangle in car if rectangle.intersects(other)]
-            spans.append((min(times), max(times)))
-        (_, leaves), (enters, _) = sorted(spans)
+        ego, foe = (driven(places[row[user]], length, begin, end) for user in ("ego", "foe"))
+        (_, leaves), (enters, _) = sorted([span(ego, foe), span(foe, ego)])
         assert float(row["pet"]) == pytest.approx(enters - leaves, abs=0.02), row
         compared_pets += 1
     assert compared_pets >= least
@@ -196,40 +217,40 @@ def test_pet_is_that_of_the_rectangles_in_fcd(name: str, least: int, compared: C
     ("name", "least", "tolerance"),
     [("side", 1, 1e-3), ("signals", 4, 1e-3), ("left_turn", 3, 0.26), ("priority", 4, 1e-3)],
 )
-def test_crossings_have_the_devices_pet(name: str, least: int, tolerance: float, compared: Compared) -> None:
+def test_crossings_pet_equals_the_devices(name: str, least: int, tolerance: float, compared: Compared) -> None:
     run = compared(name)
     compared_pets = 0
     for row in run.conflicts:
         pair = frozenset((row["ego"], row["foe"]))
         if name == "priority" and not (STRAIGHT.match(row["ego"]) and STRAIGHT.match(row["foe"])):
-            # Turns: below.
+            # Turning cars have a test of their own below.
             continue
         if row["kind"] == "side" and row["pet"]:
             assert float(row["pet"]) == pytest.approx(run.pets[pair], abs=tolerance), row
             compared_pets += 1
         elif row["kind"] == "side" and pair in run.pets:
-            # Who comes more than 5 s after the conflict closed is not waited for.
+            # closecall waits 5 s after a conflict closes for its second road user.
             assert run.pets[pair] > 5, row
     assert compared_pets >= least
 
 
-def passes(course: list[Place], starts: dict[str, float], way: float) -> float:
-    """When a car's front has gone so far, from where each of its lanes starts."""
-    gone = [(place.time, starts[place.lane] + place.position) for place in course if place.lane in starts]
-    for (time, before), (later, after) in zip(gone, gone[1:]):
-        if before <= way <= after:
-            return time + (later - time) * (way - before) / (after - before)
-    raise AssertionError(way)
+def passes(course: list[Place], starts: dict[str, float], distance: float) -> float:
+    """When a car's front has driven this distance, given the distance at the start of each lane."""
+    driven = [(place.time, starts[place.lane] + place.position) for place in course if place.lane in starts]
+    for (time, before), (later, after) in zip(driven, driven[1:]):
+        if before <= distance <= after:
+            return time + (later - time) * (distance - before) / (after - before)
+    raise AssertionError(distance)
 
 
-def test_the_devices_pet_of_a_left_turn_ends_where_the_rear_is_still_in_the_way(compared: Compared) -> None:
-    # Its area begins `ahead` of where the lines cross (measured: the place at which the second enters it) and is as
-    # long as the other car is wide, whatever the angle (MSDevice_SSM.cpp, egoConflictAreaLength).
+def test_the_devices_pet_of_a_left_turn_ends_early(compared: Compared) -> None:
+    # The device's conflict area begins `ahead` m before the point where the lanes cross (measured where the second car
+    # enters it) and is as long as the other car is wide, at any angle (MSDevice_SSM.cpp, egoConflictAreaLength).
     run = compared("priority")
     places = courses(run)
     straight = {"mid_east_0": -235.60, ":yield_5_0": 0.0, "east_out_0": 14.4}
     turning = {"yield_in_0": -188.8, ":yield_3_0": 0.0, "mid_west_0": 18.19}
-    # Of the lines of both lanes, from the junction's entry (priority.net.xml).
+    # Distance from the junction's entry to the crossing of both lanes' centre lines (priority.net.xml).
     cross_straight, cross_turning = (
         7.2,
         4.0 + math.dist((251.6, -7.2), (251.05, -3.35)) + math.dist((251.05, -3.35), (250, -1.6)),
@@ -244,12 +265,12 @@ def test_the_devices_pet_of_a_left_turn_ends_where_the_rear_is_still_in_the_way(
         leaves = passes(places[first], turning, cross_turning - ahead + WIDTH + LENGTH)
         device = run.pets[frozenset((first, second))]
         assert device == pytest.approx(enters - leaves, abs=2e-3), row
-        # The rear is then 0.4 m beyond the line that the other's middle follows, where 2.7 m are needed to be out of
-        # its way; and the turning car covers 1.3 m more of that way than the device's area.
+        # The turning car's rear is then 0.4 m past the other's centre line, where 2.7 m are needed to clear its path,
+        # and the turning car covers 1.3 m more of that path than the device's area.
         assert 0.45 < device - float(row["pet"]) < 0.55, row
 
 
-def test_no_ttc_is_0_where_nobody_touches(compared: Compared) -> None:
+def test_ttc_is_never_0_without_contact(compared: Compared) -> None:
     run = compared("left_turn")
     times = [float(row["ttc"]) for row in run.conflicts if row["ttc"]]
     assert times and min(times) > 0

@@ -1,4 +1,4 @@
-"""`closecall stats`, held against a script of its own: plain Python, the CSV log and SUMO's own fcd-output."""
+"""`closecall stats` against an independent script: plain Python and scipy on the CSV log and SUMO's fcd-output."""
 
 from __future__ import annotations
 
@@ -13,39 +13,41 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import NETS, closecall, parked, rows
+from conftest import NETS, Once, closecall, parked, rows
 from scipy import stats as scipy_stats
 
 Copy = Callable[[str], Path]
 
 
 def simulate(config: Path, out: Path, *words: str | Path, sumo: tuple[str | Path, ...] = ()) -> Path:
-    """A run's log folder."""
+    """Run a configuration and return the folder of its log."""
     done = closecall("run", config, "--quiet", "--out", out, *words, "--", "--no-warnings", *sumo)
     assert done.returncode == 0, done.stderr
     return out
 
 
 def stats(*words: str | Path) -> Any:
-    """What `closecall stats` says, as JSON."""
+    """The JSON output of `closecall stats`."""
     done = closecall("stats", *words, "--format", "json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 @pytest.fixture(scope="module")
-def plans(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Runs of both signal programs of left_turn: eight seeds of one, sixteen of the other."""
-    folder = tmp_path_factory.mktemp("plans")
-    for plan, seeds in (("left_turn", range(1, 17)), ("protected", range(1, 9))):
-        for seed in seeds:
-            half = "first" if seed <= 8 else "second"
-            out = folder / plan / half / f"seed={seed}"
-            simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
-    return folder
+def plans(once: Once) -> Path:
+    """Runs of both signal programs of left_turn: sixteen seeds of `left_turn`, eight of `protected`."""
+
+    def fill(folder: Path) -> None:
+        for plan, seeds in (("left_turn", range(1, 17)), ("protected", range(1, 9))):
+            for seed in seeds:
+                half = "first" if seed <= 8 else "second"
+                out = folder / plan / half / f"seed={seed}"
+                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
+
+    return once("plans", fill)
 
 
-def test_the_statistics_are_those_of_an_independent_script(tmp_path: Path) -> None:
+def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None:
     fcd = tmp_path / "fcd.xml"
     words = ("--end", "120", "--log-encounters")
     stops = tmp_path / "stops.xml"
@@ -54,7 +56,7 @@ def test_the_statistics_are_those_of_an_independent_script(tmp_path: Path) -> No
     log = simulate(NETS / "town" / "town.sumocfg", tmp_path / "log", *words, sumo=record)
     found = stats(log, "--by", "severity")
 
-    # Traffic, from what SUMO itself recorded; a vehicle that is parked off the road is no road user.
+    # Traffic from SUMO's own recording, without vehicles that are parked off the road.
     is_parked = parked(stops)
     times: list[float] = []
     vehicles: set[str] = set()
@@ -73,7 +75,7 @@ def test_the_statistics_are_those_of_an_independent_script(tmp_path: Path) -> No
     assert traffic["vehicle_kilometres"] == pytest.approx(driven / 1000, rel=1e-6)
     assert (traffic["vehicles"], traffic["persons"]) == (len(vehicles), len(persons))
 
-    # Counts, from the rows; and each conflict's smallest margin and TTC, from the steps in encounters.csv.
+    # Counts from the rows of conflicts.csv.
     logged = rows(log / "conflicts.csv")
     assert len(logged) > 500
     groups = {group["group"]: group for group in found["groups"]}
@@ -94,6 +96,7 @@ def test_the_statistics_are_those_of_an_independent_script(tmp_path: Path) -> No
         assert group["per_hour"]["method"] == "poisson_exact"
         assert group["per_hour"]["low"] == pytest.approx(low / traffic["hours"], rel=1e-6)
         assert group["per_hour"]["high"] == pytest.approx(high / traffic["hours"], rel=1e-6)
+    # Smallest margin and TTC of each conflict from the steps in encounters.csv.
     steps: dict[frozenset[str], list[dict[str, str]]] = {}
     for row in rows(log / "encounters.csv"):
         steps.setdefault(frozenset((row["ego"], row["foe"])), []).append(row)
@@ -129,7 +132,7 @@ def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
     assert {"car", "walker"} <= {name for row in logged for name in (row["ego_type"], row["foe_type"])}
 
 
-def test_the_worst_are_those_that_a_sort_of_all_rows_puts_first(plans: Path) -> None:
+def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
     found = stats(plans / "left_turn", "--worst", "25")["worst"]
     every = [row for log in sorted(plans.glob("left_turn/*/*/conflicts.csv")) for row in rows(log)]
     order = ["caution", "serious", "critical"]
@@ -147,7 +150,7 @@ def test_the_worst_are_those_that_a_sort_of_all_rows_puts_first(plans: Path) -> 
     assert "--breakpoints" in first["command"] and f'x="{first["x"]:.1f}"' in first["command"]
 
 
-def test_intervals_over_seeds_are_those_of_students_t(plans: Path) -> None:
+def test_intervals_over_seeds_follow_students_t(plans: Path) -> None:
     found = stats(plans / "protected")
     runs = sorted(plans.glob("protected/*/*"))
     counts = [len(rows(run / "conflicts.csv")) for run in runs]
@@ -168,11 +171,11 @@ def test_a_protected_left_turn_has_fewer_side_conflicts(plans: Path) -> None:
         row = rates[group]
         assert row["difference"] < 0 and row["ratio"]["high"] < 1
         assert row["significance"]["p_holm"] < 0.05, row
-    # What the signal program does not change.
+    # The signal program does not change rear-end conflicts.
     assert rates["rear_end"]["significance"]["p_holm"] > 0.05
     margin = next(row for row in found["measures"] if row["measure"] == "margin")
     assert margin["cliffs_delta"] > 0 and margin["significance"]["p_holm"] < 0.05
-    # All splits of 8 and 8 runs; two of them as extreme.
+    # Of all splits into 8 and 8 runs, two are as extreme.
     assert rates["side"]["significance"]["p"] == pytest.approx(2 / math.comb(16, 8))
     assert rates["side"]["significance"]["test"] == "exact_permutation"
 
@@ -184,7 +187,7 @@ def test_two_sets_of_seeds_of_one_plan_do_not_differ(plans: Path) -> None:
     assert len([one for one in significances if one]) >= 6
 
 
-def test_permutation_and_cliffs_delta_are_scipys(plans: Path) -> None:
+def test_permutation_test_and_cliffs_delta_equal_scipys(plans: Path) -> None:
     first, second = plans / "left_turn" / "first", plans / "left_turn" / "second"
     found = stats(first, "--against", second)["comparison"]
     values = {
@@ -240,7 +243,7 @@ def made(folder: Path, ttcs: list[float], hours: float = 1.0) -> Path:
 
 
 @pytest.mark.parametrize("shape", [-0.3, -0.1, 0.15])
-def test_the_crash_frequency_is_that_of_scipys_fit(shape: float, tmp_path: Path) -> None:
+def test_the_crash_frequency_matches_scipys_fit(shape: float, tmp_path: Path) -> None:
     excesses = scipy_stats.genpareto.rvs(shape, scale=0.6, size=400, random_state=7)
     ttcs = [round(2 - float(excess), 6) for excess in excesses]
     found = stats(made(tmp_path / "log", ttcs, hours=10.0))["extremes"]
@@ -249,7 +252,7 @@ def test_the_crash_frequency_is_that_of_scipys_fit(shape: float, tmp_path: Path)
     assert ttc["threshold"] == sorted(ttcs)[ttc["below"]]
     sample = [ttc["threshold"] - value for value in below]
     c, _, scale = scipy_stats.genpareto.fit(sample, floc=0)
-    # scipy's search stops at a looser tolerance: ours must be as likely, and near.
+    # scipy's search stops at a looser tolerance: closecall's fit must be as likely, and close to it.
     ours = scipy_stats.genpareto.logpdf(sample, ttc["shape"], scale=ttc["scale"]).sum()
     assert ours >= scipy_stats.genpareto.logpdf(sample, c, scale=scale).sum() - 1e-6
     assert (ttc["shape"], ttc["scale"]) == pytest.approx((c, scale), abs=5e-3)
@@ -263,13 +266,13 @@ def test_the_crash_frequency_is_that_of_scipys_fit(shape: float, tmp_path: Path)
     assert ttc["anderson_darling"] == pytest.approx(-n - sum(terms) / n, rel=1e-6)
 
 
-def test_too_few_conflicts_for_extremes_are_refused_with_the_bound(tmp_path: Path) -> None:
+def test_extremes_need_sixty_conflicts(tmp_path: Path) -> None:
     found = stats(made(tmp_path / "log", [1.0] * 59))["extremes"]
     assert found[0]["crashes"] is None
     assert found[0]["refused"] == "too few conflicts have this measure: 59, and at least 60 are needed"
 
 
-def test_no_conflicts_are_a_result(tmp_path: Path) -> None:
+def test_a_run_without_conflicts_is_a_result(tmp_path: Path) -> None:
     found = stats(made(tmp_path / "log", []))
     rate = found["groups"][0]["per_hour"]
     assert (rate["value"], rate["low"], rate["high"]) == (0, 0, pytest.approx(3.688879, rel=1e-6))
@@ -277,7 +280,7 @@ def test_no_conflicts_are_a_result(tmp_path: Path) -> None:
         assert closecall("stats", tmp_path / "log", "--format", form).returncode == 0
 
 
-def test_every_format_says_the_same_number(tmp_path: Path) -> None:
+def test_every_format_prints_the_same_numbers(tmp_path: Path) -> None:
     log = made(tmp_path / "log", [1.25, 1.5, 1.75])
     text, html = (closecall("stats", log, "--format", form).stdout for form in ("text", "html"))
     values = list(csv.DictReader(closecall("stats", log, "--format", "csv").stdout.splitlines()))
@@ -286,7 +289,7 @@ def test_every_format_says_the_same_number(tmp_path: Path) -> None:
     assert "<b>" not in html and "&lt;b&gt;" in html
 
 
-def test_a_log_that_cannot_be_used_is_one_line_and_exit_2(tmp_path: Path) -> None:
+def test_an_unusable_log_gets_one_clear_line(tmp_path: Path) -> None:
     good = made(tmp_path / "good", [1.0, 2.0])
     text = (good / "conflicts.csv").read_text()
 
@@ -316,7 +319,7 @@ def test_a_log_that_cannot_be_used_is_one_line_and_exit_2(tmp_path: Path) -> Non
         assert done.stderr.count("\n") == 1 and not done.stdout, done
 
 
-def test_a_run_that_was_killed_is_left_out_and_said(tmp_path: Path) -> None:
+def test_a_killed_run_is_left_out_and_reported(tmp_path: Path) -> None:
     good, killed = made(tmp_path / "all" / "good", [1.0]), made(tmp_path / "all" / "killed", [2.0])
     record = json.loads((killed / "run.json").read_text())
     record["complete"], record["summary"]["steps"] = False, 0

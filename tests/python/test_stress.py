@@ -1,4 +1,4 @@
-"""`closecall stress`: what it prints and how it ends."""
+"""`closecall stress`: its output and its exit status."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ def test_one_group_can_be_chosen() -> None:
     assert {line.split()[0] for line in lines[1:-1]} == {"braking"}
 
 
-def test_no_cases_are_refused() -> None:
+def test_zero_cases_are_refused() -> None:
     run = closecall("stress", "--cases", "0")
     assert run.returncode == 2
     assert len(run.stderr.splitlines()) == 1
 
 
-def test_ctrl_c_ends_what_has_nothing_to_keep_at_once() -> None:
+def test_ctrl_c_ends_stress_at_once() -> None:
     process = begin("stress", "--cases", "1000000000")
     until(lambda: psutil.Process(process.pid).cpu_times().user > 1)
     begun = time.monotonic()

@@ -1,4 +1,4 @@
-"""`closecall sweep`, with real Dask and real SUMO: nothing lost, nothing twice, and others can read it."""
+"""`closecall sweep` with real Dask and SUMO loses no run, repeats none, and writes what other tools can read."""
 
 from __future__ import annotations
 
@@ -6,17 +6,19 @@ import csv
 import json
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
-from conftest import NETS, begin, closecall, is_alive, python, rows, until
+from conftest import NETS, Once, begin, closecall, is_alive, python, rows, until
 
 Copy = Callable[[str], Path]
 
@@ -25,14 +27,14 @@ LEFT_TURN = NETS / "left_turn" / "left_turn.sumocfg"
 
 
 def sweep(*words: str | Path, status: int = 0, **options: Any) -> subprocess.CompletedProcess[str]:
-    """A sweep that ends with this status."""
+    """Run a sweep, which must end with this exit status."""
     done = closecall("sweep", *words, **options)
     assert done.returncode == status, done.stdout + done.stderr
     return done
 
 
 def files(out: Path) -> dict[str, int]:
-    """The runs in a data set, each with when it was written."""
+    """The runs in a data set, each with the time at which it was written."""
     return {
         path.parent.name.removeprefix("run="): path.stat().st_mtime_ns
         for path in (out / "conflicts").glob("run=*/conflicts.parquet")
@@ -40,21 +42,21 @@ def files(out: Path) -> dict[str, int]:
 
 
 def stats(*words: str | Path) -> Any:
-    """What `closecall stats` says, as JSON."""
+    """The JSON output of `closecall stats`."""
     done = closecall("stats", *words, "--format", "json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 def read(script: str, out: Path) -> Any:
-    """What a script that knows nothing of SUMO prints about a data set."""
+    """The JSON that a script prints about a data set."""
     done = python(script, out / "conflicts")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
 
 
 def children(pid: int) -> dict[psutil.Process, str]:
-    """The processes below one, with their command lines."""
+    """The descendants of a process, with their command lines."""
     found = {}
     for process in psutil.Process(pid).children(recursive=True):
         try:
@@ -73,7 +75,7 @@ class Cluster(NamedTuple):
 
 @pytest.fixture
 def cluster() -> Iterator[Cluster]:
-    """A cluster that is there already, as somebody else's is."""
+    """A cluster started outside closecall."""
     script = """if True:
         import sys
         from distributed import LocalCluster
@@ -90,16 +92,23 @@ def cluster() -> Iterator[Cluster]:
 
 
 @pytest.fixture(scope="module")
-def done(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The folder of a sweep: two seeds, two values of an option of closecall's and two of SUMO's."""
-    out = tmp_path_factory.mktemp("sweep")
-    varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
-    said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
-    assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
-    return out
+def done(once: Once) -> Path:
+    """The folder of a sweep over two seeds, two values of a closecall option, and two of a SUMO option."""
+
+    def fill(out: Path) -> None:
+        varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
+        with socket.socket() as other:
+            # Dask's usual port, which another sweep may use, as perhaps already here.
+            with suppress(OSError):
+                other.bind(("127.0.0.1", 8787))
+                other.listen()
+            said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
+        assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
+
+    return once("sweep", fill)
 
 
-def test_every_seed_meets_every_value(done: Path) -> None:
+def test_a_sweep_runs_every_combination_of_values(done: Path) -> None:
     wanted = {
         f"mu-{mu}_sumo.scale-{scale}_seed-{seed}"
         for mu in ("minimal", "at-rest")
@@ -110,7 +119,7 @@ def test_every_seed_meets_every_value(done: Path) -> None:
     assert sorted(path.name for path in done.iterdir()) == ["conflicts"]
 
 
-def test_a_run_of_a_sweep_is_what_closecall_run_finds(done: Path, tmp_path: Path) -> None:
+def test_a_sweeps_run_equals_closecall_run(done: Path, tmp_path: Path) -> None:
     words = ("--mu", "at-rest", "--seed", "2", "--end", "60", "--", "--no-warnings", "--scale=1.5")
     alone = closecall("run", LEFT_TURN, "--quiet", "--out", tmp_path / "log", *words)
     assert alone.returncode == 0, alone.stderr
@@ -173,7 +182,7 @@ READERS = {
 
 
 @pytest.mark.parametrize("reader", READERS)
-def test_others_read_the_data_set(reader: str, done: Path) -> None:
+def test_other_tools_read_the_data_set(reader: str, done: Path) -> None:
     counts, margins, collisions, scale = read(READERS[reader], done)
     overall = stats(done)["groups"][0]
     assert sum(counts.values()) == overall["count"] > 20
@@ -182,7 +191,7 @@ def test_others_read_the_data_set(reader: str, done: Path) -> None:
     assert margins < 0
 
 
-def test_stats_and_report_read_a_sweep_as_they_read_logs(tmp_path: Path) -> None:
+def test_stats_and_report_read_sweeps_like_logs(tmp_path: Path) -> None:
     logs = tmp_path / "logs"
     for seed in ("1", "2"):
         words = ("--quiet", "--seed", seed, "--out", logs / seed, *SHORT)
@@ -193,7 +202,7 @@ def test_stats_and_report_read_a_sweep_as_they_read_logs(tmp_path: Path) -> None
     for found in (of_logs, of_sweep):
         assert found["runs"] == 2 and found["left_out"] == []
         for worst in found["worst"]:
-            # They name the folders.
+            # These fields name the folders.
             worst.pop("folder", None), worst.pop("run", None), worst.pop("command", None), worst.pop("log", None)
     assert of_logs == of_sweep
     assert stats(logs, "--against", out)["comparison"] is not None
@@ -214,14 +223,14 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
     begun = time.monotonic()
     assert "3 of them were there already" in sweep(config, "--seeds", "1-3", *words).stdout
     assert files(out) == second and time.monotonic() - begun < 5
-    # What is asked for in other words, or of other files, is another run.
+    # A run with other options or other input files is done again.
     sweep(config, "--seeds", "1-3", "--epsilon", "1", *words)
     third = files(out)
     assert not second.items() & third.items()
     config.with_suffix(".net.xml").open("a").write("<!-- changed -->\n")
     sweep(config, "--seeds", "2", "--epsilon", "1", *words)
     assert third.items() - files(out).items() == {("seed-2", third["seed-2"])}
-    # The selection too that only a file of options names.
+    # The same holds for a selection named only in the settings file.
     edges = [
         edge.get("id") for edge in ET.parse(config.with_suffix(".net.xml")).iter("edge") if not edge.get("function")
     ]
@@ -233,16 +242,16 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
         sweep(config, "--seeds", "1", "--config", settings, *words)
         written.append(files(out)["seed-1"])
     assert written[0] != written[1]
-    # A file that is broken is no run.
+    # A run whose file is broken is done again.
     (out / "conflicts" / "run=seed-2" / "conflicts.parquet").write_bytes(b"PAR1")
     sweep(config, "--seeds", "2", "--epsilon", "1", *words)
     assert stats(out)["runs"] == 3
-    # Runs with other columns do not belong to the same data set.
+    # Runs with other columns need a data set of their own.
     other = sweep(config, "--seeds", "1", "--vary", "epsilon=1,2", *words, status=2)
     assert "choose another --out" in other.stderr and other.stderr.count("\n") == 1
 
 
-def test_encounters_are_those_of_the_run_beside_them(tmp_path: Path) -> None:
+def test_repeating_a_run_removes_its_old_encounters(tmp_path: Path) -> None:
     words = ("--seeds", "1", "--out", tmp_path, "--workers", "1")
     assert sweep(LEFT_TURN, *words, "--log-encounters", *SHORT).stdout.startswith("1 run in ")
     encounters = tmp_path / "encounters" / "run=seed-1" / "encounters.csv"
@@ -251,14 +260,14 @@ def test_encounters_are_those_of_the_run_beside_them(tmp_path: Path) -> None:
     assert files(tmp_path) and not encounters.exists()
 
 
-def test_the_folder_of_a_single_log_is_none_of_a_sweep(tmp_path: Path) -> None:
+def test_a_sweep_refuses_the_folder_of_a_log(tmp_path: Path) -> None:
     assert closecall("run", LEFT_TURN, "--quiet", "--out", tmp_path, *SHORT).returncode == 0
     refused = sweep(LEFT_TURN, "--seeds", "1", "--out", tmp_path, *SHORT, status=2)
     assert refused.stderr.startswith(f"closecall: {tmp_path / 'conflicts.csv'}: ") and refused.stderr.count("\n") == 1
     assert not files(tmp_path)
 
 
-def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path: Path) -> None:
+def test_a_failed_run_is_reported_and_the_others_continue(scenario: Copy, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-2", "--vary", "sumo:step-length=0.5,-1", "--out", out, "--workers", "2", *SHORT)
     said = sweep(scenario("side"), *words, status=1)
@@ -271,11 +280,11 @@ def test_a_run_that_fails_is_told_and_the_others_go_on(scenario: Copy, tmp_path:
 
 
 def simulations(of: psutil.Process) -> list[psutil.Process]:
-    """The runs that a sweep or a worker has started."""
+    """The simulations that a sweep or a worker has started."""
     return [process for process, words in children(of.pid).items() if "closecall._child" in words]
 
 
-def test_a_run_that_is_killed_is_not_lost(tmp_path: Path) -> None:
+def test_a_killed_run_is_done_again(tmp_path: Path) -> None:
     out = tmp_path / "out"
     process = begin("sweep", LEFT_TURN, "--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
     until(lambda: len(files(out)) >= 2)
@@ -289,7 +298,7 @@ def test_a_run_that_is_killed_is_not_lost(tmp_path: Path) -> None:
     assert sorted(path.name for path in out.iterdir()) == ["conflicts"]
 
 
-def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_killed_worker_loses_no_run(cluster: Cluster, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-8", "--out", out, "--scheduler", cluster.address, "--", "--no-warnings")
     process = begin("sweep", LEFT_TURN, *words)
@@ -298,7 +307,7 @@ def test_a_worker_that_is_killed_loses_no_run(cluster: Cluster, tmp_path: Path) 
     assert len(workers) == 2
     running = simulations(workers[0])
     workers[0].kill()
-    # Its simulation goes with it.
+    # Its simulation ends with it.
     until(lambda: not any(map(is_alive, running)), 10)
     stdout, stderr = process.communicate(timeout=120)
     assert (process.returncode, stderr) == (0, ""), stdout + stderr
@@ -318,24 +327,24 @@ def test_ctrl_c_and_sigterm_leave_nothing_running(asked: signal.Signals, group: 
     process = begin("sweep", LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
     running = children(process.pid)
-    # A terminal sends it to all processes of the group.
+    # A terminal sends the signal to all processes of the group.
     (os.killpg if group else os.kill)(process.pid, asked)
     _, stderr = process.communicate(timeout=30)
     assert process.returncode == 130, stderr
     assert stderr.startswith("closecall: interrupted after ") and stderr.count("\n") == 1, stderr
     until(lambda: not any(map(is_alive, running)), 10)
-    # What was finished is whole.
+    # The finished runs are complete.
     before = files(out)
     assert stats(out)["runs"] == len(before)
     sweep(LEFT_TURN, *words[:1], "1-3", *words[2:])
     assert before.items() <= files(out).items()
 
 
-def test_a_scheduler_by_its_address(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_sweep_runs_on_a_scheduler_given_by_address(cluster: Cluster, tmp_path: Path) -> None:
     out = tmp_path / "out"
     sweep(LEFT_TURN, "--seeds", "1-4", "--out", out, "--scheduler", cluster.address, *SHORT)
     assert len(files(out)) == 4
-    # A sweep that is killed lets its runs end: Dask forgets them, and they notice.
+    # When a sweep is killed, Dask forgets its runs, and their simulations end.
     process = begin("sweep", LEFT_TURN, "--seeds", "1-30", "--out", tmp_path / "more", "--scheduler", cluster.address)
     until(lambda: files(tmp_path / "more"))
     process.kill()
@@ -343,8 +352,10 @@ def test_a_scheduler_by_its_address(cluster: Cluster, tmp_path: Path) -> None:
     until(lambda: not simulations(psutil.Process(cluster.pid)), 20)
 
 
-def test_what_cannot_be_used_is_one_clear_line(scenario: Copy, tmp_path: Path) -> None:
+def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
+    # Dask tries an address for 30 s unless it is told otherwise.
+    impatient = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "1s"}
     for words, said in (
         (("gone.sumocfg", "--seeds", "1"), "gone.sumocfg: No such file"),
         ((config,), "--seeds"),
@@ -359,20 +370,20 @@ def test_what_cannot_be_used_is_one_clear_line(scenario: Copy, tmp_path: Path) -
         ((config, "--seeds", "1", "--scheduler", "tcp://127.0.0.1:9"), "127.0.0.1:9"),
         ((config, "--seeds", "1", "--scheduler", "a", "--workers", "1"), "cannot be used with"),
     ):
-        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path)
+        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path, env=impatient)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
         assert said in done.stderr, (words, done.stderr)
     assert not files(tmp_path / "out")
 
 
-def test_help_lists_it() -> None:
+def test_help_lists_the_sweep_and_its_options() -> None:
     assert "  sweep " in closecall("--help").stdout
     told = closecall("sweep", "--help").stdout
     for word in ("--seeds", "--vary", "--workers", "--scheduler", "--epsilon", "--end", "SUMO OPTIONS"):
         assert word in told
 
 
-def test_encounters_come_to_lie_beside(scenario: Copy, tmp_path: Path) -> None:
+def test_encounters_are_written_beside_the_conflicts(scenario: Copy, tmp_path: Path) -> None:
     out = tmp_path / "out"
     sweep(scenario("side"), "--seeds", "5", "--log-encounters", "--out", out, "--workers", "1", *SHORT)
     with (out / "encounters" / "run=seed-5" / "encounters.csv").open(newline="") as file:

@@ -1,4 +1,4 @@
-"""Traffic conflict checker for SUMO: who comes too close, how close, and what kind of conflict it is.
+"""Traffic conflict checker for SUMO: which road users come too close, how close, and in what kind of conflict.
 
 >>> import closecall
 >>> float(closecall.mu(30.0, 25.0, decel=8.0, foe_decel=4.0, response_time=1.0, build_up=0.0, epsilon=0.0))
@@ -19,7 +19,7 @@ __all__ = ["Checker", "Conflict", "__version__", "geometry", "mu"]
 
 
 def __getattr__(name: str) -> type[Checker]:
-    # traci comes with it, whose import takes longer than closecall's: every run of a sweep would wait for it.
+    # Checker imports traci, which takes longer than closecall itself and which the runs of a sweep do not need.
     if name == "Checker":
         from ._checker import Checker
 

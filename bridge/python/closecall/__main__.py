@@ -8,7 +8,7 @@ from ._closecall import main as _main
 
 
 def main() -> int:
-    """Run the command with the arguments of this process; returns its exit status."""
+    """Run the command with the arguments of this process and return its exit status."""
     return _main(["closecall", *sys.argv[1:]])
 
 

@@ -1,4 +1,4 @@
-"""The checker as traci's step listener; without SUMO it takes plain frames."""
+"""The checker as a step listener of traci and libsumo, or with plain frames without SUMO."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ class Checker(_Checker, StepListener):  # type: ignore[misc]
     """
 
     def cleanUp(self) -> None:
-        """What traci calls when the simulation is closed."""
+        """Do nothing: traci and libsumo call this method of their listeners when the simulation is closed."""
 
     def __enter__(self) -> Checker:
         return self

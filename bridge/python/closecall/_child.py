@@ -1,4 +1,7 @@
-"""closecall as a child of a sweep's worker or of regress; a module of its own: each run waits for what is imported."""
+"""closecall as a child process of a sweep's worker or of regress.
+
+A separate module, because every run waits for what it imports.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from . import __main__
 
 
 def main() -> int:
-    """The command; it ends when its parent does, which holds the other end of standard input."""
+    """Run the command, and exit at once if the parent ends, which holds the other end of standard input."""
 
     def watch() -> None:
         os.read(0, 1)

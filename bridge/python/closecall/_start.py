@@ -1,4 +1,4 @@
-"""How closecall is started in a process of its own."""
+"""Starting closecall in a process of its own."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ import sys
 
 
 def command(module: str) -> list[str]:
-    """The words that start the `main` of one of closecall's modules, to which its arguments are added.
+    """The command line that starts the `main` of one of closecall's modules, to be followed by its arguments.
 
-    It is imported from wherever this interpreter imports it, never from the folder in which it is started.
+    The module is imported from where this interpreter imports it, never from the working directory.
     """
     start = f"import sys; sys.path[:] = filter(None, sys.path); from closecall.{module} import main; sys.exit(main())"
     return [sys.executable, "-c", start]

@@ -1,4 +1,4 @@
-"""Starting SUMO through libsumo, with its own error messages caught, so that the command can tell them in one line."""
+"""Starting SUMO through libsumo, with its error messages caught, so that the command can report them in one line."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from typing import IO, Any
 GUI_SETTINGS = Path(__file__).with_name("gui-settings.xml")
 
 UNUSED = ("numpy", "lxml", "importlib.metadata")
-"""What libsumo and the sumolib that it imports take where it is, for nothing that is used here: 0.1 s of each run, and
-numpy's threads."""
+"""Optional imports of libsumo and its sumolib that closecall does not need. They cost 0.1 s of each run and numpy's
+threads."""
 
 NO_CLIENT = ("--remote-port", "0")
-"""Of a configuration made for TraCI libsumo would wait for its client, for ever."""
+"""With a configuration made for TraCI libsumo would wait for a client for ever."""
 
 
 def start(words: list[str], gui: bool) -> Any:
-    """Start SUMO with the words of its command line after the program's name; returns the module libsumo.
+    """Start SUMO with the arguments of its command line and return the module libsumo.
 
     Raises:
         ImportError: libsumo is not installed.
-        RuntimeError: SUMO refuses, with what it says.
+        RuntimeError: SUMO refuses, with its own message.
     """
     libsumo = import_libsumo()
     command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
@@ -41,7 +41,7 @@ def start(words: list[str], gui: bool) -> Any:
 
 
 def import_libsumo() -> Any:
-    """Import libsumo, without what it can do without, and without its warning of any pyarrow that is installed.
+    """Import libsumo without its optional imports, and without its warning about an installed pyarrow.
 
     Raises:
         ImportError: it is not installed.
@@ -51,13 +51,13 @@ def import_libsumo() -> Any:
             with without(*UNUSED):
                 import libsumo
         except ImportError:
-            # Another version of it may need them.
+            # Another version of libsumo may need these imports.
             import libsumo
     return libsumo
 
 
 def has_display() -> bool:
-    """Whether there is a display to draw on: without one sumo-gui ends the whole process and says nothing."""
+    """Whether there is a display: without one sumo-gui ends the whole process without a message."""
     if sys.platform in ("win32", "darwin"):
         return True
     display = os.environ.get("DISPLAY", "")
@@ -68,8 +68,8 @@ def has_display() -> bool:
 def close(gui: bool) -> None:
     """Close SUMO.
 
-    sumo-gui 1.28 was seen not to close, 21 times of 21, where some time had passed since its last step or where it runs
-    with a delay, and 1 time of 21 right after a step: hence one more step, and somebody who watches.
+    sumo-gui 1.28 did not close in 21 of 21 tries some time after its last step or with a delay set, and in 1 of 21
+    tries right after a step. Hence one more step here; the caller must still end a process that does not close.
     """
     import libsumo
 
@@ -79,7 +79,7 @@ def close(gui: bool) -> None:
 
 
 def gui_settings(words: list[str]) -> list[str]:
-    """Settings that let painted colours show, unless the user has settings of their own."""
+    """The options for settings that show painted colours, unless the user has settings of their own."""
     has_own = any(word.startswith(("-g", "--gui-settings-file")) for word in words)
     config = Path(words[words.index("-c") + 1])
     if has_own or re.search(r"<(gui-settings-file|g)\b", config.read_text(errors="replace")):
@@ -88,22 +88,22 @@ def gui_settings(words: list[str]) -> list[str]:
 
 
 def first_error(text: str) -> str:
-    """The first error that SUMO told of, in one line, without the lines that only say that it quits."""
+    """The first error that SUMO reported, in one line, without the lines that only say that it quits."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     at = next((number for number, line in enumerate(lines) if line.startswith("Error:")), None)
     if at is None:
         return ""
-    told = [lines[at].removeprefix("Error:").strip()]
+    message = [lines[at].removeprefix("Error:").strip()]
     for line in lines[at + 1 :]:
         if line.startswith(("Error:", "Warning:", "Quitting")):
             break
-        told.append(line)
-    return " ".join(told)
+        message.append(line)
+    return " ".join(message)
 
 
 @contextmanager
 def without(*modules: str) -> Iterator[None]:
-    """What is imported meanwhile does without these modules, those that are imported already excepted."""
+    """Make imports of these modules fail meanwhile, except of those already imported."""
     blocked = [module for module in modules if module not in sys.modules]
     sys.modules.update(dict.fromkeys(blocked))  # type: ignore[arg-type]
     try:
@@ -115,7 +115,7 @@ def without(*modules: str) -> Iterator[None]:
 
 @contextmanager
 def caught_stderr() -> Iterator[IO[str]]:
-    """Standard error of the whole process, SUMO's C++ included, in a file; on success it is told afterwards."""
+    """Redirect standard error of the whole process, SUMO's C++ included, to a file; on success print it afterwards."""
     sys.stderr.flush()
     kept = os.dup(2)
     with tempfile.TemporaryFile("w+", errors="replace") as caught:

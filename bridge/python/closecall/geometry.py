@@ -1,4 +1,4 @@
-"""Rectangles at any angle: rows of `x, y, heading, length, width` (centre, rad, m)."""
+"""Contact and distance of rectangles: rows of `x, y, heading, length, width`, with the centre and sizes in m, rad."""
 
 from ._closecall import distance, touches
 

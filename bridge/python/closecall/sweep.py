@@ -1,8 +1,8 @@
-"""The runs of `closecall sweep` on Dask: each a task, and in it a process of its own.
+"""The runs of `closecall sweep` on Dask: each is a task that starts a process of its own.
 
-libsumo allows one simulation per process, and a simulation that crashes must not take the worker along. On this machine
-the workers are therefore threads of the sweep, which wait for their processes: processes of Dask's own would each have
-to start and to import Dask before the first run, and would then only wait too.
+libsumo allows one simulation per process, and a simulation that crashes must not take its worker along. Local workers
+are therefore threads of the sweep that wait for these processes. Worker processes of Dask would first have to start and
+import Dask, and then only wait as well.
 """
 
 from __future__ import annotations
@@ -21,23 +21,23 @@ from . import _start
 from ._closecall import finish_run
 
 Task = tuple[str, list[str], str]
-"""A run: its name, the words of `closecall run`, and what `finish_run` needs to know."""
+"""A run: its name, the arguments of `closecall run`, and the task for `finish_run`."""
 
 ASKED_EVERY = 0.2
-"""Seconds after which Dask is asked again whether a run is still wanted."""
+"""Interval in s at which Dask is asked whether a run is still wanted."""
 
 
 def results(
     tasks: list[Task], folder: str | os.PathLike[str], workers: int, scheduler: str | None
 ) -> Iterator[tuple[str, str | None]]:
-    """Do the tasks; yields the name of each as it ends, with what it said if it failed twice.
+    """Do the tasks; yields the name of each as it ends, with the error message if it failed twice.
 
-    Logs that are not finished lie in `folder`. Without the address of a scheduler this machine does the work, so many
-    tasks at once. Whatever ends the iteration, nothing of it goes on running.
+    Unfinished logs are in `folder`. Without the address of a scheduler this machine does the work, with `workers` tasks
+    at once. No run outlives the iteration, however it ends.
 
     Raises:
         ImportError: Dask is not installed.
-        OSError: there is no scheduler at the address.
+        OSError: no scheduler answers at the address.
     """
     from distributed import Client, LocalCluster, as_completed
 
@@ -49,12 +49,14 @@ def results(
                 threads_per_worker=workers,
                 processes=False,
                 memory_limit=0,
-                dashboard_address=None,
+                # The scheduler's server always listens; on its usual port it would warn of another sweep's.
+                dashboard_address="127.0.0.1:0",
+                scheduler_kwargs={"dashboard": False},
                 silence_logs=logging.CRITICAL,
             )
             stack.enter_context(cluster)
         client = stack.enter_context(Client(scheduler or cluster))
-        # A scheduler that is there already may know the same run from before.
+        # A running scheduler may know a run of the same name from an earlier sweep.
         sweep = uuid.uuid4().hex
         here = str(Path.cwd())
         names = {}
@@ -65,14 +67,14 @@ def results(
         try:
             for future in as_completed(list(names)):
                 error = future.exception()
-                yield names.pop(future), None if error is None else said(error)
+                yield names.pop(future), None if error is None else message(error)
                 future.release()
         finally:
             client.cancel(list(names), force=True)
 
 
-def said(error: BaseException) -> str:
-    """What an exception says, in one line."""
+def message(error: BaseException) -> str:
+    """The message of an exception, in one line."""
     return " ".join(str(error).split()) or type(error).__name__
 
 
@@ -80,32 +82,32 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
     """Do one run, on a worker.
 
     Raises:
-        RuntimeError: the run failed, with what it said.
+        RuntimeError: the run failed, with its error message.
     """
     Path(folder).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=folder) as unfinished:
-        log, told = Path(unfinished, "log"), Path(unfinished, "stderr.txt")
+        log, errors = Path(unfinished, "log"), Path(unfinished, "stderr.txt")
         command = [*_start.command("_child"), "run", "--quiet", "--out", str(log), *words]
         with (
-            told.open("wb") as stderr,
+            errors.open("wb") as stderr,
             subprocess.Popen(
                 command,
                 cwd=here,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
-                # Ctrl-C is for the sweep, which then ends its runs.
+                # Ctrl-C must reach only the sweep, which then ends its runs.
                 start_new_session=True,
             ) as process,
         ):
             wait(process, wanted())
         if process.returncode != 0:
-            raise RuntimeError(failure(told.read_text(errors="replace"), process.returncode))
+            raise RuntimeError(failure(errors.read_text(errors="replace"), process.returncode))
         finish_run(task, str(log))
 
 
 def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> None:
-    """Wait until the process has ended; it is killed when nobody wants it any more."""
+    """Wait until the process has ended, and kill it once it is no longer wanted."""
     ended = threading.Event()
 
     def watch() -> None:
@@ -113,7 +115,7 @@ def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> Non
             if not is_wanted():
                 process.kill()
 
-    # Popen.wait with a timeout looks only every 50 ms whether the process has ended: hence a thread that asks.
+    # Popen.wait with a timeout notices the end up to 50 ms late, so that a thread asks instead.
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
     process.wait()
@@ -122,7 +124,10 @@ def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> Non
 
 
 def wanted() -> Callable[[], bool]:
-    """Whether this thread's task is still wanted: Dask forgets it, but does not stop it, where its sweep is gone."""
+    """A function that tells whether this thread's task is still wanted.
+
+    When a sweep is gone, Dask forgets its tasks but does not stop them.
+    """
     from distributed import get_worker
 
     worker = get_worker()
@@ -136,7 +141,7 @@ def wanted() -> Callable[[], bool]:
 
 
 def failure(text: str, status: int) -> str:
-    """Why a run failed: its own last word, or its last line, or how it ended."""
+    """Why a run failed: closecall's last message, or else the last line, or else how the process ended."""
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     own = [line.removeprefix("closecall: ") for line in lines if line.startswith("closecall: ")]
     if own or lines:
