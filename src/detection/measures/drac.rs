@@ -6,6 +6,7 @@ use crate::geometry::bisection::{Bisection, Contact};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::normals;
 use crate::geometry::sweep::TOLERANCE;
+use crate::util::golden_section::golden_section;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// At so many moments the foe is looked at before the worst is narrowed down: before they would touch, and from then on.
@@ -136,23 +137,18 @@ struct Line {
 /// The greatest value between two times, at least `most`, by golden-section search: what is needed grows until it is
 /// greatest, or until the foe has gone.
 fn narrow(mut needed: impl FnMut(Second) -> f64, from: Second, to: Second, most: f64) -> f64 {
-    const PART: f64 = 0.618_033_988_749_894_9;
-    let (mut from, mut to, mut most) = (from, to, most);
-    let [mut low, mut high] = [to - PART * (to - from), from + PART * (to - from)];
-    let [mut of_low, mut of_high] = [needed(low), needed(high)];
-    for _ in 0..NARROWED {
-        most = most.max(of_low).max(of_high);
-        if of_low < of_high {
-            (from, low, of_low) = (low, high, of_high);
-            high = from + PART * (to - from);
-            of_high = needed(high);
-        } else {
-            (to, high, of_high) = (high, low, of_low);
-            low = to - PART * (to - from);
-            of_low = needed(low);
-        }
-    }
-    most.max(of_low).max(of_high)
+    let mut most = most;
+    golden_section(
+        |time| {
+            let value = needed(time);
+            most = most.max(value);
+            value
+        },
+        from,
+        to,
+        NARROWED,
+    );
+    most
 }
 
 /// The least constant deceleration with which a way is not passed before a time; 0 where it is not passed anyway.
