@@ -92,10 +92,13 @@ fn links(net: &Net, edge: EdgeIndex) -> impl Iterator<Item = &Link> {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::LazyLock;
 
     use proptest::prelude::*;
 
     use crate::detection::path::turns::*;
+
+    static TOWN: LazyLock<Net> = LazyLock::new(|| Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap());
 
     /// A drive through a net: at each edge the link of this number leads on.
     fn route(net: &Net, begin: usize, choices: &[usize]) -> Vec<EdgeIndex> {
@@ -115,26 +118,26 @@ mod tests {
             choices in prop::collection::vec(any::<usize>(), 0..60),
             places in any::<[prop::sample::Index; 2]>(),
         ) {
-            let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
-            let route = route(&net, begin, &choices);
+            let net = &*TOWN;
+            let route = route(net, begin, &choices);
             let mut places = places.map(|place| place.index(route.len()));
             places.sort_unstable();
-            let mut turns = RouteTurns::of(&net, &route, places[0]);
-            prop_assert!(turns.edges(&net).eq(route[places[0]..].iter().copied()));
+            let mut turns = RouteTurns::of(net, &route, places[0]);
+            prop_assert!(turns.edges(net).eq(route[places[0]..].iter().copied()));
             prop_assert!(turns.begin_before(places[1]) && (places[0] == 0 || !turns.begin_before(places[0] - 1)));
-            turns.advance(&net, places[1]);
-            prop_assert!(turns.edges(&net).eq(route[places[1]..].iter().copied()));
-            turns.advance(&net, route.len());
-            prop_assert!(turns.edges(&net).next().is_none() && !turns.are_free());
+            turns.advance(net, places[1]);
+            prop_assert!(turns.edges(net).eq(route[places[1]..].iter().copied()));
+            turns.advance(net, route.len());
+            prop_assert!(turns.edges(net).next().is_none() && !turns.are_free());
         }
     }
 
     #[test]
     fn a_route_ends_where_no_link_leads_on() {
-        let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
-        let mut route = route(&net, 0, &[0; 5]);
+        let net = &*TOWN;
+        let mut route = route(net, 0, &[0; 5]);
         let all = route.len();
         route.push(route[all - 1]);
-        assert_eq!(RouteTurns::of(&net, &route, 0).edges(&net).count(), all);
+        assert_eq!(RouteTurns::of(net, &route, 0).edges(net).count(), all);
     }
 }
