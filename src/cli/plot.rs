@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::say::say;
 use crate::Result;
-use crate::analysis::plot::{self, Format};
+use crate::analysis::plot::{self, PictureFormat};
 
 /// Which logs, and where the pictures go.
 #[derive(Args)]
@@ -19,7 +19,7 @@ pub struct PlotArgs {
     out: PathBuf,
     /// Pixels or lines.
     #[arg(long, value_enum, default_value = "svg")]
-    format: Format,
+    format: PictureFormat,
     /// The net for the map [default: where the first log says that it was].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,

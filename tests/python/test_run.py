@@ -243,7 +243,7 @@ def test_after_a_kill_the_log_begins_as_that_of_the_whole_run(scenario: Copy, tm
     assert f"{killed.rstrip().count(chr(10)) - 1} conflicts" in report.stdout + report.stderr
     stats = closecall("stats", tmp_path)
     assert stats.returncode == 0, stats.stderr
-    assert "killed: the run has no result: it was killed, or goes on" in stats.stdout + stats.stderr
+    assert "killed: the run has no result: it was killed, or is still running" in stats.stdout + stats.stderr
 
 
 def test_a_libsumo_that_needs_what_is_left_out_gets_it() -> None:
