@@ -1,20 +1,20 @@
-//! How often the statistical test finds a difference where nothing was changed, on real runs: an experiment, to be
-//! repeated as docs/compare.md says.
+//! The share of false alarms of the statistical test on real runs of an unchanged scenario: an experiment that
+//! docs/compare.md describes.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 
 use std::path::PathBuf;
 
 use closecall::batch::regress::outcome::Outcome;
-use closecall::batch::regress::scenario::Settings;
+use closecall::batch::regress::scenario::RegressSettings;
 use closecall::batch::regress::statistics::comparisons;
 
 const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;
 
-/// Both sides of a trial are drawn from the same runs, no seed twice.
+/// Both sides of a trial are drawn from the same runs, without repeating a seed.
 fn main() {
-    // cargo itself adds `--bench`.
+    // cargo adds `--bench` to the arguments.
     let mut folders = std::env::args_os().skip(1).filter(|word| word != "--bench").map(PathBuf::from);
     let (Some(nets), Some(folder)) = (folders.next(), folders.next()) else {
         println!("usage: cargo bench --bench false_alarms -- SCENARIO LOGS (a folder with seed-1, seed-2, …)");
@@ -28,7 +28,7 @@ fn main() {
         })
         .collect::<Vec<_>>();
     runs.sort_by_key(Outcome::seeds);
-    let settings = Settings::default();
+    let settings = RegressSettings::default();
     let mut random = fastrand::Rng::with_seed(1);
     let mut alarms = 0;
     for _ in 0..TRIALS {
@@ -36,7 +36,8 @@ fn main() {
             let other = random.usize(place..runs.len());
             runs.swap(place, other);
         }
-        let (expected, found) = (together(&runs[..SEEDS]), together(&runs[SEEDS..2 * SEEDS]));
+        let expected = together(&runs[..SEEDS]);
+        let found = together(&runs[SEEDS..2 * SEEDS]);
         alarms += usize::from(comparisons(&expected, &found, &settings).iter().any(|comparison| comparison.differs));
     }
     println!("{alarms} false alarms in {TRIALS} trials of {SEEDS} against {SEEDS} of {} seeds", runs.len());

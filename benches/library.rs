@@ -1,5 +1,6 @@
-//! What parry2d does for one pair beside what closecall does itself: contact and distance of two rectangles, first
-//! contact of two moving ones. `cargo bench --bench library`. Who is near whom: benches/detector.rs and `closecall study`.
+//! closecall's own functions for one pair against those of parry2d: contact and distance of two rectangles, first contact
+//! of two moving ones. `cargo bench --bench library`. For the search for pairs see benches/detector.rs and `closecall
+//! study`.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 
@@ -11,19 +12,10 @@ use closecall::geometry::convex::ConvexOutline;
 use closecall::geometry::rectangle::Rectangle;
 use closecall::geometry::separating_axes::{slide, translation};
 use closecall::geometry::{Point, Vector};
+use closecall::study::reference::chance::Chance;
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::query::{self, ShapeCastOptions};
 use parry2d_f64::shape::Cuboid;
-
-/// A linear congruential generator: the same numbers on every machine.
-struct Chance(u64);
-
-impl Chance {
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        low + (high - low) * ((self.0 >> 11) as f64 / (1_u64 << 53) as f64)
-    }
-}
 
 fn nanoseconds(items: usize, mut action: impl FnMut()) -> f64 {
     let mut best = f64::INFINITY;
@@ -79,6 +71,6 @@ fn contacts(chance: &mut Chance) {
 }
 
 fn main() {
-    let mut chance = Chance(1);
+    let mut chance = Chance::new(1);
     contacts(&mut chance);
 }

@@ -1,4 +1,4 @@
-//! What one would build instead of the detector. Both say only who might meet: no way along a path, no kind, no μ.
+//! Alternatives to the detector. They only find the pairs that might meet, without distances along a path, kinds or μ.
 
 use closecall::braking::stopping_distance;
 use closecall::geometry::rectangle::direction;
@@ -10,26 +10,26 @@ use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
 use parry2d_f64::query;
 use parry2d_f64::shape::Cuboid;
 
-/// What the boxes of parry2d's tree are laid around.
+/// The shapes that the boxes of parry2d's tree enclose.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Boxes {
-    /// The circle that holds whatever a road user may cover until it stands, wherever its road turns: as in phase 1.
+    /// The circle that a road user cannot leave before it stands, wherever its road turns, as in the broad phase.
     Circles,
-    /// The rectangle that it covers until it stands if its road is straight, as all are here.
+    /// The rectangle that it covers until it stands on a straight road, as all roads are here.
     StraightWays,
 }
 
-/// Where parry2d's tree comes from in a step. Its documentation advises either for what moves.
+/// The origin of parry2d's tree in a step. Its documentation recommends both for moving objects.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Making {
-    /// It is built of all boxes, by the strategy advised for what moves.
+    /// Built from all boxes, by the strategy recommended for moving objects.
     Anew,
-    /// The one of the last step is brought up to date: partial updates, refit, incremental optimisation.
+    /// Updated from the last step: partial updates, refit, incremental optimisation.
     Kept,
 }
 
-/// parry2d: a tree of boxes, and for each pair of boxes that meet its intersection test of the rectangles that both cover
-/// until they stand.
+/// parry2d: a tree of boxes, and for each pair of boxes that meet its intersection test of the rectangles that the two
+/// cover until they stand.
 pub struct Tree {
     boxes: Boxes,
     making: Making,
@@ -41,8 +41,14 @@ pub struct Tree {
 
 impl Tree {
     pub fn new(boxes: Boxes, making: Making) -> Self {
-        let (tree, workspace) = (Bvh::default(), BvhWorkspace::default());
-        Self { boxes, making, around: Vec::new(), tree, workspace, covered: Vec::new() }
+        Self {
+            boxes,
+            making,
+            around: Vec::new(),
+            tree: Bvh::default(),
+            workspace: BvhWorkspace::default(),
+            covered: Vec::new(),
+        }
     }
 
     /// The number of pairs whose rectangles meet.
@@ -58,7 +64,8 @@ impl Tree {
                     (centre - Vector::new(axis.x, axis.y) * (ahead / 2.0), Vector::new(radius, radius))
                 }
                 Boxes::StraightWays => {
-                    let (across, along) = (axis.y.abs(), axis.x.abs());
+                    let across = axis.y.abs();
+                    let along = axis.x.abs();
                     (centre, Vector::new(along * half.x + across * half.y, across * half.x + along * half.y))
                 }
             };
@@ -75,7 +82,8 @@ impl Tree {
                 self.tree.optimize_incremental(&mut self.workspace);
             }
         }
-        let (covered, mut found) = (&self.covered, 0);
+        let covered = &self.covered;
+        let mut found = 0;
         self.tree.traverse_bvtt_single_tree::<false>(&mut self.workspace, &mut |i, j| {
             found += usize::from(meet(&covered[i as usize], &covered[j as usize]));
         });
@@ -83,7 +91,7 @@ impl Tree {
     }
 }
 
-/// The rectangle that a car covers until it stands, if its road is straight.
+/// The rectangle that a car covers until it stands, on a straight road.
 struct Covered {
     axis: closecall::geometry::Vector,
     ahead: f64,
@@ -110,14 +118,14 @@ fn meet((a, a_shape): &(Pose, Cuboid), (b, b_shape): &(Pose, Cuboid)) -> bool {
     query::intersection_test(a, a_shape, b, b_shape).is_ok_and(|test| test.intersecting)
 }
 
-/// The tree's test without the tree: of every pair.
+/// The tree's test without the tree, for every pair.
 #[derive(Default)]
 pub struct AllTested {
     covered: Vec<(Pose, Cuboid)>,
 }
 
 impl AllTested {
-    /// So many road users, spread over all, are tested with all others.
+    /// The number of road users, evenly spread, that are tested with all others.
     pub const SAMPLE: usize = 100;
 
     /// The number of pairs of the sample whose rectangles meet.
@@ -128,13 +136,13 @@ impl AllTested {
         sample.map(|a| self.covered.iter().filter(|b| meet(a, b)).count()).sum()
     }
 
-    /// How many times as many pairs there are as the sample has.
+    /// The number of all pairs divided by the number of pairs in the sample.
     pub fn share(count: usize) -> f64 {
         (count - 1) as f64 / 2.0 / Self::SAMPLE as f64
     }
 }
 
-/// Every pair by the paper's test of two circles, the cheapest that drops no pair.
+/// Every pair, by the paper's test of two circles, the cheapest that loses no pair.
 #[derive(Default)]
 pub struct AllPairs {
     x: Vec<f64>,

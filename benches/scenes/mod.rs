@@ -1,4 +1,4 @@
-//! Traffic without SUMO, for the benches: a jam, platoons, road users anywhere. The same on every machine.
+//! Traffic without SUMO for the benches, the same on every machine: a jam, platoons, road users at random places.
 
 use std::io::Write;
 use std::path::Path;
@@ -18,7 +18,7 @@ pub fn car() -> Profile {
     Profile::vehicle(&SumoType::car("car"), &Options::default())
 }
 
-/// Writes who is where (rectangles: centre, heading in rad, length, width), for programs that are not ours.
+/// Writes the rectangles (centre, heading in rad, length, width) as input for other programs.
 pub fn write(cars: &[State], path: &Path) -> std::io::Result<()> {
     let car = car();
     let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
@@ -35,7 +35,7 @@ fn state(x: f64, y: f64, heading: f64, speed: f64) -> State {
     State { x, y, z: 0.0, heading, speed }
 }
 
-/// Four lanes of a motorway, bumper to bumper, at walking pace.
+/// A jam on four lanes of a motorway, bumper to bumper, at walking pace.
 fn jam(chance: &mut Chance, count: usize) -> Vec<State> {
     let car = |place: usize| {
         let (row, lane) = (place / 4, place % 4);
@@ -44,32 +44,34 @@ fn jam(chance: &mut Chance, count: usize) -> Vec<State> {
     (0..count).map(car).collect()
 }
 
-/// Platoons of 20 at 50 km/h, 25 m apart, on a grid of two-way streets 200 m apart. From one to the next in its lane there
-/// are 25 to 225 m: 1,600 cars per hour and lane, almost as many as pass. Where streets cross nobody waits.
+/// Platoons of 20 at 50 km/h, with 25 m between cars, on a grid of two-way streets 200 m apart. Platoons in the same lane
+/// are 25 to 225 m apart: 1,600 cars per hour and lane, close to capacity. No car waits at a crossing.
 fn platoons(chance: &mut Chance, count: usize) -> Vec<State> {
     const CARS: usize = 20;
     const APART: f64 = 25.0;
-    /// From a platoon's begin to that of the next, on average, in m.
+    /// The mean distance between the fronts of platoons in m.
     const BETWEEN: f64 = 600.0;
     let streets = ((count as f64 / 25.0).sqrt().ceil() as usize).max(1);
     let lanes = 4 * streets;
     let mut cars = Vec::with_capacity(count);
     for platoon in 0..count.div_ceil(CARS) {
-        let (lane, place) = (platoon % lanes, platoon / lanes);
-        let (street, way) = ((lane / 4) as f64 * 200.0, lane % 4);
-        let heading = way as f64 * std::f64::consts::FRAC_PI_2;
+        let lane = platoon % lanes;
+        let place = platoon / lanes;
+        let street = (lane / 4) as f64 * 200.0;
+        let turn = lane % 4;
+        let heading = turn as f64 * std::f64::consts::FRAC_PI_2;
         let start = place as f64 * BETWEEN + chance.between(0.0, 100.0);
         for car in 0..CARS.min(count - cars.len()) {
             let along = start + APART * car as f64;
             let (x, y) =
-                [(along, street - 1.6), (street + 1.6, along), (along, street + 1.6), (street - 1.6, along)][way];
+                [(along, street - 1.6), (street + 1.6, along), (along, street + 1.6), (street - 1.6, along)][turn];
             cars.push(state(x, y, heading, chance.between(12.0, 14.0)));
         }
     }
     cars
 }
 
-/// One on 400 m², anywhere, any way, up to 50 km/h.
+/// Road users at random places, one per 400 m², with random headings, at up to 50 km/h.
 fn uniform(chance: &mut Chance, count: usize) -> Vec<State> {
     let side = (count as f64 * 400.0).sqrt();
     let mut car =

@@ -1,4 +1,4 @@
-//! Any text as a TOML file of options: words that the command line takes, or an error, never a panic.
+//! Any text as a TOML file of options gives words for the command line or an error, never a panic.
 
 #![no_main]
 

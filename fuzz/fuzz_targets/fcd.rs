@@ -1,4 +1,4 @@
-//! Any bytes as an fcd-output: steps or an error, never a panic.
+//! Any bytes as an fcd-output give steps or an error, never a panic.
 
 #![no_main]
 

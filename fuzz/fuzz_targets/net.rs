@@ -1,4 +1,4 @@
-//! Any bytes as a SUMO net: lanes that can be driven along, or an error, never a panic.
+//! Any bytes as a SUMO net give lanes with usable shapes or an error, never a panic.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Many runs: sweeps over seeds and options, and regression tests on fixed nets.
+//! Batches of runs: sweeps over seeds and options, and regression tests on fixed nets.
 
 pub mod regress;
 pub mod sweep;

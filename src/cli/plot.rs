@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::say::say;
 use crate::Result;
-use crate::analysis::plot::{self, Format};
+use crate::analysis::plot::{self, PictureFormat};
 
 /// Which logs to draw, and where to.
 #[derive(Args)]
@@ -19,7 +19,7 @@ pub struct PlotArgs {
     out: PathBuf,
     /// File format of the images.
     #[arg(long, value_enum, default_value = "svg")]
-    format: Format,
+    format: PictureFormat,
     /// Net for the map [default: the net file named in the first log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,

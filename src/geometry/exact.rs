@@ -179,8 +179,9 @@ mod tests {
         ) {
             let a = Rectangle::new(Point::new(x, y), heading, length, width);
             let b = nearly_touching(&a, heading + turn, other, width, nudge);
-            prop_assert_eq!(touches(&a, &b), reference(&a, &b));
-            prop_assert_eq!(touches(&b, &a), reference(&a, &b));
+            let truth = reference(&a, &b);
+            prop_assert_eq!(touches(&a, &b), truth);
+            prop_assert_eq!(touches(&b, &a), truth);
         }
 
         #[test]
@@ -189,20 +190,22 @@ mod tests {
         ) {
             let a = Rectangle::new(Point::origin(), heading, 5.0, 1.8);
             let b = Rectangle::new(Point::new(x, y), heading + turn, 12.0, 2.5);
-            prop_assert_eq!(touches(&a, &b), reference(&a, &b));
-            prop_assert!(!(are_far_apart(&a, &b) && reference(&a, &b)));
+            let truth = reference(&a, &b);
+            prop_assert_eq!(touches(&a, &b), truth);
+            prop_assert!(!(are_far_apart(&a, &b) && truth));
         }
     }
 
     #[test]
     fn what_plain_separating_axes_get_wrong_is_right_here() {
-        let wrong = (0..20_000_u32).filter(|number| {
-            let heading = f64::from(*number) * 1e-4;
+        let wrong = (0..5000_u32).filter(|number| {
+            let heading = f64::from(*number) * 4e-4;
             let a = Rectangle::new(Point::new(0.3, 0.2), heading, 5.0, 1.8);
             let b = nearly_touching(&a, heading * 3.0, 4.0, 2.0, 0);
-            assert_eq!(touches(&a, &b), reference(&a, &b));
-            crate::geometry::contact::plainly_touches(&a, &b) != reference(&a, &b)
+            let truth = reference(&a, &b);
+            assert_eq!(touches(&a, &b), truth);
+            crate::geometry::contact::plainly_touches(&a, &b) != truth
         });
-        assert!(wrong.count() > 100);
+        assert!(wrong.count() > 25);
     }
 }

@@ -24,18 +24,31 @@ impl Input {
     pub fn of(path: &Path) -> Result<Self> {
         let fail = |source| Error::file(path, source);
         let mut file = std::fs::File::open(path).map_err(fail)?;
-        let mut hasher = Sha256::new();
-        std::io::copy(&mut file, &mut HashWriter(&mut hasher)).map_err(fail)?;
-        let sha256 = hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
-        Ok(Self { path: path.to_owned(), sha256 })
+        let mut hasher = Hasher::default();
+        std::io::copy(&mut file, &mut hasher).map_err(fail)?;
+        Ok(Self { path: path.to_owned(), sha256: hasher.digits() })
     }
 }
 
-struct HashWriter<'a>(&'a mut Sha256);
+/// SHA-256 of the bytes written to it.
+#[derive(Default)]
+pub(crate) struct Hasher(Sha256);
 
-impl std::io::Write for HashWriter<'_> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+impl Hasher {
+    /// Adds bytes.
+    pub(crate) fn add(&mut self, bytes: impl AsRef<[u8]>) {
         self.0.update(bytes);
+    }
+
+    /// The hash in hexadecimal digits.
+    pub(crate) fn digits(self) -> String {
+        self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+impl std::io::Write for Hasher {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.add(bytes);
         Ok(bytes.len())
     }
 

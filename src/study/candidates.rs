@@ -1,7 +1,9 @@
-//! Which pairs of circles meet: the paper's every-pair loop and five kinds of order, from 10² to 10⁶ road users.
+//! The search for pairs of circles that meet: the paper's loop over every pair and five others, from 10² to 10⁶ road
+//! users.
 //!
-//! All methods end with the same exact test of two circles and give their pairs in ascending order (the detector's
-//! results must not depend on the method), so all must find the same; the error is the share that one does not.
+//! All methods end with the same exact test of two circles and return their pairs in ascending order, because the
+//! detector's results must not depend on the method. All must therefore find the same pairs; the error is the share that
+//! a method loses.
 
 use std::hint::black_box;
 
@@ -18,11 +20,11 @@ use crate::detection::broad_phase::{Area, Circle, Search};
 use crate::util::units::Second;
 
 type Pairs = Vec<(u32, u32)>;
-type Method = (&'static str, fn(&[Circle], &mut Search<u32>, &mut Pairs));
-type Scene = (&'static str, fn(&mut Chance, usize) -> Vec<Circle>);
+type SearchMethod = (&'static str, fn(&[Circle], &mut Search<u32>, &mut Pairs));
+type Traffic = (&'static str, fn(&mut Chance, usize) -> Vec<Circle>);
 
 const DEFAULT: &str = "sweep in strips";
-const METHODS: [Method; 6] = [
+const METHODS: [SearchMethod; 6] = [
     ("all pairs (paper)", |circles, _, pairs| all_pairs(circles, pairs)),
     ("uniform grid", |circles, _, pairs| in_order(pairs, |pairs| uniform_grid(circles, pairs))),
     ("sweep and prune", |circles, _, pairs| in_order(pairs, |pairs| sweep_and_prune(circles, pairs))),
@@ -32,9 +34,9 @@ const METHODS: [Method; 6] = [
         search.pairs(&circles.iter().copied().map(Area::from).collect::<Vec<_>>(), pairs);
     }),
 ];
-const SCENES: [Scene; 3] = [("uniform", uniform), ("platoons", platoons), ("jam", jam)];
+const SCENES: [Traffic; 3] = [("uniform", uniform), ("platoons", platoons), ("jam", jam)];
 
-/// A method that takes longer than this is not asked again with ten times as many.
+/// A method that takes longer than this is not measured with ten times the road users: in a quick study, and in a full one.
 const TOO_SLOW: [Second; 2] = [0.2, 2.0];
 
 pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
@@ -48,7 +50,8 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
             let mut timed = chosen
                 .iter()
                 .map(|(_, (_, method))| {
-                    let (mut search, mut pairs) = (Search::default(), Pairs::new());
+                    let mut search = Search::default();
+                    let mut pairs = Pairs::new();
                     let circles = &circles;
                     Timed::new(count, move || {
                         method(circles, &mut search, &mut pairs);
@@ -58,7 +61,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
                 .collect::<Vec<_>>();
             let times = interleaved(&mut timed, if count < 10_000 { 10 * rounds } else { rounds });
             drop(timed);
-            // The plainest that is still asked is the reference: all pairs up to 10⁴, then the sweep along x.
+            // The reference is the simplest method that is still measured: all pairs up to 10⁴, then the sweep along x.
             let truth = found(chosen[0].1.1, &circles);
             for ((index, (name, method)), ns_per_item) in chosen.into_iter().zip(times) {
                 let lost = lost(&found(*method, &circles), &truth);
@@ -90,19 +93,19 @@ fn found(method: fn(&[Circle], &mut Search<u32>, &mut Pairs), circles: &[Circle]
     pairs
 }
 
-/// The pairs that a method finds, in ascending order.
+/// Sorts the pairs that a method finds.
 fn in_order(pairs: &mut Pairs, find: impl FnOnce(&mut Pairs)) {
     find(pairs);
     pairs.sort_unstable();
 }
 
-/// Share of the true pairs that were not found; 1 where a false one was.
+/// The share of the true pairs that were not found; 1 if a false pair was found.
 fn lost(found: &Pairs, truth: &Pairs) -> f64 {
     let held = truth.iter().filter(|pair| found.binary_search(pair).is_ok()).count();
     if found.len() > held { 1.0 } else { 1.0 - held as f64 / truth.len().max(1) as f64 }
 }
 
-/// One road user on 400 m², anywhere, each with up to 30 m around it.
+/// Road users at random places, one per 400 m², with radii of 5 to 30 m.
 fn uniform(chance: &mut Chance, count: usize) -> Vec<Circle> {
     let side = (count as f64 * 400.0).sqrt();
     let mut circle =
@@ -110,13 +113,14 @@ fn uniform(chance: &mut Chance, count: usize) -> Vec<Circle> {
     (0..count).map(|_| circle()).collect()
 }
 
-/// Platoons of 20, 15 m apart, at 50 km/h, on a grid of streets 200 m apart.
+/// Platoons of 20 at 50 km/h, with 15 m between vehicles, on a grid of streets 200 m apart.
 fn platoons(chance: &mut Chance, count: usize) -> Vec<Circle> {
     let streets = ((count as f64 / 50.0).sqrt().ceil() as usize).max(1);
     let length = streets as f64 * 200.0;
     let mut circles = Vec::with_capacity(count);
     while circles.len() < count {
-        let (street, start) = (chance.below(streets) as f64 * 200.0, chance.between(0.0, length));
+        let street = chance.below(streets) as f64 * 200.0;
+        let start = chance.between(0.0, length);
         let along_x = chance.below(2) == 0;
         for place in 0..20.min(count - circles.len()) {
             let along = start + 15.0 * place as f64;
@@ -127,7 +131,7 @@ fn platoons(chance: &mut Chance, count: usize) -> Vec<Circle> {
     circles
 }
 
-/// All in one jam: four lanes of 3.2 m, 7.5 m apart, hardly moving.
+/// One slow jam on four lanes of 3.2 m, with 7.5 m per vehicle.
 fn jam(chance: &mut Chance, count: usize) -> Vec<Circle> {
     let circle = |place: usize| {
         let (row, lane) = (place / 4, place % 4);
@@ -150,7 +154,7 @@ fn all_pairs(circles: &[Circle], pairs: &mut Pairs) {
     }
 }
 
-/// Cells as wide as the largest circle, each road user in the cell of its centre, nine cells looked at.
+/// Cells as wide as the largest circle; each road user is in the cell of its centre and searches nine cells.
 fn uniform_grid(circles: &[Circle], pairs: &mut Pairs) {
     pairs.clear();
     let widest = circles.iter().map(|circle| 2.0 * circle.radius).fold(1.0, f64::max);
@@ -169,7 +173,7 @@ fn uniform_grid(circles: &[Circle], pairs: &mut Pairs) {
     }
 }
 
-/// Sorted by where each begins along x (Cohen et al. 1995, in one direction).
+/// Circles sorted by their lower end along x (Cohen et al. 1995, in one direction).
 fn sweep_and_prune(circles: &[Circle], pairs: &mut Pairs) {
     pairs.clear();
     let mut order = (0..circles.len() as u32).collect::<Vec<_>>();
@@ -188,7 +192,8 @@ fn sweep_and_prune(circles: &[Circle], pairs: &mut Pairs) {
 fn parry2d_tree(circles: &[Circle], pairs: &mut Pairs) {
     pairs.clear();
     let around = |circle: &Circle| {
-        let (centre, reach) = (ParryVector::new(circle.x, circle.y), ParryVector::new(circle.radius, circle.radius));
+        let centre = ParryVector::new(circle.x, circle.y);
+        let reach = ParryVector::new(circle.radius, circle.radius);
         Aabb::new(centre - reach, centre + reach)
     };
     let boxes = circles.iter().map(around).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! The charts of a study: error over run time, both logarithmic, one panel per set of items. SVG and PNG alike.
+//! The charts of a study as SVG and PNG: error over run time, both logarithmic, one panel per set of items.
 
 use std::ops::Range;
 use std::path::Path;
@@ -6,13 +6,13 @@ use std::path::Path;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-use super::measurement::{Axis, Measurement, scenes};
+use super::measurement::{Axis, Measurement, distinct};
 use crate::Result;
 use crate::analysis::plot::{file, font};
 
 const FONT: &str = font::NAME;
 
-/// Colours that the colour-blind can tell apart (Okabe and Ito 2008).
+/// Colours that colour-blind readers can distinguish (Okabe and Ito 2008).
 const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(230, 159, 0),
@@ -46,44 +46,33 @@ struct Panel<'a> {
     title: String,
     across: &'static str,
     up: &'static str,
-    rows: Vec<Point<'a>>,
+    rows: Vec<PanelPoint<'a>>,
 }
 
-struct Point<'a> {
+struct PanelPoint<'a> {
     x: f64,
     y: f64,
     row: &'a Measurement,
 }
 
-/// Error over run time for every scene. All candidate searches are exact: there it is run time over road users.
+/// The panels of an axis, one per scene: error over run time. All candidate searches are exact, so theirs show run time
+/// over the number of road users, one per kind of traffic.
 fn panels(axis: Axis, rows: &[Measurement]) -> Vec<Panel<'_>> {
     if axis == Axis::Candidates {
-        let mut kinds = scenes(rows).iter().filter_map(|scene| scene.split(", ").next()).collect::<Vec<_>>();
-        kinds.dedup();
-        let of = |kind: &str| {
-            let same = rows.iter().filter(|row| row.scene.starts_with(kind));
-            let rows = same.map(|row| Point { x: row.items as f64, y: row.ns_per_item, row }).collect();
-            Panel { title: kind.to_owned(), across: "road users", up: "ns per road user", rows }
+        let of = |traffic: &str| {
+            let same = rows.iter().filter(|row| row.traffic() == traffic);
+            let rows = same.map(|row| PanelPoint { x: row.items as f64, y: row.ns_per_item, row }).collect();
+            Panel { title: traffic.to_owned(), across: "road users", up: "ns per road user", rows }
         };
-        return kinds.into_iter().map(of).collect();
+        return distinct(rows.iter().map(Measurement::traffic)).into_iter().map(of).collect();
     }
-    let of = |scene: &&str| {
-        let same = rows.iter().filter(|row| row.scene == *scene);
-        let rows = same.map(|row| Point { x: row.ns_per_item, y: row.error, row }).collect::<Vec<_>>();
+    let of = |scene: &str| {
+        let same = rows.iter().filter(|row| row.scene == scene);
+        let rows = same.map(|row| PanelPoint { x: row.ns_per_item, y: row.error, row }).collect::<Vec<_>>();
         let up = rows.first().map_or("", |point| point.row.error_name);
-        Panel { title: (*scene).to_owned(), across: "ns per item", up, rows }
+        Panel { title: scene.to_owned(), across: "ns per item", up, rows }
     };
-    scenes(rows).iter().map(of).collect()
-}
-
-fn methods(rows: &[Measurement]) -> Vec<&'static str> {
-    let mut methods = Vec::new();
-    for row in rows {
-        if !methods.contains(&row.method) {
-            methods.push(row.method);
-        }
-    }
-    methods
+    distinct(rows.iter().map(|row| row.scene.as_str())).into_iter().map(of).collect()
 }
 
 fn page<DB: DrawingBackend>(
@@ -97,7 +86,7 @@ where
     DB::ErrorType: 'static,
 {
     area.fill(&WHITE)?;
-    let methods = methods(rows);
+    let methods = distinct(rows.iter().map(|row| row.method));
     let height = area.dim_in_pixel().1 - LEGEND;
     let (charts, legend) = area.split_vertically(height);
     for (panel, place) in panels.iter().zip(charts.split_evenly((panels.len().div_ceil(columns), columns))) {
@@ -118,7 +107,7 @@ where
     DB::ErrorType: 'static,
 {
     let floor = floor(panel);
-    let height = |point: &Point| if point.y > 0.0 { point.y } else { floor };
+    let height = |point: &PanelPoint| if point.y > 0.0 { point.y } else { floor };
     let across = decades(panel.rows.iter().map(|point| point.x));
     let up = decades(panel.rows.iter().map(height));
     let mut chart = ChartBuilder::on(area)
@@ -183,23 +172,24 @@ where
     let place = (16, 14 + lines * 20);
     area.draw(&Circle::new(place, 7, BLACK.stroke_width(1)))?;
     let note = match axis {
-        Axis::Candidates => "what closecall does; no method loses a pair",
-        _ => "what closecall does; grey: the Pareto front; left and below is better",
+        Axis::Candidates => "closecall's choice; no method loses a pair",
+        _ => "closecall's choice; grey: the Pareto front; lower left is better",
     };
     area.draw(&Text::new(note, (place.0 + 12, place.1 - 7), (FONT, 13)))?;
     Ok(())
 }
 
-/// Where no error at all is drawn: a decade below the smallest.
+/// The height at which an error of 0 is drawn: a decade below the smallest.
 fn floor(panel: &Panel) -> f64 {
     let errors = panel.rows.iter().map(|point| point.y).filter(|error| *error > 0.0);
     let least = errors.fold(f64::INFINITY, f64::min);
     if least.is_finite() { 10_f64.powf(least.log10().floor() - 1.0) } else { 1e-3 }
 }
 
-/// Whole decades around these values.
+/// The whole decades around these values.
 fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    let mut low = f64::INFINITY;
+    let mut high = f64::NEG_INFINITY;
     for value in values {
         low = low.min(value.log10());
         high = high.max(value.log10());

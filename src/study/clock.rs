@@ -1,8 +1,8 @@
-//! Run times of several methods, taken in turns so that what slows the machine down slows all of them.
+//! Run times of several methods, measured in turns, so that a slow phase of the machine affects all of them.
 
 use std::time::Instant;
 
-/// A method to be timed: it works through all its items once.
+/// A method to be timed; its action processes all items once.
 pub(super) struct Timed<'a> {
     pub items: usize,
     pub action: Box<dyn FnMut() + 'a>,
@@ -14,7 +14,7 @@ impl<'a> Timed<'a> {
     }
 }
 
-/// The median time per item of each method in ns, over so many rounds in which each has its turn.
+/// The median time per item of each method in ns, over `rounds` in which each method runs once.
 pub(super) fn interleaved(methods: &mut [Timed], rounds: usize) -> Vec<f64> {
     let mut times = vec![Vec::with_capacity(rounds); methods.len()];
     for _ in 0..rounds {
@@ -27,7 +27,7 @@ pub(super) fn interleaved(methods: &mut [Timed], rounds: usize) -> Vec<f64> {
     times.iter_mut().map(|times| median(times)).collect()
 }
 
-/// The middle one; NaN of none.
+/// The middle value, the upper one of two; NaN if there is none.
 pub(super) fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)

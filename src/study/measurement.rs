@@ -1,4 +1,4 @@
-//! What the study measures: an axis for each choice, and a row for each method on each set of items.
+//! The study's data: an axis for each choice, and a row for each method on each set of items.
 
 use std::path::{Path, PathBuf};
 
@@ -7,26 +7,26 @@ use serde::Serialize;
 use crate::Result;
 use crate::util::units::Second;
 
-/// A choice that closecall makes.
+/// A choice in closecall's design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Axis {
-    /// How to decide whether two rectangles touch.
+    /// The test whether two rectangles touch.
     Volume,
-    /// How to find the pairs that are near each other.
+    /// The search for pairs that are near each other.
     Candidates,
-    /// Positions checked now and then, or swept.
+    /// Positions checked at intervals, or swept.
     Time,
-    /// Model of μ, or the braking equations integrated.
+    /// The model of μ, or integration of the braking equations.
     Braking,
-    /// f32 or f64, and from which origin.
+    /// f32 or f64, and the origin of coordinates.
     Numbers,
-    /// Where a road user will go.
+    /// The prediction of a road user's path.
     Path,
 }
 
 impl Axis {
-    /// All of them, in the order of the flow from a pair to its path.
+    /// All axes, in the order of tables and charts.
     pub const ALL: [Self; 6] = [Self::Volume, Self::Candidates, Self::Time, Self::Braking, Self::Numbers, Self::Path];
 
     /// The name in files and tables.
@@ -51,47 +51,54 @@ pub struct Measurement {
     pub method: &'static str,
     /// The set of items, and the method's own parameter if it has one.
     pub parameter: String,
-    /// What the error is.
+    /// The definition of the error.
     pub error_name: &'static str,
     /// The error, 0 for none.
     pub error: f64,
-    /// Share of what should be found that is not.
+    /// The share of true cases that the method misses.
     pub false_negative_rate: f64,
-    /// Share of what is found that should not be, or of what should not be found that is.
+    /// The share of false cases that the method reports, or of its reports that are false.
     pub false_positive_rate: f64,
-    /// Median run time.
+    /// The median run time per item.
     pub ns_per_item: f64,
-    /// How many items each run had.
+    /// The number of items of each run.
     pub items: usize,
     /// Whether no other method on the same items has less error in less time.
     pub on_pareto_front: bool,
-    /// The set of items: what may be compared with each other.
+    /// The set of items; only methods on the same set are compared.
     #[serde(skip)]
     pub scene: String,
-    /// Whether closecall does it so.
+    /// Whether this is closecall's choice.
     #[serde(skip)]
     pub default: bool,
 }
 
-/// What to measure, and with what.
+/// The extent of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Fewer items and repetitions: all axes within two minutes.
+    /// Fewer items and repetitions, so that all axes take less than two minutes.
     pub quick: bool,
-    /// The folder of the scenarios that the path axis runs.
+    /// The folder of the scenarios for the path axis.
     pub nets: PathBuf,
 }
 
-/// The scenes of these rows, in their order.
-pub(super) fn scenes(rows: &[Measurement]) -> Vec<&str> {
-    let mut scenes = Vec::new();
-    for row in rows {
-        if !scenes.contains(&row.scene.as_str()) {
-            scenes.push(row.scene.as_str());
+impl Measurement {
+    /// The kind of traffic of a scene of [`Axis::Candidates`], without its number of road users.
+    pub(super) fn traffic(&self) -> &str {
+        self.scene.split(", ").next().unwrap_or_default()
+    }
+}
+
+/// Each name once, in the order of first appearance.
+pub(super) fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut distinct = Vec::new();
+    for name in names {
+        if !distinct.contains(&name) {
+            distinct.push(name);
         }
     }
-    scenes
+    distinct
 }
 
 /// Runs a SUMO configuration up to a time and writes its fcd-output, every 0.1 s.
-pub type Record<'a> = dyn FnMut(&Path, &Path, Second) -> Result<()> + 'a;
+pub type Recorder<'a> = dyn FnMut(&Path, &Path, Second) -> Result<()> + 'a;

@@ -1,7 +1,7 @@
-//! Error against run time, for every choice that closecall makes: `closecall study`.
+//! Error against run time, for every choice in closecall's design: `closecall study`.
 //!
-//! Each axis is one choice. Its methods are run on the same items, in turns, in one process; what each gets wrong is
-//! found by a reference that knows none of them ([`crate::study::reference`], or where the vehicles really drove).
+//! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
+//! reference that is independent of all of them: [`reference`], or the paths that the vehicles really drove.
 
 mod braking;
 mod candidates;
@@ -22,13 +22,13 @@ use std::path::Path;
 
 use crate::{Error, Result};
 
-pub use measurement::{Axis, Measurement, Plan, Record};
+pub use measurement::{Axis, Measurement, Plan, Recorder};
 
 /// Measures one axis.
 ///
 /// # Errors
-/// Of the path axis: where SUMO cannot be run, or a recording not be read.
-pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Record>) -> Result<Vec<Measurement>> {
+/// For the path axis: if SUMO cannot be run, or a recording cannot be read.
+pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result<Vec<Measurement>> {
     let mut rows = match axis {
         Axis::Volume => volume::measure(plan),
         Axis::Candidates => candidates::measure(plan),
@@ -67,7 +67,7 @@ pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
 
 /// Marks the rows that no other row of the same scene beats in error, time or both.
 fn mark_fronts(rows: &mut [Measurement]) {
-    /// Run times that differ by less are the same: medians repeat to about this.
+    /// Run times whose ratio is smaller are equal: repeated medians differ by about this.
     const SAME_TIME: f64 = 1.05;
     let beats = |other: &Measurement, row: &Measurement| {
         let faster = other.ns_per_item * SAME_TIME < row.ns_per_item;
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_holds_what_nothing_beats() {
+    fn the_front_holds_every_method_that_none_beats() {
         let mut rows = vec![row("fast", 0.1, 1.0), row("exact", 0.0, 5.0), row("neither", 0.1, 6.0)];
         mark_fronts(&mut rows);
         assert_eq!(rows.iter().map(|row| row.on_pareto_front).collect::<Vec<_>>(), [true, true, false]);

@@ -1,18 +1,18 @@
-//! `study.md`: every axis as a table, the default marked, and what to read from it.
+//! `study.md`: every axis as a table with closecall's choice marked.
 
 use std::fmt::Write;
 
 use super::clock::machine;
-use super::measurement::{Axis, Measurement, scenes};
+use super::measurement::{Axis, Measurement, distinct};
 
-/// What an axis asks, and against what its errors are.
+/// The question of an axis, and the reference of its errors.
 fn question(axis: Axis) -> [&'static str; 2] {
     match axis {
         Axis::Volume => ["Do two rectangles touch?", "exact arithmetic on the same f64 inputs"],
         Axis::Candidates => ["Which road users are near each other?", "every pair (from 10⁵ on: the sweep along x)"],
-        Axis::Time => ["When do two that move first touch?", "separating axes in 300-bit arithmetic"],
+        Axis::Time => ["When do two moving cars first touch?", "separating axes in 300-bit arithmetic"],
         Axis::Braking => ["How much room does the ego need?", "the braking equations solved in 300-bit arithmetic"],
-        Axis::Numbers => ["Which numbers, seen from where?", "exact arithmetic on the same f64 inputs"],
+        Axis::Numbers => ["Which type of number, and which origin?", "exact arithmetic on the same f64 inputs"],
         Axis::Path => ["Where will a road user go?", "where the recorded vehicles really drove"],
     }
 }
@@ -25,11 +25,11 @@ pub(super) fn of(rows: &[Measurement]) -> String {
         if of_axis.is_empty() {
             continue;
         }
-        let [asks, against] = question(axis);
+        let [question, reference] = question(axis);
         let name = axis.name();
         let _ = write!(
             text,
-            "\n## {name}: {asks}\n\nErrors against {against}. **Bold**: what closecall does; ●: on the Pareto front of \
+            "\n## {name}: {question}\n\nErrors against {reference}. **Bold**: closecall's choice; ●: on the Pareto front of \
              its items.\n\n![{name}]({name}.svg)\n\n| items | method | {} | missed | false | ns per item | |\n\
              |---|---|---|---|---|---|---|\n",
             error_names(&of_axis)
@@ -38,11 +38,11 @@ pub(super) fn of(rows: &[Measurement]) -> String {
             let _ = writeln!(text, "{}", line(row));
         }
         if axis == Axis::Candidates {
-            growth(&mut text, rows);
+            growth(&mut text, &of_axis);
         }
         let dominated = of_axis.iter().filter(|row| row.default && !row.on_pareto_front).collect::<Vec<_>>();
         for row in dominated {
-            let _ = writeln!(text, "\nThe default is off the front of \"{}\".", row.scene);
+            let _ = writeln!(text, "\nclosecall's choice is not on the front of \"{}\".", row.scene);
         }
     }
     text
@@ -83,30 +83,52 @@ fn share(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{} %", number(100.0 * value)) }
 }
 
-/// How the time per step grows with the number of road users, from one decade to the next.
-fn growth(text: &mut String, rows: &[Measurement]) {
+/// The growth of the time per step with the number of road users, between the two largest numbers of each method.
+fn growth(text: &mut String, rows: &[&Measurement]) {
     let _ = write!(
         text,
         "\nTime per step grows with the number of road users to the power of:\n\n| items | method | from | to | exponent |\n|---|---|---|---|---|\n"
     );
-    let of_axis = rows.iter().filter(|row| row.axis == Axis::Candidates).cloned().collect::<Vec<_>>();
-    let mut kinds = scenes(&of_axis).iter().filter_map(|scene| scene.split(", ").next()).collect::<Vec<_>>();
-    kinds.dedup();
-    for kind in kinds {
-        let mut methods = Vec::new();
-        for row in of_axis.iter().filter(|row| row.scene.starts_with(kind)) {
-            if !methods.contains(&row.method) {
-                methods.push(row.method);
-            }
-        }
-        for method in methods {
-            let same = of_axis.iter().filter(|row| row.method == method && row.scene.starts_with(kind));
-            let same = same.collect::<Vec<_>>();
-            if let [.., before, last] = same[..] {
+    for traffic in distinct(rows.iter().map(|row| row.traffic())) {
+        let of_traffic = rows.iter().filter(|row| row.traffic() == traffic);
+        for method in distinct(of_traffic.clone().map(|row| row.method)) {
+            let mut sizes = of_traffic.clone().filter(|row| row.method == method).collect::<Vec<_>>();
+            sizes.sort_by_key(|row| row.items);
+            sizes.dedup_by_key(|row| row.items);
+            if let [.., before, last] = sizes[..] {
                 let total = |row: &Measurement| row.ns_per_item * row.items as f64;
                 let exponent = (total(last) / total(before)).ln() / (last.items as f64 / before.items as f64).ln();
-                let _ = writeln!(text, "| {kind} | {method} | {} | {} | {exponent:.2} |", before.items, last.items);
+                let _ = writeln!(text, "| {traffic} | {method} | {} | {} | {exponent:.2} |", before.items, last.items);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::study::page::*;
+
+    #[test]
+    fn growth_has_one_line_per_traffic_and_method() {
+        let row = |method, items: usize| Measurement {
+            axis: Axis::Candidates,
+            method,
+            parameter: String::new(),
+            error_name: "",
+            error: 0.0,
+            false_negative_rate: 0.0,
+            false_positive_rate: 0.0,
+            ns_per_item: items as f64,
+            items,
+            on_pareto_front: false,
+            scene: format!("jam, {items}"),
+            default: false,
+        };
+        // The first method was too slow for 10⁴; the sizes of the second are out of order and one is repeated.
+        let rows = [row("a", 100), row("b", 10_000), row("a", 1000), row("b", 100), row("b", 1000), row("b", 10_000)];
+        let mut text = String::new();
+        growth(&mut text, &rows.iter().collect::<Vec<_>>());
+        let lines = text.lines().filter(|line| line.starts_with("| jam")).collect::<Vec<_>>();
+        assert_eq!(lines, ["| jam | a | 100 | 1000 | 2.00 |", "| jam | b | 1000 | 10000 | 2.00 |"]);
     }
 }

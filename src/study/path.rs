@@ -1,4 +1,4 @@
-//! Where a road user will go: the paper's rule and three path models, on recorded runs, against where it then went.
+//! Path prediction: the paper's rule and three path models on recorded runs, against the paths that followed.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -7,8 +7,8 @@ use std::time::Instant;
 use rustc_hash::FxHashMap;
 
 use super::clock::median;
-use super::driven::{Driven, Pair, Truth, pair};
-use super::measurement::{Axis, Measurement, Plan, Record};
+use super::driven::{DrivenTraces, IdPair, Truth, pair};
+use super::measurement::{Axis, Measurement, Plan, Recorder};
 use crate::input::replay::Replay;
 use crate::options::{Mode, Options, PathModel};
 use crate::run::Run;
@@ -23,37 +23,37 @@ const METHODS: [(&str, Mode, PathModel); 4] = [
     ("arc", Mode::Closecall, PathModel::Arc),
     (DEFAULT, Mode::Closecall, PathModel::Lanes),
 ];
-/// Scenarios with bends, crossings and opposite traffic; the first of them for a quick study.
+/// Scenarios with bends, crossings and oncoming traffic; a quick study uses the first three.
 const NETS: [&str; 6] = ["curves", "priority", "left_turn", "roundabout", "signals", "overtaking"];
-/// Every so many steps of 0.1 s are compared: those between differ little.
+/// One of this many steps of 0.1 s is compared; those in between differ little.
 const EVERY: u64 = 10;
-/// Gaps that differ by less are the same: a recording has nine digits.
+/// Gaps that differ by less are equal: a recording has nine digits.
 const ROUNDING: Metre = 1e-6;
 
-pub(super) fn measure(plan: &Plan, record: &mut Record) -> Result<Vec<Measurement>> {
+pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..3], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
     let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
     let measured = nets.iter().map(|net| {
-        let scene = Scene::record(plan, net, scratch.path(), end, record)?;
+        let scene = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
         scene.measure(rounds)
     });
     Ok(measured.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
 /// A recorded run of a scenario.
-struct Scene {
+struct RecordedScenario {
     name: &'static str,
     recording: PathBuf,
     types: Vec<PathBuf>,
     net: Arc<Net>,
-    driven: Driven,
+    driven: DrivenTraces,
 }
 
 /// The gap of every pair in conflict, by step.
-type Found = Vec<FxHashMap<Pair, Metre>>;
+type GapsByStep = Vec<FxHashMap<IdPair, Metre>>;
 
-impl Scene {
-    fn record(plan: &Plan, name: &'static str, scratch: &Path, end: Second, record: &mut Record) -> Result<Self> {
+impl RecordedScenario {
+    fn record(plan: &Plan, name: &'static str, scratch: &Path, end: Second, record: &mut Recorder) -> Result<Self> {
         let folder = plan.nets.join(name);
         let recording = scratch.join(format!("{name}.fcd.xml"));
         record(&folder.join(format!("{name}.sumocfg")), &recording, end)?;
@@ -62,15 +62,16 @@ impl Scene {
             name,
             types: vec![file("rou.xml")],
             net: Arc::new(Net::read(&file("net.xml"))?),
-            driven: Driven::read(&recording)?,
+            driven: DrivenTraces::read(&recording)?,
             recording,
         })
     }
 
     fn measure(&self, rounds: usize) -> Result<Vec<Measurement>> {
         let mut times = vec![Vec::new(); METHODS.len()];
-        let mut found = vec![Found::new(); METHODS.len()];
-        let (mut truth, mut items) = (Vec::new(), 0);
+        let mut found = vec![GapsByStep::new(); METHODS.len()];
+        let mut truth = Vec::new();
+        let mut items = 0;
         for round in 0..rounds {
             for (index, (_, mode, path)) in METHODS.into_iter().enumerate() {
                 let options = Options { mode, path, ..Options::default() };
@@ -78,7 +79,9 @@ impl Scene {
                 let mut replay = Replay::open(&self.recording, &self.types, &self.net, &options)?;
                 let mut run = Run::new(&options, Some(self.net.clone()))?;
                 run.set_fixed_routes(true);
-                let (mut rows, mut steps, mut aside) = (0, 0_u64, 0.0);
+                let mut rows = 0;
+                let mut steps = 0_u64;
+                let mut aside = 0.0;
                 while replay.next(&mut run)?.is_some() {
                     rows += run.frame.len();
                     steps += 1;
@@ -103,7 +106,7 @@ impl Scene {
                 ("share of conflicts missed or invented", score.wrong(), self.name.to_owned()),
                 ("median error of the gap, m", score.gap_error, format!("{}, gap", self.name)),
             ];
-            // Without a single pair that both found there is no gap to be right about.
+            // The gap can only be compared for conflicts that were found.
             let errors = errors.into_iter().take(if score.right > 0 { 2 } else { 1 });
             measured.extend(errors.map(|(error_name, error, scene)| Measurement {
                 axis: Axis::Path,
@@ -124,11 +127,11 @@ impl Scene {
     }
 }
 
-fn conflicts(run: &Run) -> FxHashMap<Pair, Metre> {
+fn conflicts(run: &Run) -> FxHashMap<IdPair, Metre> {
     run.in_conflict().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
 }
 
-/// What a method found, beside what was.
+/// A method's results against the truth.
 struct Score {
     right: usize,
     missed: usize,
@@ -137,8 +140,11 @@ struct Score {
 }
 
 impl Score {
-    fn of(found: &Found, truth: &[FxHashMap<Pair, Truth>]) -> Self {
-        let (mut right, mut missed, mut invented, mut gaps) = (0, 0, 0, Vec::new());
+    fn of(found: &GapsByStep, truth: &[FxHashMap<IdPair, Truth>]) -> Self {
+        let mut right = 0;
+        let mut missed = 0;
+        let mut invented = 0;
+        let mut gaps = Vec::new();
         for (found, truth) in found.iter().zip(truth) {
             for (pair, truth) in truth {
                 match (truth, found.get(pair)) {
@@ -149,7 +155,7 @@ impl Score {
                     }
                     (Truth::Conflict(_), None) => missed += 1,
                     (Truth::None, Some(_)) => invented += 1,
-                    (Truth::None, None) | (Truth::Aside, _) => {}
+                    (Truth::None, None) | (Truth::Unknown, _) => {}
                 }
             }
         }
@@ -157,7 +163,7 @@ impl Score {
         Self { right, missed, invented, gap_error }
     }
 
-    /// The share of all that are or were said to be conflicts of which only one holds.
+    /// The share of all true or reported conflicts that were missed or invented.
     fn wrong(&self) -> f64 {
         (self.missed + self.invented) as f64 / (self.right + self.missed + self.invented).max(1) as f64
     }

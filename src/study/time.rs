@@ -1,4 +1,4 @@
-//! ContactInterval of two that move: looked for now and then, or swept.
+//! The first contact of two moving cars: checked at intervals, or swept.
 
 use std::hint::black_box;
 
@@ -15,20 +15,21 @@ use crate::util::units::{MetrePerSecond, Radian, Second};
 
 const LENGTH: f64 = 4.6;
 const WIDTH: f64 = 1.8;
-/// Steps of the discrete check, in s: as in games, as in SUMO's finest nets, as by default.
+/// Steps of the discrete check in s, from those of games to SUMO's default.
 const STEPS: [Second; 5] = [0.01, 0.03, 0.1, 0.3, 1.0];
-/// Closing speeds in m/s: in town, in the country, and two that race towards each other.
+/// Closing speeds in m/s: in town, in the country, and head-on at high speed.
 const SPEEDS: [(&str, MetrePerSecond, MetrePerSecond); 3] =
     [("closing at 1 to 15 m/s", 1.0, 15.0), ("15 to 50 m/s", 15.0, 50.0), ("50 to 140 m/s", 50.0, 140.0)];
 
+/// A car that keeps its speed and heading.
 #[derive(Clone, Copy)]
-struct Moving {
+struct StraightCar {
     pose: [Pose; 1],
     speed: MetrePerSecond,
 }
 
-impl Moving {
-    /// One that is at `place`, `arrives` s from now.
+impl StraightCar {
+    /// The car that reaches `place` in `arrives` s.
     fn towards(place: Point, heading: Radian, speed: MetrePerSecond, arrives: Second) -> Self {
         let axis = direction(heading);
         Self { pose: [Pose { distance: 0.0, front: place - axis * (speed * arrives), axis }], speed }
@@ -44,28 +45,30 @@ impl Moving {
     }
 }
 
-type Pair = (Moving, Moving);
+type CarPair = (StraightCar, StraightCar);
 
-/// Two whose ways cross near the origin, at about the same time.
-fn pair(chance: &mut Chance, low: MetrePerSecond, high: MetrePerSecond) -> Pair {
-    let (closing, share, arrives) = (chance.between(low, high), chance.between(0.0, 1.0), chance.between(0.5, 9.0));
+/// Two cars that cross near the origin at about the same time.
+fn pair(chance: &mut Chance, low: MetrePerSecond, high: MetrePerSecond) -> CarPair {
+    let closing = chance.between(low, high);
+    let share = chance.between(0.0, 1.0);
+    let arrives = chance.between(0.5, 9.0);
     let turn = std::f64::consts::PI * chance.between(0.4, 1.0);
-    let first = Moving::towards(Point::origin(), 0.0, closing * share, arrives);
+    let first = StraightCar::towards(Point::origin(), 0.0, closing * share, arrives);
     let aside = Point::new(chance.between(-3.0, 3.0), chance.between(-3.0, 3.0));
-    (first, Moving::towards(aside, turn, closing * (1.0 - share), arrives))
+    (first, StraightCar::towards(aside, turn, closing * (1.0 - share), arrives))
 }
 
-fn discrete((a, b): &Pair, step: Second) -> Option<Second> {
+fn discrete((a, b): &CarPair, step: Second) -> Option<Second> {
     let steps = (HORIZON / step).round() as u32;
     (0..=steps).map(|number| f64::from(number) * step).find(|time| touches(&a.rectangle(*time), &b.rectangle(*time)))
 }
 
-fn swept((a, b): &Pair) -> Option<Second> {
+fn swept((a, b): &CarPair) -> Option<Second> {
     time_to_collision(&a.course(), &b.course())
 }
 
-fn truth((a, b): &Pair) -> Option<Second> {
-    let velocity = |moving: &Moving| moving.pose[0].axis * moving.speed;
+fn truth((a, b): &CarPair) -> Option<Second> {
+    let velocity = |moving: &StraightCar| moving.pose[0].axis * moving.speed;
     let found = contact::first_contact(&a.rectangle(0.0), velocity(a) - velocity(b), &b.rectangle(0.0));
     found.map(|time| nearest(&time)).filter(|time| *time <= HORIZON)
 }
@@ -79,7 +82,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
         let truth = pairs.iter().map(truth).collect::<Vec<_>>();
         let discretes = STEPS.map(|step| ("discrete", format!(", every {step} s"), Some(step)));
         let methods = discretes.into_iter().chain([("swept", String::new(), None)]).collect::<Vec<_>>();
-        let find = |step: Option<Second>, pair: &Pair| step.map_or_else(|| swept(pair), |step| discrete(pair, step));
+        let find = |step: Option<Second>, pair: &CarPair| step.map_or_else(|| swept(pair), |step| discrete(pair, step));
         let mut timed = methods
             .iter()
             .map(|(_, _, step)| Timed::new(count, || pairs.iter().for_each(|pair| _ = black_box(find(*step, pair)))))
@@ -88,7 +91,8 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
         drop(timed);
         for ((name, parameter, step), ns_per_item) in methods.into_iter().zip(times) {
             let found = pairs.iter().map(|pair| find(step, pair)).collect::<Vec<_>>();
-            let (mut late, mut both) = (0.0, 0);
+            let mut late = 0.0;
+            let mut both = 0;
             for (found, truth) in found.iter().zip(&truth) {
                 if let (Some(found), Some(truth)) = (found, truth) {
                     late += (found - truth).abs();

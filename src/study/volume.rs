@@ -1,8 +1,8 @@
-//! Whether two rectangles touch: from bounding spheres to the exact predicate, on ordinary pairs and on hard ones.
+//! Tests whether two rectangles touch, from bounding spheres to the exact predicate, on ordinary and on hard pairs.
 
 use parry2d_f64::query;
 
-use super::decisions::{self, Method, Pair};
+use super::decisions::{self, ContactTest, RectanglePair};
 use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
 use super::reference::pairs;
@@ -11,7 +11,7 @@ use crate::geometry::contact::{plainly_touches, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Vector, parry};
 
-type Family = (&'static str, fn(&mut Chance) -> Pair);
+type Family = (&'static str, fn(&mut Chance) -> RectanglePair);
 
 const FAMILIES: [Family; 5] = [
     ("random", pairs::random),
@@ -22,7 +22,7 @@ const FAMILIES: [Family; 5] = [
 ];
 
 const DEFAULT: &str = "exact predicate";
-const METHODS: [Method; 7] = [
+const METHODS: [ContactTest; 7] = [
     ("bounding sphere", |(a, b)| spheres(a, b)),
     ("AABB", |(a, b)| boxes(a, b)),
     ("8-DOP", |(a, b)| octagons(a, b)),
@@ -47,7 +47,7 @@ fn boxes(a: &Rectangle, b: &Rectangle) -> bool {
     a.bounds().meet(&b.bounds())
 }
 
-/// Boxes along the axes, and along the diagonals (k-DOP with k = 8; Klosowski et al. 1998).
+/// Boxes along the axes and along the diagonals (k-DOP with k = 8; Klosowski et al. 1998).
 fn octagons(a: &Rectangle, b: &Rectangle) -> bool {
     let between = b.centre - a.centre;
     boxes(a, b)

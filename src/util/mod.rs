@@ -2,6 +2,7 @@
 
 pub(crate) mod decimal;
 pub mod double_double;
+pub(crate) mod golden_section;
 pub(crate) mod input_file;
 pub mod threads;
 pub mod tight_vec;

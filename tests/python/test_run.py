@@ -241,7 +241,7 @@ def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Pa
     assert f"{killed.rstrip().count(chr(10)) - 1} conflicts" in report.stdout + report.stderr
     stats = closecall("stats", tmp_path)
     assert stats.returncode == 0, stats.stderr
-    assert "killed: the run has no result: it was killed, or goes on" in stats.stdout + stats.stderr
+    assert "killed: the run has no result: it was killed, or is still running" in stats.stdout + stats.stderr
 
 
 def test_a_libsumo_that_needs_a_blocked_module_gets_it() -> None:

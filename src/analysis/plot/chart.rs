@@ -1,4 +1,4 @@
-//! What every chart shares: the ink, the colours of severities, and how to draw one on any backend.
+//! Shared by all charts: the ink, the colours of severities, and the trait that draws on any backend.
 
 use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor};
@@ -6,7 +6,7 @@ use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor};
 use crate::analysis::dataset::Conflicts;
 use crate::detection::kind::Severity;
 
-/// What stands around a chart.
+/// The colour of text, axes and legends.
 pub(super) const INK: RGBColor = RGBColor(28, 33, 40);
 
 /// The colour of a severity, as on the report's light page.
@@ -18,9 +18,9 @@ pub(super) fn colour(severity: Severity) -> RGBColor {
     }
 }
 
-/// What can be drawn on any backend.
+/// A chart that any backend can draw.
 pub(super) trait Chart {
-    /// Draws it.
+    /// Draws the chart.
     fn draw<B: DrawingBackend>(
         &self,
         area: &DrawingArea<B, Shift>,
@@ -28,7 +28,7 @@ pub(super) trait Chart {
     ) -> std::result::Result<(), String>;
 }
 
-/// A backend's error in words.
-pub(super) fn said(error: impl std::fmt::Display) -> String {
+/// A backend's error as text.
+pub(super) fn message(error: impl std::fmt::Display) -> String {
     error.to_string()
 }

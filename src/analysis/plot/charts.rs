@@ -5,51 +5,51 @@ use plotters::coord::Shift;
 use plotters::prelude::{Color, DashedLineSeries, DrawingArea, DrawingBackend, Rectangle, Text, WHITE};
 use plotters::style::{IntoFont, TextStyle};
 
-use super::chart::{Chart, INK, colour, said};
+use super::chart::{Chart, INK, colour, message};
 use super::font;
 use crate::analysis::dataset::Conflicts;
 use crate::detection::kind::Severity;
 use crate::util::units::Second;
 
-/// Bars of a distribution.
+/// The number of bars of a distribution.
 const BARS: f64 = 30.0;
-/// The share of the values that the axis covers; what is beyond counts in the last bar.
+/// The share of the values that the axis covers; values beyond it count in the last bar.
 const COVERED: f64 = 0.99;
-/// Widths of a bar of the time line, in s, and how many bars there are at most.
+/// The possible widths of the time line's bars, in s, and the greatest number of bars.
 const WIDTHS: [Second; 16] =
     [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 900.0, 1800.0, 3600.0, 7200.0, 14400.0, 86400.0];
 const MOST_BARS: f64 = 80.0;
-/// A run of so many seconds and more is counted by the minute at least.
+/// From this duration on, the bars of the time line are at least a minute wide.
 const LONG: Second = 1200.0;
 
-/// Room above a chart for its legend and the words at a threshold, in pixels.
+/// The margin above a chart, for the legend and the label of a threshold, in pixels.
 const TOP: i32 = 76;
-/// Where the legend begins, and how far its entries are apart, in pixels.
+/// The position of the legend's first entry and the distance between entries, in pixels.
 const LEGEND: (i32, i32) = (122, 140);
 
-/// What is distributed.
-pub struct Measure {
+/// A measure whose distribution has a chart.
+pub struct ChartedMeasure {
     /// The column, and the file's name.
     pub name: &'static str,
     title: &'static str,
 }
 
-/// The measures that have a chart, as on the report's page.
-pub const MEASURES: [Measure; 5] = [
-    Measure { name: "ttc", title: "Time to collision (TTC), s" },
-    Measure { name: "drac", title: "Deceleration to avoid it (DRAC), m/s²" },
-    Measure { name: "pet", title: "Post-encroachment time (PET), s" },
-    Measure { name: "margin", title: "Margin: gap − μ, m" },
-    Measure { name: "delta_v", title: "Speed change in a collision (ΔV), m/s" },
+/// The measures that have a chart, the same as on the report's page.
+pub const MEASURES: [ChartedMeasure; 5] = [
+    ChartedMeasure { name: "ttc", title: "Time to collision (TTC), s" },
+    ChartedMeasure { name: "drac", title: "Deceleration to avoid it (DRAC), m/s²" },
+    ChartedMeasure { name: "pet", title: "Post-encroachment time (PET), s" },
+    ChartedMeasure { name: "margin", title: "Margin: gap − μ, m" },
+    ChartedMeasure { name: "delta_v", title: "Speed change in a collision (ΔV), m/s" },
 ];
 
 /// Conflicts over time.
 pub struct TimeLine;
 
 /// The distribution of one measure.
-pub struct Distribution(pub &'static Measure);
+pub struct Distribution(pub &'static ChartedMeasure);
 
-/// Bars next to each other, from `low` on.
+/// Adjacent bars, the first of which begins at `low`.
 struct Bars {
     low: f64,
     width: f64,
@@ -63,7 +63,7 @@ impl Bars {
         Self { low, width, counts: vec![[0; 3]; many] }
     }
 
-    /// Counts a value; what is beyond the axis counts in the bar at its end.
+    /// Counts a value; values beyond the axis count in the bar at its end.
     fn add(&mut self, value: f64, severity: Severity) {
         let bar = ((value - self.low) / self.width).floor().clamp(0.0, self.counts.len() as f64 - 1.0);
         self.counts[bar as usize][severity as usize] += 1;
@@ -90,7 +90,7 @@ impl Chart for Distribution {
         sizes.sort_by(f64::total_cmp);
         let covered = sizes.get((COVERED * sizes.len() as f64) as usize).or(sizes.last()).copied().unwrap_or(1.0);
         let furthest = round_up(covered.max(threshold.map_or(0.0, |threshold| threshold * 1.3)));
-        // A threshold lies between two bars.
+        // The width is chosen so that a threshold lies between two bars.
         let width = threshold.map_or(furthest / BARS, |at| at / (at * BARS / furthest).round().max(1.0));
         let reach = (furthest / width - 1e-9).ceil() * width;
         let (low, high) = if self.0.name == "margin" { (-reach, 0.0) } else { (0.0, reach) };
@@ -119,7 +119,7 @@ fn draw<B: DrawingBackend>(
         .x_label_area_size(72)
         .y_label_area_size(96)
         .build_cartesian_2d(bars.low..end, 0.0..top)
-        .map_err(said)?;
+        .map_err(message)?;
     chart
         .configure_mesh()
         .disable_x_mesh()
@@ -133,7 +133,7 @@ fn draw<B: DrawingBackend>(
         .x_label_formatter(&|value| ((value * 100.0).round() / 100.0 + 0.0).to_string().replace('-', "−"))
         .y_label_formatter(&|value| format!("{value:.0}"))
         .draw()
-        .map_err(said)?;
+        .map_err(message)?;
     for severity in Severity::ALL {
         let blocks = bars.counts.iter().enumerate().filter(|(_, counts)| counts[severity as usize] > 0);
         let blocks = blocks.map(|(bar, counts)| {
@@ -143,21 +143,21 @@ fn draw<B: DrawingBackend>(
             let other = (left + 0.96 * bars.width, f64::from(below + counts[severity as usize]));
             Rectangle::new([corner, other], colour(severity).filled())
         });
-        chart.draw_series(blocks).map_err(said)?;
+        chart.draw_series(blocks).map_err(message)?;
         let x = LEGEND.0 + LEGEND.1 * severity as i32;
-        area.draw(&Rectangle::new([(x, 16), (x + 16, 32)], colour(severity).filled())).map_err(said)?;
-        area.draw(&Text::new(severity.name(), (x + 26, 14), font(24))).map_err(said)?;
+        area.draw(&Rectangle::new([(x, 16), (x + 16, 32)], colour(severity).filled())).map_err(message)?;
+        area.draw(&Text::new(severity.name(), (x + 26, 14), font(24))).map_err(message)?;
     }
     if let Some((at, words)) = threshold {
         let line = [(at, 0.0), (at, top)];
-        chart.draw_series(DashedLineSeries::new(line, 8, 6, INK.stroke_width(2))).map_err(said)?;
+        chart.draw_series(DashedLineSeries::new(line, 8, 6, INK.stroke_width(2))).map_err(message)?;
         let (x, y) = chart.backend_coord(&(at, top));
-        area.draw(&Text::new(format!("{words} {at}"), (x + 4, y - 26), font(22))).map_err(said)?;
+        area.draw(&Text::new(format!("{words} {at}"), (x + 4, y - 26), font(22))).map_err(message)?;
     }
     Ok(())
 }
 
-/// A round number that is not below this.
+/// The least round number that is not below this.
 fn round_up(value: f64) -> f64 {
     let power = 10_f64.powf(value.max(1e-3).log10().floor());
     let digits = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
@@ -169,7 +169,7 @@ mod tests {
     use crate::analysis::plot::charts::*;
 
     #[test]
-    fn what_is_beyond_the_axis_counts_at_its_end() {
+    fn values_beyond_the_axis_count_at_its_end() {
         let mut bars = Bars::new(0.0, 10.0, 2.0);
         for value in [-1.0, 1.0, 9.9, 10.0, 99.0] {
             bars.add(value, Severity::Serious);

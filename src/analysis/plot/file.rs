@@ -1,4 +1,4 @@
-//! A picture, drawn in memory, as a file: what is wrong with the file is told in the system's own words.
+//! Pictures are drawn in memory and then written, so that an error in writing carries the system's own message.
 
 use std::fmt::Display;
 use std::fs::{self, File};
@@ -10,7 +10,7 @@ use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend}
 
 use crate::{Error, Result};
 
-/// Pixels of red, green and blue, a byte each, as PNG.
+/// Writes a PNG with red, green and blue of one byte each.
 ///
 /// # Errors
 /// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
@@ -20,7 +20,7 @@ pub(crate) fn png<E: Display>(
     draw: impl FnOnce(DrawingArea<BitMapBackend<'_>, Shift>) -> std::result::Result<(), E>,
 ) -> Result<()> {
     let mut pixels = vec![0; 3 * size.0 as usize * size.1 as usize];
-    draw(BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area()).map_err(|said| undrawn(path, &said))?;
+    draw(BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area()).map_err(|error| undrawn(path, &error))?;
     let file = File::create(path).map_err(|source| Error::file(path, source))?;
     let mut encoder = png::Encoder::new(BufWriter::new(file), size.0, size.1);
     encoder.set_color(png::ColorType::Rgb);
@@ -31,7 +31,7 @@ pub(crate) fn png<E: Display>(
     written.map_err(|error| Error::file(path, error.into()))
 }
 
-/// Lines and text as SVG.
+/// Writes an SVG.
 ///
 /// # Errors
 /// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
@@ -41,10 +41,10 @@ pub(crate) fn svg<E: Display>(
     draw: impl FnOnce(DrawingArea<SVGBackend<'_>, Shift>) -> std::result::Result<(), E>,
 ) -> Result<()> {
     let mut text = String::new();
-    draw(SVGBackend::with_string(&mut text, size).into_drawing_area()).map_err(|said| undrawn(path, &said))?;
+    draw(SVGBackend::with_string(&mut text, size).into_drawing_area()).map_err(|error| undrawn(path, &error))?;
     fs::write(path, text).map_err(|source| Error::file(path, source))
 }
 
-fn undrawn(path: &Path, said: &impl Display) -> Error {
-    Error::content(path, format!("it cannot be drawn: {said}"))
+fn undrawn(path: &Path, message: &impl Display) -> Error {
+    Error::content(path, format!("it cannot be drawn: {message}"))
 }

@@ -1,19 +1,19 @@
-//! The font of all pictures, within the program: nothing has to be installed.
+//! The font of all pictures, part of the program, so that none has to be installed.
 
 use plotters::style::{FontStyle, register_font};
 
 use crate::{Error, Result};
 
-/// DejaVu Sans, cut down to Latin, Greek and what formulas need.
+/// DejaVu Sans, reduced to Latin, Greek and the signs of formulas.
 const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
-/// Its name in the pictures; an SVG viewer takes its own font of that name, or its own sans-serif.
+/// The font's name in the pictures; an SVG viewer uses its own font of that name, or its own sans-serif.
 pub(crate) const NAME: &str = "DejaVu Sans, sans-serif";
 
-/// Makes the font known to the drawing library.
+/// Registers the font with the drawing library.
 ///
 /// # Errors
-/// [`Error::Value`] where the library does not take it.
+/// [`Error::Value`] if the library rejects it.
 pub(crate) fn register() -> Result<()> {
-    let said = |_| Error::Value("the font of the pictures cannot be used".to_owned());
-    register_font(NAME, FontStyle::Normal, FONT).map_err(said)
+    let rejected = |_| Error::Value("the font of the pictures cannot be used".to_owned());
+    register_font(NAME, FontStyle::Normal, FONT).map_err(rejected)
 }

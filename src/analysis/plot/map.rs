@@ -1,4 +1,4 @@
-//! The net and the conflicts on it: signs by kind, colours by severity, a bar for the scale.
+//! The map: the net, and a sign for each conflict with a shape by kind and a colour by severity; below, legend and scale.
 
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -6,7 +6,7 @@ use plotters::prelude::{
 };
 use plotters::style::{IntoFont, TextStyle};
 
-use super::chart::{Chart, INK, colour, said};
+use super::chart::{Chart, INK, colour, message};
 use super::font;
 use crate::analysis::dataset::Conflicts;
 use crate::detection::kind::{Kind, Severity};
@@ -15,7 +15,7 @@ use crate::traffic::net::{EdgeFunction, Net};
 
 const ROAD: RGBColor = RGBColor(0xc3, 0xc9, 0xd0);
 const JUNCTION: RGBColor = RGBColor(0xb9, 0xbf, 0xc6);
-/// Free room around the net, and the height of the legend below it, in pixels.
+/// The margin around the net, and the height of the legend below it, in pixels.
 const ROOM: f64 = 30.0;
 const LEGEND: f64 = 60.0;
 /// Radius of a sign, in pixels.
@@ -24,7 +24,7 @@ const SIGN: i32 = 6;
 /// The map.
 pub struct Map;
 
-/// From places to pixels, a metre being equally long both ways.
+/// The projection from the net to pixels, with the same scale on both axes.
 struct View {
     low: Point,
     scale: f64,
@@ -34,7 +34,8 @@ struct View {
 impl View {
     fn of(bounds: Bounds, (width, height): (u32, u32)) -> Self {
         let extent = bounds.high - bounds.low;
-        let (wide, high) = (f64::from(width) - 2.0 * ROOM, f64::from(height) - 2.0 * ROOM - LEGEND);
+        let wide = f64::from(width) - 2.0 * ROOM;
+        let high = f64::from(height) - 2.0 * ROOM - LEGEND;
         let scale = (wide / extent.x.max(1.0)).min(high / extent.y.max(1.0));
         let aside = (wide - extent.x * scale) / 2.0;
         let below = (high - extent.y * scale) / 2.0;
@@ -77,11 +78,11 @@ impl Chart for Map {
 
 fn roads<B: DrawingBackend>(area: &DrawingArea<B, Shift>, net: &Net, view: &View) -> Result<(), String> {
     for junction in net.junctions.iter().filter(|junction| junction.shape.len() > 2) {
-        area.draw(&Polygon::new(view.pixels(&junction.shape), JUNCTION.filled())).map_err(said)?;
+        area.draw(&Polygon::new(view.pixels(&junction.shape), JUNCTION.filled())).map_err(message)?;
     }
     for lane in net.lanes.iter().filter(|lane| net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal) {
         let width = ((lane.width - 0.25) * view.scale).round().max(1.0) as u32;
-        area.draw(&PathElement::new(view.pixels(&lane.shape), ROAD.stroke_width(width))).map_err(said)?;
+        area.draw(&PathElement::new(view.pixels(&lane.shape), ROAD.stroke_width(width))).map_err(message)?;
     }
     Ok(())
 }
@@ -103,13 +104,14 @@ fn sign<B: DrawingBackend>(
             area.draw(&Polygon::new(corners.to_vec(), style))
         }
     };
-    drawn.map_err(said)
+    drawn.map_err(message)
 }
 
 fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, view: &View) -> Result<(), String> {
     let y = area.dim_in_pixel().1 as i32 - 35;
     let style = TextStyle::from((font::NAME, 24).into_font()).color(&INK);
-    let text = |words: &str, x: i32| area.draw(&Text::new(words.to_owned(), (x, y - 10), style.clone())).map_err(said);
+    let text =
+        |words: &str, x: i32| area.draw(&Text::new(words.to_owned(), (x, y - 10), style.clone())).map_err(message);
     let mut x = ROOM as i32 + 10;
     for kind in Kind::ALL {
         sign(area, kind, Severity::Caution, (x, y))?;
@@ -122,13 +124,14 @@ fn legend<B: DrawingBackend>(area: &DrawingArea<B, Shift>, view: &View) -> Resul
         x += 150;
     }
     let length = round_length(200.0 / view.scale);
-    let (from, to) = (x, x + (length * view.scale).round() as i32);
+    let from = x;
+    let to = x + (length * view.scale).round() as i32;
     let bar = [(from, y - 6), (from, y), (to, y), (to, y - 6)];
-    area.draw(&PathElement::new(bar.to_vec(), INK.stroke_width(2))).map_err(said)?;
+    area.draw(&PathElement::new(bar.to_vec(), INK.stroke_width(2))).map_err(message)?;
     text(&format!("{length} m"), to + 12)
 }
 
-/// The longest of 1, 2, 5, 10, … that is not longer than this.
+/// The greatest of 1, 2, 5, 10, … that is not above this.
 fn round_length(longest: f64) -> f64 {
     let power = 10_f64.powf(longest.max(1e-3).log10().floor());
     [5.0, 2.0, 1.0].into_iter().map(|digit| digit * power).find(|length| *length <= longest).unwrap_or(power)

@@ -1,7 +1,7 @@
 //! `closecall plot`: the report's charts as PNG or SVG, for papers.
 //!
-//! Map, time line and distributions, each a file, with the colours of the report's light page. The font is within the
-//! crate: the same pictures on every machine.
+//! Map, time line and distributions become one file each, in the colours of the report's light page. The font is part of
+//! the crate, so the pictures are the same on every machine.
 
 mod chart;
 mod charts;
@@ -17,27 +17,27 @@ use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
 use super::dataset::{self, Conflicts};
 use crate::{Error, Result};
-use chart::{Chart, said};
+use chart::{Chart, message};
 
-/// Width and height of a map.
+/// Width and height of the map, in pixels.
 const MAP_SIZE: (u32, u32) = (1600, 1200);
-/// Width and height of any other chart.
+/// Width and height of the other charts, in pixels.
 const CHART_SIZE: (u32, u32) = (1200, 700);
 
-/// What sort of picture to write.
+/// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
-pub enum Format {
+pub enum PictureFormat {
     /// Pixels.
     Png,
     /// Lines and text.
     Svg,
 }
 
-/// Draws the charts of the logs in `folders` into `out`, which is made where it is not there; returns the files.
+/// Draws the charts of the logs in `folders` into the folder `out`, which is created if necessary; returns the files.
 ///
 /// # Errors
-/// As [`dataset::read`] has them, and [`Error::File`] where a picture cannot be written.
-pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: Format) -> Result<Vec<PathBuf>> {
+/// Those of [`dataset::read`], and [`Error::File`] if a picture cannot be written.
+pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: PictureFormat) -> Result<Vec<PathBuf>> {
     let conflicts = dataset::read(folders, net)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
     font::register()?;
@@ -49,22 +49,22 @@ pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: Format
     Ok(files)
 }
 
-/// Draws one chart into a file of its name.
+/// Draws one chart into the file `name` with the format's extension.
 fn picture(
     out: &Path,
     name: &str,
-    format: Format,
+    format: PictureFormat,
     size: (u32, u32),
     conflicts: &Conflicts,
     chart: impl Chart,
 ) -> Result<PathBuf> {
     let path = out.join(match format {
-        Format::Png => format!("{name}.png"),
-        Format::Svg => format!("{name}.svg"),
+        PictureFormat::Png => format!("{name}.png"),
+        PictureFormat::Svg => format!("{name}.svg"),
     });
     match format {
-        Format::Png => file::png(&path, size, |area| on(&area, conflicts, &chart))?,
-        Format::Svg => file::svg(&path, size, |area| on(&area, conflicts, &chart))?,
+        PictureFormat::Png => file::png(&path, size, |area| on(&area, conflicts, &chart))?,
+        PictureFormat::Svg => file::svg(&path, size, |area| on(&area, conflicts, &chart))?,
     }
     Ok(path)
 }
@@ -74,7 +74,7 @@ fn on<B: DrawingBackend>(
     conflicts: &Conflicts,
     chart: &impl Chart,
 ) -> std::result::Result<(), String> {
-    area.fill(&WHITE).map_err(said)?;
+    area.fill(&WHITE).map_err(message)?;
     chart.draw(area, conflicts)?;
-    area.present().map_err(said)
+    area.present().map_err(message)
 }

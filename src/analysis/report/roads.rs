@@ -1,5 +1,5 @@
-//! A net as the page draws it: lanes in groups of one look, junctions as areas, in centimetres, each point as its
-//! difference from the one before.
+//! A net as the page draws it: lanes grouped by look and width, junctions as areas. Coordinates are in centimetres, each
+//! point as its difference from the previous one.
 
 use std::collections::BTreeMap;
 
@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 use crate::geometry::Point;
 use crate::traffic::net::{EdgeFunction, Net};
 
-/// Centimetres in a metre: a coordinate takes few digits, and a lane is where it is.
+/// Centimetres per metre: short numbers, without a visible error.
 const SCALE: f64 = 100.0;
 
-/// The net's lanes and junctions.
+/// The net's lanes and junctions as JSON.
 pub fn json(net: &Net) -> Value {
     let mut groups = BTreeMap::<(&str, u32), Vec<&[Point]>>::new();
     for lane in &net.lanes {
@@ -21,7 +21,7 @@ pub fn json(net: &Net) -> Value {
             EdgeFunction::Crossing | EdgeFunction::WalkingArea => "walk",
             EdgeFunction::Connector => continue,
         };
-        // Walking areas are given by their outline, which their junction's area holds already.
+        // The shape of a walking area is its outline, which its junction's area already covers.
         if net.edges[lane.edge.0 as usize].function != EdgeFunction::WalkingArea {
             let decimetres = (lane.width * 10.0).round() as u32;
             groups.entry((look, decimetres)).or_default().push(&lane.shape);
@@ -34,7 +34,7 @@ pub fn json(net: &Net) -> Value {
     json!({ "lanes": lanes.collect::<Vec<_>>(), "junctions": lines(&junctions.collect::<Vec<_>>()) })
 }
 
-/// Lines as one list of whole numbers: the count of a line's points, then x and y of each.
+/// Lines as one list of whole numbers: for each line the number of points, then x and y of each point.
 fn lines(shapes: &[&[Point]]) -> Vec<i64> {
     let mut numbers = Vec::new();
     let (mut x, mut y) = (0, 0);
@@ -55,7 +55,8 @@ mod tests {
 
     #[test]
     fn a_line_is_its_count_and_differences() {
-        let (a, b) = ([Point::new(1.0, 2.0), Point::new(1.5, 2.0)], [Point::new(1.5, 0.0)]);
+        let a = [Point::new(1.0, 2.0), Point::new(1.5, 2.0)];
+        let b = [Point::new(1.5, 0.0)];
         assert_eq!(lines(&[&a, &b]), [2, 100, 200, 50, 0, 1, 0, -200]);
     }
 }

@@ -1,6 +1,6 @@
-//! One pass over the logs of a set of runs: counts per run, the values of each measure, the worst.
+//! One pass over the logs of a set of runs: counts per run, the values of each measure, the worst conflicts.
 //!
-//! What is kept of a conflict are four numbers (32 B), so that 10⁷ conflicts fit in 1 GiB.
+//! Each conflict leaves four numbers (32 B), so 10⁷ conflicts fit in 1 GiB.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,13 +16,13 @@ use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, log_fol
 use crate::detection::kind::{Kind, Severity};
 use crate::{Error, Result};
 
-/// The measures whose values are kept: the names in every output.
+/// The measures whose values are kept, by their names in every output.
 pub const MEASURES: [&str; 4] = ["ttc", "pet", "margin", "delta_v"];
 
 /// The values of the [`MEASURES`].
 pub type Columns = [Vec<f64>; MEASURES.len()];
 
-/// How many conflicts there were in each run: the runs that had any, in their order.
+/// The number of conflicts per run, for the runs that had any, in the order of the runs.
 #[derive(Clone, Debug, Default)]
 pub struct Counts(Vec<(u32, u64)>);
 
@@ -34,7 +34,7 @@ impl Counts {
         }
     }
 
-    /// One entry per run.
+    /// The counts with one entry per run.
     pub fn per_run(&self, runs: usize) -> Vec<f64> {
         let mut counts = vec![0.0; runs];
         for &(run, count) in &self.0 {
@@ -43,33 +43,33 @@ impl Counts {
         counts
     }
 
-    /// All runs together.
+    /// The count over all runs.
     pub fn sum(&self) -> u64 {
         self.0.iter().map(|(_, count)| count).sum()
     }
 }
 
-/// What is known of a group of conflicts.
+/// A group of conflicts.
 #[derive(Debug, Default)]
-pub struct Group {
-    /// How many, per run.
+pub struct ConflictGroup {
+    /// The number of conflicts per run.
     pub counts: Counts,
-    /// In how many the rectangles overlapped.
+    /// The number of conflicts in which the rectangles overlapped.
     pub collisions: u64,
-    /// Values of the measures.
+    /// The values of the measures.
     pub columns: Columns,
 }
 
-/// Where conflicts cluster.
+/// The conflicts of one edge or junction.
 #[derive(Debug, Default)]
 pub struct Spot {
-    /// How many, per run.
+    /// The number of conflicts per run.
     pub counts: Counts,
-    /// How many of each severity.
+    /// The number of conflicts of each severity.
     pub severities: [u64; 3],
 }
 
-/// A log that is not counted, and why.
+/// A log that is not counted or needs a warning, and why.
 #[derive(Clone, Debug, Serialize)]
 pub struct LeftOutLog {
     /// The log folder.
@@ -78,30 +78,30 @@ pub struct LeftOutLog {
     pub why: String,
 }
 
-/// What one pass over a set of runs has found.
+/// The result of one pass over a set of runs.
 #[derive(Debug)]
 pub struct Collection {
-    /// How each run was made.
+    /// The record of each run.
     pub runs: Vec<LoggedRun>,
-    /// Their folders.
+    /// The folder of each run.
     pub folders: Vec<Arc<Path>>,
-    /// Which of them have which seed.
+    /// The runs of each seed.
     by_seed: FxHashMap<Option<String>, Vec<usize>>,
-    /// What was not counted, or only in part.
+    /// Logs that were not counted, were counted in part, or repeat another.
     pub left_out: Vec<LeftOutLog>,
     /// The conflicts, by group.
-    pub groups: FxHashMap<String, Group>,
+    pub groups: FxHashMap<String, ConflictGroup>,
     /// Counts by kind and severity.
     pub tallies: [[Counts; 3]; 3],
     /// Counts by edge.
     pub edges: FxHashMap<String, Spot>,
     /// Counts by junction.
     pub junctions: FxHashMap<String, Spot>,
-    /// Each run's median of each measure.
+    /// The median of each measure, per run.
     pub medians: Vec<[Option<f64>; MEASURES.len()]>,
     /// The worst conflicts.
     pub worst: WorstOf,
-    /// The most severe values of what extremes are computed from.
+    /// The most severe values, for the extrapolation to crashes.
     pub tails: Tails,
 }
 
@@ -109,8 +109,8 @@ impl Collection {
     /// Reads the logs in and below these folders.
     ///
     /// # Errors
-    /// An error that names the folder or the file and its line: missing, no log, empty, cut short, other columns than
-    /// the others have; none of the runs has come to a result.
+    /// An error that names the folder, or the file and its line: missing, not a log, empty, cut short, with other columns
+    /// than the first log, or if no run has a result.
     pub fn read(named: &[PathBuf], by: By, worst: usize) -> Result<Self> {
         let mut found = Self {
             runs: Vec::new(),
@@ -130,7 +130,7 @@ impl Collection {
             let reader = ConflictReader::open(&folder)?;
             let header = reader.columns();
             if by == By::Type && !header.iter().any(|column| column == "ego_type") {
-                let message = "the column \"ego_type\" is missing: a log of an earlier version has no types";
+                let message = "the column \"ego_type\" is missing: logs of earlier versions do not have types";
                 return Err(Error::line(reader.path(), 1, message));
             }
             match &columns {
@@ -143,7 +143,7 @@ impl Collection {
             }
             let run = LoggedRun::read(&folder)?;
             if run.summary.steps == 0 {
-                let why = "the run has no result: it was killed, or goes on".to_owned();
+                let why = "the run has no result: it was killed, or is still running".to_owned();
                 found.left_out.push(LeftOutLog { folder, why });
                 continue;
             }
@@ -164,7 +164,7 @@ impl Collection {
             let why = format!("counted, but it repeats {}: same scenario and seed", self.folders[before].display());
             self.left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });
         } else if !run.complete {
-            let why = "counted as far as it came: the run did not come to its end".to_owned();
+            let why = "counted in part: the run did not reach its end".to_owned();
             self.left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });
         }
         let mut own = Columns::default();
@@ -192,7 +192,8 @@ impl Collection {
                 column.extend(value);
             }
         });
-        let (kind, severity) = (rank(&Kind::ALL, conflict.kind), rank(&Severity::ALL, conflict.severity));
+        let kind = rank(&Kind::ALL, conflict.kind);
+        let severity = rank(&Severity::ALL, conflict.severity);
         self.tallies[kind][severity].add(run);
         for (spots, name) in [(&mut self.edges, conflict.edge()), (&mut self.junctions, conflict.junction())] {
             if !name.is_empty() {
@@ -206,7 +207,7 @@ impl Collection {
         self.tails.take(conflict);
     }
 
-    /// Counts per run of a kind, of a severity, of both, or of all.
+    /// Conflicts per run, of one kind or all, and of one severity or all.
     pub fn counts(&self, kind: Option<Kind>, severity: Option<Severity>) -> Vec<f64> {
         let mut sum = vec![0.0; self.runs.len()];
         for (this, tallies) in Kind::ALL.iter().zip(&self.tallies) {
@@ -219,7 +220,7 @@ impl Collection {
         sum
     }
 
-    /// All values of one measure, in ascending order.
+    /// All values of a measure, in ascending order.
     pub fn sorted(&self, measure: usize) -> Vec<f64> {
         let all = self.groups.values().map(|group| group.columns[measure].len()).sum();
         let mut values = Vec::with_capacity(all);
@@ -237,7 +238,7 @@ fn rank<T: PartialEq>(all: &[T], one: T) -> usize {
     all.iter().position(|known| *known == one).unwrap_or_default()
 }
 
-/// Changes the entry of a name; the name is copied only where it is new.
+/// Changes the entry of a name; copies the name only if it is new.
 fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl FnOnce(&mut T)) {
     if let Some(known) = map.get_mut(name) {
         change(known);
@@ -248,7 +249,7 @@ fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl F
     }
 }
 
-/// Whether two runs are the same one: they would not be independent.
+/// Whether two runs repeat each other, so that they are not independent.
 fn same_run(one: &LoggedRun, other: &LoggedRun) -> bool {
     let is_random = one.seed.is_none() && one.versions.sumo.is_some();
     !is_random

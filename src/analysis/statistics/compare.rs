@@ -1,9 +1,9 @@
-//! Two sets of runs beside each other: before and after, plan A and plan B.
+//! Comparison of two sets of runs: before and after, plan A and plan B.
 
 use serde::Serialize;
 
 use super::collect::{Collection, MEASURES};
-use super::permutation::{DRAWS, Test, holm, p_value, smallest_p};
+use super::permutation::{Test, holm, p_value, splits};
 use super::quantiles::{cliffs_delta, quantile};
 use super::rate::{Ratio, rate_ratio};
 use crate::analysis::logged::LoggedRun;
@@ -12,17 +12,17 @@ use crate::detection::kind::{Kind, Severity};
 /// How two sets of runs differ.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
-    /// Runs of the first set.
+    /// The number of runs in the first set.
     pub runs: usize,
-    /// Runs of the set that it is held against.
+    /// The number of runs in the other set.
     pub against_runs: usize,
-    /// Of what the rates are per: vehicle-kilometres, or hours where there are none.
+    /// The unit of traffic: `vehicle_kilometre`, or `hour` if the runs have no kilometres.
     pub rates_per: &'static str,
-    /// Rates by kind and by severity.
+    /// Rates overall, by kind and by severity.
     pub rates: Vec<RateDifference>,
-    /// Measures.
+    /// Medians of the measures.
     pub measures: Vec<MeasureDifference>,
-    /// What the significance rests on, where it rests on little.
+    /// A warning if there are too few runs for any difference to be significant.
     pub note: Option<String>,
 }
 
@@ -35,11 +35,11 @@ pub struct RateDifference {
     pub rate: f64,
     /// The other set's rate.
     pub against: f64,
-    /// First less other.
+    /// First minus other.
     pub difference: f64,
     /// First / other: the effect size.
     pub ratio: Option<Ratio>,
-    /// How sure it is that they differ.
+    /// The significance of the difference.
     pub significance: Option<Significance>,
 }
 
@@ -50,31 +50,31 @@ pub struct MeasureDifference {
     pub measure: &'static str,
     /// The first set's median over all conflicts.
     pub median: Option<f64>,
-    /// The other set's.
+    /// The other set's median over all conflicts.
     pub against: Option<f64>,
-    /// First less other.
+    /// First minus other.
     pub difference: Option<f64>,
-    /// Cliff's delta: the effect size; above 0 where the first set's values are larger.
+    /// Cliff's delta: the effect size; above 0 if the first set's values are larger.
     pub cliffs_delta: Option<f64>,
-    /// How sure it is that the runs' medians differ.
+    /// The significance of the difference between the runs' medians.
     pub significance: Option<Significance>,
 }
 
-/// Above this corrected p-value a difference may be chance.
+/// A difference with a corrected p-value above this may be chance.
 const LEVEL: f64 = 0.05;
 
-/// How sure it is that two sets differ.
+/// The significance of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Significance {
     /// The p-value.
     pub p: f64,
-    /// Holm's correction of it for all rows of the comparison.
+    /// The p-value with Holm's correction for all rows of the comparison.
     pub p_holm: f64,
-    /// How it was found.
+    /// The test that it comes from.
     pub test: Test,
 }
 
-/// Holds a set of runs against another.
+/// Compares two sets of runs.
 pub fn compare(first: &Collection, other: &Collection) -> Comparison {
     let kilometres = |run: &LoggedRun| run.summary.exposure.vehicle_kilometres;
     let has_kilometres = [first, other].iter().all(|set| set.runs.iter().map(kilometres).sum::<f64>() > 0.0);
@@ -90,12 +90,13 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
     let mut measures = (0..MEASURES.len()).map(|measure| measure_difference(measure, first, other)).collect::<Vec<_>>();
     let found = rates.iter_mut().map(|row| &mut row.significance);
     let tested = found.chain(measures.iter_mut().map(|row| &mut row.significance)).flatten().collect::<Vec<_>>();
-    let (runs, against_runs) = (first.runs.len(), other.runs.len());
-    let least = smallest_p(runs, against_runs, DRAWS) * tested.len() as f64;
+    let runs = first.runs.len();
+    let against_runs = other.runs.len();
+    let least = splits(runs + against_runs, runs).smallest_p() * tested.len() as f64;
     let note = (least > LEVEL).then(|| {
         format!(
-            "{runs} and {against_runs} runs: of so few no difference in {} tests can be significant at {LEVEL}; of 6 \
-             seeds each or more one can",
+            "{runs} and {against_runs} runs are too few for any difference in {} tests to be significant at {LEVEL}; run \
+             at least 6 seeds each",
             tested.len()
         )
     });
@@ -110,7 +111,7 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
     }
 }
 
-/// What has a rate of its own: all, each kind, each severity.
+/// The groups that are compared: all, each kind, each severity.
 fn groups() -> impl Iterator<Item = (&'static str, Option<Kind>, Option<Severity>)> {
     let kinds = Kind::ALL.into_iter().map(|kind| (kind.name(), Some(kind), None));
     let severities = Severity::ALL.into_iter().map(|severity| (severity.name(), None, Some(severity)));
@@ -122,7 +123,8 @@ fn rate_difference(group: &'static str, counts: [Vec<f64>; 2], traffic: &[Vec<f6
         let total = traffic[set].iter().sum::<f64>();
         if total > 0.0 { counts[set].iter().sum::<f64>() / total } else { 0.0 }
     };
-    let (rate, against) = (value(0), value(1));
+    let rate = value(0);
+    let against = value(1);
     let all = counts.concat();
     let all_traffic = traffic.concat();
     let difference = |split: &[bool]| {
@@ -135,7 +137,7 @@ fn rate_difference(group: &'static str, counts: [Vec<f64>; 2], traffic: &[Vec<f6
         let [[sum, total], [other, other_total]] = sums;
         (total > 0.0 && other_total > 0.0).then(|| sum / total - other / other_total)
     };
-    // Where nobody has any there is nothing to test.
+    // Without any conflict there is nothing to test.
     let tested = if rate + against > 0.0 { p_value(all.len(), counts[0].len(), difference) } else { None };
     RateDifference {
         group,
@@ -161,7 +163,8 @@ fn measure_difference(measure: usize, first: &Collection, other: &Collection) ->
         Some(mean(true)? - mean(false)?)
     };
     let tested = p_value(medians.len(), runs[0].len(), difference);
-    let (median, against) = (quantile(&values, 0.5), quantile(&other_values, 0.5));
+    let median = quantile(&values, 0.5);
+    let against = quantile(&other_values, 0.5);
     MeasureDifference {
         measure: MEASURES[measure],
         median,

@@ -1,8 +1,10 @@
 //! The generalised Pareto distribution of excesses over a threshold: maximum likelihood and goodness of fit.
 //!
-//! No crate has the fit. With θ = ξ/σ the likelihood has a maximum over ξ in closed form, ξ(θ) = mean ln(1 + θ y), so
-//! that one dimension is left to search (Davison 1984; Grimshaw 1993). For ξ < −1 the likelihood has no maximum; the
-//! search ends there, as usual.
+//! No crate offers the fit. With θ = ξ/σ, the likelihood's maximum over ξ has a closed form, ξ(θ) = mean ln(1 + θ y), and
+//! only one dimension is left to search (Davison 1984; Grimshaw 1993). For ξ < −1 the likelihood is unbounded; the
+//! search ends there, as is usual.
+
+use crate::util::golden_section::golden_section;
 
 /// Shape ξ and scale σ: P(Y > y) = (1 + ξ y / σ)^(−1/ξ).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,22 +15,22 @@ pub struct Gpd {
     pub scale: f64,
 }
 
-/// Below this a shape counts as 0: the exponential distribution.
+/// A shape smaller than this counts as 0: the exponential distribution.
 const NO_SHAPE: f64 = 1e-9;
-/// Points of the search's first, coarse pass on each side of θ = 0.
+/// The number of points of the coarse search on each side of θ = 0.
 const COARSE: i32 = 16;
 /// Steps of the golden section: the bracket's last width is 10⁻⁷ of its first.
-const FINE: i32 = 34;
+const FINE: u32 = 34;
 
 impl Gpd {
-    /// The likeliest distribution of these excesses, all ≥ 0; none where they are all 0.
+    /// The maximum-likelihood distribution of these excesses, all ≥ 0; none if they are all 0.
     pub fn fit(excesses: &[f64]) -> Option<Self> {
         let most = excesses.iter().copied().fold(0.0, f64::max);
         let mean = excesses.iter().sum::<f64>() / excesses.len() as f64;
         if !(most > 0.0 && most.is_finite()) {
             return None;
         }
-        // θ at a place of the search: from −1/most, where the support would end, to far above 0.
+        // θ as a function of the search's variable: from −1/most, where the support would end, to far above 0.
         let theta = |place: f64| {
             if place < 0.0 {
                 -(1.0 - 10_f64.powf(-0.5 * -place)) / most
@@ -39,27 +41,14 @@ impl Gpd {
         let likelihood = |place: f64| profile(excesses, theta(place), mean);
         let places = (-COARSE..=COARSE).map(f64::from);
         let best = places.max_by(|a, b| likelihood(*a).total_cmp(&likelihood(*b)))?;
-        let (mut low, mut high) = (best - 1.0, best + 1.0);
-        let golden = (5_f64.sqrt() - 1.0) / 2.0;
-        let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
-        let (mut at_left, mut at_right) = (likelihood(left), likelihood(right));
-        for _ in 0..FINE {
-            if at_left > at_right {
-                (high, right, at_right) = (right, left, at_left);
-                left = high - golden * (high - low);
-                at_left = likelihood(left);
-            } else {
-                (low, left, at_left) = (left, right, at_right);
-                right = low + golden * (high - low);
-                at_right = likelihood(right);
-            }
-        }
-        let theta = theta((low + high) / 2.0);
+        // Mirrored: on a tie the search must go towards larger places, away from where the likelihood is −∞.
+        let (low, high) = golden_section(|place| likelihood(-place), -best - 1.0, -best + 1.0, FINE);
+        let theta = theta(-(low + high) / 2.0);
         let shape = shape_of(excesses, theta);
         if shape.abs() < NO_SHAPE {
             return Some(Self { shape: 0.0, scale: mean });
         }
-        // On the bound ξ = −1 the likeliest scale is the largest excess: the uniform distribution.
+        // At the bound ξ = −1 the maximum-likelihood scale is the largest excess: the uniform distribution.
         let bounded = profile(excesses, theta, mean) < -most.ln() || shape < -1.0;
         Some(if bounded { Self { shape: -1.0, scale: most } } else { Self { shape, scale: shape / theta } })
     }
@@ -83,16 +72,15 @@ impl Gpd {
     /// Anderson and Darling's A² of these excesses, in ascending order.
     pub fn anderson_darling(&self, sorted: &[f64]) -> f64 {
         let count = sorted.len() as f64;
-        // A value on the end of the support has probability 0; its logarithm must stay finite.
+        // A value at the end of the support has probability 0; the clamp keeps its logarithm finite.
         let tail = |y: f64| self.survival(y).clamp(1e-300, 1.0 - 1e-16);
         let pairs = sorted.iter().zip(sorted.iter().rev()).enumerate();
         let sum = pairs.map(|(i, (up, down))| (2.0 * i as f64 + 1.0) * ((-tail(*up)).ln_1p() + tail(*down).ln()));
         -count - sum.sum::<f64>() / count
     }
 
-    /// The probability of an A² at least as large as that of these excesses, in ascending order, if they are of this
-    /// distribution: by drawing samples from it and fitting each (Stute, Gonzáles-Manteiga and Presedo-Quindimil
-    /// 1993).
+    /// The p-value of these excesses, in ascending order: the probability of their A² or a larger one under this
+    /// distribution, from samples drawn and fitted anew (Stute, Gonzáles-Manteiga and Presedo-Quindimil 1993).
     pub fn fits(&self, sorted: &[f64], draws: usize, random: &mut fastrand::Rng) -> f64 {
         let found = self.anderson_darling(sorted);
         let mut sample = vec![0.0; sorted.len()];
@@ -107,12 +95,12 @@ impl Gpd {
     }
 }
 
-/// ξ(θ), its maximum-likelihood value.
+/// ξ(θ), the maximum-likelihood shape for a given θ.
 fn shape_of(excesses: &[f64], theta: f64) -> f64 {
     excesses.iter().map(|y| (theta * y).ln_1p()).sum::<f64>() / excesses.len() as f64
 }
 
-/// The log-likelihood at θ and ξ(θ), divided by the number of excesses; −∞ where ξ < −1.
+/// The log-likelihood at θ and ξ(θ), divided by the number of excesses; −∞ if ξ < −1.
 fn profile(excesses: &[f64], theta: f64, mean: f64) -> f64 {
     let shape = shape_of(excesses, theta);
     if shape.abs() < NO_SHAPE {
@@ -132,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_sample_gives_back_its_distribution() {
+    fn the_fit_of_a_large_sample_recovers_its_distribution() {
         let mut random = fastrand::Rng::with_seed(1);
         for shape in [-0.4, -0.2, 0.0, 0.2, 0.5] {
             let found = Gpd::fit(&sample(Gpd { shape, scale: 2.0 }, 20_000, &mut random)).unwrap();
@@ -141,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_near_is_likelier() {
+    fn no_distribution_nearby_is_likelier() {
         let excesses = sample(Gpd { shape: -0.3, scale: 1.0 }, 60, &mut fastrand::Rng::with_seed(2));
         let likelihood = |gpd: Gpd| {
             excesses
@@ -152,7 +140,7 @@ mod tests {
         let found = Gpd::fit(&excesses).unwrap();
         for (shape, scale) in [(1e-3, 0.0), (-1e-3, 0.0), (0.0, 1e-3), (0.0, -1e-3), (1e-3, -1e-3), (-1e-3, 1e-3)] {
             let near = Gpd { shape: found.shape + shape, scale: found.scale + scale };
-            // NaN: outside the support.
+            // Outside the support the likelihood is NaN.
             let near_likelihood = likelihood(near);
             assert!(near_likelihood.is_nan() || near_likelihood <= likelihood(found), "{near:?}, not {found:?}");
         }
@@ -186,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_excesses_of_0_are_no_sample() {
+    fn excesses_that_are_all_0_have_no_fit() {
         assert_eq!(Gpd::fit(&[0.0, 0.0]), None);
         assert_eq!(Gpd::fit(&[]), None);
     }

@@ -1,4 +1,4 @@
-//! By what conflicts are grouped.
+//! How conflicts are grouped.
 
 use std::borrow::Cow;
 
@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::analysis::logged::LoggedConflict;
 use crate::detection::kind::{Kind, Severity};
 
-/// By what conflicts are grouped.
+/// How conflicts are grouped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum By {
@@ -15,17 +15,17 @@ pub enum By {
     Kind,
     /// Caution, serious, critical.
     Severity,
-    /// The edge of the meeting place.
+    /// The edge of the conflict point.
     Edge,
-    /// The junction of the meeting place; what is not within one is a group of its own.
+    /// The junction of the conflict point; conflicts outside junctions are one group.
     Junction,
     /// The vehicle types, the ego's first.
     Type,
-    /// The simulated hour of the smallest margin.
+    /// The simulated hour in which the margin was smallest.
     Hour,
 }
 
-/// The group of what has no place of that sort.
+/// The group of conflicts without an edge or junction.
 const NOWHERE: &str = "(none)";
 
 impl By {
@@ -42,8 +42,7 @@ impl By {
         }
     }
 
-    /// Puts groups of these names and counts in the order of tables: kinds, severities and hours in their own, the
-    /// others by their counts.
+    /// Sorts groups for a table: kinds, severities and hours in their natural order, the others by count.
     pub fn sort<T>(self, groups: &mut [T], name: impl Fn(&T) -> &str, count: impl Fn(&T) -> u64) {
         let rank = |group: &T| -> i64 {
             let of = |place: Option<usize>| place.map_or(i64::MAX, |place| place as i64);
@@ -58,7 +57,7 @@ impl By {
     }
 }
 
-/// SUMO calls a type that was changed for one vehicle "type@vehicle".
+/// The type's own name: SUMO calls a type that was changed for one vehicle "type@vehicle".
 fn plain(type_name: &str) -> &str {
     type_name.split_once('@').map_or(type_name, |(plain, _)| plain)
 }

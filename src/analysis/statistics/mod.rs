@@ -1,8 +1,8 @@
 //! Near-miss statistics of one or many runs: counts and rates, quantiles, hot spots, the worst conflicts, crash
 //! frequencies, and the comparison of two sets of runs.
 //!
-//! One pass over the logs ([`Collection`]), then everything from what it kept. docs/statistics.md states each
-//! estimator and test with its source.
+//! One pass over the logs fills a [`Collection`]; all statistics come from it. docs/statistics.md states each estimator
+//! and test with its source.
 
 mod collect;
 mod compare;
@@ -22,70 +22,70 @@ use serde::Serialize;
 use super::logged::LoggedRun;
 use crate::{Error, Result};
 
-pub use collect::{Collection, Columns, Counts, Group, LeftOutLog, MEASURES, Spot};
+pub use collect::{Collection, Columns, ConflictGroup, Counts, LeftOutLog, MEASURES, Spot};
 pub use compare::{Comparison, MeasureDifference, RateDifference, Significance, compare};
 pub use extremes::{Crashes, Extrapolation, Tails, crashes};
 pub use gpd::Gpd;
 pub use group::By;
 pub use permutation::Test;
 pub use quantiles::{Quantiles, cliffs_delta, quantile};
-pub use rate::{Method, Rate, Ratio, rate, rate_ratio};
-pub use worst::{Worst, WorstOf};
+pub use rate::{IntervalMethod, Rate, Ratio, rate, rate_ratio};
+pub use worst::{WorstConflict, WorstOf};
 
-/// What statistics are wanted.
+/// The statistics that are asked for.
 #[derive(Clone, Debug)]
 pub struct Request {
-    /// Log folders, or folders that hold some.
+    /// Log folders, or folders that contain log folders.
     pub folders: Vec<PathBuf>,
-    /// By what conflicts are grouped.
+    /// How conflicts are grouped.
     pub by: By,
-    /// The set of runs to hold these against.
+    /// The runs to compare with; empty for no comparison.
     pub against: Vec<PathBuf>,
-    /// How many of the worst conflicts, and of the hot spots, are listed.
+    /// The number of worst conflicts, and of hot spots, to list.
     pub worst: usize,
 }
 
 /// Statistics of a set of runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
-    /// How many runs.
+    /// The number of runs.
     pub runs: usize,
-    /// How much traffic they had.
+    /// The traffic of all runs.
     pub traffic: Traffic,
-    /// Logs that were not counted, or only in part.
+    /// Logs that were not counted, were counted in part, or repeat another.
     pub left_out: Vec<LeftOutLog>,
-    /// By what conflicts are grouped.
+    /// How conflicts are grouped.
     pub by: By,
-    /// All conflicts, then each group.
+    /// All conflicts as one group, then each group.
     pub groups: Vec<GroupStatistics>,
     /// Edges with the most conflicts.
     pub edges: Vec<HotSpot>,
     /// Junctions with the most conflicts.
     pub junctions: Vec<HotSpot>,
     /// The worst conflicts, the worst first.
-    pub worst: Vec<Worst>,
+    pub worst: Vec<WorstConflict>,
     /// Crash frequencies by extreme value theory.
     pub extremes: Vec<Extrapolation>,
-    /// How this set differs from the other, if there is one.
+    /// The comparison with the other set, if there is one.
     pub comparison: Option<Comparison>,
 }
 
-/// How much traffic a set of runs had.
+/// The traffic of a set of runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Traffic {
     /// Simulated hours.
     pub hours: f64,
-    /// Vehicles.
+    /// The number of vehicles.
     pub vehicles: u64,
-    /// Persons.
+    /// The number of persons.
     pub persons: u64,
-    /// Way of all vehicles, in km.
+    /// The distance that all vehicles travelled, in km.
     pub vehicle_kilometres: f64,
-    /// Time of all vehicles, in h.
+    /// The time that all vehicles spent, in h.
     pub vehicle_hours: f64,
 }
 
-/// Rates of conflicts per unit of traffic; none where there was none.
+/// Rates of conflicts per unit of traffic; none if there was no traffic of that unit.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Rates {
     /// Per simulated hour.
@@ -99,13 +99,13 @@ pub struct Rates {
 /// Statistics of a group of conflicts.
 #[derive(Clone, Debug, Serialize)]
 pub struct GroupStatistics {
-    /// The group; `all` is all of them.
+    /// The name of the group; `all` for all conflicts.
     pub group: String,
-    /// How many conflicts.
+    /// The number of conflicts.
     pub count: u64,
-    /// In how many the rectangles overlapped.
+    /// The number of conflicts in which the rectangles overlapped.
     pub collisions: u64,
-    /// How often.
+    /// The rates.
     #[serde(flatten)]
     pub rates: Rates,
     /// Time to collision, in s.
@@ -118,16 +118,16 @@ pub struct GroupStatistics {
     pub delta_v: Quantiles,
 }
 
-/// A place with conflicts.
+/// An edge or junction with conflicts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HotSpot {
     /// SUMO's id of the edge or junction.
     pub id: String,
-    /// How many conflicts.
+    /// The number of conflicts.
     pub count: u64,
-    /// How many of them serious.
+    /// The number of serious ones.
     pub serious: u64,
-    /// How many critical.
+    /// The number of critical ones.
     pub critical: u64,
     /// Per simulated hour.
     pub per_hour: Option<Rate>,
@@ -136,10 +136,10 @@ pub struct HotSpot {
 }
 
 impl Statistics {
-    /// Reads the logs and computes.
+    /// Reads the logs and computes their statistics.
     ///
     /// # Errors
-    /// As [`Collection::read`] has them; [`Error::Value`] where no folder is named.
+    /// Those of [`Collection::read`]; [`Error::Value`] if no folder is named.
     pub fn of(request: &Request) -> Result<Self> {
         if request.folders.is_empty() {
             return Err(Error::Value("no log folder is named".to_owned()));
@@ -222,7 +222,10 @@ fn group_statistics(
     let of = |name: &str| {
         MEASURES.iter().position(|measure| *measure == name).map_or_else(Default::default, |at| quantiles[at])
     };
-    let (ttc, pet, margin, delta_v) = (of("ttc"), of("pet"), of("margin"), of("delta_v"));
+    let ttc = of("ttc");
+    let pet = of("pet");
+    let margin = of("margin");
+    let delta_v = of("delta_v");
     GroupStatistics { group, count, collisions, rates, ttc, pet, margin, delta_v }
 }
 

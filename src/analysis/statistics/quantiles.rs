@@ -1,13 +1,13 @@
-//! Quantiles of a measure, and how much two samples of it overlap.
+//! Quantiles of a measure, and the overlap of two samples.
 
 use serde::Serialize;
 
-/// Quantiles of one measure; none of them where no conflict has it.
+/// Quantiles of one measure; all none if no conflict has it.
 ///
-/// Linear between order statistics, as in R's type 7 and numpy's default (Hyndman and Fan 1996).
+/// They are linear between order statistics, as in R's type 7 and numpy's default (Hyndman and Fan 1996).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Quantiles {
-    /// How many conflicts have the measure.
+    /// The number of conflicts that have the measure.
     pub count: u64,
     /// 5 % are below.
     pub q05: Option<f64>,
@@ -29,10 +29,11 @@ impl Quantiles {
     }
 }
 
-/// The quantile of values in ascending order.
+/// A quantile of values in ascending order; none if there are no values.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * (sorted.len().checked_sub(1)? as f64);
-    let (low, high) = (sorted[place.floor() as usize], sorted[place.ceil() as usize]);
+    let low = sorted[place.floor() as usize];
+    let high = sorted[place.ceil() as usize];
     Some(low + (high - low) * place.fract())
 }
 
@@ -41,7 +42,9 @@ pub fn cliffs_delta(a: &[f64], b: &[f64]) -> Option<f64> {
     if a.is_empty() || b.is_empty() {
         return None;
     }
-    let (mut below, mut not_above, mut sum) = (0, 0, 0.0);
+    let mut below = 0;
+    let mut not_above = 0;
+    let mut sum = 0.0;
     for value in a {
         while below < b.len() && b[below] < *value {
             below += 1;

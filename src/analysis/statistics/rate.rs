@@ -1,26 +1,26 @@
 //! Rates of conflicts and their 95 % intervals.
 //!
-//! Over several runs (seeds) the runs are the sample: the rate is the ratio estimator Σ conflicts / Σ traffic, and its
-//! interval the t-interval of the linearised residuals (Cochran 1977, *Sampling Techniques*, § 6.4); where all runs
-//! have the same traffic that is the ordinary t-interval of the mean. Conflicts come in clusters, so that one run
-//! says little about their variance; where there is only one, or the runs do not differ, the interval is Poisson's
-//! exact one (Garwood 1936), which takes conflicts for independent.
+//! With several runs (seeds), the runs are the sample: the rate is the ratio estimator Σ conflicts / Σ traffic, and its
+//! interval the t-interval of the linearised residuals (Cochran 1977, *Sampling Techniques*, § 6.4). If all runs have
+//! the same traffic, this is the ordinary t-interval of the mean. Conflicts come in clusters, so a single run shows little
+//! of their variance. For a single run, or for runs that do not differ, the interval is Poisson's exact one (Garwood
+//! 1936), which assumes that conflicts are independent.
 
 use serde::Serialize;
 use statrs::distribution::{Beta, ContinuousCDF, Gamma, StudentsT};
 
-/// What an interval covers.
+/// The probability that an interval covers.
 pub const CONFIDENCE: f64 = 0.95;
 /// The probability below an interval, and above it.
 const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
 
-/// Runs whose rates spread by less than this, relatively, do not differ: sums in another order.
+/// Runs whose rates spread by less than this, relatively, are equal: the order of a sum changes its last digits.
 const EQUAL: f64 = 1e-9;
 
-/// How an interval was made.
+/// How an interval was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Method {
+pub enum IntervalMethod {
     /// Student's t over runs.
     TOverRuns,
     /// Poisson's exact interval of the count.
@@ -32,15 +32,15 @@ pub enum Method {
 pub struct Rate {
     /// Conflicts per unit of traffic.
     pub value: f64,
-    /// The interval's lower end, 0 at least.
+    /// The interval's lower end, at least 0.
     pub low: f64,
     /// The interval's upper end.
     pub high: f64,
-    /// How the interval was made.
-    pub method: Method,
+    /// How the interval was computed.
+    pub method: IntervalMethod,
 }
 
-/// The rate of `counts` per `traffic`, one entry of each per run; none where there was no traffic.
+/// The rate of `counts` per `traffic`, one entry of each per run; none without traffic.
 ///
 /// # Examples
 /// ```
@@ -49,7 +49,8 @@ pub struct Rate {
 /// assert_eq!(found, Some(2.5));
 /// ```
 pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
-    let (count, total) = (counts.iter().sum::<f64>(), traffic.iter().sum::<f64>());
+    let count = counts.iter().sum::<f64>();
+    let total = traffic.iter().sum::<f64>();
     if total <= 0.0 {
         return None;
     }
@@ -57,19 +58,20 @@ pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
     let rate = match relative_spread(counts, traffic) {
         Some(spread) if spread > EQUAL => {
             let reach = t_quantile(counts.len() as f64 - 1.0)? * spread * value;
-            Rate { value, low: (value - reach).max(0.0), high: value + reach, method: Method::TOverRuns }
+            Rate { value, low: (value - reach).max(0.0), high: value + reach, method: IntervalMethod::TOverRuns }
         }
         _ => {
             let (low, high) = poisson_interval(count)?;
-            Rate { value, low: low / total, high: high / total, method: Method::PoissonExact }
+            Rate { value, low: low / total, high: high / total, method: IntervalMethod::PoissonExact }
         }
     };
     Some(rate)
 }
 
-/// The standard error of a rate over runs, divided by the rate; none where it cannot be known.
+/// The standard error of a rate over runs, divided by the rate; none with a single run or without conflicts.
 fn relative_spread(counts: &[f64], traffic: &[f64]) -> Option<f64> {
-    let (count, total) = (counts.iter().sum::<f64>(), traffic.iter().sum::<f64>());
+    let count = counts.iter().sum::<f64>();
+    let total = traffic.iter().sum::<f64>();
     if counts.len() < 2 || count <= 0.0 {
         return None;
     }
@@ -79,10 +81,10 @@ fn relative_spread(counts: &[f64], traffic: &[f64]) -> Option<f64> {
     Some((squares / (runs - 1.0) / runs).sqrt() / (count / runs))
 }
 
-/// The ratio of two rates, first by second, with its 95 % interval.
+/// The ratio of two rates, first / second, with its 95 % interval.
 ///
-/// The interval is t's on the logarithm over runs; where one of the sets has one run or no conflict it is that of the
-/// two Poisson counts given their sum (Clopper and Pearson 1934). None where neither has a conflict.
+/// The interval is the t-interval of the logarithm over runs. If either set has one run or no conflict, it is the interval
+/// of two Poisson counts given their sum (Clopper and Pearson 1934). None if neither set has a conflict.
 pub fn rate_ratio(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Option<Ratio> {
     let [(count, total), (other, other_total)] =
         [first, second].map(|(counts, traffic)| (counts.iter().sum::<f64>(), traffic.iter().sum::<f64>()));
@@ -99,17 +101,17 @@ pub fn rate_ratio(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Option<R
             value: Some(value),
             low: value * (-reach).exp(),
             high: Some(value * reach.exp()),
-            method: Method::TOverRuns,
+            method: IntervalMethod::TOverRuns,
         });
     }
     let share = |probability: f64| other_total / total * probability / (1.0 - probability);
     let low = if count > 0.0 { share(Beta::new(count, other + 1.0).ok()?.inverse_cdf(TAIL)) } else { 0.0 };
     let high =
         if other > 0.0 { Some(share(Beta::new(count + 1.0, other).ok()?.inverse_cdf(1.0 - TAIL))) } else { None };
-    Some(Ratio { value, low, high, method: Method::PoissonExact })
+    Some(Ratio { value, low, high, method: IntervalMethod::PoissonExact })
 }
 
-/// A ratio of two rates and its 95 % interval; what is none is infinite.
+/// A ratio of two rates and its 95 % interval; a value or upper end that is none is infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Ratio {
     /// First rate / second rate.
@@ -118,8 +120,8 @@ pub struct Ratio {
     pub low: f64,
     /// The interval's upper end.
     pub high: Option<f64>,
-    /// How the interval was made.
-    pub method: Method,
+    /// How the interval was computed.
+    pub method: IntervalMethod,
 }
 
 fn t_quantile(freedom: f64) -> Option<f64> {
@@ -141,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn poisson_intervals_are_those_of_the_tables() {
+    fn poisson_intervals_agree_with_published_tables() {
         // scipy.stats.chi2.ppf([0.025, 0.975], [2n, 2n + 2]) / 2
         for (count, low, high) in [(0.0, 0.0, 3.688879), (1.0, 0.025318, 5.571643), (100.0, 81.363861, 121.627303)] {
             let found = poisson_interval(count).unwrap();
@@ -154,27 +156,27 @@ mod tests {
     }
 
     #[test]
-    fn with_equal_traffic_the_interval_is_that_of_the_mean() {
+    fn equal_traffic_gives_the_interval_of_the_mean() {
         // scipy.stats.t.interval(0.95, 4, loc=5, scale=sqrt(2.5 / 5))
         let found = rate(&[3.0, 4.0, 5.0, 6.0, 7.0], &[1.0; 5]).unwrap();
-        assert_eq!((found.value, found.method), (5.0, Method::TOverRuns));
+        assert_eq!((found.value, found.method), (5.0, IntervalMethod::TOverRuns));
         near(found.low, 3.036757);
         near(found.high, 6.963243);
     }
 
     #[test]
-    fn one_run_or_equal_runs_take_the_count_for_poisson() {
-        // The last two traffics are sums of the same in another order.
+    fn one_run_or_equal_runs_get_the_poisson_interval() {
+        // The last two traffics are sums of the same numbers in different orders.
         for (counts, traffic) in
             [(&[5.0][..], &[2.0][..]), (&[0.0, 0.0], &[1.0, 1.0]), (&[3.0, 3.0], &[0.1 + 0.2 + 0.3, 0.3 + 0.2 + 0.1])]
         {
-            assert_eq!(rate(counts, traffic).unwrap().method, Method::PoissonExact);
+            assert_eq!(rate(counts, traffic).unwrap().method, IntervalMethod::PoissonExact);
         }
         assert_eq!(rate(&[0.0], &[0.0]), None);
     }
 
     #[test]
-    fn a_ratio_to_nothing_has_a_lower_end_only() {
+    fn a_ratio_to_zero_has_only_a_lower_end() {
         let ratio = rate_ratio((&[10.0], &[1.0]), (&[0.0], &[1.0])).unwrap();
         assert_eq!((ratio.value, ratio.high), (None, None));
         // 10 of 10: p >= 0.025^(1/10); the ratio is p / (1 - p).

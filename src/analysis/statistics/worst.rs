@@ -1,4 +1,4 @@
-//! The worst conflicts, and the SUMO command that shows each.
+//! The worst conflicts, and the sumo-gui command that shows each.
 
 use std::collections::BinaryHeap;
 use std::path::Path;
@@ -9,33 +9,33 @@ use serde::Serialize;
 use crate::analysis::logged::{LoggedConflict, LoggedRun};
 use crate::util::units::{Metre, Second};
 
-/// How long before a conflict sumo-gui halts, and how long after it the run ends, in s.
+/// sumo-gui halts this long before a conflict, and the run ends this long after it, in s.
 const AROUND: Second = 5.0;
-/// How much of the net sumo-gui shows of a conflict, in m.
+/// The width of the net that sumo-gui shows around a conflict, in m.
 const SHOWN: Metre = 80.0;
-/// The zoom in % where the net's extent is not known.
+/// The zoom in % if the net's extent is unknown.
 const ZOOM: f64 = 1000.0;
 
 /// One of the worst conflicts.
 #[derive(Clone, Debug, Serialize)]
-pub struct Worst {
-    /// The log folder that it is in.
+pub struct WorstConflict {
+    /// Its log folder.
     pub folder: Arc<Path>,
     /// The seed of its run.
     pub seed: Option<String>,
-    /// The edge of the meeting place.
+    /// The edge of the conflict point.
     pub edge: String,
     /// The conflict.
     #[serde(flatten)]
     pub conflict: LoggedConflict,
-    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording, and where a script started SUMO.
+    /// The command that shows it in sumo-gui, for a POSIX shell; none for a recording or if a script started SUMO.
     pub command: Option<String>,
     #[serde(skip)]
     run: usize,
 }
 
-impl Worst {
-    /// Mildest first: collisions, then the severity, the TTC, the margin; then the first logged.
+impl WorstConflict {
+    /// Mildest first: by collision, severity, TTC and margin; of equal ones, the last logged first.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
         let ttc = |worst: &Self| worst.conflict.ttc.unwrap_or(f64::INFINITY);
         let rank = |worst: &Self| (worst.conflict.collision, worst.conflict.severity);
@@ -47,32 +47,32 @@ impl Worst {
     }
 }
 
-/// The worst on top is the mildest of those kept: the next to go.
+/// Reverses the order of a heap, so that the mildest conflict is on top and goes first.
 #[derive(Debug)]
-struct Kept(Worst);
+struct MildestFirst(WorstConflict);
 
-impl Ord for Kept {
+impl Ord for MildestFirst {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
         other.0.order(&self.0)
     }
 }
-impl PartialOrd for Kept {
+impl PartialOrd for MildestFirst {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         Some(self.cmp(other))
     }
 }
-impl PartialEq for Kept {
+impl PartialEq for MildestFirst {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
-impl Eq for Kept {}
+impl Eq for MildestFirst {}
 
-/// Keeps the worst of all conflicts that it is given.
+/// The worst of the conflicts added so far.
 #[derive(Debug, Default)]
 pub struct WorstOf {
     wanted: usize,
-    kept: BinaryHeap<Kept>,
+    kept: BinaryHeap<MildestFirst>,
 }
 
 impl WorstOf {
@@ -81,12 +81,12 @@ impl WorstOf {
         Self { wanted, kept: BinaryHeap::new() }
     }
 
-    /// Takes the conflict of the run of this number.
+    /// Adds a conflict of the run with this number.
     pub fn take(&mut self, run: usize, folder: &Arc<Path>, conflict: &LoggedConflict) {
         if self.wanted == 0 || (self.kept.len() == self.wanted && self.is_milder(run, conflict)) {
             return;
         }
-        let worst = Worst {
+        let worst = WorstConflict {
             folder: folder.clone(),
             seed: None,
             edge: conflict.edge().to_owned(),
@@ -94,17 +94,18 @@ impl WorstOf {
             command: None,
             run,
         };
-        self.kept.push(Kept(worst));
+        self.kept.push(MildestFirst(worst));
         if self.kept.len() > self.wanted {
             self.kept.pop();
         }
     }
 
-    /// Whether this conflict is surely none of the worst: decided without a copy, as it is for nearly all.
+    /// Whether this conflict is certainly not among the worst. True for nearly all, which are then not copied.
     fn is_milder(&self, run: usize, conflict: &LoggedConflict) -> bool {
-        let Some(Kept(mildest)) = self.kept.peek() else { return false };
+        let Some(MildestFirst(mildest)) = self.kept.peek() else { return false };
         let known = &mildest.conflict;
-        let (now, then) = ((conflict.collision, conflict.severity), (known.collision, known.severity));
+        let now = (conflict.collision, conflict.severity);
+        let then = (known.collision, known.severity);
         now < then
             || (now == then
                 && conflict.ttc.unwrap_or(f64::INFINITY) > known.ttc.unwrap_or(f64::INFINITY)
@@ -112,7 +113,7 @@ impl WorstOf {
     }
 
     /// The worst first.
-    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<Worst> {
+    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<WorstConflict> {
         let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
         for found in &mut worst {
             let Some(run) = runs.get(found.run) else { continue };
@@ -125,9 +126,9 @@ impl WorstOf {
 
 /// The command that shows a conflict in sumo-gui.
 ///
-/// The run begins where it began: who departed before a later `--begin` would not be there. sumo-gui runs without
-/// delay to the breakpoint, a few seconds before the conflict, and halts there, zoomed to the place. It takes the place
-/// from a file only: the shell makes one.
+/// The run begins at its original begin, because vehicles that departed before a later `--begin` would be missing.
+/// sumo-gui runs without delay to a breakpoint a few seconds before the conflict and halts there, zoomed to the conflict
+/// point. It accepts a viewport only from a file, so the shell creates one.
 fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
     if run.sumo_words.is_empty() {
         return None;
@@ -147,7 +148,7 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
     Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), words.join(" ")))
 }
 
-/// A run's words but for the options that are set anew: SUMO takes each once only.
+/// A run's words without the options that the command sets itself: SUMO accepts each option only once.
 fn kept(words: &[String]) -> impl Iterator<Item = &String> {
     let mut is_value = false;
     words.iter().filter(move |word| {
@@ -159,7 +160,7 @@ fn kept(words: &[String]) -> impl Iterator<Item = &String> {
     })
 }
 
-/// A word for a POSIX shell.
+/// A word, quoted for a POSIX shell if necessary.
 fn quoted(word: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./=:,@%+".contains(letter);
     if !word.is_empty() && word.chars().all(plain) {
@@ -169,12 +170,12 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// sumo-gui's zoom in %, of the whole net, that shows a conflict; none where the net is not at hand any more.
+/// sumo-gui's zoom on a conflict, in % of the whole net; none if the net is no longer available.
 fn zoom(run: &LoggedRun) -> Option<f64> {
     run.inputs.iter().find_map(|input| zoom_on(&input.path))
 }
 
-/// The same of this net; none where the file is no net.
+/// The zoom for this net; none if the file is not a net.
 fn zoom_on(net: &Path) -> Option<f64> {
     let mut head = Vec::new();
     std::io::Read::read_to_end(&mut std::io::Read::take(crate::util::input_file::open(net).ok()?, 1 << 16), &mut head)
@@ -191,7 +192,7 @@ mod tests {
     use crate::analysis::statistics::worst::*;
 
     #[test]
-    fn what_is_set_anew_is_left_out_however_it_was_written() {
+    fn options_that_are_replaced_are_removed_in_every_spelling() {
         let words = "-c a.sumocfg --end 9 --seed=3 --end=9 -e 9 -W".split(' ').map(str::to_owned).collect::<Vec<_>>();
         assert_eq!(kept(&words).collect::<Vec<_>>(), ["-c", "a.sumocfg", "--seed=3", "-W"]);
     }

@@ -1,15 +1,15 @@
-//! How two outcomes were compared, and what differs.
+//! The result of comparing two outcomes.
 
 use super::exact::Differences;
-use super::statistics::Comparison;
+use super::statistics::MeasureComparison;
 
-/// How two outcomes were compared, and what differs.
+/// The result of comparing two outcomes, by the level of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Compared {
     /// Byte for byte.
     Exactly(Differences),
-    /// By the statistical test, and why not exactly, where that was asked for.
-    Statistically(Vec<Comparison>, Option<String>),
+    /// By the statistical test; with the reason if an exact comparison was asked for.
+    Statistically(Vec<MeasureComparison>, Option<String>),
 }
 
 impl Compared {

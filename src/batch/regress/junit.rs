@@ -1,4 +1,4 @@
-//! The reports as JUnit XML, which CI systems read. Without times of day or durations: the same result, the same bytes.
+//! The reports as JUnit XML, which CI systems read. No times of day or durations, so equal results give equal bytes.
 
 use std::path::Path;
 
@@ -10,7 +10,7 @@ use crate::{Error, Result};
 /// Writes the reports, one test case per scenario.
 ///
 /// # Errors
-/// [`Error::File`] where the file cannot be written.
+/// [`Error::File`] if the file cannot be written.
 pub fn write(path: &Path, reports: &[Report]) -> Result<()> {
     let fail = |source| Error::file(path, source);
     let text = document(reports).to_string().map_err(|error| fail(std::io::Error::other(error.to_string())))?;
@@ -29,7 +29,8 @@ fn document(reports: &[Report]) -> quick_junit::Report {
 }
 
 fn case(report: &Report) -> TestCase {
-    let (headline, details) = (report.headline(), report.details().join("\n"));
+    let headline = report.headline();
+    let details = report.details().join("\n");
     let kind = match report.exit_status() {
         0 => None,
         1 => Some((NonSuccessKind::Failure, "difference")),

@@ -1,4 +1,4 @@
-//! Regression tests on fixed nets: run each scenario, compare with what is blessed, say what has changed.
+//! Regression tests on fixed nets: run each scenario, compare it with its blessed outcome, and report what changed.
 //!
 //! [`scenario`] → [`running`] (a process per scenario and seed) → [`outcome`] → [`exact`] or [`statistics`] → [`Report`],
 //! printed by its `Display` and by [`junit`].
@@ -30,20 +30,20 @@ pub use report::{Report, Verdict, summary};
 pub use running::Runner;
 pub use scenario::{Level, Scenario};
 
-/// Runs the scenarios and compares each with what is expected, or makes what was found the new expectation.
+/// Runs the scenarios and compares each with its expected outcome, or blesses the new one.
 ///
-/// The reports come in the order of the scenarios, and say the same for any number of processes at once.
+/// The reports are in the order of the scenarios and do not depend on the number of processes.
 ///
 /// # Errors
-/// [`Error::Stopped`] where the user interrupted it, and [`Error::File`] where the temporary folder cannot be made; what
-/// is wrong with one scenario is in its report.
+/// [`Error::Stopped`] if the user interrupted it, and [`Error::File`] if the temporary folder cannot be created. Errors of
+/// a single scenario are in its report.
 pub fn regress(scenarios: &[Scenario], runner: &mut Runner, bless: bool) -> Result<Vec<Report>> {
     let temporary = tempfile::Builder::new().prefix("closecall-regress-").tempdir();
     let temporary = temporary.map_err(|source| Error::file(&std::env::temp_dir(), source))?;
     let root = runner.out.clone().unwrap_or_else(|| temporary.path().to_owned());
     let mut jobs = Vec::new();
     for (number, scenario) in scenarios.iter().enumerate() {
-        // Two folders may have the same name.
+        // Two scenarios may have the same name.
         let twin = scenarios[..number].iter().filter(|other| other.name == scenario.name).count();
         let name = if twin == 0 { scenario.name.clone() } else { format!("{}-{}", scenario.name, twin + 1) };
         for &seed in &scenario.settings.seeds {
@@ -73,14 +73,14 @@ pub fn regress(scenarios: &[Scenario], runner: &mut Runner, bless: bool) -> Resu
 fn judge(scenario: &Scenario, logs: &[(u32, PathBuf)], bless: bool) -> Result<Verdict> {
     let found = Outcome::collect(&scenario.folder, logs)?;
     let expected = match Outcome::read(&scenario.expected()) {
-        // What cannot be read is blessed anew.
+        // Blessing replaces an expected outcome that cannot be read.
         Err(_) if bless => None,
         read => read?,
     };
     let conflicts = found.conflicts.len();
     let Some(expected) = expected else {
         if !bless {
-            return Err(Error::content(&scenario.expected(), "nothing is blessed yet; --bless does it"));
+            return Err(Error::content(&scenario.expected(), "nothing is blessed yet; use --bless"));
         }
         found.write(&scenario.expected())?;
         return Ok(Verdict { blessed: true, conflicts, compared: None, changes: Vec::new() });
@@ -95,25 +95,27 @@ fn judge(scenario: &Scenario, logs: &[(u32, PathBuf)], bless: bool) -> Result<Ve
     Ok(Verdict { blessed: bless, conflicts, compared: Some(compared), changes })
 }
 
-/// Compares at the scenario's level, or by statistics where that level can't be.
+/// Compares at the scenario's level, or by statistics if an exact comparison is impossible.
 fn compare(scenario: &Scenario, expected: &Outcome, found: &Outcome) -> Result<Compared> {
     let differences = exact::differences(expected, found);
-    let (old, new) = (&expected.summary, &found.summary);
+    let old = &expected.summary;
+    let new = &found.summary;
     let instead = if old.sumo != new.sumo {
         Some(format!("{} instead of {}", new.sumo, old.sumo))
     } else if old.platform != new.platform {
         Some(format!("{} instead of {}", new.platform, old.platform))
     } else if expected.seeds() != found.seeds() {
-        Some("other seeds than those blessed".to_owned())
+        Some("different seeds from those blessed".to_owned())
     } else {
         None
     };
     let is_exact = scenario.settings.level == Level::Exact;
-    // The same bytes need no test.
+    // Equal bytes need no test.
     if differences.is_empty() || is_exact && instead.is_none() {
         return Ok(Compared::Exactly(differences));
     }
-    let (before, now) = (old.seeds.len(), new.seeds.len());
+    let before = old.seeds.len();
+    let now = new.seeds.len();
     let alpha = scenario.settings.false_alarm;
     if smallest_p(before, now) > alpha {
         let why = instead.map(|instead| format!("{instead}, and ")).unwrap_or_default();

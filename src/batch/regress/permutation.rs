@@ -1,68 +1,64 @@
 //! One permutation test over many measures at once.
 //!
-//! Runs with different seeds are exchangeable: where nothing has changed, any split of all runs into "expected" and
-//! "found" was equally likely. The statistic of a measure j is the difference of its two means, standardised by its
-//! deviation over all runs; that of the test is the largest over the measures. A measure's adjusted p is the share of
+//! Runs with different seeds are exchangeable: if nothing has changed, every split of all runs into "expected" and
+//! "found" was equally likely. The statistic of a measure is the difference of its two means, standardised by its
+//! deviation over all runs; the statistic of the test is the largest of these. A measure's adjusted p is the share of
 //! splits whose *largest* statistic reaches that measure's own (single-step max-T: Westfall and Young 1993, section
-//! 2.6). So the chance that any measure is at or below α where nothing has changed is at most α: exactly, for any
+//! 2.6). If nothing has changed, the chance that any measure is at or below α is therefore at most α: exactly, for any
 //! distribution, any dependence between measures, and any number of runs.
 
-use crate::analysis::statistics::permutation;
+use crate::analysis::statistics::permutation::Splits;
 
-/// Up to this many splits are all gone through; of more, [`DRAWN`] are drawn.
-const ENUMERATED: u64 = 200_000;
-/// How many splits are drawn, the real one besides.
-const DRAWN: usize = 99_999;
-/// Two statistics that differ by less are equal: sums of floating-point numbers in another order.
+/// Up to this many splits, all are examined.
+const MOST_SPLITS: f64 = 200_000.0;
+/// The number of random splits where there are more.
+const DRAWS: usize = 99_999;
+/// The seed of the draws: equal input gives equal output.
+const SEED: u64 = 0;
+/// Two statistics that differ by less than this are equal: the order of a sum changes its last digits.
 const EQUAL: f64 = 1e-9;
 
 /// The adjusted p of each measure; a row of `expected` and `found` is a run, a column a measure.
 pub fn adjusted_p(expected: &[Vec<f64>], found: &[Vec<f64>]) -> Vec<f64> {
     let measures = expected.iter().chain(found).map(Vec::len).min().unwrap_or_default();
     let runs = standardised(expected, found, measures);
-    let of_found = |run: usize| run >= expected.len();
-    let real = sums(&runs, measures, of_found);
-    // In how many splits the largest statistic reaches a measure's own.
-    let mut reached = vec![0_u64; measures];
-    let mut splits = 0_u64;
-    let mut count = |split: &[f64]| {
-        splits += 1;
-        let largest = split.iter().fold(0.0_f64, |largest, sum| largest.max(sum.abs()));
-        for (reached, real) in reached.iter_mut().zip(&real) {
-            *reached += u64::from(largest >= real.abs() - EQUAL);
+    let real = (0..runs.len()).map(|run| run >= expected.len()).collect::<Vec<_>>();
+    let mut sums = vec![0.0; measures];
+    add_up(&runs, &real, &mut sums);
+    let thresholds = sums.iter().map(|sum| sum.abs() - EQUAL).collect::<Vec<_>>();
+    let largest = |split: &[bool]| {
+        add_up(&runs, split, &mut sums);
+        sums.iter().fold(0.0_f64, |largest, sum| largest.max(sum.abs()))
+    };
+    let mut random = fastrand::Rng::with_seed(SEED);
+    let mut order = (0..runs.len()).collect::<Vec<_>>();
+    let draw = |split: &mut [bool]| {
+        split.fill(false);
+        for place in 0..found.len() {
+            order.swap(place, random.usize(place..runs.len()));
+            split[order[place]] = true;
         }
     };
-    if possible_splits(expected.len(), found.len()) <= ENUMERATED {
-        enumerate(&runs, found.len(), &mut vec![0.0; measures], &mut count);
-    } else {
-        count(&real);
-        let mut random = fastrand::Rng::with_seed(0);
-        let mut order = (0..runs.len()).collect::<Vec<_>>();
-        for _ in 0..DRAWN {
-            let mut split = vec![0.0; measures];
-            for place in 0..found.len() {
-                order.swap(place, random.usize(place..runs.len()));
-                add(&mut split, &runs[order[place]]);
-            }
-            count(&split);
-        }
-    }
-    reached.into_iter().map(|reached| reached as f64 / splits as f64).collect()
+    splits(expected.len(), found.len()).shares(real, &thresholds, largest, draw).0
 }
 
-/// The smallest adjusted p that so many runs can lead to.
+fn splits(expected: usize, found: usize) -> Splits {
+    Splits { runs: expected + found, first: found, most: MOST_SPLITS, draws: DRAWS }
+}
+
+/// The smallest adjusted p that these numbers of runs can lead to.
 pub fn smallest_p(expected: usize, found: usize) -> f64 {
-    permutation::smallest_p(found, expected, DRAWN)
+    splits(expected, found).smallest_p()
 }
 
-/// The fewest seeds, as many on both sides, with which a difference can be found at the level `alpha`.
+/// The fewest seeds, the same number on both sides, with which a difference can be found at the level `alpha`.
 pub fn fewest_seeds(alpha: f64) -> usize {
     (1..).find(|seeds| smallest_p(*seeds, *seeds) <= alpha || *seeds > 100).unwrap_or_default()
 }
 
-/// All runs, each measure less its mean and by its deviation; where it is the same in all runs, 0.
+/// All runs, each measure with mean 0 and deviation 1; 0 if it has the same value in all runs.
 ///
-/// With as many of these in a sum, the sum over `found` says as much as the difference of the means.
+/// Since the values of a measure add up to 0, its sum over `found` is the difference of the means but for a factor.
 fn standardised(expected: &[Vec<f64>], found: &[Vec<f64>], measures: usize) -> Vec<Vec<f64>> {
     let all = expected.iter().chain(found).collect::<Vec<_>>();
     let mut runs = vec![Vec::with_capacity(measures); all.len()];
@@ -78,35 +74,14 @@ fn standardised(expected: &[Vec<f64>], found: &[Vec<f64>], measures: usize) -> V
     runs
 }
 
-fn sums(runs: &[Vec<f64>], measures: usize, is_in: impl Fn(usize) -> bool) -> Vec<f64> {
-    let mut sums = vec![0.0; measures];
-    for run in runs.iter().enumerate().filter(|(run, _)| is_in(*run)).map(|(_, run)| run) {
-        add(&mut sums, run);
+/// The sums of the measures over the chosen runs.
+fn add_up(runs: &[Vec<f64>], chosen: &[bool], sums: &mut [f64]) {
+    sums.fill(0.0);
+    for (run, _) in runs.iter().zip(chosen).filter(|(_, chosen)| **chosen) {
+        for (sum, value) in sums.iter_mut().zip(run) {
+            *sum += value;
+        }
     }
-    sums
-}
-
-fn add(sums: &mut [f64], run: &[f64]) {
-    for (sum, value) in sums.iter_mut().zip(run) {
-        *sum += value;
-    }
-}
-
-/// Goes through every choice of `wanted` of the runs; `sums` is over those chosen so far.
-fn enumerate(runs: &[Vec<f64>], wanted: usize, sums: &mut Vec<f64>, count: &mut impl FnMut(&[f64])) {
-    if wanted == 0 {
-        return count(sums);
-    }
-    for (place, run) in runs.iter().enumerate().take((runs.len() + 1).saturating_sub(wanted)) {
-        let before = sums.clone();
-        add(sums, run);
-        enumerate(&runs[place + 1..], wanted - 1, sums, count);
-        *sums = before;
-    }
-}
-
-fn possible_splits(expected: usize, found: usize) -> u64 {
-    (1..=found as u64).fold(1, |splits: u64, k| splits.saturating_mul(expected as u64 + k) / k)
 }
 
 #[cfg(test)]
@@ -119,10 +94,10 @@ mod tests {
 
     #[test]
     fn p_is_the_share_of_splits_that_differ_as_much() {
-        // Of the C(6, 3) = 20 splits only this one and its mirror image separate low from high.
+        // Only this one of the C(6, 3) = 20 splits and its mirror image separate low from high.
         assert_eq!(adjusted_p(&column(&[1.0, 2.0, 3.0]), &column(&[4.0, 5.0, 6.0])), [0.1]);
         assert_eq!(smallest_p(3, 3), 0.1);
-        // |difference| is 1/3 at least for any split of 1 … 6.
+        // |difference| is at least 1/3 for any split of 1 … 6.
         assert_eq!(adjusted_p(&column(&[1.0, 4.0, 5.0]), &column(&[2.0, 3.0, 6.0])), [1.0]);
     }
 
@@ -133,7 +108,8 @@ mod tests {
 
     #[test]
     fn many_runs_are_drawn_and_still_separated() {
-        let (low, high) = ((0..20).map(f64::from).collect::<Vec<_>>(), (30..50).map(f64::from).collect::<Vec<_>>());
+        let low = (0..20).map(f64::from).collect::<Vec<_>>();
+        let high = (30..50).map(f64::from).collect::<Vec<_>>();
         assert_eq!(adjusted_p(&column(&low), &column(&high)), [1.0 / 100_000.0]);
     }
 
@@ -143,8 +119,8 @@ mod tests {
         assert!(smallest_p(8, 8) < 0.001);
     }
 
-    /// Sparse and heavy-tailed counts, 20 measures that depend on each other: 1 % of 2,000 is 20, and 3 standard
-    /// deviations above that are 33.
+    /// Sparse, heavy-tailed counts; 20 measures that depend on each other. 1 % of 2,000 is 20; 33 is 3 standard
+    /// deviations above it.
     #[test]
     fn at_most_one_false_alarm_in_a_hundred() {
         let mut random = fastrand::Rng::with_seed(1);
@@ -155,8 +131,8 @@ mod tests {
         };
         let mut alarms = 0;
         for _ in 0..2000 {
-            let (expected, found) =
-                ((0..5).map(|_| run()).collect::<Vec<_>>(), (0..5).map(|_| run()).collect::<Vec<_>>());
+            let expected = (0..5).map(|_| run()).collect::<Vec<_>>();
+            let found = (0..5).map(|_| run()).collect::<Vec<_>>();
             alarms += usize::from(adjusted_p(&expected, &found).iter().any(|p| *p <= 0.01));
         }
         assert!((1..=33).contains(&alarms), "{alarms}");

@@ -1,4 +1,4 @@
-//! What was changed since the blessing: versions, options, input files.
+//! Changes since the blessing in versions, options and input files.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::outcome::RunsSummary;
 
-/// What differs in how the runs were made, one line each; empty where nothing does.
+/// The differences in how the runs were made, one line each.
 pub fn changes(before: &RunsSummary, now: &RunsSummary) -> Vec<String> {
     let mut changes = Vec::new();
     for (what, old, new) in [
@@ -26,19 +26,20 @@ pub fn changes(before: &RunsSummary, now: &RunsSummary) -> Vec<String> {
     }
     let is_gone = |path: &str| now.inputs.iter().all(|file| file.path != path);
     changes.extend(
-        before.inputs.iter().filter(|old| is_gone(&old.path)).map(|old| format!("{}: not read any more", old.path)),
+        before.inputs.iter().filter(|old| is_gone(&old.path)).map(|old| format!("{}: no longer read", old.path)),
     );
     option_changes("option ", &before.options, &now.options, &mut changes);
     if before.step_length.to_bits() != now.step_length.to_bits() {
         changes.push(format!("step length {} s → {} s", before.step_length, now.step_length));
     }
-    let (old, new) = (sorted(&before.sumo_options), sorted(&now.sumo_options));
+    let old = sorted(&before.sumo_options);
+    let new = sorted(&now.sumo_options);
     changes.extend(old.difference(&new).map(|option| format!("SUMO option {option}: gone")));
     changes.extend(new.difference(&old).map(|option| format!("SUMO option {option}: new")));
     changes
 }
 
-/// The options that differ, each under its name in `closecall.toml`.
+/// Adds the options that differ, each by its name in `closecall.toml`.
 fn option_changes(name: &str, before: &Value, now: &Value, changes: &mut Vec<String>) {
     match (before, now) {
         (Value::Object(old), Value::Object(new)) => {

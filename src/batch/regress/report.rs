@@ -1,4 +1,4 @@
-//! What came of a scenario, for people: a line, and below it what differs.
+//! The result of a scenario for people: one line, and the differences below it.
 
 use std::fmt;
 
@@ -8,39 +8,39 @@ use super::scenario::{Level, Scenario};
 use crate::util::units::counted;
 use crate::{Error, Result};
 
-/// So many differences of one sort are shown.
+/// The number of differences of one sort that are shown.
 const SHOWN: usize = 10;
 
-/// What came of a scenario.
+/// The result of a scenario.
 #[derive(Debug)]
 pub struct Report {
     /// The scenario's name.
     pub name: String,
-    /// How strictly it is compared.
+    /// The level of the comparison.
     pub level: Level,
     /// The seeds of its runs.
     pub seeds: Vec<u32>,
-    /// How it compares, or why it could not be run.
+    /// The verdict, or why it could not be run.
     pub verdict: Result<Verdict>,
-    /// Whether every difference is shown.
+    /// Whether to show every difference.
     pub shows_all: bool,
 }
 
-/// How what was found compares with what is expected.
+/// The comparison of a scenario's runs with its expected outcome.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// Whether what was found is now what is expected.
+    /// Whether this outcome has become the expected one.
     pub blessed: bool,
-    /// How many conflicts were found, over all seeds.
+    /// The number of conflicts over all seeds.
     pub conflicts: usize,
-    /// What differs; none where nothing was expected yet.
+    /// The differences; none if nothing was expected yet.
     pub compared: Option<Compared>,
-    /// What was changed in versions, options and input files.
+    /// Changes in versions, options and input files.
     pub changes: Vec<String>,
 }
 
 impl Verdict {
-    /// Whether it is as expected, or is now by definition.
+    /// Whether it is as expected, or has just been blessed.
     pub fn passes(&self) -> bool {
         self.blessed || self.compared.as_ref().is_some_and(Compared::is_same)
     }
@@ -48,16 +48,17 @@ impl Verdict {
 
 impl Report {
     pub(super) fn new(scenario: &Scenario, verdict: Result<Verdict>) -> Self {
-        let (name, settings) = (scenario.name.clone(), &scenario.settings);
+        let name = scenario.name.clone();
+        let settings = &scenario.settings;
         Self { name, level: settings.level, seeds: settings.seeds.clone(), verdict, shows_all: false }
     }
 
-    /// The report of a folder that is no scenario that can be run.
+    /// The report of a folder whose scenario cannot be run.
     pub fn unreadable(name: String, level: Level, error: Error) -> Self {
         Self { name, level, seeds: Vec::new(), verdict: Err(error), shows_all: false }
     }
 
-    /// The exit status that this alone leads to: 0 as expected, 1 different, 2 could not be run.
+    /// The exit status of this scenario alone: 0 as expected, 1 different, 2 could not be run.
     pub fn exit_status(&self) -> u8 {
         match &self.verdict {
             Ok(verdict) => u8::from(!verdict.passes()),
@@ -75,7 +76,7 @@ impl Report {
         }
     }
 
-    /// What came out, in one line.
+    /// The result in one line.
     pub fn headline(&self) -> String {
         let verdict = match &self.verdict {
             Ok(verdict) => verdict,
@@ -100,7 +101,7 @@ impl Report {
         }
     }
 
-    /// What differs, in lines.
+    /// The differences, one line each.
     pub fn details(&self) -> Vec<String> {
         let Ok(verdict) = &self.verdict else { return Vec::new() };
         let mut lines = Vec::new();

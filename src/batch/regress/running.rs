@@ -1,4 +1,4 @@
-//! Runs as processes of their own: libsumo allows one simulation per process.
+//! Runs as separate processes, since libsumo allows only one simulation per process.
 
 use std::ffi::OsString;
 use std::fs::File;
@@ -11,18 +11,18 @@ use std::time::Duration;
 use super::scenario::Scenario;
 use crate::{Error, Result};
 
-/// How often a process is asked whether it has ended.
+/// The interval at which processes and the user's interrupt are polled.
 const ASKED_EVERY: Duration = Duration::from_millis(5);
 
 /// How scenarios are run.
 pub struct Runner<'a> {
-    /// The command line that starts closecall, without arguments; it ends when its standard input does.
+    /// The command line that starts closecall, without arguments. The process must end when its standard input is closed.
     pub closecall: Vec<OsString>,
-    /// How many processes at once.
+    /// The number of parallel processes.
     pub jobs: usize,
-    /// Where the logs of the runs are kept; none to throw them away.
+    /// The folder in which the runs' logs are kept; none to discard them.
     pub out: Option<PathBuf>,
-    /// Whether the user wants to stop; asked again and again.
+    /// Whether the user wants to stop; called repeatedly.
     pub interrupted: &'a mut dyn FnMut() -> bool,
 }
 
@@ -37,12 +37,12 @@ pub(super) struct Job<'a> {
     pub(super) log: PathBuf,
 }
 
-/// What a run says of itself where it fails.
-type Ended = std::result::Result<(), String>;
+/// The result of a run, with its own error message.
+type JobResult = std::result::Result<(), String>;
 
 impl Runner<'_> {
-    /// Runs all jobs; what each ended with, in their order.
-    pub(super) fn run(&mut self, jobs: &[Job]) -> Result<Vec<Ended>> {
+    /// Runs all jobs and returns their results, in the order of the jobs.
+    pub(super) fn run(&mut self, jobs: &[Job]) -> Result<Vec<JobResult>> {
         let next = AtomicUsize::new(0);
         let stop = AtomicBool::new(false);
         let ended = Mutex::new(vec![None; jobs.len()]);
@@ -64,7 +64,7 @@ impl Runner<'_> {
                 std::thread::sleep(ASKED_EVERY);
             }
         });
-        // A run that a terminal's Ctrl-C has ended too may have ended the last worker before it was asked for.
+        // Ctrl-C in a terminal also ends the runs, so the last worker may be done before the interrupt is polled.
         if stop.into_inner() || (self.interrupted)() {
             return Err(Error::Stopped);
         }
@@ -73,13 +73,13 @@ impl Runner<'_> {
     }
 }
 
-/// Runs one job to its end, or until everything is to stop.
-fn one(closecall: &[OsString], job: &Job, stop: &AtomicBool) -> Ended {
+/// Runs one job until it ends or `stop` is set.
+fn one(closecall: &[OsString], job: &Job, stop: &AtomicBool) -> JobResult {
     let told = job.log.join("stderr.txt");
     let mut child = start(closecall, job, &told).map_err(|error| error.to_string())?;
     let status = loop {
         if stop.load(Ordering::Relaxed) {
-            // One that has ended by itself needs neither.
+            // Both fail if the process has already ended, which is harmless.
             let _ = child.kill();
             let _ = child.wait();
             return Err("interrupted".to_owned());
@@ -101,20 +101,20 @@ fn one(closecall: &[OsString], job: &Job, stop: &AtomicBool) -> Ended {
 
 fn start(closecall: &[OsString], job: &Job, told: &Path) -> Result<Child> {
     let Some((program, words)) = closecall.split_first() else {
-        return Err(Error::Value("there is no command that runs SUMO".to_owned()));
+        return Err(Error::Value("the command that runs SUMO is empty".to_owned()));
     };
     std::fs::create_dir_all(&job.log).map_err(|source| Error::file(&job.log, source))?;
     let stderr = File::create(told).map_err(|source| Error::file(told, source))?;
     let scenario = job.scenario;
     let mut command = Command::new(program);
     command.args(words).args(scenario.words());
-    // The jobs share the processor's threads among themselves: more of them per run would only be in their way.
+    // The jobs already keep the processor's threads busy.
     command.args(["--quiet", "--threads=1", "--seed", &job.seed.to_string(), "--out"]).arg(&job.log);
     if !scenario.settings.sumo_options.is_empty() {
         command.arg("--").args(&scenario.settings.sumo_options);
     }
-    // In the scenario's folder, so that what its settings name is found, and the same is logged wherever it lies.
-    // However this process ends, they do too.
+    // In the scenario's folder, the paths in its settings resolve, and the log does not depend on where the folder is.
+    // The pipe closes when this process ends in any way, which ends the child as well.
     command.current_dir(&scenario.folder).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(stderr);
     command.spawn().map_err(|source| Error::file(Path::new(program), source))
 }

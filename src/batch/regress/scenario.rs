@@ -1,4 +1,4 @@
-//! A scenario: a folder with a SUMO configuration, `closecall.toml` and what is expected of it.
+//! A scenario: a folder with a SUMO configuration, `closecall.toml` and the expected outcome.
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
@@ -11,12 +11,12 @@ use crate::{Error, Result};
 
 /// The name of a scenario's file of settings.
 pub const SETTINGS: &str = "closecall.toml";
-/// Seeds where a scenario names none: as few as the statistical test can do with at [`FALSE_ALARM`].
+/// The default seeds: as few as the statistical test needs at [`FALSE_ALARM`].
 const SEEDS: [u32; 6] = [1, 2, 3, 4, 5, 6];
-/// The chance of a false alarm, half of the 1 % that is promised: of a hundred comparisons, one at most then is likely.
+/// The default chance of a false alarm: half of the promised 1 %, so that a hundred comparisons rarely give more than one.
 const FALSE_ALARM: f64 = 0.005;
 
-/// How strictly a scenario is compared with what is expected.
+/// How strictly a scenario is compared with its expected outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Level {
@@ -28,7 +28,7 @@ pub enum Level {
 }
 
 impl Level {
-    /// The name in `closecall.toml` and in what is printed.
+    /// The name in `closecall.toml` and in the output.
     pub fn name(self) -> &'static str {
         match self {
             Self::Exact => "exact",
@@ -37,17 +37,17 @@ impl Level {
     }
 }
 
-/// Differences of means that [`Level::Statistics`] takes for none, however sure they are: another compiler's rounding.
+/// Differences of means that [`Level::Statistics`] ignores even if significant, such as those of another compiler's rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerance {
-    /// Of counts, rates and traffic, as a share of what is expected.
+    /// For counts, rates and traffic, as a share of the expected mean.
     pub count: f64,
-    /// Of times to collision, in s.
+    /// For times to collision, in s.
     pub ttc: Second,
-    /// Of post-encroachment times, in s.
+    /// For post-encroachment times, in s.
     pub pet: Second,
-    /// Of margins, in m.
+    /// For margins, in m.
     pub margin: Metre,
 }
 
@@ -60,22 +60,22 @@ impl Default for Tolerance {
 /// The `[regress]` table of `closecall.toml`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
-pub struct Settings {
-    /// How strictly to compare.
+pub struct RegressSettings {
+    /// The level of the comparison.
     pub level: Level,
-    /// SUMO's random seeds, one run for each; none for the `seed` above the table, or 1 to 6.
+    /// SUMO's random seeds, one run each; empty for the `seed` above the table, or 1 to 6.
     pub seeds: Vec<u32>,
     /// The SUMO configuration, relative to the folder; none for the one with the folder's name, or the only one.
     pub sumocfg: Option<PathBuf>,
     /// Options for SUMO itself.
     pub sumo_options: Vec<String>,
-    /// Differences that mean nothing.
+    /// Differences to ignore.
     pub tolerance: Tolerance,
-    /// The chance that [`Level::Statistics`] finds a difference where there is none.
+    /// The chance that [`Level::Statistics`] reports a difference although nothing changed.
     pub false_alarm: f64,
 }
 
-impl Default for Settings {
+impl Default for RegressSettings {
     fn default() -> Self {
         Self {
             level: Level::Exact,
@@ -99,16 +99,16 @@ pub struct Scenario {
     pub sumocfg: PathBuf,
     /// Whether the folder has a `closecall.toml`.
     pub has_settings: bool,
-    /// How to run and compare it; the seeds are filled in.
-    pub settings: Settings,
+    /// How to run and compare it, with the seeds filled in.
+    pub settings: RegressSettings,
 }
 
 impl Scenario {
-    /// Reads the scenario in a folder; `known` are the long options that a key of `closecall.toml` may name.
+    /// Reads the scenario in a folder; `known` are the long options that `closecall.toml` may contain as keys.
     ///
     /// # Errors
-    /// An error that names the folder, or the file and the key in it: no such folder, no configuration, a setting that
-    /// is unknown or out of its range.
+    /// An error that names the folder, or the file and the key in it: the folder or the configuration does not exist, or a
+    /// setting is unknown or out of its range.
     pub fn read(folder: &Path, known: &[String]) -> Result<Self> {
         Self::with_configuration(folder, None, known)
     }
@@ -138,7 +138,7 @@ impl Scenario {
                 let place = if key.starts_with("in `") { format!(" ({key})") } else { String::new() };
                 Error::content(&path, format!("[regress]: {}{place}", error.message()))
             })?,
-            None => Settings::default(),
+            None => RegressSettings::default(),
         };
         if settings.seeds.is_empty() {
             settings.seeds = match seed_of(&file.words) {
@@ -166,10 +166,10 @@ impl Scenario {
         words
     }
 
-    /// The same with other seeds, where there are any.
+    /// The scenario with other seeds, unless `seeds` is empty.
     ///
     /// # Errors
-    /// [`Error::Value`] where a seed is there twice.
+    /// [`Error::Value`] if a seed is repeated.
     pub fn with_seeds(mut self, seeds: &[u32]) -> Result<Self> {
         if !seeds.is_empty() {
             self.settings.seeds = seeds.to_vec();
@@ -178,16 +178,16 @@ impl Scenario {
         Ok(self)
     }
 
-    /// Where what is expected is kept.
+    /// The folder of the expected outcome.
     pub fn expected(&self) -> PathBuf {
         self.folder.join("expected")
     }
 }
 
-/// The folders of the scenarios that a path means: itself, or those in it that have a `closecall.toml`, by name.
+/// The folders of the scenarios at a path: the path itself, or the folders in it that have a `closecall.toml`, by name.
 ///
 /// # Errors
-/// An error that names the folder where there is neither.
+/// An error that names the folder if there is no scenario.
 pub fn folders(path: &Path) -> Result<Vec<PathBuf>> {
     let is_sumocfg = |file: &Path| file.extension().is_some_and(|extension| extension == "sumocfg");
     if path.join(SETTINGS).is_file() {
@@ -213,10 +213,10 @@ fn configuration(folder: &Path, name: &str) -> Result<PathBuf> {
     let mut found = all.iter().filter(|entry| entry.extension().is_some_and(|extension| extension == "sumocfg"));
     match (found.next().and_then(|entry| entry.file_name()), found.next()) {
         (Some(only), None) => Ok(PathBuf::from(only)),
-        (None, _) => Err(Error::content(folder, "no .sumocfg here; sumocfg in [regress] may name one elsewhere")),
+        (None, _) => Err(Error::content(folder, "no .sumocfg here; set sumocfg in [regress] to use one elsewhere")),
         (Some(_), Some(_)) => Err(Error::content(
             folder,
-            format!("several .sumocfg here and no {name}.sumocfg; [regress] must say which"),
+            format!("several .sumocfg here and no {name}.sumocfg; set sumocfg in [regress] to choose one"),
         )),
     }
 }
@@ -233,8 +233,8 @@ fn seed_of(words: &[String]) -> Option<u32> {
     words.iter().find_map(|word| word.strip_prefix("--seed="))?.parse().ok()
 }
 
-/// What is wrong with the settings, if anything is.
-fn check(settings: &Settings) -> std::result::Result<(), String> {
+/// Checks the settings; the error says what is wrong.
+fn check(settings: &RegressSettings) -> std::result::Result<(), String> {
     let mut seeds = settings.seeds.clone();
     seeds.sort_unstable();
     if let Some(twice) = seeds.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -264,9 +264,9 @@ mod tests {
     }
 
     #[test]
-    fn without_settings_a_scenario_is_exact_with_six_seeds() {
+    fn a_scenario_is_exact_with_six_seeds_by_default() {
         let scenario = read("end = 20\n").unwrap();
-        assert_eq!(scenario.settings, Settings { seeds: SEEDS.to_vec(), ..Settings::default() });
+        assert_eq!(scenario.settings, RegressSettings { seeds: SEEDS.to_vec(), ..RegressSettings::default() });
         assert_eq!(scenario.sumocfg, Path::new("net.sumocfg"));
         assert_eq!(read("seed = 7\n").unwrap().settings.seeds, [7]);
     }

@@ -1,20 +1,20 @@
 //! [`super::Level::Statistics`]: the runs of several seeds, compared by one permutation test.
 //!
 //! Each run becomes a row of measures: counts by kind and severity, collisions, rates per vehicle-kilometre, traffic,
-//! and the tenth, the middle and the ninetieth percentile of TTC, PET and margin. The test is [`super::permutation`].
+//! and the 10th, 50th and 90th percentiles of TTC, PET and margin. The test is [`super::permutation`].
 
 use super::outcome::{Outcome, Row, SeedSummary};
 use super::permutation::adjusted_p;
-use super::scenario::{Settings, Tolerance};
+use super::scenario::{RegressSettings, Tolerance};
 use crate::analysis::statistics::quantile;
 use crate::detection::kind::{Kind, Severity};
 
-/// The percentiles of a distribution that are compared.
+/// The percentiles that are compared, with their names.
 const PERCENTILES: [(f64, &str); 3] = [(0.1, "10 %"), (0.5, "median"), (0.9, "90 %")];
 
-/// What is measured of each run.
+/// A measure of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Measure {
+enum RunMeasure {
     Kind(Kind),
     Severity(Severity),
     Collisions,
@@ -22,34 +22,34 @@ enum Measure {
     Rate(Option<Kind>),
     VehicleKilometres,
     Persons,
-    /// A percentile of a column.
+    /// A column, the share of its percentile, and the percentile's name.
     Percentile(&'static str, f64, &'static str),
 }
 
-/// One measure, before and now.
+/// One measure, expected and found.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Comparison {
-    /// What is compared, with its unit.
+pub struct MeasureComparison {
+    /// The name of the measure, with its unit.
     pub name: String,
-    /// The mean over the seeds of what is expected; none where it has no value in any.
+    /// The expected mean over the seeds; none if no seed has a value.
     pub expected: Option<f64>,
-    /// The mean over the seeds of what was found.
+    /// The mean over the seeds of these runs; none if no seed has a value.
     pub found: Option<f64>,
-    /// The share of splits in which any measure differs as much.
+    /// The share of splits in which any measure differs at least this much.
     pub p: f64,
-    /// Whether this is a difference: p is small enough, and the means are further apart than the tolerance.
+    /// Whether the difference counts: p is small enough, and the means differ by more than the tolerance.
     pub differs: bool,
 }
 
-impl std::fmt::Display for Comparison {
+impl std::fmt::Display for MeasureComparison {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let text = |mean: Option<f64>| mean.map_or("none".to_owned(), |mean| format!("{mean:.3}"));
         write!(f, "{}: {} → {} (p = {:.5})", self.name, text(self.expected), text(self.found), self.p)
     }
 }
 
-/// Compares every measure; the chance that any differs where nothing has changed is at most `settings.false_alarm`.
-pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &Settings) -> Vec<Comparison> {
+/// Compares every measure. If nothing changed, the chance that any is found to differ is at most `settings.false_alarm`.
+pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &RegressSettings) -> Vec<MeasureComparison> {
     let measures = measures();
     let table = |outcome: &Outcome| {
         let of_seed = |seed: &SeedSummary| {
@@ -58,7 +58,8 @@ pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &Settings) -> 
         };
         outcome.summary.seeds.iter().map(of_seed).collect::<Vec<_>>()
     };
-    let (before, now) = (table(expected), table(found));
+    let before = table(expected);
+    let now = table(found);
     let filled = filled(&before, &now, measures.len());
     let (filled_before, filled_now) = filled.split_at(before.len());
     let p = adjusted_p(filled_before, filled_now);
@@ -66,13 +67,14 @@ pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &Settings) -> 
         let values = runs.iter().filter_map(|run| run[measure]).collect::<Vec<_>>();
         (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     };
-    let compare = |(place, measure): (usize, &Measure)| {
-        let (expected, found) = (mean(&before, place), mean(&now, place));
+    let compare = |(place, measure): (usize, &RunMeasure)| {
+        let expected = mean(&before, place);
+        let found = mean(&now, place);
         let apart = match (expected, found) {
             (Some(old), Some(new)) => (new - old).abs() > measure.tolerated(old, &settings.tolerance),
             _ => false,
         };
-        Comparison {
+        MeasureComparison {
             name: measure.name(),
             expected,
             found,
@@ -83,7 +85,7 @@ pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &Settings) -> 
     measures.iter().enumerate().map(compare).collect()
 }
 
-/// The values of all runs; one that a run does not have is the mean of those that have it, which favours no side.
+/// The values of all runs; a missing value is replaced by the mean of the others, which favours neither side.
 fn filled(before: &[Vec<Option<f64>>], now: &[Vec<Option<f64>>], measures: usize) -> Vec<Vec<f64>> {
     let all = before.iter().chain(now).collect::<Vec<_>>();
     let means = (0..measures)
@@ -95,21 +97,21 @@ fn filled(before: &[Vec<Option<f64>>], now: &[Vec<Option<f64>>], measures: usize
     all.iter().map(|run| run.iter().zip(&means).map(|(value, mean)| value.unwrap_or(*mean)).collect()).collect()
 }
 
-fn measures() -> Vec<Measure> {
-    let counts = Kind::ALL.map(Measure::Kind).into_iter().chain(Severity::ALL.map(Measure::Severity));
-    let rates = Kind::ALL.map(Some).into_iter().chain([None]).map(Measure::Rate);
+fn measures() -> Vec<RunMeasure> {
+    let counts = Kind::ALL.map(RunMeasure::Kind).into_iter().chain(Severity::ALL.map(RunMeasure::Severity));
+    let rates = Kind::ALL.map(Some).into_iter().chain([None]).map(RunMeasure::Rate);
     let percentiles = ["ttc", "pet", "margin"]
         .into_iter()
-        .flat_map(|column| PERCENTILES.map(|(share, name)| Measure::Percentile(column, share, name)));
+        .flat_map(|column| PERCENTILES.map(|(share, name)| RunMeasure::Percentile(column, share, name)));
     counts
-        .chain([Measure::Collisions])
+        .chain([RunMeasure::Collisions])
         .chain(rates)
-        .chain([Measure::VehicleKilometres, Measure::Persons])
+        .chain([RunMeasure::VehicleKilometres, RunMeasure::Persons])
         .chain(percentiles)
         .collect()
 }
 
-impl Measure {
+impl RunMeasure {
     fn name(self) -> String {
         match self {
             Self::Kind(kind) => format!("{} conflicts per run", kind.name()),
@@ -137,8 +139,8 @@ impl Measure {
             Self::Severity(severity) => Some(count(None, Some(severity))),
             Self::Collisions => Some(seed.collisions as f64),
             Self::Rate(kind) => {
-                let way = seed.exposure.vehicle_kilometres;
-                (way > 0.0).then(|| count(kind, None) / way)
+                let kilometres = seed.exposure.vehicle_kilometres;
+                (kilometres > 0.0).then(|| count(kind, None) / kilometres)
             }
             Self::VehicleKilometres => Some(seed.exposure.vehicle_kilometres),
             Self::Persons => Some(seed.exposure.persons as f64),
@@ -146,7 +148,7 @@ impl Measure {
         }
     }
 
-    /// The difference from `expected` that means nothing.
+    /// The largest difference from `expected` that is ignored.
     fn tolerated(self, expected: f64, tolerance: &Tolerance) -> f64 {
         match self {
             Self::Percentile("ttc", ..) => tolerance.ttc,
@@ -157,7 +159,7 @@ impl Measure {
     }
 }
 
-/// Linear between the two nearest values.
+/// A percentile, linear between the two nearest values.
 fn percentile(values: impl Iterator<Item = f64>, share: f64) -> Option<f64> {
     let mut sorted = values.collect::<Vec<_>>();
     sorted.sort_by(f64::total_cmp);

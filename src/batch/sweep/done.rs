@@ -1,40 +1,39 @@
-//! What of a sweep is done already.
+//! Which runs of a sweep are done already.
 //!
-//! A run is done where its file is there, says that the run came to its end, was asked for in the same words by the
-//! same version, and the files that it read are what they were then.
+//! A run is done if its file exists and records that the run ended normally, if the words and the version are the same,
+//! and if the files that it read have not changed since.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
-use sha2::{Digest, Sha256};
 
 use super::task::{RUN, Task, data_set};
 use crate::analysis::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
-use crate::output::input_hash::Input;
+use crate::output::input_hash::{Hasher, Input};
 use crate::output::log;
 use crate::{Error, Result};
 
-/// The hashes of files that are read besides what SUMO reads.
+/// The hashes of the files that closecall itself reads.
 pub(super) fn contents(files: &[PathBuf]) -> Result<Vec<String>> {
     files.iter().map(|path| Input::of(path).map(|input| input.sha256)).collect()
 }
 
-/// The hash of what is asked of a run.
+/// The hash of everything that defines a run.
 pub(super) fn fingerprint(words: &[String], labels: &[Label], read: &[String]) -> String {
-    let mut hasher = Sha256::new();
+    let mut hasher = Hasher::default();
     for part in [env!("CARGO_PKG_VERSION")].into_iter().chain(words.iter().chain(read).map(String::as_str)) {
-        hasher.update((part.len() as u64).to_le_bytes());
-        hasher.update(part);
+        hasher.add((part.len() as u64).to_le_bytes());
+        hasher.add(part);
     }
-    hasher.update(format!("{labels:?}"));
-    hasher.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hasher.add(format!("{labels:?}"));
+    hasher.digits()
 }
 
 pub(super) fn missing<'a>(out: &Path, tasks: &'a [Task]) -> Result<Vec<&'a Task>> {
     let log = out.join(log::CONFLICTS);
     if log.exists() {
-        let message = "this is a single run's, which would count as one of the sweep's: choose another --out";
+        let message = "this is the log of a single run, which would count as one of the sweep: choose another --out";
         return Err(Error::content(&log, message));
     }
     check_columns(out, tasks)?;
@@ -42,11 +41,11 @@ pub(super) fn missing<'a>(out: &Path, tasks: &'a [Task]) -> Result<Vec<&'a Task>
     Ok(tasks.iter().filter(|task| !is_done(task, &mut hashes)).collect())
 }
 
-/// The input files with the hashes that they have now, each read once; none where one is gone.
+/// The present hashes of the input files, each read once; none for a file that is gone.
 type Hashes = FxHashMap<PathBuf, Option<String>>;
 
 fn is_done(task: &Task, hashes: &mut Hashes) -> bool {
-    // What cannot be read is done again.
+    // A run whose file cannot be read is repeated.
     let Ok(packed) = Packed::of(&task.file()) else { return false };
     let Ok(run) = serde_json::from_str::<LoggedRun>(&packed.record) else { return false };
     let mut is_as_it_was = |input: &Input| {
@@ -57,7 +56,7 @@ fn is_done(task: &Task, hashes: &mut Hashes) -> bool {
     run.complete && packed.fingerprint == task.fingerprint && run.inputs.iter().all(&mut is_as_it_was)
 }
 
-/// All files of a data set have the same columns, those of runs before included.
+/// All files of a data set must have the same columns, including those of earlier runs.
 fn check_columns(out: &Path, tasks: &[Task]) -> Result<()> {
     let Some(first) = tasks.first() else { return Ok(()) };
     let is_number = |value: &LabelValue| !matches!(value, LabelValue::Text(_));

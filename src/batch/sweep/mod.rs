@@ -1,8 +1,8 @@
-//! Many runs of one scenario: every seed with every combination of varied options, each run a task of its own.
+//! Sweeps: runs of one scenario with every seed and every combination of varied options, each run a task of its own.
 //!
 //! A sweep is planned here ([`Sweep::plan`]), run elsewhere, and finished here ([`Task::finish`]): a run's log becomes
-//! `conflicts/run=NAME/conflicts.parquet` in the sweep's folder, whole or not at all. What is there and fits is not
-//! run again ([`Sweep::missing`]), so a sweep that was stopped continues with the same words.
+//! `conflicts/run=NAME/conflicts.parquet` in the sweep's folder, in one atomic step. Runs whose file still fits are not
+//! repeated ([`Sweep::missing`]), so the same command continues a sweep that was stopped.
 
 mod done;
 mod seeds;
@@ -19,25 +19,25 @@ pub use seeds::Seeds;
 pub use task::Task;
 pub use vary::Vary;
 
-/// More runs than this are a slip of the finger.
+/// More runs than this are a typing mistake.
 const MOST: usize = 1_000_000;
 
 /// All runs of a sweep.
 #[derive(Clone, Debug)]
 pub struct Sweep {
-    /// The runs, in the order in which they are begun: all variants of a seed before the next seed.
+    /// The runs, in the order in which they start: all variants of a seed before the next seed.
     pub tasks: Vec<Task>,
     out: PathBuf,
 }
 
 impl Sweep {
-    /// Plans a sweep of the scenario whose `closecall run` has these `words` and these options `for SUMO`.
+    /// Plans a sweep of the scenario whose `closecall run` has these `words` and these options `for_sumo`.
     ///
-    /// `also_read` are the files that the words name and closecall reads: a run counts as done only with the same.
+    /// `also_read` are the files that closecall itself reads; a run is done only if their contents are unchanged.
     ///
     /// # Errors
-    /// [`Error::Value`] where the same is varied twice, two runs would have one name, or there are too many;
-    /// [`Error::File`] where a file cannot be read.
+    /// [`Error::Value`] if an option is varied twice, two runs have the same name, or there are too many runs;
+    /// [`Error::File`] if a file cannot be read.
     pub fn plan(
         words: &[String],
         for_sumo: &[String],
@@ -55,11 +55,13 @@ impl Sweep {
             return Err(Error::Value(format!("that would be more than {MOST} runs")));
         }
         let read = done::contents(also_read)?;
-        let (mut tasks, mut names) = (Vec::new(), BTreeSet::new());
+        let mut tasks = Vec::new();
+        let mut names = BTreeSet::new();
         for &seed in &seeds.0 {
             for chosen in vary::product(varied) {
                 let mut name = String::new();
-                let (mut own, mut sumo) = (words.to_vec(), for_sumo.to_vec());
+                let mut own = words.to_vec();
+                let mut sumo = for_sumo.to_vec();
                 let mut labels = Vec::with_capacity(chosen.len() + 1);
                 for (vary, value) in chosen {
                     name += &format!("{}-{}_", vary::plain(&vary.parameter), vary::plain(value));
@@ -83,11 +85,11 @@ impl Sweep {
         Ok(Self { tasks, out: out.to_owned() })
     }
 
-    /// The runs that are still to be done: those not in the folder, or not as they are wanted now.
+    /// The runs to be done: those without a file in the folder, and those whose file no longer fits.
     ///
     /// # Errors
-    /// [`Error::Content`] where the folder holds runs of a sweep that varied something else (their columns differ), or a
-    /// run's own log.
+    /// [`Error::Content`] if the folder contains the log of a single run, or runs of a sweep that varied other options and
+    /// therefore has other columns.
     pub fn missing(&self) -> Result<Vec<&Task>> {
         done::missing(&self.out, &self.tasks)
     }

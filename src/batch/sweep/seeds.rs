@@ -1,12 +1,12 @@
-//! Which seeds: `1-100`, `1,2,5-9`.
+//! A list of seeds: `1-100`, `1,2,5-9`.
 
 use std::str::FromStr;
 
-/// Seeds, each once, in the order in which they were given.
+/// Seeds without repetitions, in the order in which they were given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u32>);
 
-/// More seeds than this are a slip of the finger.
+/// More seeds than this are a typing mistake.
 const MOST: usize = 1_000_000;
 
 impl FromStr for Seeds {
@@ -15,9 +15,10 @@ impl FromStr for Seeds {
     fn from_str(text: &str) -> Result<Self, String> {
         let mut seeds = Vec::new();
         for part in text.split(',') {
-            let number = |text: &str| text.trim().parse::<u32>().map_err(|_| format!("\"{part}\" is no seed"));
+            let number = |text: &str| text.trim().parse::<u32>().map_err(|_| format!("\"{part}\" is not a seed"));
             let (first, last) = part.split_once('-').unwrap_or((part, part));
-            let (first, last) = (number(first)?, number(last)?);
+            let first = number(first)?;
+            let last = number(last)?;
             if last < first {
                 return Err(format!("\"{part}\" ends before it begins"));
             }

@@ -1,4 +1,4 @@
-//! One run of a sweep, and the file that it becomes.
+//! One run of a sweep, and its file in the data set.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -12,38 +12,38 @@ use crate::{Error, Result};
 /// The folder of the data set in a sweep's folder.
 pub(super) const CONFLICTS: &str = "conflicts";
 
-/// What the folder of a run in it begins with, as partitions of a data set do.
+/// The prefix of a run's folder in the data set, as is usual for partitions.
 pub(super) const RUN: &str = "run=";
 
-/// One run of a sweep; as JSON it travels to whoever does it.
+/// One run of a sweep; serialised to JSON for the worker that runs it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Task {
-    /// Its name: what was varied, and the seed.
+    /// Its name, from the varied options and the seed.
     pub name: String,
-    /// The words of `closecall run`, without those that say where the log goes.
+    /// The words of `closecall run`, without `--out`.
     pub words: Vec<String>,
     /// The sweep's folder.
     pub out: PathBuf,
-    /// What tells it from the other runs, as columns.
+    /// The columns that distinguish it from the other runs.
     pub(super) labels: Vec<Label>,
-    /// The hash of what was asked for.
+    /// The hash of everything that defines the run.
     pub(super) fingerprint: String,
 }
 
 impl Task {
-    /// Makes the run's log a part of the data set; encounters, where there are any, come to lie beside it.
+    /// Adds the run's log to the data set; encounters, if there are any, go to a folder beside it.
     ///
     /// # Errors
-    /// [`Error::Content`] where the run did not come to its end; those of [`logged::pack`].
+    /// [`Error::Content`] if the run did not reach its end; those of [`logged::pack`].
     pub fn finish(&self, log: &Path) -> Result<()> {
         if !LoggedRun::read(log)?.complete {
-            return Err(Error::content(log, "the run did not come to its end"));
+            return Err(Error::content(log, "the run did not reach its end"));
         }
         let encounters = log.join(ENCOUNTERS);
         let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
         let fault = |source| Error::file(&folder, source);
         if folder.exists() {
-            // Those of the run that this one takes the place of.
+            // The encounters of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;
         }
         if encounters.is_file() {
@@ -53,7 +53,7 @@ impl Task {
         logged::pack(log, &self.labels, &self.fingerprint, &self.file())
     }
 
-    /// The file that it becomes.
+    /// Its file in the data set.
     pub(super) fn file(&self) -> PathBuf {
         data_set(&self.out).join(format!("{RUN}{}", self.name)).join(PARQUET)
     }

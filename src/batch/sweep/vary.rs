@@ -1,18 +1,18 @@
-//! What is varied: `epsilon=0.5,1` is an option of `closecall run`, `sumo:scale=1,1.2` one of SUMO's.
+//! A varied option: `epsilon=0.5,1` for `closecall run`, `sumo:scale=1,1.2` for SUMO.
 
 use std::str::FromStr;
 
 use crate::analysis::logged::{Label, LabelValue};
 
-/// What stands before the name of an option of SUMO's.
+/// The prefix of SUMO's options.
 const SUMO: &str = "sumo:";
 
-/// An option and the values that it takes.
+/// An option and its values.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Vary {
-    /// The option's name without dashes; `sumo:` stands before one of SUMO's.
+    /// The option's name without dashes, with the prefix `sumo:` if it is for SUMO.
     pub parameter: String,
-    /// The values, each once.
+    /// The values, without repetitions.
     pub values: Vec<String>,
 }
 
@@ -23,11 +23,11 @@ impl FromStr for Vary {
         let (parameter, values) = text.split_once('=').ok_or("it has no values: NAME=A,B,…")?;
         let (prefix, name) = match parameter.strip_prefix(SUMO) {
             Some(name) => (SUMO, name.to_owned()),
-            // As the keys of a settings file are.
+            // The keys of a settings file may have underscores, too.
             None => ("", parameter.replace('_', "-")),
         };
         if name.is_empty() || name.starts_with('-') {
-            return Err(format!("\"{parameter}\" is no option's name (without dashes)"));
+            return Err(format!("\"{parameter}\" is not the name of an option (without dashes)"));
         }
         let values = values.split(',').map(str::to_owned).collect::<Vec<_>>();
         for (place, value) in values.iter().enumerate() {
@@ -35,7 +35,7 @@ impl FromStr for Vary {
                 return Err("a value is empty".to_owned());
             }
             if values[..place].contains(value) {
-                return Err(format!("the value {value} is there twice"));
+                return Err(format!("the value {value} is repeated"));
             }
         }
         Ok(Self { parameter: format!("{prefix}{name}"), values })
@@ -43,28 +43,28 @@ impl FromStr for Vary {
 }
 
 impl Vary {
-    /// Whether SUMO gets the option.
+    /// Whether the option is for SUMO.
     pub fn is_sumos(&self) -> bool {
         self.parameter.starts_with(SUMO)
     }
 
-    /// The option's name alone.
+    /// The option's name without the prefix.
     pub fn option(&self) -> &str {
         self.parameter.strip_prefix(SUMO).unwrap_or(&self.parameter)
     }
 
-    /// The word of the command line that sets it.
+    /// The word of the command line that sets the option.
     pub(super) fn word(&self, value: &str) -> String {
         format!("--{}={value}", self.option())
     }
 
-    /// The column that it becomes: a log has a column `mu` of its own, hence what stands before.
+    /// The name of its column, with a prefix, because a log already has columns such as `mu`.
     pub(super) fn column(&self) -> String {
         let whose = if self.is_sumos() { "sumo" } else { "option" };
         format!("{whose}_{}", self.option().replace(['-', '.', ':'], "_"))
     }
 
-    /// The column with one of the values: numbers where all of them are.
+    /// The column with one of the values: a number if all values are numbers.
     pub(super) fn label(&self, value: &str) -> Label {
         let number = |text: &str| text.parse::<f64>().ok().filter(|number| number.is_finite());
         let value = match number(value) {
@@ -75,7 +75,7 @@ impl Vary {
     }
 }
 
-/// All combinations of the values; one without any where nothing is varied.
+/// All combinations of the values; a single empty one if nothing is varied.
 pub(super) fn product(varied: &[Vary]) -> Vec<Vec<(&Vary, &str)>> {
     let mut all = vec![Vec::new()];
     for vary in varied {
@@ -91,7 +91,7 @@ pub(super) fn product(varied: &[Vary]) -> Vec<Vec<(&Vary, &str)>> {
     all
 }
 
-/// A text as a part of a folder's name.
+/// A text as part of a folder's name.
 pub(super) fn plain(text: &str) -> String {
     let is_plain = |sign: char| sign.is_alphanumeric() || ['.', '-', '+'].contains(&sign);
     text.chars().map(|sign| if is_plain(sign) { sign } else { '.' }).collect()
@@ -102,7 +102,7 @@ mod tests {
     use crate::batch::sweep::vary::*;
 
     #[test]
-    fn an_option_is_closecalls_or_sumos() {
+    fn an_option_is_for_closecall_or_for_sumo() {
         let own = "serious_ttc=1,2.5".parse::<Vary>().unwrap();
         assert_eq!(
             (own.is_sumos(), own.word("1"), own.column()),
@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn every_value_meets_every_other() {
+    fn every_combination_of_values_occurs_once() {
         let varied = ["a=1,2".parse().unwrap(), "b=x,y,z".parse().unwrap()];
         let all = product(&varied);
         assert_eq!(all.len(), 6);

@@ -6,6 +6,7 @@ use crate::geometry::bisection::Bisection;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
+use crate::util::golden_section::golden_section;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// Number of times at which the needed deceleration is sampled before the contact.
@@ -66,25 +67,21 @@ fn by_search(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, 
     if most.is_finite() { search_maximum(needed, time(at - 1), time(AFTER.min(at + 1)), most) } else { most }
 }
 
-/// The largest value between two times, at least `most`, by golden-section search: the needed deceleration has one
-/// maximum there, or drops to 0 when the foe has left.
-fn search_maximum(mut needed: impl FnMut(Second) -> f64, mut from: Second, mut to: Second, mut most: f64) -> f64 {
-    const PART: f64 = 0.618_033_988_749_894_9;
-    let [mut low, mut high] = [to - PART * (to - from), from + PART * (to - from)];
-    let [mut of_low, mut of_high] = [needed(low), needed(high)];
-    for _ in 0..SEARCH_STEPS {
-        most = most.max(of_low).max(of_high);
-        if of_low < of_high {
-            (from, low, of_low) = (low, high, of_high);
-            high = from + PART * (to - from);
-            of_high = needed(high);
-        } else {
-            (to, high, of_high) = (high, low, of_low);
-            low = to - PART * (to - from);
-            of_low = needed(low);
-        }
-    }
-    most.max(of_low).max(of_high)
+/// The largest value between two times, at least `most`: the needed deceleration has one maximum there, or drops to 0 when
+/// the foe has left.
+fn search_maximum(mut needed: impl FnMut(Second) -> f64, from: Second, to: Second, most: f64) -> f64 {
+    let mut largest = most;
+    golden_section(
+        |time| {
+            let now = needed(time);
+            largest = largest.max(now);
+            now
+        },
+        from,
+        to,
+        SEARCH_STEPS,
+    );
+    largest
 }
 
 /// The distance at which the ego touches a standing rectangle; infinite if it does not within `furthest`.

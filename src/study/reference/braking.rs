@@ -1,27 +1,28 @@
 //! Stopping distance and μ by their definitions, in high precision.
 //!
-//! μ is the largest value of travel_ego(t) − σ travel_foe(t). Between the times at which either changes how it brakes
-//! that is a cubic: its value is taken at all those times and wherever its derivative, a quadratic, is 0. Nothing is
-//! assumed about which of them is the largest.
+//! μ is the largest value of travel_ego(t) − σ travel_foe(t). Between the times at which either starts a new phase of
+//! braking, this is a cubic. It is evaluated at all those times and wherever its derivative, a quadratic, is 0; no
+//! assumption is made about which value is the largest.
 
-use super::{Number, precise};
+use super::{BigFloat, precise};
 use crate::braking::{Braking, MuModel};
 
-/// A phase of braking: from `start` on, way = c0 + c1 τ + c2 τ² + c3 τ³ with τ = t − start.
+/// A phase of braking: from `start` on, distance = c0 + c1 τ + c2 τ² + c3 τ³ with τ = t − start.
 #[derive(Clone)]
 struct Phase {
-    start: Number,
-    way: [Number; 4],
+    start: BigFloat,
+    cubic: [BigFloat; 4],
 }
 
-/// The phases of one road user, up to its standstill, which is the last.
+/// The phases of one road user; the last one is its standstill.
 fn phases(braking: &Braking, at_once: bool) -> Vec<Phase> {
     let zero = || precise(0.0);
     let brakes = braking.brakes;
-    let (v, a) = (precise(braking.speed), precise(brakes.deceleration));
+    let v = precise(braking.speed);
+    let a = precise(brakes.deceleration);
     let (r, t3) = if at_once { (zero(), zero()) } else { (precise(brakes.response), precise(brakes.build_up)) };
-    let mut phases = vec![Phase { start: zero(), way: [zero(), v.clone(), zero(), zero()] }];
-    let mut way = &v * &r;
+    let mut phases = vec![Phase { start: zero(), cubic: [zero(), v.clone(), zero(), zero()] }];
+    let mut distance = &v * &r;
     let mut time = r.clone();
     let mut speed = v.clone();
     if t3 > zero() {
@@ -29,25 +30,29 @@ fn phases(braking: &Braking, at_once: bool) -> Vec<Phase> {
         // On the ramp: speed = v − jerk τ²/2.
         let to_stand = (precise(2.0) * &v / &jerk).sqrt();
         let lasts = if to_stand < t3 { to_stand } else { t3.clone() };
-        phases.push(Phase { start: time.clone(), way: [way.clone(), v.clone(), zero(), -(&jerk / precise(6.0))] });
-        way += &v * &lasts - &jerk * &lasts * &lasts * &lasts / precise(6.0);
+        phases
+            .push(Phase { start: time.clone(), cubic: [distance.clone(), v.clone(), zero(), -(&jerk / precise(6.0))] });
+        distance += &v * &lasts - &jerk * &lasts * &lasts * &lasts / precise(6.0);
         time += &lasts;
         speed = if lasts < t3 { zero() } else { &v - &jerk * &lasts * &lasts / precise(2.0) };
     }
     if speed > zero() {
-        phases.push(Phase { start: time.clone(), way: [way.clone(), speed.clone(), -(&a / precise(2.0)), zero()] });
-        way += &speed * &speed / (precise(2.0) * &a);
+        phases.push(Phase {
+            start: time.clone(),
+            cubic: [distance.clone(), speed.clone(), -(&a / precise(2.0)), zero()],
+        });
+        distance += &speed * &speed / (precise(2.0) * &a);
         time += &speed / &a;
     }
-    phases.push(Phase { start: time, way: [way, zero(), zero(), zero()] });
+    phases.push(Phase { start: time, cubic: [distance, zero(), zero(), zero()] });
     phases
 }
 
-/// The cubic that a road user follows from `time` on, in τ = t − time.
-fn from(phases: &[Phase], time: &Number) -> [Number; 4] {
+/// The cubic of a road user's distance from `time` on, in τ = t − time.
+fn from(phases: &[Phase], time: &BigFloat) -> [BigFloat; 4] {
     let phase = phases.iter().rev().find(|phase| phase.start <= *time).unwrap_or(&phases[0]);
     let s = time - &phase.start;
-    let [c0, c1, c2, c3] = &phase.way;
+    let [c0, c1, c2, c3] = &phase.cubic;
     let three = precise(3.0);
     [
         c0 + c1 * &s + c2 * &s * &s + c3 * &s * &s * &s,
@@ -57,15 +62,17 @@ fn from(phases: &[Phase], time: &Number) -> [Number; 4] {
     ]
 }
 
-fn value(cubic: &[Number; 4], at: &Number) -> Number {
+fn value(cubic: &[BigFloat; 4], at: &BigFloat) -> BigFloat {
     let [c0, c1, c2, c3] = cubic;
     c0 + at * (c1 + at * (c2 + at * c3))
 }
 
 /// The real roots of c1 + 2 c2 τ + 3 c3 τ².
-fn stationary(cubic: &[Number; 4]) -> Vec<Number> {
+fn stationary(cubic: &[BigFloat; 4]) -> Vec<BigFloat> {
     let zero = precise(0.0);
-    let (a, b, c) = (precise(3.0) * &cubic[3], precise(2.0) * &cubic[2], cubic[1].clone());
+    let a = precise(3.0) * &cubic[3];
+    let b = precise(2.0) * &cubic[2];
+    let c = cubic[1].clone();
     if a == zero {
         return if b == zero { Vec::new() } else { vec![-(&c / &b)] };
     }
@@ -82,17 +89,19 @@ fn stationary(cubic: &[Number; 4]) -> Vec<Number> {
 }
 
 /// The stopping distance in m.
-pub fn stopping_distance(braking: &Braking) -> Number {
+pub fn stopping_distance(braking: &Braking) -> BigFloat {
     rest(&phases(braking, false))
 }
 
-fn rest(phases: &[Phase]) -> Number {
-    phases.last().map_or(precise(0.0), |last| last.way[0].clone())
+fn rest(phases: &[Phase]) -> BigFloat {
+    phases.last().map_or(precise(0.0), |last| last.cubic[0].clone())
 }
 
 /// The minimal collision distance in m.
-pub fn mu(model: MuModel, ego: &Braking, foe: &Braking, sigma: f64, epsilon: f64) -> Number {
-    let (zero, s, epsilon) = (precise(0.0), precise(sigma), precise(epsilon));
+pub fn mu(model: MuModel, ego: &Braking, foe: &Braking, sigma: f64, epsilon: f64) -> BigFloat {
+    let zero = precise(0.0);
+    let s = precise(sigma);
+    let epsilon = precise(epsilon);
     if model == MuModel::Paper {
         let own = |braking: &Braking| {
             let v = precise(braking.speed);
@@ -101,21 +110,23 @@ pub fn mu(model: MuModel, ego: &Braking, foe: &Braking, sigma: f64, epsilon: f64
         let response = precise(ego.brakes.response) + precise(ego.brakes.build_up);
         return precise(ego.speed) * response + own(ego) - own(foe) + epsilon;
     }
-    let (own, other) = (phases(ego, false), phases(foe, sigma > 0.0));
+    let own = phases(ego, false);
+    let other = phases(foe, sigma > 0.0);
     let at_rest = rest(&own) - &s * rest(&other);
     let most = if model == MuModel::AtRest { at_rest } else { narrowest(&own, &other, &s, at_rest) };
     if most > zero { most + epsilon } else { epsilon }
 }
 
-fn narrowest(own: &[Phase], other: &[Phase], sigma: &Number, at_rest: Number) -> Number {
+fn narrowest(own: &[Phase], other: &[Phase], sigma: &BigFloat, at_rest: BigFloat) -> BigFloat {
     let mut times = own.iter().chain(other).map(|phase| phase.start.clone()).collect::<Vec<_>>();
     times.sort();
     let mut most = at_rest;
     for (index, start) in times.iter().enumerate() {
-        let (ego, foe) = (from(own, start), from(other, start));
-        let difference: [Number; 4] = std::array::from_fn(|power| &ego[power] - sigma * &foe[power]);
+        let ego = from(own, start);
+        let foe = from(other, start);
+        let difference: [BigFloat; 4] = std::array::from_fn(|power| &ego[power] - sigma * &foe[power]);
         let lasts = times.get(index + 1).map(|end| end - start);
-        let inside = |at: &Number| *at >= precise(0.0) && lasts.as_ref().is_none_or(|lasts| at <= lasts);
+        let inside = |at: &BigFloat| *at >= precise(0.0) && lasts.as_ref().is_none_or(|lasts| at <= lasts);
         for at in stationary(&difference).into_iter().filter(inside).chain([precise(0.0)]) {
             let found = value(&difference, &at);
             if found > most {

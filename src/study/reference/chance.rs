@@ -14,7 +14,7 @@ impl Chance {
         low + (high - low) * self.0.f64()
     }
 
-    /// A number from `low` to `high`, both above 0, every order of magnitude alike.
+    /// A number from `low` to `high`, both above 0, each order of magnitude equally likely.
     pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         (self.between(low.ln(), high.ln()).exp()).clamp(low, high)
     }
@@ -29,7 +29,7 @@ impl Chance {
         self.0.i32(-most..=most)
     }
 
-    /// One of these; `T::default()` of none.
+    /// One of these; `T::default()` if there are none.
     pub fn pick<T: Copy + Default>(&mut self, from: &[T]) -> T {
         from.get(self.below(from.len())).copied().unwrap_or_default()
     }

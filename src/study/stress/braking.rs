@@ -1,4 +1,4 @@
-//! Stiff brakes: stopping distance and μ where terms are of very different size, cancel, or are hardly numbers.
+//! Stiff brakes: stopping distance and μ if terms differ greatly in size, cancel, or are almost zero.
 
 use super::case::Case;
 use super::tally::{Group, Property, Tally, Unit};
@@ -7,7 +7,7 @@ use crate::study::reference::braking as reference;
 use crate::study::reference::chance::Chance;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// The largest relative error of a published μ (issue: "≤ 1e-12 over the whole stress domain").
+/// The largest relative error of a published μ.
 const BOUND: f64 = 1e-12;
 const STOPPING: Property = Property::within("stopping distance", BOUND, Unit::Relative);
 const MINIMAL: Property = Property::within("mu minimal", BOUND, Unit::Relative);
@@ -18,34 +18,41 @@ const MONOTONE: Property = Property::always("more speed, less braking, more resp
 
 pub(super) const CASES: &[Case] = &[
     Case::new(Group::Braking, "deceleration 1e-9 to 1e9", |chance, tally| {
-        let pair = Pair { a: chance.magnitude(1e-9, 1e9), ai: chance.magnitude(1e-9, 1e9), ..usual(chance) };
+        let pair = MuInputs { a: chance.magnitude(1e-9, 1e9), ai: chance.magnitude(1e-9, 1e9), ..usual(chance) };
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "build-up 0 to 100 s", |chance, tally| {
-        let pair = Pair { t3: chance.magnitude(1e-9, 100.0), ..usual(chance) };
+        let pair = MuInputs { t3: chance.magnitude(1e-9, 100.0), ..usual(chance) };
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "speed 5e-324 to 300 m/s", |chance, tally| {
         let least = f64::from_bits(1);
         let speeds = [0.0, least, chance.magnitude(f64::MIN_POSITIVE, 1e-200), chance.magnitude(1e-200, 300.0)];
-        let pair = Pair { v: chance.pick(&speeds), vi: chance.pick(&speeds), ..usual(chance) };
+        let pair = MuInputs { v: chance.pick(&speeds), vi: chance.pick(&speeds), ..usual(chance) };
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "equal speeds and brakes", |chance, tally| {
         let base = usual(chance);
         let last_places = |chance: &mut Chance, value: f64| value * (1.0 + f64::from(chance.around(4)) * f64::EPSILON);
-        let (vi, ai) = (last_places(chance, base.v), last_places(chance, base.a));
-        let pair =
-            Pair { vi, ai, r: chance.pick(&[0.0, 1e-12, 1.0]), t3: chance.pick(&[0.0, 1e-9, 0.1]), sigma: 1.0, ..base };
+        let vi = last_places(chance, base.v);
+        let ai = last_places(chance, base.a);
+        let pair = MuInputs {
+            vi,
+            ai,
+            r: chance.pick(&[0.0, 1e-12, 1.0]),
+            t3: chance.pick(&[0.0, 1e-9, 0.1]),
+            sigma: 1.0,
+            ..base
+        };
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "no response, no build-up", |chance, tally| {
-        let pair = Pair { r: 0.0, t3: 0.0, ..usual(chance) };
+        let pair = MuInputs { r: 0.0, t3: 0.0, ..usual(chance) };
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "all at once", |chance, tally| {
         let sigmas = [1.0, 1.0 - f64::EPSILON, 1e-300, 0.0, -1e-300, -1.0];
-        let pair = Pair {
+        let pair = MuInputs {
             v: chance.magnitude(1e-12, 300.0),
             vi: chance.magnitude(1e-12, 300.0),
             a: chance.magnitude(1e-9, 1e9),
@@ -61,7 +68,7 @@ pub(super) const CASES: &[Case] = &[
 
 /// The inputs of a μ.
 #[derive(Clone, Copy, Debug)]
-struct Pair {
+struct MuInputs {
     v: MetrePerSecond,
     vi: MetrePerSecond,
     a: MetrePerSecondSquared,
@@ -72,7 +79,7 @@ struct Pair {
     epsilon: Metre,
 }
 
-impl Pair {
+impl MuInputs {
     fn with<T>(&self, use_it: impl FnOnce(&Braking, &Braking) -> T) -> T {
         let brakes = Brakes { response: self.r, build_up: self.t3, deceleration: self.a };
         let foe_brakes = Brakes { deceleration: self.ai, ..brakes };
@@ -84,8 +91,8 @@ impl Pair {
     }
 }
 
-fn usual(chance: &mut Chance) -> Pair {
-    Pair {
+fn usual(chance: &mut Chance) -> MuInputs {
+    MuInputs {
         v: chance.between(0.0, 60.0),
         vi: chance.between(0.0, 60.0),
         a: chance.between(1.0, 12.0),
@@ -97,7 +104,7 @@ fn usual(chance: &mut Chance) -> Pair {
     }
 }
 
-fn check(chance: &mut Chance, pair: &Pair, tally: &mut Tally) {
+fn check(chance: &mut Chance, pair: &MuInputs, tally: &mut Tally) {
     pair.with(|ego, foe| {
         tally.compare(STOPPING, stopping_distance(ego.speed, ego.brakes), &reference::stopping_distance(ego), pair);
         for (model, property) in [(MuModel::Minimal, MINIMAL), (MuModel::AtRest, AT_REST), (MuModel::Paper, PAPER)] {
@@ -105,16 +112,17 @@ fn check(chance: &mut Chance, pair: &Pair, tally: &mut Tally) {
             tally.compare(property, pair.mu(model), &expected, pair);
         }
     });
-    let (minimal, at_rest) = (pair.mu(MuModel::Minimal), pair.mu(MuModel::AtRest));
+    let minimal = pair.mu(MuModel::Minimal);
+    let at_rest = pair.mu(MuModel::AtRest);
     tally.holds(ORDER, minimal >= at_rest * (1.0 - BOUND) && at_rest >= pair.epsilon, pair);
     let factor = 1.0 + chance.magnitude(1e-6, 1.0);
     let worse = [
-        Pair { v: pair.v * factor, ..*pair },
-        Pair { a: pair.a / factor, ..*pair },
-        Pair { r: pair.r * factor, ..*pair },
+        MuInputs { v: pair.v * factor, ..*pair },
+        MuInputs { a: pair.a / factor, ..*pair },
+        MuInputs { r: pair.r * factor, ..*pair },
     ];
     for changed in worse {
-        // With σ < 0 one response time is both's, and more of it is more for both.
+        // With σ < 0 the response time applies to both, and a longer one needs more room for both.
         let more = [(MuModel::Minimal, minimal), (MuModel::AtRest, at_rest)];
         let holds = more.iter().all(|(model, before)| changed.mu(*model) >= before * (1.0 - BOUND));
         tally.holds(MONOTONE, holds, &(pair, changed));

@@ -1,13 +1,13 @@
-//! One stress case: what it is about, and how it is checked.
+//! A stress case: its group, its name, and its check.
 
 use super::tally::{Group, Tally};
 use crate::study::reference::chance::Chance;
 
-/// One named case.
+/// A named case.
 pub(super) struct Case {
     pub group: Group,
     pub name: &'static str,
-    /// How many inputs of the others' one of this costs.
+    /// The cost of one input, relative to those of ordinary cases.
     pub cost: u64,
     pub check: fn(&mut Chance, &mut Tally),
 }

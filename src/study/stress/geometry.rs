@@ -1,7 +1,7 @@
-//! Rectangles that hardly touch, hardly differ, are hardly there, or are far away.
+//! Rectangles that barely touch, barely differ, have almost no size, or are far from the origin.
 
+use super::cars;
 use super::case::Case;
-use super::scene;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::detection::path::rotated;
 use crate::geometry::contact::{distance, touches};
@@ -18,7 +18,7 @@ const DECIDED: Property = Property::always("contact as in exact arithmetic");
 const EXCHANGED: Property = Property::always("the same for foe and ego");
 const MIRRORED: Property = Property::always("the same in the mirror");
 const AGREES: Property = Property::always("distance 0 where they touch");
-/// In units in the last place of the largest coordinate: rounding the corners alone takes some of these.
+/// In units in the last place of the largest coordinate; rounding the corners alone costs several.
 const ULPS: f64 = 8.0;
 const APART: Property = Property::within("distance, in ulps of the place", ULPS, Unit::Ulps);
 const MOVED: Property = Property::within("change of distance when moved", ULPS, Unit::Ulps);
@@ -76,7 +76,7 @@ pub(super) const CASES: &[Case] = &[
     Case::new(Group::Geometry, "no place, no number", |chance, tally| {
         let mut values = [chance.between(-1e7, 1e7), 3.0, 0.0, chance.angle(), chance.between(0.0, 300.0)];
         let bad = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, SUMO_INVALID];
-        // Heights and headings have no value of SUMO's for "none".
+        // SUMO's value for "none" exists only for positions in the plane.
         let column = chance.below(5);
         values[column] = bad[chance.below(if column < 2 { 4 } else { 3 })];
         let [x, y, z, heading, speed] = values;
@@ -85,12 +85,14 @@ pub(super) const CASES: &[Case] = &[
         tally.holds(REFUSED, !taken && frame.is_empty(), &values);
     }),
     Case::new(Group::Geometry, "a foe that comes closer", |chance, tally| {
-        let (v, vi, turn) =
-            (chance.between(5.0, 40.0), chance.between(0.0, 5.0), chance.pick(&[0.0, 1.5, std::f64::consts::PI]));
+        let v = chance.between(5.0, 40.0);
+        let vi = chance.between(0.0, 5.0);
+        let turn = chance.pick(&[0.0, 1.5, std::f64::consts::PI]);
         let distance = chance.between(2.0, 20.0);
-        let gap = |ahead: Metre| scene::gap((v, 0.0), (ahead, 0.0, turn, vi));
-        let (near, far) = (gap(distance), gap(distance + chance.magnitude(1e-6, 1.0)));
-        // One that is too far to be met leaves all the room there is.
+        let gap = |ahead: Metre| cars::gap((v, 0.0), (ahead, 0.0, turn, vi));
+        let near = gap(distance);
+        let far = gap(distance + chance.magnitude(1e-6, 1.0));
+        // A foe that is out of reach leaves an infinite gap.
         let holds = near.unwrap_or(f64::INFINITY) <= far.unwrap_or(f64::INFINITY);
         tally.holds(CLOSER, holds, &(v, vi, turn, distance, near, far));
     })
@@ -108,7 +110,8 @@ fn flat(chance: &mut Chance) -> Rectangle {
 
 fn check(chance: &mut Chance, inputs: (Rectangle, Rectangle), tally: &mut Tally) {
     let (a, b) = inputs;
-    let (touching, apart) = (touches(&a, &b), distance(&a, &b));
+    let touching = touches(&a, &b);
+    let apart = distance(&a, &b);
     tally.holds(DECIDED, touching == reference::touches(&a, &b), &inputs);
     tally.holds(EXCHANGED, touching == touches(&b, &a), &inputs);
     tally.holds(MIRRORED, touching == touches(&mirrored(&a), &mirrored(&b)), &inputs);
@@ -137,7 +140,7 @@ fn mirrored(r: &Rectangle) -> Rectangle {
     Rectangle { centre: Point::new(r.centre.x, -r.centre.y), axis: Vector::new(r.axis.x, -r.axis.y), ..*r }
 }
 
-/// The largest coordinate that a corner may have.
+/// An upper bound on the coordinates of the corners.
 fn largest(r: &Rectangle) -> Metre {
     r.centre.coords.amax() + r.half_length + r.half_width
 }

@@ -1,27 +1,27 @@
 //! Stiff and extreme cases against exact and high-precision references: `closecall stress`.
 //!
-//! Every case has a name and draws as many inputs as it is asked for; every property that it checks has a bound and
-//! gets a row with the worst that was seen and the inputs that led there.
+//! Every case has a name and draws random inputs. Every property that it checks has a bound and gets a row with the worst
+//! error and the inputs that caused it.
 
 mod braking;
+mod cars;
 mod case;
 mod geometry;
 mod paths;
-mod scene;
 mod table;
 mod tally;
 mod time;
 
-pub use scene::car;
-pub use tally::{Group, Property, Row, Unit};
+pub use cars::car;
+pub use tally::{Group, Property, PropertyResult, Unit};
 
 use super::reference::chance::Chance;
 use tally::Tally;
 
-/// Draws `count` inputs in all, shared out to all cases (or those of one group), and says what was seen of each.
+/// Draws `count` inputs in total, divided among all cases or those of one group, and returns the results.
 ///
-/// Every case has a stream of its own, so a row depends on the seed and its number of inputs alone.
-pub fn run(count: u64, seed: u64, only: Option<Group>) -> Vec<Row> {
+/// Every case has a random stream of its own, so a result depends only on the seed and the case's number of inputs.
+pub fn run(count: u64, seed: u64, only: Option<Group>) -> Vec<PropertyResult> {
     let all = braking::CASES.iter().chain(geometry::CASES).chain(time::CASES).chain(paths::CASES);
     let chosen = all.filter(|case| only.is_none_or(|group| case.group == group)).collect::<Vec<_>>();
     let each = count.div_ceil(chosen.len().max(1) as u64);
@@ -37,7 +37,7 @@ pub fn run(count: u64, seed: u64, only: Option<Group>) -> Vec<Row> {
     rows
 }
 
-/// The rows as a table for a terminal.
-pub fn table(rows: &[Row]) -> String {
+/// The results as a table for a terminal.
+pub fn table(rows: &[PropertyResult]) -> String {
     table::of(rows)
 }

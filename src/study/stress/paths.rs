@@ -1,10 +1,10 @@
-//! Lines on the ground as no net should have them, but some do, and the poses along them.
+//! Degenerate lines, which no net should have but some do, and the poses along them.
 
 use std::path::Path;
 use std::sync::Arc;
 
+use super::cars::CarRun;
 use super::case::Case;
-use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::detection::path::Pose;
 use crate::detection::path::track::Track;
@@ -19,10 +19,11 @@ use crate::traffic::placement::Placement;
 use crate::util::units::{Metre, MetrePerSecond};
 
 const UNIT: Property = Property::within("axis a unit vector", 1e-12, Unit::Metre);
-const ASCENDING: Property = Property::always("ways ascend to where they should");
-const ON_LINE: Property = Property::within("front bumper on the line, in ulps of the place", 64.0, Unit::Ulps);
-const EVEN: Property = Property::within("way as long as the line, in ulps of the place", 64.0, Unit::Ulps);
-const LAID: Property = Property::always("paths end, every value a finite number");
+const ASCENDING: Property = Property::always("distances ascend to the line's end");
+const ON_LINE: Property = Property::within("front bumper on the line, in ulps of the position", 64.0, Unit::Ulps);
+const EVEN: Property =
+    Property::within("distance equal to the line's length, in ulps of the position", 64.0, Unit::Ulps);
+const FINITE: Property = Property::always("paths end, every value a finite number");
 const BOUNDED: Property = Property::always("no more poses than the line has points and turns");
 
 pub(super) const CASES: &[Case] = &[
@@ -30,7 +31,7 @@ pub(super) const CASES: &[Case] = &[
         let mut points = winding(chance, 1.0, 100.0);
         for _ in 0..10 {
             let at = chance.below(points.len());
-            // Nearer than a front bumper can be told from the line, too.
+            // Some are closer than the tolerance at which a front bumper counts as on the line.
             let near = Vector::new(chance.pick(&[0.0, 1e-9, 5e-4]), 0.0);
             points.insert(at, points[at] + near);
         }
@@ -59,9 +60,10 @@ pub(super) const CASES: &[Case] = &[
     .costing(10),
     Case::new(Group::Paths, "a net of lanes without length", |chance, tally| {
         let degenerate = [chance.below(4), chance.below(4)];
-        let (position, speed) = (chance.between(0.0, 60.0), chance.between(0.0, 60.0));
+        let position = chance.between(0.0, 60.0);
+        let speed = chance.between(0.0, 60.0);
         let found = along_a_ring(degenerate, position, speed);
-        tally.holds(LAID, found, &(degenerate, position, speed));
+        tally.holds(FINITE, found, &(degenerate, position, speed));
     })
     .costing(20),
 ];
@@ -84,7 +86,7 @@ fn along_a_ring(degenerate: [usize; 2], position: Metre, speed: MetrePerSecond) 
     let Ok(net) = Net::parse(Path::new("ring.net.xml"), text + "</net>") else { return false };
     let Some(lane) = net.lane("e0_0") else { return false };
     let placement = Placement { lane, position, route: None, route_position: 0, lateral_speed: 0.0 };
-    let Ok(mut scene) = Scene::new(Some(Arc::new(net))) else { return false };
+    let Ok(mut scene) = CarRun::new(Some(Arc::new(net))) else { return false };
     let users = [scene.enter("leader"), scene.enter("follower")];
     for step in 0..3 {
         let x = position + f64::from(step) * speed;
@@ -94,10 +96,10 @@ fn along_a_ring(degenerate: [usize; 2], position: Metre, speed: MetrePerSecond) 
     scene.finite
 }
 
-/// How many poses of a line are compared with it.
+/// The number of poses that are compared with their line.
 const SAMPLES: usize = 4;
 
-/// A line of up to thirty points, so far apart, that may turn any way.
+/// A line of up to thirty points, `least` to `most` apart, that turns by up to 1 rad at each.
 fn winding(chance: &mut Chance, least: Metre, most: Metre) -> Vec<Point> {
     let mut at = Point::new(chance.between(-1e3, 1e3), chance.between(-1e3, 1e3));
     let mut heading = chance.angle();
@@ -115,34 +117,35 @@ fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
     if lines.line(0).len() < 2 {
         return;
     }
-    let (mut track, whole) = (Track::default(), lines.length(0));
+    let mut track = Track::default();
+    let whole = lines.length(0);
     track.begin(&lines, 0, whole * chance.between(0.0, 1.0));
     let room = track.ahead();
     let length = chance.between(0.5, 20.0);
-    let ways = [room * chance.between(0.0, 1.0), room];
+    let distances = [room * chance.between(0.0, 1.0), room];
     let mut poses = Vec::new();
-    track.poses(&lines, Vector::x(), length, &ways, false, &mut poses);
-    let inputs = (points, track.front(), length, ways);
+    track.poses(&lines, Vector::x(), length, &distances, false, &mut poses);
+    let inputs = (points, track.front(), length, distances);
     let unit = poses.iter().map(|pose| (pose.axis.norm() - 1.0).abs()).fold(0.0, worse);
     tally.error(UNIT, unit, &inputs);
     let ascending = poses.windows(2).all(|pair| pair[0].distance < pair[1].distance);
     let last = poses.last().map_or(f64::NAN, |pose| pose.distance);
     tally.holds(ASCENDING, ascending && (last - room).abs() <= 1e-9 * whole.max(1.0), &inputs);
-    // A track leaves out points that are nearer than this to the last one (a millimetre): the line may be off by it.
-    let kept = laid(points);
-    // High precision takes its time: some poses of every line.
+    // A track omits points within a millimetre of the last one, so its line may deviate by a millimetre.
+    let kept = track_points(points);
+    // High precision is slow: only some poses of every line.
     let some = (0..SAMPLES).filter_map(|_| poses.get(chance.below(poses.len())).copied()).collect::<Vec<_>>();
     let off = some.iter().map(|pose| ulps_off(pose, &kept)).fold(0.0, worse);
     tally.error(ON_LINE, off, &inputs);
     let uneven = |pair: &[Pose]| (pair[1].front - pair[0].front).norm() - (pair[1].distance - pair[0].distance);
     let uneven = poses.windows(2).map(|pair| uneven(pair).abs() / ulp(&kept)).fold(0.0, worse);
     tally.error(EVEN, uneven, &inputs);
-    // Both bumpers turn at every point, by half a turn at most, in parts of some hundredths of a rad.
+    // Both bumpers turn at every point, by at most half a turn, in steps of a few hundredths of a rad.
     tally.holds(BOUNDED, poses.len() < 4 * 100 * points.len(), &inputs);
 }
 
 /// The points that a track keeps.
-fn laid(points: &[Point]) -> Vec<Point> {
+fn track_points(points: &[Point]) -> Vec<Point> {
     let mut kept: Vec<Point> = Vec::new();
     for point in points {
         if kept.last().is_none_or(|last| (point - last).norm() >= 1e-3) {
@@ -156,13 +159,13 @@ fn ulps_off(pose: &Pose, line: &[Point]) -> f64 {
     nearest(&distance_to_line(pose.front, line)) / ulp(line)
 }
 
-/// A unit in the last place of the largest coordinate or way.
+/// A unit in the last place of the largest coordinate or distance along the line.
 fn ulp(line: &[Point]) -> f64 {
-    let way = line.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
-    line.iter().map(|point| point.coords.amax()).fold(way.max(1.0), f64::max) * f64::EPSILON
+    let length = line.windows(2).map(|pair| (pair[1] - pair[0]).norm()).sum::<f64>();
+    line.iter().map(|point| point.coords.amax()).fold(length.max(1.0), f64::max) * f64::EPSILON
 }
 
-/// The larger; a NaN is the largest of all.
+/// The larger of two errors; a NaN is the largest.
 fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() || b > a { b } else { a }
 }

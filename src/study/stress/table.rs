@@ -1,13 +1,13 @@
-//! The rows of a stress run as text: one line each, the inputs of what went wrong below it.
+//! The results of a stress run as text: one line each, followed by the inputs if a bound was exceeded.
 
 use std::fmt::Write;
 
-use super::tally::{Row, Unit};
+use super::tally::{PropertyResult, Unit};
 
-pub(super) fn of(rows: &[Row]) -> String {
+pub(super) fn of(rows: &[PropertyResult]) -> String {
+    const HEADINGS: [&str; 9] = ["group", "case", "property", "inputs", "worst", "unit", "ulps", "bound", ""];
     let mut text = String::new();
-    let headings = ["group", "case", "property", "inputs", "worst", "unit", "ulps", "bound", ""];
-    let mut lines = vec![headings.map(str::to_owned)];
+    let mut lines = vec![HEADINGS.map(str::to_owned)];
     lines.extend(rows.iter().map(cells));
     let mut widths = [0; 9];
     for line in &lines {
@@ -34,7 +34,7 @@ pub(super) fn of(rows: &[Row]) -> String {
     text
 }
 
-fn cells(row: &Row) -> [String; 9] {
+fn cells(row: &PropertyResult) -> [String; 9] {
     let group = format!("{:?}", row.group).to_lowercase();
     let number = |value: f64| match row.property.unit {
         Unit::Violations => format!("{value:.0}"),

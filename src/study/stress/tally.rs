@@ -1,26 +1,26 @@
-//! What was seen of one case: the worst of every property, and where.
+//! The results of one case: the worst error of every property, and its inputs.
 
 use std::fmt;
 
-use crate::study::reference::{Deviation, Number, deviation};
+use crate::study::reference::{BigFloat, Deviation, deviation};
 
-/// What a case is about.
+/// A group of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Group {
     /// Stopping distance and μ.
     Braking,
-    /// ContactInterval and distance of rectangles.
+    /// Contact and distance of rectangles.
     Geometry,
     /// Time to collision, steps, events.
     Time,
-    /// Lines on the ground and the poses along them.
+    /// Lines and the poses along them.
     Paths,
 }
 
-/// How a property's error is measured.
+/// The unit of a property's error.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
-    /// Relative to the value that it should have.
+    /// Relative to the expected value.
     Relative,
     /// Metres.
     Metre,
@@ -28,12 +28,12 @@ pub enum Unit {
     Ulps,
     /// Seconds.
     Second,
-    /// How often it does not hold.
+    /// The number of inputs for which the property does not hold.
     Violations,
 }
 
 impl Unit {
-    /// As it stands behind a number.
+    /// The text after a number.
     pub fn name(self) -> &'static str {
         match self {
             Self::Relative => "relative",
@@ -45,60 +45,60 @@ impl Unit {
     }
 }
 
-/// Something that has to hold for every input, to within a bound.
+/// A property that must hold for every input, to within a bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Property {
-    /// What has to hold.
+    /// Its name.
     pub name: &'static str,
-    /// What the bound is measured in.
+    /// The unit of the bound and of errors.
     pub unit: Unit,
-    /// The largest error that is allowed.
+    /// The largest allowed error.
     pub bound: f64,
 }
 
 impl Property {
-    /// Must hold for every input.
+    /// A property that holds or does not hold.
     pub const fn always(name: &'static str) -> Self {
         Self { name, unit: Unit::Violations, bound: 0.0 }
     }
 
-    /// Must hold to within `bound`.
+    /// A property that holds to within `bound`.
     pub const fn within(name: &'static str, bound: f64, unit: Unit) -> Self {
         Self { name, unit, bound }
     }
 }
 
-/// What was seen of one property in one case.
+/// The result of one property in one case.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
-    /// What the case is about.
+pub struct PropertyResult {
+    /// The case's group.
     pub group: Group,
     /// The case's name.
     pub case: &'static str,
-    /// What had to hold.
+    /// The property.
     pub property: Property,
-    /// How many inputs it was checked for.
+    /// The number of inputs for which it was checked.
     pub inputs: u64,
     /// The worst error, in the property's unit.
     pub worst: f64,
-    /// The worst error in units in the last place, where that means something.
+    /// The worst error in units in the last place, for relative errors.
     pub ulps: Option<f64>,
     /// The inputs of the worst error.
     pub at: String,
 }
 
-impl Row {
-    /// Whether the bound was kept.
+impl PropertyResult {
+    /// Whether no error exceeds the bound.
     pub fn holds(&self) -> bool {
         self.worst <= self.property.bound
     }
 }
 
-/// Collects the rows of one case.
+/// Collects the results of one case.
 pub(super) struct Tally {
     case: &'static str,
     group: Group,
-    rows: Vec<Row>,
+    rows: Vec<PropertyResult>,
 }
 
 impl Tally {
@@ -106,11 +106,11 @@ impl Tally {
         Self { case, group, rows: Vec::new() }
     }
 
-    pub(super) fn rows(self) -> Vec<Row> {
+    pub(super) fn rows(self) -> Vec<PropertyResult> {
         self.rows
     }
 
-    /// An invariant holds for these inputs, or does not.
+    /// Records whether a property holds for these inputs.
     pub(super) fn holds(&mut self, property: Property, holds: bool, inputs: &dyn fmt::Debug) {
         let row = self.row(property);
         row.inputs += 1;
@@ -120,11 +120,11 @@ impl Tally {
         }
     }
 
-    /// A result differs this much from what it should be.
+    /// Records the error of a result.
     pub(super) fn error(&mut self, property: Property, error: f64, inputs: &dyn fmt::Debug) {
         let row = self.row(property);
         row.inputs += 1;
-        // A NaN is the worst of all.
+        // A NaN is the worst error.
         let error = if error.is_nan() { f64::INFINITY } else { error };
         if error > row.worst {
             row.worst = error;
@@ -132,8 +132,8 @@ impl Tally {
         }
     }
 
-    /// A result beside what it should be.
-    pub(super) fn compare(&mut self, property: Property, found: f64, expected: &Number, inputs: &dyn fmt::Debug) {
+    /// Records the deviation of a result from its expected value.
+    pub(super) fn compare(&mut self, property: Property, found: f64, expected: &BigFloat, inputs: &dyn fmt::Debug) {
         let Deviation { absolute, relative, ulps } = deviation(found, expected);
         let error = if property.unit == Unit::Relative { relative } else { absolute };
         self.error(property, error, inputs);
@@ -143,9 +143,9 @@ impl Tally {
         }
     }
 
-    fn row(&mut self, property: Property) -> &mut Row {
+    fn row(&mut self, property: Property) -> &mut PropertyResult {
         let index = self.rows.iter().position(|row| row.property == property).unwrap_or_else(|| {
-            self.rows.push(Row {
+            self.rows.push(PropertyResult {
                 group: self.group,
                 case: self.case,
                 property,

@@ -1,7 +1,7 @@
-//! Times that go to infinity or to nothing, contacts that only graze, and road users that do what none should.
+//! Times near infinity or zero, contacts that only graze, and road users that move in impossible ways.
 
+use super::cars::CarRun;
 use super::case::Case;
-use super::scene::Scene;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
 use crate::detection::path::Pose;
@@ -16,14 +16,14 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 
 const LENGTH: f64 = 5.0;
 const WIDTH: f64 = 2.0;
-/// Rounding a position of 1e3 m takes 1e-13 m of this, a speed of 1 m/s makes as much time of it.
+/// Rounding a position of 1e3 m costs 1e-13 m, which at 1 m/s is 1e-13 s.
 const TTC: Property = Property::within("TTC", 1e-9, Unit::Second);
 const LATE: Property = Property::always("TTC finite or none, none beyond the horizon");
-const THERE: Property = Property::within("room between the rectangles at the TTC", 1e-9, Unit::Metre);
-const BETWEEN: Property = Property::always("TTC between those of 1e-9 m more and less of size");
-const FOUND: Property = Property::always("contact of more than 1e-9 m found, of less than none not");
+const THERE: Property = Property::within("gap between the rectangles at the TTC", 1e-9, Unit::Metre);
+const BETWEEN: Property = Property::always("TTC between those of rectangles 1e-9 m larger and smaller");
+const FOUND: Property = Property::always("contact found if deeper than 1e-9 m, not if 1e-9 m apart");
 const FINITE: Property = Property::always("every value a finite number");
-const ONE: Property = Property::always("one conflict, as long as it lasts");
+const ONE: Property = Property::always("one conflict with the right begin and end");
 const NO_DRIFT: Property = Property::within("begin of a conflict after 10^6 steps", 1e-6, Unit::Second);
 const TWO: Property = Property::always("two stays, two conflicts");
 
@@ -31,21 +31,22 @@ pub(super) const CASES: &[Case] = &[
     Case::new(Group::Time, "relative speed to 0", |chance, tally| {
         let speed = chance.between(0.0, 100.0);
         let closing = chance.magnitude(1e-300, 10.0);
-        let moving = Moving { front: Point::new(0.0, 0.0), heading: 0.0, speed: speed + closing };
-        let fixed = Moving { front: Point::new(LENGTH + chance.magnitude(1e-9, 100.0), 0.0), heading: 0.0, speed };
+        let moving = SteadyCar { front: Point::new(0.0, 0.0), heading: 0.0, speed: speed + closing };
+        let fixed = SteadyCar { front: Point::new(LENGTH + chance.magnitude(1e-9, 100.0), 0.0), heading: 0.0, speed };
         check(&moving, &fixed, tally);
     }),
     Case::new(Group::Time, "at any angle, to 140 m/s", |chance, tally| {
-        let (moving, foe) = (any(chance), any(chance));
+        let moving = any(chance);
+        let foe = any(chance);
         check(&moving, &foe, tally);
     }),
     Case::new(Group::Time, "grazing", |chance, tally| {
-        let moving = Moving { front: Point::origin(), heading: chance.angle(), speed: chance.between(1.0, 100.0) };
+        let moving = SteadyCar { front: Point::origin(), heading: chance.angle(), speed: chance.between(1.0, 100.0) };
         let axis = direction(moving.heading);
-        // Beside the ego's way, so that the corners pass each other within units in the last place.
+        // Beside the ego's path, so that the corners pass each other within a few units in the last place.
         let aside = WIDTH * (1.0 + f64::from(chance.around(4)) * f64::EPSILON);
         let front = moving.front + axis * chance.between(20.0, 80.0) + left_of(&axis) * aside;
-        let foe = Moving { front, heading: moving.heading, speed: 0.0 };
+        let foe = SteadyCar { front, heading: moving.heading, speed: 0.0 };
         check(&moving, &foe, tally);
     }),
     Case::new(Group::Time, "steps of 1 ms to 10 s", |chance, tally| {
@@ -62,7 +63,7 @@ pub(super) const CASES: &[Case] = &[
     Case::new(Group::Time, "10^6 steps", |_, tally| {
         const STEP: Second = 0.1;
         const STEPS: u32 = 1_000_000;
-        // As SUMO has it: the time is the sum of the steps in whole milliseconds.
+        // As in SUMO, the time is the sum of the steps in whole milliseconds.
         let begin = f64::from(STEPS) * STEP;
         let error = after(STEPS, STEP).map_or(f64::INFINITY, |found| (found - begin).abs());
         tally.error(NO_DRIFT, error, &STEPS);
@@ -73,7 +74,7 @@ pub(super) const CASES: &[Case] = &[
         for _ in 0..30 {
             steps.push([odd(chance), odd(chance)]);
         }
-        let finite = act(&steps);
+        let finite = is_finite(&steps);
         tally.holds(FINITE, finite, &steps);
     })
     .costing(30),
@@ -87,29 +88,32 @@ pub(super) const CASES: &[Case] = &[
 
 /// A car that keeps its speed.
 #[derive(Clone, Copy, Debug)]
-struct Moving {
+struct SteadyCar {
     front: Point,
     heading: f64,
     speed: MetrePerSecond,
 }
 
-impl Moving {
+impl SteadyCar {
     fn rectangle(&self, time: Second) -> Rectangle {
         let axis = direction(self.heading);
         Rectangle::behind(self.front + axis * (self.speed * time), axis, LENGTH, WIDTH)
     }
 }
 
-fn any(chance: &mut Chance) -> Moving {
-    // Both towards the origin, and there at about the same time.
-    let (towards, speed, arrives) = (chance.angle(), chance.magnitude(1.0, 140.0), chance.between(3.0, 3.2));
-    Moving { front: Point::from(-direction(towards) * (speed * arrives)), heading: towards, speed }
+fn any(chance: &mut Chance) -> SteadyCar {
+    // All cars drive towards the origin and arrive at about the same time.
+    let towards = chance.angle();
+    let speed = chance.magnitude(1.0, 140.0);
+    let arrives = chance.between(3.0, 3.2);
+    SteadyCar { front: Point::from(-direction(towards) * (speed * arrives)), heading: towards, speed }
 }
 
-fn check(a: &Moving, b: &Moving, tally: &mut Tally) {
+fn check(a: &SteadyCar, b: &SteadyCar, tally: &mut Tally) {
     let inputs = (a, b);
-    let poses = |moving: &Moving| [Pose { distance: 0.0, front: moving.front, axis: direction(moving.heading) }];
-    let (a_poses, b_poses) = (poses(a), poses(b));
+    let poses = |moving: &SteadyCar| [Pose { distance: 0.0, front: moving.front, axis: direction(moving.heading) }];
+    let a_poses = poses(a);
+    let b_poses = poses(b);
     let course = |poses, speed| SteadyMotion { poses, speed, length: LENGTH, width: WIDTH };
     let found = time_to_collision(&course(&a_poses, a.speed), &course(&b_poses, b.speed));
     tally.holds(LATE, found.is_none_or(|time| time.is_finite() && (0.0..=HORIZON).contains(&time)), &inputs);
@@ -120,10 +124,11 @@ fn check(a: &Moving, b: &Moving, tally: &mut Tally) {
         (Some(found), Some(expected)) => {
             let room = distance(&a.rectangle(found), &b.rectangle(found));
             tally.error(THERE, room, &inputs);
-            let (early, late) = (grown_contact(a, b, 1e-9), grown_contact(a, b, -1e-9));
+            let early = grown_contact(a, b, 1e-9);
+            let late = grown_contact(a, b, -1e-9);
             let between = early.is_none_or(|early| early <= found) && late.is_none_or(|late| found <= late);
             tally.holds(BETWEEN, between, &(inputs, found, expected));
-            // Where they close slowly, or graze, a rounded place is worth more time than that.
+            // If the cars close slowly or graze each other, rounding a position changes the time by more than the bound.
             if let (Some(early), Some(late)) = (early, late)
                 && late - early < 1e-8
             {
@@ -131,19 +136,19 @@ fn check(a: &Moving, b: &Moving, tally: &mut Tally) {
             }
         }
         (None, None) => {}
-        // A contact that rounding decides, or one at the horizon.
+        // Only a contact that rounding decides, or one at the horizon, may be found by just one of the two.
         (Some(time), None) | (None, Some(time)) => tally.holds(FOUND, grazes(a, b, time), &(inputs, found, expected)),
     }
 }
 
-/// Whether it depends on less than rounding a place takes that two touch before the horizon.
-fn grazes(a: &Moving, b: &Moving, time: Second) -> bool {
+/// Whether rounding decides that two cars touch before the horizon.
+fn grazes(a: &SteadyCar, b: &SteadyCar, time: Second) -> bool {
     time > HORIZON - 1e-9 || grown_contact(a, b, 1e-9).is_some() != grown_contact(a, b, -1e-9).is_some()
 }
 
-/// When two first touch that are larger on all sides by this.
-fn grown_contact(a: &Moving, b: &Moving, by: Metre) -> Option<Second> {
-    let grown = |moving: &Moving| {
+/// The time at which two cars first touch if they are larger on all sides by this.
+fn grown_contact(a: &SteadyCar, b: &SteadyCar, by: Metre) -> Option<Second> {
+    let grown = |moving: &SteadyCar| {
         let rectangle = moving.rectangle(0.0);
         Rectangle { half_length: rectangle.half_length + by, half_width: rectangle.half_width + by, ..rectangle }
     };
@@ -152,10 +157,11 @@ fn grown_contact(a: &Moving, b: &Moving, by: Metre) -> Option<Second> {
     found.filter(|time| *time < HORIZON)
 }
 
-/// A follower that is too close for so many steps and then far away; begin and end of its conflicts.
+/// Begin and end of the conflicts of a follower that is too close for `lasts` steps and then far away.
 fn episode(begin: Second, step: Second, lasts: usize) -> Option<Vec<(Second, Second)>> {
-    let mut scene = Scene::new(None).ok()?;
-    let (leader, follower) = (scene.enter("leader"), scene.enter("follower"));
+    let mut scene = CarRun::new(None).ok()?;
+    let leader = scene.enter("leader");
+    let follower = scene.enter("follower");
     let quiet = (CLOSES_AFTER / step).ceil() as usize + 2;
     for number in 0..lasts + quiet {
         let behind = if number < lasts { -8.0 } else { -500.0 };
@@ -165,10 +171,11 @@ fn episode(begin: Second, step: Second, lasts: usize) -> Option<Vec<(Second, Sec
     Some(scene.finish().iter().map(|conflict| (conflict.begin, conflict.end)).collect())
 }
 
-/// When a conflict begins that does so after so many steps.
+/// The begin of a conflict that starts after this many steps.
 fn after(steps: u32, step: Second) -> Option<Second> {
-    let mut scene = Scene::new(None).ok()?;
-    let (leader, follower) = (scene.enter("leader"), scene.enter("follower"));
+    let mut scene = CarRun::new(None).ok()?;
+    let leader = scene.enter("leader");
+    let follower = scene.enter("follower");
     let at = |x: f64| State { x, y: 0.0, z: 0.0, heading: 0.0, speed: 20.0 };
     let mut milliseconds = 0_u64;
     for number in 0..=steps {
@@ -179,7 +186,7 @@ fn after(steps: u32, step: Second) -> Option<Second> {
     scene.finish().first().map(|conflict| conflict.begin)
 }
 
-/// A state that follows on nothing: anywhere, often where it was, often at rest.
+/// A state unrelated to the previous one: anywhere, often at the same place, often at rest.
 fn odd(chance: &mut Chance) -> State {
     let around = chance.pick(&[0.0, 1.0, 20.0, 1e7]);
     State {
@@ -191,19 +198,20 @@ fn odd(chance: &mut Chance) -> State {
     }
 }
 
-fn act(steps: &[[State; 2]]) -> bool {
-    let Ok(mut scene) = Scene::new(None) else { return false };
+/// Whether a run of two cars with these states has only finite values.
+fn is_finite(steps: &[[State; 2]]) -> bool {
+    let Ok(mut scene) = CarRun::new(None) else { return false };
     let users = [scene.enter("a"), scene.enter("b")];
     for (number, [first, second]) in steps.iter().enumerate() {
-        // Hours may lie between two steps.
+        // An hour passes between two steps.
         scene.step(number as f64 * 3600.0, &[(users[0], *first), (users[1], *second)]);
     }
     scene.finite && scene.finish().iter().all(|conflict| (conflict.margin + conflict.delta_v + conflict.x).is_finite())
 }
 
-/// Conflicts of two that meet, of which one leaves and returns under its id, elsewhere.
+/// The number of conflicts of two cars, one of which leaves and returns elsewhere under the same id.
 fn twice(away: Second) -> Option<usize> {
-    let mut scene = Scene::new(None).ok()?;
+    let mut scene = CarRun::new(None).ok()?;
     let leader = scene.enter("leader");
     let at = |x: f64| State { x, y: 0.0, z: 0.0, heading: 0.0, speed: 20.0 };
     let mut time = 0.0;

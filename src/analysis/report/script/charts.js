@@ -1,16 +1,16 @@
-// Conflicts over time, and how close they were.
+// Conflicts over time, and the distributions of their measures.
 
-/** Widths of a bar of the time line in s; the first with which a run has not too many. */
+/** The possible widths of the time line's bars, in s, and the greatest number of bars. */
 const BINS = [1, 2, 5, 10, 20, 30, 60, 120, 300, 600, 900, 1800, 3600, 7200, 14400, 86400];
 const MOST_BINS = 80;
-/** A run of so many seconds and more is counted by the minute at least. */
+/** From this duration on, in s, the bars of the time line are at least a minute wide. */
 const LONG = 1200;
 
-/** Steps between the times on the axis of a long run, in s; and how many of them there are at most. */
+/** The possible steps between the labels on the axis of a long run, in s, and the greatest number of labels. */
 const TICKS = [60, 300, 600, 900, 1800, 3600, 7200, 14400, 21600, 43200, 86400];
 const MOST_TICKS = 8;
 
-/** First and last second of all runs. */
+/** The first and the last second of all runs. */
 const period = (() => {
   const times = [];
   for (const run of data.runs) if (run.summary) times.push(run.summary.begin, run.summary.end);
@@ -18,7 +18,7 @@ const period = (() => {
   return [times.reduce((a, b) => Math.min(a, b), Infinity), times.reduce((a, b) => Math.max(a, b), -Infinity)];
 })();
 
-/** How often each severity in each of `bins` bars. */
+/** The count of each severity in each of `bins` bars. */
 function histogram(rows, place, bins) {
   const counts = SEVERITIES.map(() => new Array(bins).fill(0));
   for (const row of rows) {
@@ -28,13 +28,13 @@ function histogram(rows, place, bins) {
   return counts;
 }
 
-/** A clock time, as a run of an hour and more has it. */
+/** A time as hours and minutes. */
 function clock(seconds) {
   const [hours, minutes, rest] = [Math.floor(seconds / 3600), Math.floor(seconds / 60) % 60, Math.round(seconds % 60)];
   return [hours, minutes, ...(rest ? [rest] : [])].map((part) => String(part).padStart(2, "0")).join(":");
 }
 
-/** Stacked bars of a value, one series per severity. */
+/** Stacked bars, one series per severity. */
 function bars(counts, centres, more) {
   return counts.map((of_bin, severity) => ({
     id: SEVERITIES[severity], name: SEVERITIES[severity], type: "bar", stack: "all", barCategoryGap: "8%", silent: false,
@@ -43,7 +43,7 @@ function bars(counts, centres, more) {
   }));
 }
 
-/** The tooltip of a bar: a line of words, then a count per severity. */
+/** The tooltip of a bar: a heading, then a count per severity. */
 function barTip(heading, counts, bin) {
   const tip = make("div", { className: "tip" }, make("b", { textContent: heading }));
   SEVERITIES.forEach((name, severity) => tip.append(make("div", { textContent: `${name} ${number(counts[severity][bin])}` })));
@@ -63,7 +63,7 @@ const times = {
     this.end = this.first + this.bins * this.bin;
     const width = this.bin % 60 ? `${this.bin} s` : this.bin === 60 ? "minute" : `${this.bin / 60} minutes`;
     const runs = data.runs.length > 1 ? `, all ${data.runs.length} runs together` : "";
-    byId("bins").textContent = `Conflicts per ${width} by severity${runs}. The slider chooses a period for the whole page.`;
+    byId("bins").textContent = `Conflicts per ${width} by severity${runs}. The slider sets the period for the whole page.`;
     this.chart = chartIn(this.element);
     this.chart.on("datazoom", () => {
       const { startValue, endValue } = this.chart.getOption().dataZoom[0];
@@ -100,7 +100,7 @@ const times = {
     return barTip(`${label(this.first + bin * this.bin)} to ${label(this.first + (bin + 1) * this.bin)}`, counts, bin);
   },
 
-  /** Puts the slider where the filter is. */
+  /** Moves the slider to the filter's period. */
   follow() {
     const { from, to } = filter;
     this.chart.dispatchAction({ type: "dataZoom", dataZoomId: "period",
@@ -108,7 +108,7 @@ const times = {
   },
 };
 
-/** What is distributed: column, heading, unit, whether smaller is worse, and a threshold with its words. */
+/** The measures: column, heading, unit, the end of the axis that is 0, and a threshold with its label. */
 const MEASURES = [
   { name: "ttc", title: "Time to collision (TTC)", unit: "s", low: 0,
     threshold: { at: options.serious_ttc, text: `serious below ${options.serious_ttc} s` } },
@@ -119,23 +119,23 @@ const MEASURES = [
   { name: "delta_v", title: "Speed change in a collision (ΔV)", unit: "m/s", low: 0 },
 ];
 const DISTRIBUTION_BINS = 30;
-/** The share of the values that the axis covers; what is beyond counts in the last bar. */
+/** The share of the values that the axis covers; values beyond it count in the last bar. */
 const COVERED = 0.99;
 
-/** The quantile of values in ascending order, as `closecall stats` has it. */
+/** A quantile of values in ascending order, defined as in `closecall stats`. */
 function quantile(sorted, share) {
   const place = share * (sorted.length - 1);
   const [low, high] = [sorted[Math.floor(place)], sorted[Math.ceil(place)]];
   return low + (high - low) * (place % 1);
 }
 
-/** A round number not below this. */
+/** The least round number that is not below this. */
 function roundUp(value) {
   const power = 10 ** Math.floor(Math.log10(Math.max(value, 1e-3)));
   return [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((digit) => digit * power >= value * 0.999) * power;
 }
 
-/** From and to of a measure's axis and the width of a bar, the same under every filter; a threshold lies between two bars. */
+/** Both ends of a measure's axis and the width of a bar, the same under every filter; a threshold lies between two bars. */
 function range(measure) {
   const sizes = Float64Array.from(column[measure.name].filter((value) => value !== null), Math.abs).sort();
   const reach = sizes.length ? quantile(sizes, COVERED) : 1;
@@ -173,7 +173,7 @@ const distributions = {
     const sorted = Float64Array.from(known, (row) => values[row]).sort();
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
-      : "none of these has one";
+      : "no conflict has one";
     const bins = Math.round((high - low) / width);
     const place = (row) => Math.max(0, Math.floor((values[row] - low) / width));
     const counts = histogram(known, place, bins);

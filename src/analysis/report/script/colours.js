@@ -1,4 +1,4 @@
-// Colours are named once, in the style sheet; they follow the reader's light or dark. Signs say the kind.
+// Colours come from the style sheet, which follows the reader's light or dark scheme. The shape of a sign shows the kind.
 
 let colours = {};
 
@@ -12,10 +12,10 @@ readColours();
 
 const severityColour = (severity) => colours[SEVERITIES[severity]];
 
-/** The sign of each kind, as an SVG path in a box of 10 by 10. */
+/** The sign of each kind as an SVG path in a box of 10 by 10. */
 const SIGN_PATHS = ["M5,0A5,5,0,1,1,5,10A5,5,0,1,1,5,0Z", "M5,0L10,5L5,10L0,5Z", "M5,0.5L10,9.5L0,9.5Z"];
 
-/** A small picture of a kind, in a colour. */
+/** The sign of a kind in a colour, as an SVG element. */
 function sign(kind, colour) {
   const space = "http://www.w3.org/2000/svg";
   const svg = document.createElementNS(space, "svg");
@@ -31,7 +31,7 @@ function sign(kind, colour) {
 
 const FONT = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 
-/** What all charts have in common. */
+/** The options that all charts share. */
 function basics() {
   return {
     animation: false,
@@ -52,7 +52,7 @@ function axis(more) {
   };
 }
 
-/** A chart in an element; it follows the element's size. */
+/** A chart in an element, resized with it. */
 function chartIn(element, resized) {
   const chart = echarts.init(element, null, { renderer: "canvas" });
   new ResizeObserver(() => {

@@ -1,20 +1,20 @@
 "use strict";
-// The data as it stands in the page: columns, one entry per conflict; words are places in lists.
+// The data in the page: columns with one entry per conflict; ids and names are indices into lists.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const conflicts = data.conflicts;
 const count = conflicts.count;
-/** A column that has one value in every row stands in the page as that value. */
+/** A column with the same value in every row is stored as that one value. */
 const column = Object.fromEntries(Object.entries(conflicts.columns).map(([name, values]) =>
   [name, Array.isArray(values) ? values : new Array(count).fill(values)]));
 const KINDS = ["rear-end", "frontal", "side"];
 const SEVERITIES = ["caution", "serious", "critical"];
 const options = (data.runs.find((run) => run.options) || {}).options || data.defaults;
 
-/** Which conflicts have a drawing: row → [row, ego, foe]. */
+/** The conflicts that have a drawing: row → [row, ego, foe]. */
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
 
-/** What is shown: by kind, by severity, a period in s, a type (of either), a run; null is all. */
+/** The filter: kinds, severities, a period in s, a type (of ego or foe), a run; null for all. */
 const filter = {};
 
 function resetFilter() {
@@ -23,7 +23,7 @@ function resetFilter() {
 }
 resetFilter();
 
-/** The rows that the filter lets through; `always` leaves the period out of it. */
+/** The rows that pass the filter; with `always`, those of all times. */
 function shownRows(always) {
   const rows = [];
   const { kinds, severities, type, run } = filter;
@@ -40,7 +40,7 @@ function shownRows(always) {
   return rows;
 }
 
-/** Worst first, as the log's reader sorts them: severity, collision, TTC, margin. */
+/** Order of rows, worst first: severity, collision, TTC, margin. */
 function byBadness(a, b) {
   const { severity, collision, ttc, margin } = column;
   const or = (value) => (value === null ? Infinity : value);
@@ -49,7 +49,7 @@ function byBadness(a, b) {
     || less(or(margin[a]), or(margin[b])) || a - b;
 }
 
-/** The first `most` of the rows, worst first, without sorting all of them. */
+/** The `most` worst of the rows, worst first, without sorting all of them. */
 function worstRows(rows, most) {
   const worst = [];
   for (const row of rows) {
@@ -67,13 +67,13 @@ const foeId = (row) => conflicts.ids[column.foe[row]];
 const laneId = (row) => conflicts.lanes[column.lane[row]];
 const spotOf = (row) => conflicts.spot_of_lane[column.lane[row]];
 
-/** A number with so many decimals, thousands apart; a true minus sign. */
+/** A number with this many decimals, separated thousands and a true minus sign. */
 function number(value, decimals = 0) {
   const text = value.toLocaleString("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals });
   return text.replace("-", "−");
 }
 
-/** An element with text (never markup) or children in it. */
+/** An element with properties and children; text is never read as markup. */
 function make(name, properties = {}, ...children) {
   const element = Object.assign(document.createElement(name), properties);
   element.append(...children);

@@ -1,14 +1,14 @@
-// What happened where: signs on the net, by kind and severity.
+// The map: a sign on the net for each conflict, by kind and severity.
 
 /** The size of a sign on the screen, in pixels, by kind. */
 const SIGN_SIZES = [7, 9, 9];
-/** How near the pointer must be to a sign, in pixels. */
+/** The pointer selects a sign within this distance, in pixels. */
 const NEAR = 12;
 
-/** More signs than this are drawn dot by dot, without smooth edges: ten times as fast. */
+/** More signs than this are drawn dot by dot, without smooth edges, which is ten times as fast. */
 const MANY = 10000;
 
-/** One picture of each sign: its size, and which dots of it are covered, as steps from its centre. */
+/** One picture of each sign, its size, and the dots that it covers, relative to its centre. */
 function stamps() {
   const sharp = window.devicePixelRatio || 1;
   return SEVERITIES.map((_, severity) => KINDS.map((_, kind) => {
@@ -32,7 +32,7 @@ function stamps() {
   }));
 }
 
-/** All signs as one shape, drawn as stamps: as many paths would take seconds. */
+/** All signs as one shape, drawn as stamps; one path per sign would take seconds. */
 const Signs = echarts.graphic.extendShape({
   shape: { rows: null, stamps: null, view: null },
   buildPath(path) {
@@ -80,7 +80,7 @@ function drawDots(context, { rows, stamps: of_look, view }) {
 }
 echarts.graphic.registerShape("signs", Signs);
 
-/** The map of all conflicts that are shown. */
+/** The map of the conflicts that pass the filter. */
 const map = {
   element: byId("map"),
   chart: null,
@@ -118,7 +118,7 @@ const map = {
     this.point(null);
   },
 
-  /** All signs, the worst on top. */
+  /** The series of all signs, the worst on top. */
   series(rows) {
     const ordered = SEVERITIES.flatMap((_, severity) => rows.filter((row) => column.severity[row] === severity));
     const of_look = stamps();
@@ -131,7 +131,7 @@ const map = {
     };
   },
 
-  /** The conflict whose sign is nearest to a place on the screen, the worst of equally near ones; null for none. */
+  /** The conflict whose sign is nearest to a pixel, the worst of equally near ones; null if none is near. */
   at(pixel_x, pixel_y) {
     const { x, y, height, scale, left, bottom } = this.view;
     let nearest = null;
@@ -148,7 +148,7 @@ const map = {
     return nearest;
   },
 
-  /** Says what is under the pointer. */
+  /** Shows the tooltip of the conflict under the pointer. */
   point(event) {
     const row = event && this.view ? this.at(event.offsetX, event.offsetY) : null;
     const tip = byId("tip");
@@ -161,7 +161,7 @@ const map = {
     tip.style.top = `${Math.min(event.offsetY + 12, height - tip.offsetHeight - 4)}px`;
   },
 
-  /** What of each axis is shown, in percent. */
+  /** The part of each axis that is shown, in percent. */
   spans() {
     const [x, y] = this.chart.getOption().dataZoom;
     return [x.start, x.end, y.start, y.end];
@@ -172,7 +172,7 @@ const map = {
       { dataZoomId: "x", start: x_start, end: x_end }, { dataZoomId: "y", start: y_start, end: y_end }] });
   },
 
-  /** Shows so many times as much of the map around its centre. */
+  /** Scales the shown part of the map by a factor around its centre. */
   zoom(by) {
     const [x_start, x_end, y_start, y_end] = this.spans();
     const span = Math.min(Math.max((x_end - x_start) * by, 0.01), 100);
@@ -181,7 +181,7 @@ const map = {
     this.window(x, x + span, y, y + span);
   },
 
-  /** Moves to a place and shows so many metres around it. */
+  /** Moves to a position and shows this many metres around it. */
   go(x, y, metres) {
     const { xAxis, yAxis } = this.axes;
     const [wide, high] = [xAxis.max - xAxis.min, yAxis.max - yAxis.min];
@@ -192,7 +192,7 @@ const map = {
     this.element.scrollIntoView({ block: "center" });
   },
 
-  /** The scale bar of what is shown now. */
+  /** The scale bar at the present zoom. */
   ruler() {
     const [start, end] = this.chart.getOption() ? this.spans() : [0, 100];
     return scaleBar((this.axes.metresPerPixel * (end - start)) / 100, this.chart.getHeight());

@@ -1,4 +1,4 @@
-// The page from top to bottom: what is drawn once, and what follows the filter.
+// The page from top to bottom: the parts that are drawn once, and those that follow the filter.
 
 function showHeader() {
   const records = data.runs.filter((run) => run.summary);
@@ -15,19 +15,19 @@ function showHeader() {
   figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
-    // A run that was killed has conflicts, and no record of its traffic.
+    // A run that was killed has conflicts but no record of its traffic.
     const isKnown = data.runs.every((run) => run.summary?.steps > 0);
     if (kilometres > 0 && isKnown) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
   }
   byId("figures").append(...figures.map(([name, value]) =>
     make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
   const notes = [...data.notes];
-  if (count < data.seen) notes.push(`Of ${number(data.seen)} conflicts the ${number(count)} worst are in this page.`);
+  if (count < data.seen) notes.push(`This page contains the ${number(count)} worst of ${number(data.seen)} conflicts.`);
   byId("notes").textContent = notes.join(" ");
   byId("notes").hidden = !notes.length;
 }
 
-/** The filter's fields; `changed` is called when one of them is used. */
+/** The filter's fields; each change calls `changed`. */
 function makeFilter(changed) {
   const boxes = (id, names, chosen, picture) => names.forEach((name, place) => {
     const box = make("input", { type: "checkbox", checked: true, name: `${id}-${name}` });
@@ -74,7 +74,7 @@ function showPeriod() {
   byId("to").placeholder = Math.ceil(period[1]);
 }
 
-/** All that follows the filter. */
+/** Draws the parts that follow the filter. */
 function show() {
   const rows = shownRows(false);
   byId("shown").textContent = `${number(rows.length)} of ${number(count)} conflicts`;
@@ -86,7 +86,7 @@ function show() {
   worst.show(rows);
 }
 
-/** Calls it once things are quiet: a slider moves often. */
+/** A function that calls `call` after a pause: a moving slider sends many events. */
 function quietly(call, milliseconds) {
   let timer = 0;
   return () => {

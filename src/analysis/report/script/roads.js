@@ -1,11 +1,11 @@
-// The net as it lies on the ground, and a view of it in which metres are equally long both ways.
+// The net, and views of it with the same scale on both axes.
 
-/** Lanes narrower than this on the screen are drawn this wide, in pixels. */
+/** The least width of a lane on the screen, in pixels. */
 const THINNEST = 0.8;
-/** From this many pixels per metre on, the lanes within junctions are drawn too. */
+/** From this many pixels per metre on, lanes within junctions are drawn too. */
 const CLOSE = 2;
 
-/** Lines from whole numbers (a count, then differences in cm): points in m, where each line starts, its box. */
+/** Lines from whole numbers (a count, then differences in cm): points in m, the index of each line's start, its box. */
 function readLines(numbers) {
   const points = [];
   const starts = [];
@@ -36,7 +36,7 @@ const net = data.net && {
   junctions: readLines(data.net.junctions),
 };
 
-/** All lines of a group as one shape: a net of many thousand lanes is a few strokes. */
+/** All lines of a group as one shape, so that thousands of lanes take a few strokes. */
 const Roads = echarts.graphic.extendShape({
   shape: { lines: null, view: null, closed: false },
   buildPath(context, { lines, view, closed }) {
@@ -60,7 +60,7 @@ const Roads = echarts.graphic.extendShape({
 });
 echarts.graphic.registerShape("roads", Roads);
 
-/** Where on the screen the chart is, its pixels per metre, and which place is at its lower left. */
+/** The chart's position on the screen, its pixels per metre, and the coordinates of its lower left corner. */
 function viewOf(params, api) {
   const { x, y, width, height } = params.coordSys;
   const origin = api.coord([0, 0]);
@@ -68,7 +68,7 @@ function viewOf(params, api) {
   return { x, y, width, height, scale, left: (x - origin[0]) / scale, bottom: (origin[1] - y - height) / scale };
 }
 
-/** A series that draws the net behind all else. */
+/** The series that draws the net in the background. */
 function roadsSeries() {
   return {
     id: "roads", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 0, clip: true,
@@ -80,7 +80,7 @@ function roadsSeries() {
         style: { fill: colours.junction, stroke: null } }];
       for (const { look, width: lane, lines } of net.lanes) {
         if (look === "within" && scale < CLOSE) continue;
-        // A little narrower than they are, so that lanes side by side are told apart.
+        // Drawn slightly narrower than it is, so that adjacent lanes remain distinct.
         const wide = look === "within" ? 1 : Math.max((lane - 0.25) * scale, THINNEST);
         children.push({ type: "roads", shape: { lines, view, closed: false },
           style: { fill: null, stroke: colours[look], lineWidth: wide, lineCap: "butt", lineJoin: "round" } });
@@ -90,7 +90,7 @@ function roadsSeries() {
   };
 }
 
-/** The box around the net and all conflicts, in m. */
+/** The bounding box of the net and all conflicts, in m. */
 const extent = (() => {
   const box = [Infinity, Infinity, -Infinity, -Infinity];
   const hold = (left, bottom, right, top) => {
@@ -104,7 +104,7 @@ const extent = (() => {
   return box[0] <= box[2] ? box : [0, 0, 100, 100];
 })();
 
-/** Two axes that show a box as large as it fits, metres being equally long on both. */
+/** Two axes with the same scale that show a box as large as it fits. */
 function equalAxes(box, width, height, margin) {
   const metres = Math.max((box[2] - box[0]) / width, (box[3] - box[1]) / height, 0.02) * margin;
   const [x, y] = [(box[0] + box[2]) / 2, (box[1] + box[3]) / 2];
@@ -112,7 +112,7 @@ function equalAxes(box, width, height, margin) {
   return { xAxis: one(x, width), yAxis: one(y, height), metresPerPixel: metres };
 }
 
-/** A bar of a round length, with its length beside it; on a layer of its own, so that nothing else is drawn anew. */
+/** A bar of a round length with a label, on a layer of its own, so that nothing else is redrawn with it. */
 function scaleBar(metresPerPixel, height) {
   const wanted = metresPerPixel * 110;
   const power = 10 ** Math.floor(Math.log10(wanted));

@@ -1,10 +1,10 @@
-// The places with most conflicts, the worst conflicts drawn, and how the runs were made.
+// The hot spots, the worst conflicts with drawings, and the records of the runs.
 
 const MOST_SPOTS = 15;
 const FIRST_WORST = 6;
 const MOST_WORST = 60;
 
-/** Counts by edge or junction. */
+/** Draws the table of counts by edge or junction. */
 function showSpots(rows) {
   const spots = new Map();
   for (const row of rows) {
@@ -83,12 +83,12 @@ const worst = {
   },
 };
 
-/** One of the two as it is drawn: rectangle, path. */
+/** A road user's drawing: rectangle, path, and a nose that shows its heading. */
 function figure([x, y, heading, length, width, ...path]) {
   const [along_x, along_y] = [Math.cos(heading), Math.sin(heading)];
   const corner = (along, across) => [x + along * along_x - across * along_y, y + along * along_y + across * along_x];
   const [half, size] = [width / 2, length || 1];
-  // An obstacle has no size in the log: a small square marks its corner.
+  // The log has no size for an obstacle: a small square marks its corner.
   const corners = length ? [corner(0, half), corner(-size, half), corner(-size, -half), corner(0, -half)]
     : [corner(0.5, 0.5), corner(-0.5, 0.5), corner(-0.5, -0.5), corner(0.5, -0.5)];
   const line = [[x, y]];
@@ -96,10 +96,10 @@ function figure([x, y, heading, length, width, ...path]) {
   return { corners, line, width: width || 1, nose: length ? [corner(0, 0), corner(-Math.min(1.2, length / 3), half * 0.7), corner(-Math.min(1.2, length / 3), -half * 0.7)] : [] };
 }
 
-/** Longer ids are cut in a drawing; the text below has them whole. */
+/** Longer ids are shortened in a drawing; the text below it has the whole id. */
 const LONGEST_LABEL = 24;
 
-/** The ids beside the rectangles: the upper one's above it, the lower one's below. */
+/** The ids: above the upper rectangle and below the lower one. */
 function labels(figures, width) {
   const ends = figures.map(({ corners }) => [Math.min(...corners.map((at) => at[1])), Math.max(...corners.map((at) => at[1]))]);
   const upper = ends[0][0] + ends[0][1] <= ends[1][0] + ends[1][1] ? 0 : 1;
@@ -117,7 +117,7 @@ function labels(figures, width) {
 function drawScene(element, row) {
   const [, ego, foe] = drawn.get(row);
   const figures = [{ ...figure(foe), colour: colours.foe, id: foeId(row) }, { ...figure(ego), colour: colours.ego, id: egoId(row) }];
-  // A pedestrian lies on top of a lorry.
+  // The smaller road user is drawn on top.
   if (foe[3] * foe[4] < ego[3] * ego[4]) figures.reverse();
   const meeting = [column.x[row], column.y[row]];
   const points = [...figures.flatMap(({ corners }) => corners), meeting];
@@ -155,7 +155,7 @@ function drawScene(element, row) {
   return chart;
 }
 
-/** A word of a command line as a shell needs it. */
+/** A word of a command line, quoted for a shell if necessary. */
 const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replace(/'/g, "'\\''")}'`);
 
 const MOST_RUNS = 50;
@@ -169,7 +169,7 @@ function showRuns() {
   data.runs.slice(0, MOST_RUNS).forEach((run, place) => {
     const title = data.runs.length > 1 ? `Run ${place + 1}: ${run.folder}` : run.folder;
     if (!run.versions) {
-      byId("runs").append(closed(title, make("p", { textContent: "There is no run.json in this log." })));
+      byId("runs").append(closed(title, make("p", { textContent: "This log does not contain a run.json." })));
       return;
     }
     const { begin, end, steps, exposure, left_out } = run.summary;
@@ -183,11 +183,11 @@ function showRuns() {
         ["time", `${number(begin, 1)} to ${number(end, 1)} s, ${number(steps)} steps${run.step_length ? ` of ${run.step_length} s` : ""}`],
         ["traffic", `${number(exposure.vehicles)} vehicles, ${number(exposure.persons)} persons, ${number(exposure.vehicle_kilometres, 1)} vehicle-km`],
         ["end", run.complete ? "complete" : `incomplete${run.error ? `: ${run.error}` : ""}`],
-        ["options", changed.length ? changed.map(([name, value]) => `${name} ${setting(value)}`).join(", ") : "all as by default"],
+        ["options", changed.length ? changed.map(([name, value]) => `${name} ${setting(value)}`).join(", ") : "all at their defaults"],
       ]),
       closed("All options", facts(Object.entries(run.options).map(([name, value]) => [name, setting(value)]))),
       closed(`Input files (${run.inputs.length})`, facts(run.inputs.map(({ path, sha256 }) => [path, code(`SHA-256 ${sha256}`)]))),
-      closed("What the scene did not need", facts(left_out.map(({ what, why, times }) =>
+      closed("Skipped work", facts(left_out.map(({ what, why, times }) =>
         [what, times === null ? why : `${why} (${number(times)} times)`]))));
     details.open = data.runs.length === 1;
     byId("runs").append(details);

@@ -1,8 +1,8 @@
-// A conflict in plain English. Ids are only ever put into the page as text.
+// A conflict described in sentences. Ids enter the page only as text, never as markup.
 
 const kmh = (speed) => `${number(speed, 1)} m/s (${number(speed * 3.6)} km/h)`;
 
-/** What the ego was about to do to the foe. */
+/** The ego's collision with the foe, by kind. */
 const DEED = ["run into the rear of", "meet head-on", "run into the side of"];
 
 function typed(id, type) {
@@ -15,7 +15,7 @@ function spotWords(row) {
   return spot ? `on ${spot} (lane ${laneId(row)})` : `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
 }
 
-/** All that the log says of a conflict, in sentences. */
+/** The log's row of a conflict as sentences. */
 function describe(row) {
   const value = (name) => column[name][row];
   const ego = typed(egoId(row), column.ego_type[row]);
@@ -23,26 +23,26 @@ function describe(row) {
   const foe_speed = value("foe_speed") > 0.05 ? `driving ${kmh(value("foe_speed"))}` : "standing";
   const angle = Math.round((value("angle") * 180) / Math.PI);
   const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
-  const said = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} was about to `
+  const sentences = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} was about to `
     + `${DEED[value("kind")]} ${foe}, ${foe_speed}${across}.`];
-  said.push(`${number(value("gap"), 2)} m of room were left where μ = ${number(value("mu"), 2)} m were needed: a margin of `
+  sentences.push(`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
     + `${number(value("margin"), 2)} m.`);
   if (value("collision")) {
-    said.push("Their rectangles overlapped: a collision.");
+    sentences.push("Their rectangles overlapped: a collision.");
   } else if (value("ttc") !== null) {
-    const hard = value("drac") !== null ? `, and the ego had to brake with ${number(value("drac"), 1)} m/s² to avoid it` : "";
-    said.push(`At its closest they would have touched after ${number(value("ttc"), 2)} s (TTC)${hard}.`);
+    const hard = value("drac") !== null ? `, and the ego had to brake at ${number(value("drac"), 1)} m/s² to avoid it (DRAC)` : "";
+    sentences.push(`At the worst moment they would have touched after ${number(value("ttc"), 2)} s (TTC)${hard}.`);
   } else {
-    said.push("At constant speeds they would not have touched.");
+    sentences.push("At constant speed they would not have touched.");
   }
-  if (value("pet") !== null) said.push(`One entered the place ${number(value("pet"), 2)} s after the other had left it (PET).`);
-  said.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("delta_v"), 1)} m/s.`);
+  if (value("pet") !== null) sentences.push(`The second entered the conflict area ${number(value("pet"), 2)} s after the first had left it (PET).`);
+  sentences.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("delta_v"), 1)} m/s.`);
   const lasted = value("end") - value("begin");
-  if (lasted > 0) said.push(`The conflict lasted ${number(lasted, 1)} s.`);
-  return said.join(" ");
+  if (lasted > 0) sentences.push(`The conflict lasted ${number(lasted, 1)} s.`);
+  return sentences.join(" ");
 }
 
-/** A conflict in a few lines, for a tooltip. */
+/** The tooltip of a conflict. */
 function tipOf(row) {
   const value = (name) => column[name][row];
   const maybe = (name, decimals, unit) => (value(name) === null ? "–" : `${number(value(name), decimals)} ${unit}`);

@@ -1,38 +1,38 @@
-//! A table of statistics: rows of cells, and how a cell is printed.
+//! A table of statistics: rows of cells, and their text.
 
-/// A table with a title; the first cell of a row says what the row is.
+/// A table with a title; the first cell of each row is its name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Table {
-    /// A word or two, unique.
+    /// The title, unique, of a word or two.
     pub title: &'static str,
-    /// What the columns are, with their units.
+    /// The headings of the columns, with units.
     pub columns: Vec<&'static str>,
     /// The rows.
     pub rows: Vec<Vec<Cell>>,
-    /// What is to be said below the table.
+    /// Lines below the table.
     pub notes: Vec<String>,
 }
 
-/// What stands in a cell.
+/// The contents of a cell.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cell {
-    /// A word.
+    /// Text.
     Text(String),
     /// A number.
     Number(f64),
     /// A count.
     Count(u64),
-    /// Nothing: there is no such value.
+    /// Empty: the value does not exist.
     None,
 }
 
 impl Cell {
-    /// The number, if there is one.
+    /// A number, or an empty cell.
     pub fn maybe(value: Option<f64>) -> Self {
         value.map_or(Self::None, Self::Number)
     }
 
-    /// For people: four significant digits.
+    /// The text for people: four significant digits.
     pub fn rounded(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
@@ -45,7 +45,7 @@ impl Cell {
         }
     }
 
-    /// For programs: every digit.
+    /// The text for programs: every digit.
     pub fn exact(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),

@@ -1,22 +1,22 @@
-//! What stands in the tables.
+//! The contents of the tables.
 
 use super::cells::{Cell, Table};
 use crate::analysis::statistics::{
-    Comparison, Extrapolation, GroupStatistics, HotSpot, Method, Quantiles, Rate, Significance, Statistics, Test,
-    Traffic, Worst,
+    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, Rate, Significance, Statistics,
+    Test, Traffic, WorstConflict,
 };
 
-/// A measure's column and how to get its quantiles.
-type Measure = (&'static str, fn(&GroupStatistics) -> &Quantiles);
+/// A measure's name in the table, and its quantiles.
+type QuantileRow = (&'static str, fn(&GroupStatistics) -> &Quantiles);
 
-const MEASURES: [Measure; 4] = [
+const MEASURES: [QuantileRow; 4] = [
     ("TTC s", |group| &group.ttc),
     ("PET s", |group| &group.pet),
     ("margin m", |group| &group.margin),
     ("delta-v m/s", |group| &group.delta_v),
 ];
 
-/// All tables of the statistics, in the order in which they are read.
+/// All tables of the statistics, in reading order.
 pub fn tables(statistics: &Statistics) -> Vec<Table> {
     let mut tables = vec![traffic(statistics.runs, &statistics.traffic), rates(&statistics.groups)];
     tables[0].notes = statistics.left_out.iter().map(|log| format!("{}: {}", log.folder.display(), log.why)).collect();
@@ -60,12 +60,12 @@ fn rates(groups: &[GroupStatistics]) -> Table {
     });
     let rows = rows.collect();
     let all = groups.iter().filter_map(|group| group.rates.per_hour);
-    let one = all.clone().any(|rate| rate.method == Method::PoissonExact);
-    let several = all.clone().any(|rate| rate.method == Method::TOverRuns);
+    let one = all.clone().any(|rate| rate.method == IntervalMethod::PoissonExact);
+    let several = all.clone().any(|rate| rate.method == IntervalMethod::TOverRuns);
     let note = match (several, one) {
         (true, false) => "low, high: 95 % interval, t over runs",
-        (true, true) => "low, high: 95 % interval, t over runs; where these do not differ, Poisson's exact",
-        _ => "low, high: 95 % interval, Poisson's exact: it takes conflicts for independent",
+        (true, true) => "low, high: 95 % interval, t over runs; where the runs do not differ, Poisson's exact",
+        _ => "low, high: 95 % interval, Poisson's exact, which assumes independent conflicts",
     };
     Table {
         title: "rates",
@@ -130,8 +130,8 @@ fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     }
 }
 
-fn worst(worst: &[Worst]) -> Table {
-    let row = |(rank, found): (usize, &Worst)| {
+fn worst(worst: &[WorstConflict]) -> Table {
+    let row = |(rank, found): (usize, &WorstConflict)| {
         let conflict = &found.conflict;
         vec![
             Cell::Count(rank as u64 + 1),
@@ -182,7 +182,7 @@ fn extremes(extremes: &[Extrapolation]) -> Table {
         ]
     };
     let refused =
-        extremes.iter().filter_map(|found| Some(format!("{}: none: {}", found.quantity, found.refused.as_ref()?)));
+        extremes.iter().filter_map(|found| Some(format!("{}: refused: {}", found.quantity, found.refused.as_ref()?)));
     Table {
         title: "crashes, extrapolated",
         columns: vec![

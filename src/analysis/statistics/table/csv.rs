@@ -1,4 +1,4 @@
-//! Tables for a spreadsheet or a script: a line per value, with every digit.
+//! Tables for spreadsheets and scripts: one line per value, with every digit.
 
 use super::cells::{Cell, Table};
 use crate::{Error, Result};
@@ -6,7 +6,7 @@ use crate::{Error, Result};
 /// The tables as CSV: `table,row,name,column,value`; `row` counts from 1, `name` is the row's first cell.
 ///
 /// # Errors
-/// [`Error::Value`] where memory is out.
+/// [`Error::Value`] if memory runs out.
 pub fn csv(tables: &[Table]) -> Result<String> {
     let failed = |error: String| Error::Value(error);
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -17,7 +17,7 @@ pub fn csv(tables: &[Table]) -> Result<String> {
             let name = row.first().map(Cell::exact).unwrap_or_default();
             let mut of = "";
             for (column, cell) in table.columns.iter().zip(row) {
-                // An interval's ends are named after what they are of.
+                // The ends of an interval are named after its value.
                 let column = if ["low", "high"].contains(column) {
                     format!("{of} {column}")
                 } else {
@@ -38,7 +38,7 @@ mod tests {
     use crate::analysis::statistics::table::csv::*;
 
     #[test]
-    fn an_end_of_an_interval_is_named_after_its_value() {
+    fn interval_ends_are_named_after_their_value() {
         let rows = vec![vec!["a,b".into(), Cell::Number(0.1), Cell::None]];
         let table = Table { title: "t", columns: vec!["group", "per hour", "low"], rows, notes: vec![] };
         let wanted = "table,row,name,column,value\nt,1,\"a,b\",group,\"a,b\"\nt,1,\"a,b\",per hour,0.1\nt,1,\"a,b\",per hour low,\n";

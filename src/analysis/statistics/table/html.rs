@@ -1,4 +1,4 @@
-//! Tables for a browser: one page without anything from elsewhere.
+//! Tables for a browser: one self-contained page.
 
 use quick_xml::escape::escape;
 
@@ -8,7 +8,7 @@ const STYLE: &str = "body{font:14px sans-serif;margin:2em;color-scheme:light dar
     div{overflow-x:auto}th,td{padding:.2em .6em;text-align:left;border-bottom:1px solid #8888}\
     td.number{text-align:right;font-variant-numeric:tabular-nums}code{white-space:pre-wrap}";
 
-/// The tables as one HTML page; what comes from the scenario is escaped.
+/// The tables as one HTML page; text from the scenario is escaped.
 pub fn html(tables: &[Table]) -> String {
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>closecall stats</title>\
@@ -36,7 +36,7 @@ mod tests {
     use crate::analysis::statistics::table::html::*;
 
     #[test]
-    fn a_vehicle_named_like_a_script_is_shown_as_such() {
+    fn a_vehicle_named_like_a_script_stays_text() {
         let rows = vec![vec!["<script>alert(1)</script>".into()]];
         let page = html(&[Table { title: "t", columns: vec!["ego"], rows, notes: vec!["<b>".to_owned()] }]);
         assert!(page.contains("&lt;script&gt;") && !page.contains("<script") && !page.contains("<b>"), "{page}");

@@ -1,4 +1,4 @@
-//! Statistics as tables, for people: each once, then printed as text, CSV or HTML.
+//! Statistics as tables, printed as text, CSV or HTML.
 
 mod cells;
 mod contents;

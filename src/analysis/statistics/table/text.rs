@@ -2,7 +2,7 @@
 
 use super::cells::{Cell, Table};
 
-/// The tables with aligned columns: words to the left, numbers to the right.
+/// The tables with aligned columns: text to the left, numbers to the right.
 pub fn text(tables: &[Table]) -> String {
     tables.iter().map(one).collect::<Vec<_>>().join("\n")
 }
@@ -12,7 +12,7 @@ fn one(table: &Table) -> String {
     let is_word = |column: usize| table.rows.iter().any(|row| matches!(row.get(column), Some(Cell::Text(_))));
     let width = |column: usize| {
         let cells = rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count());
-        // More than this `format!` cannot fill.
+        // `format!` accepts no greater width.
         cells.chain([table.columns[column].chars().count()]).max().unwrap_or_default().min(u16::MAX.into())
     };
     let columns = (0..table.columns.len()).map(|column| (width(column), is_word(column))).collect::<Vec<_>>();
@@ -36,16 +36,16 @@ mod tests {
     use crate::analysis::statistics::table::text::*;
 
     #[test]
-    fn a_word_of_any_length_is_printed() {
+    fn a_cell_of_any_length_is_printed() {
         let word = "w".repeat(1 << 17);
         let table = Table { title: "t", columns: vec!["id"], rows: vec![vec![word.as_str().into()]], notes: vec![] };
         assert_eq!(text(&[table]), format!("T\nid\n{word}\n"));
     }
 
     #[test]
-    fn words_stand_left_and_numbers_right() {
+    fn text_is_aligned_left_and_numbers_right() {
         let rows = vec![vec!["a".into(), Cell::Number(1.0)], vec!["long".into(), Cell::None]];
-        let table = Table { title: "t", columns: vec!["group", "per hour"], rows, notes: vec!["said".to_owned()] };
-        assert_eq!(text(&[table]), "T\ngroup  per hour\na         1.000\nlong          –\nsaid\n");
+        let table = Table { title: "t", columns: vec!["group", "per hour"], rows, notes: vec!["note".to_owned()] };
+        assert_eq!(text(&[table]), "T\ngroup  per hour\na         1.000\nlong          –\nnote\n");
     }
 }

@@ -1,4 +1,4 @@
-//! Small scenes for the whole detector and its events: cars without a net.
+//! Cars for the whole detector and its events.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
-/// A car of 5 m by 2 m, as the cases and the tests have it.
+/// The car of 5 m by 2 m that stress cases and tests use.
 pub fn car() -> Profile {
     Profile {
         name: "car".to_owned(),
@@ -28,7 +28,7 @@ pub fn car() -> Profile {
     }
 }
 
-/// The gap of an ego at the origin (speed, heading) and a foe (x, y, heading, speed); none where they do not meet.
+/// The gap between an ego at the origin (speed, heading) and a foe (x, y, heading, speed); none if they do not meet.
 pub(super) fn gap(
     (v, heading): (MetrePerSecond, Radian),
     (x, y, turn, vi): (Metre, Metre, Radian, MetrePerSecond),
@@ -37,7 +37,7 @@ pub(super) fn gap(
         .map(|found| found.gap)
 }
 
-/// The encounter of two cars, if they would meet.
+/// The encounter of two cars, if there is one.
 pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     let mut roster = Roster::default();
     let profile = roster.profile(car()).ok()?;
@@ -53,38 +53,38 @@ pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
     detector.narrow_phase(&frame, &roster).next().copied()
 }
 
-/// A run of cars, step by step.
-pub(super) struct Scene {
+/// A run of cars without SUMO, step by step.
+pub(super) struct CarRun {
     run: Run,
     profile: ProfileIndex,
-    /// Whether every value that came out was a finite number.
+    /// Whether every resulting value was finite.
     pub finite: bool,
 }
 
-impl Scene {
-    /// A run on a net, or on none.
+impl CarRun {
+    /// A run on a net, or without one.
     pub fn new(net: Option<Arc<Net>>) -> crate::Result<Self> {
         let mut run = Run::new(&Options::default(), net)?;
         let profile = run.roster.profile(car())?;
         Ok(Self { run, profile, finite: true })
     }
 
-    /// A car enters.
+    /// Lets a car enter.
     pub fn enter(&mut self, id: &str) -> UserIndex {
         self.run.enter(id, self.profile)
     }
 
-    /// A car leaves.
+    /// Lets a car leave.
     pub fn leave(&mut self, user: UserIndex) {
         self.run.leave(user);
     }
 
-    /// One step with these cars in it; returns how many pairs are in conflict.
+    /// Makes one step with these cars and returns the number of pairs in conflict.
     pub fn step(&mut self, time: Second, states: &[(UserIndex, State)]) -> usize {
         self.advance(time, states, None)
     }
 
-    /// The same, with all of them on one lane.
+    /// Makes one step with all cars placed on one lane.
     pub fn step_placed(&mut self, time: Second, states: &[(UserIndex, State)], placement: &Placement) -> usize {
         self.advance(time, states, Some(placement))
     }
@@ -102,9 +102,9 @@ impl Scene {
         self.run.in_conflict().len()
     }
 
-    /// All conflicts, after the last step.
+    /// Ends the run and returns all conflicts.
     pub fn finish(mut self) -> Vec<Conflict> {
-        // Without a log nothing can fail.
+        // Only writing a log can fail, and there is none.
         let _ = self.run.finish();
         self.run.conflicts()
     }
