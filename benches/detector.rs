@@ -16,14 +16,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use closecall::detection::detector::Detector;
-use closecall::options::Options;
-use closecall::options::shortcut::Shortcut;
-use closecall::study::reference::chance::Chance;
-use closecall::traffic::frame::{Frame, State};
-use closecall::traffic::profile::Profile;
-use closecall::traffic::roster::{Roster, UserIndex};
-use closecall::util::threads::Team;
+use closecall::internals::study::Chance;
+use closecall::internals::util::Team;
+use closecall::{Detector, Frame, Options, Profile, Roster, Shortcut, State, UserIndex};
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 

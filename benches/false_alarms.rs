@@ -5,9 +5,7 @@
 
 use std::path::PathBuf;
 
-use closecall::batch::regress::outcome::Outcome;
-use closecall::batch::regress::scenario::RegressSettings;
-use closecall::batch::regress::statistics::comparisons;
+use closecall::internals::batch::{Outcome, RegressSettings, comparisons};
 
 const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;

@@ -7,12 +7,11 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use closecall::geometry::contact::{distance, plainly_touches, touches};
-use closecall::geometry::convex::ConvexOutline;
-use closecall::geometry::rectangle::Rectangle;
-use closecall::geometry::separating_axes::{slide, translation};
-use closecall::geometry::{Point, Vector};
-use closecall::study::reference::chance::Chance;
+use closecall::Point;
+use closecall::internals::geometry::{
+    ConvexOutline, Rectangle, Vector, distance, plainly_touches, slide, touches, translation,
+};
+use closecall::internals::study::Chance;
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::query::{self, ShapeCastOptions};
 use parry2d_f64::shape::Cuboid;

@@ -20,7 +20,7 @@ fn main() {
     let mut day = day::Day::new(
         Path::new("sumo_nets/left_turn/left_turn.net.xml"),
         folder.path(),
-        closecall::study::stress::car(),
+        closecall::internals::study::car(),
     );
     println!("what,scene,method,size,value,unit");
     for hour in 1..=24 {

@@ -15,12 +15,8 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
-use closecall::input::replay::Replay;
-use closecall::input::replay::recording::Recording;
-use closecall::input::replay::rows::RecordedStep;
-use closecall::options::Options;
-use closecall::run::Run;
-use closecall::traffic::net::Net;
+use closecall::internals::input::{RecordedStep, Recording};
+use closecall::{Net, Options, Replay, Run};
 
 /// Parallel roads, far enough apart that their traffic never meets.
 const ROADS: usize = 20;

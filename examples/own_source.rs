@@ -18,14 +18,14 @@ fn main() -> Result<()> {
     for step in 0..100 {
         let time = f64::from(step) * STEP;
         let driven = SPEED * time;
-        run.begin(time);
+        run.begin_step(time);
         run.frame.push(eastbound, State { x: driven - 60.0, y: 0.0, z: 0.0, heading: 0.0, speed: SPEED });
         let north = std::f64::consts::FRAC_PI_2;
         run.frame.push(northbound, State { x: 0.0, y: driven - 50.0, z: 0.0, heading: north, speed: SPEED });
-        run.track_paths();
-        run.finish_step()?;
+        // Without a net there is no placement to set.
+        run.step(|_, _| Ok::<(), closecall::Error>(()))?;
     }
-    run.finish(Vec::new())?;
+    run.finish()?;
     for conflict in run.conflicts() {
         println!(
             "{} and {}: {}, margin {:.1} m at {:.1} s, PET {:.2} s",

@@ -18,7 +18,7 @@ fn main() -> Result<()> {
     let mut run = Run::new(&options, Some(net))?;
     run.set_fixed_routes(true);
     while replay.next(&mut run)?.is_some() {}
-    let summary = run.finish(Vec::new())?;
+    let summary = run.finish()?;
     for conflict in run.conflicts() {
         println!("{:>8.1} s  {} / {}: {}", conflict.time, conflict.ego, conflict.foe, conflict.kind.name());
     }

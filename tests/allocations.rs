@@ -5,10 +5,7 @@
 #[path = "common/counting.rs"]
 mod counting;
 
-use closecall::detection::detector::Detector;
-use closecall::options::{Options, PathModel};
-use closecall::traffic::frame::{Frame, State};
-use closecall::traffic::roster::{Roster, UserIndex};
+use closecall::{Detector, Frame, Options, PathModel, Roster, State, UserIndex};
 
 /// Four lanes of cars that close up and spread again; every tenth crosses.
 fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
@@ -36,7 +33,7 @@ fn round_step(frame: &mut Frame, users: &[UserIndex], number: u32) {
 
 fn assert_warm_allocates_nothing(options: &Options, step: impl Fn(&mut Frame, &[UserIndex], u32)) {
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::study::stress::car()).unwrap();
+    let profile = roster.profile(closecall::internals::study::car()).unwrap();
     let users = (0..1000).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detector = Detector::new(options, None);
     let mut frame = Frame::default();

@@ -2,15 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
-use closecall::detection::detector::Detector;
-use closecall::detection::encounter::Encounter;
-use closecall::detection::kind::Kind;
-use closecall::options::shortcut::Shortcut;
-use closecall::options::{BrakeSystem, Mode, Options, PathModel, TypeOptions};
-use closecall::traffic::frame::{Frame, State};
-use closecall::traffic::profile::Profile;
-use closecall::traffic::roster::{Roster, UserIndex};
-use closecall::traffic::sumo_type::SumoType;
+use closecall::{
+    BrakeSystem, Detector, Encounter, Frame, Kind, Mode, Options, PathModel, Profile, Roster, Shortcut, State,
+    SumoType, TypeOptions, UserIndex,
+};
 use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.

@@ -8,13 +8,7 @@ mod street;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::detection::detector::Detector;
-use closecall::geometry::Point;
-use closecall::options::Options;
-use closecall::traffic::frame::{Frame, State};
-use closecall::traffic::net::Net;
-use closecall::traffic::placement::Placement;
-use closecall::traffic::roster::Roster;
+use closecall::{Detector, Frame, Net, Options, Placement, Point, Roster, State};
 
 use street::street;
 
@@ -22,7 +16,7 @@ use street::street;
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     let net = street();
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::study::stress::car()).unwrap();
+    let profile = roster.profile(closecall::internals::study::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     frame.push(roster.enter("car", profile), State { x: 120.0, y: 1.6, z: 0.0, heading, speed: 12.0 });
@@ -65,7 +59,7 @@ const APART: &str = r#"<net>
 fn a_path_leads_straight_across_between_unjoined_lanes() {
     let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::study::stress::car()).unwrap();
+    let profile = roster.profile(closecall::internals::study::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_fixed_routes(true);
@@ -107,7 +101,7 @@ const FORK: &str = r#"<net>
 fn a_path_is_rebuilt_only_for_another_route() {
     let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::study::stress::car()).unwrap();
+    let profile = roster.profile(closecall::internals::study::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     // The end of the path; the car stays at the same place in every step.

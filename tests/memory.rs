@@ -17,7 +17,7 @@ fn a_day_of_traffic_takes_no_more_memory_than_its_first_hour() {
     let mut day = day::Day::new(
         Path::new("sumo_nets/left_turn/left_turn.net.xml"),
         folder.path(),
-        closecall::study::stress::car(),
+        closecall::internals::study::car(),
     );
     (0..HOUR).for_each(|_| day.step());
     let (live, conflicts) = (counting::live_bytes(), day.conflicts());

@@ -2,9 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use closecall::detection::path::track::Track;
-use closecall::geometry::polylines::Lines;
-use closecall::geometry::{Point, Vector};
+use closecall::Point;
+use closecall::internals::detection::Track;
+use closecall::internals::geometry::{Lines, Vector};
 use proptest::prelude::*;
 
 /// A front bumper nearer than this to the line is on it, in m.

@@ -6,10 +6,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::input::replay::recording::Recording;
-use closecall::input::replay::routes::Routes;
-use closecall::input::replay::rows::RecordedStep;
-use closecall::traffic::net::{EdgeIndex, Net};
+use closecall::internals::input::{RecordedStep, Recording, Routes};
+use closecall::{EdgeIndex, Net};
 use proptest::prelude::*;
 
 /// One row with all its values.

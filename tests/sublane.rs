@@ -7,11 +7,7 @@ mod street;
 
 use std::sync::Arc;
 
-use closecall::detection::detector::Detector;
-use closecall::options::Options;
-use closecall::traffic::frame::{Frame, State};
-use closecall::traffic::placement::Placement;
-use closecall::traffic::roster::Roster;
+use closecall::{Detector, Frame, Options, Placement, Roster, State};
 
 use street::street;
 
@@ -19,7 +15,7 @@ use street::street;
 fn encounters(y: f64, drift: f64) -> usize {
     let net = street();
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::study::stress::car()).unwrap();
+    let profile = roster.profile(closecall::internals::study::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     let states = [(80.0, y, 0.0), (120.0, 1.6, std::f64::consts::PI)];

@@ -2,11 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
-use closecall::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
-use closecall::detection::path::Pose;
-use closecall::geometry::Point;
-use closecall::geometry::contact::distance;
-use closecall::geometry::rectangle::{Rectangle, direction};
+use closecall::Point;
+use closecall::internals::detection::{HORIZON, Pose, SteadyMotion, time_to_collision};
+use closecall::internals::geometry::{Rectangle, direction, distance};
 use parry2d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry2d_f64::query::{ShapeCastOptions, cast_shapes};
 use parry2d_f64::shape::Cuboid;

@@ -1,9 +1,8 @@
 //! Alternatives to the detector. They only find the pairs that might meet, without distances along a path, kinds or μ.
 
-use closecall::braking::stopping_distance;
-use closecall::geometry::rectangle::direction;
-use closecall::traffic::frame::State;
-use closecall::traffic::profile::Profile;
+use closecall::internals::braking::stopping_distance;
+use closecall::internals::geometry::direction;
+use closecall::{Profile, State};
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};
@@ -93,7 +92,7 @@ impl Tree {
 
 /// The rectangle that a car covers until it stands, on a straight road.
 struct Covered {
-    axis: closecall::geometry::Vector,
+    axis: closecall::internals::geometry::Vector,
     ahead: f64,
     half: Vector,
     centre: Vector,

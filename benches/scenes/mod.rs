@@ -3,11 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use closecall::options::Options;
-use closecall::study::reference::chance::Chance;
-use closecall::traffic::frame::State;
-use closecall::traffic::profile::Profile;
-use closecall::traffic::sumo_type::SumoType;
+use closecall::internals::study::Chance;
+use closecall::{Options, Profile, State, SumoType};
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 

@@ -2,11 +2,7 @@
 
 use std::path::PathBuf;
 
-use closecall::options::Options;
-use closecall::output::formats::OutputFiles;
-use closecall::run::Run;
-use closecall::run::recorded::{Ending, RecordedRun};
-use closecall::traffic::net::Net;
+use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -230,7 +226,7 @@ pub struct Conflict {
 }
 
 impl Conflict {
-    fn new(from: closecall::events::Conflict, net: Option<&Net>) -> Self {
+    fn new(from: closecall::Conflict, net: Option<&Net>) -> Self {
         Self {
             ego: from.ego.to_string(),
             foe: from.foe.to_string(),

@@ -1,11 +1,6 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 
-use closecall::options::Options;
-use closecall::run::Run;
-use closecall::traffic::frame::State;
-use closecall::traffic::profile::Profile;
-use closecall::traffic::roster::{ProfileIndex, UserIndex};
-use closecall::traffic::sumo_type::SumoType;
+use closecall::{Options, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -1,12 +1,9 @@
 //! Single formulas on arrays: μ, and contact and distance of rectangles.
 
 use clap::ValueEnum;
-use closecall::braking::{self, Brakes, Braking, MuModel};
-use closecall::detection::kind::Kind;
-use closecall::geometry::rectangle::Rectangle;
-use closecall::geometry::{Point, Vector, contact};
-use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
-use closecall::traffic::sumo_type::SumoType;
+use closecall::internals::geometry::{Rectangle, Vector};
+use closecall::internals::options::{BUILD_UP, EPSILON, RESPONSE};
+use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType, internals};
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
 use pyo3::exceptions::PyValueError;
@@ -98,7 +95,7 @@ pub fn mu<'py>(
             let foe_brakes = Brakes { deceleration: at(&ai, &index), ..brakes };
             let ego = Braking { speed: at(&v, &index), brakes: &brakes };
             let foe = Braking { speed: at(&vi, &index), brakes: &foe_brakes };
-            braking::mu(model, ego, foe, at(&sigmas, &index), at(&e, &index))
+            closecall::mu(model, ego, foe, at(&sigmas, &index), at(&e, &index))
         })
     });
     Ok(found.into_pyarray(py))
@@ -131,7 +128,7 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 #[pyfunction]
 pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| contact::touches(a, b)).collect::<Vec<_>>());
+    let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::touches(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
@@ -141,7 +138,7 @@ pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
 #[pyfunction]
 pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| contact::distance(a, b)).collect::<Vec<_>>());
+    let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::distance(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 

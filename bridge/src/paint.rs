@@ -3,11 +3,7 @@
 
 use std::collections::hash_map::Entry;
 
-use closecall::detection::kind::{Kind, Severity};
-use closecall::events::Alarm;
-use closecall::run::Run;
-use closecall::traffic::profile::Category;
-use closecall::traffic::roster::{Roster, UserIndex};
+use closecall::{Alarm, Category, Kind, Roster, Run, Severity, UserIndex};
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 

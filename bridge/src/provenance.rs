@@ -2,11 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::options::Options;
-use closecall::output::input_hash::Input;
-use closecall::output::record::{RunRecord, Versions};
-use closecall::output::summary::Summary;
-use closecall::run::Run;
+use closecall::internals::output::{Input, Versions};
+use closecall::{Options, Run, RunRecord, Summary};
 use pyo3::prelude::*;
 
 use crate::error::exception;

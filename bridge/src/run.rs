@@ -4,16 +4,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::batch::sweep::Task;
-use closecall::cli::{self, ReportEnd, RunRequest, Sumo, Workers};
-use closecall::detection::detector::LeftOut;
-use closecall::input::sumo_files;
-use closecall::output::input_hash::Input;
-use closecall::output::record::RunRecord;
-use closecall::output::summary::Summary;
-use closecall::run::Run;
-use closecall::run::recorded::{Ending, RecordedRun};
-use closecall::{Error, Result};
+use closecall::cli::{ReportEnd, RunRequest, Sumo, Workers};
+use closecall::internals::batch::Task;
+use closecall::internals::detection::LeftOut;
+use closecall::internals::input as sumo_files;
+use closecall::internals::output::Input;
+use closecall::{Ending, Error, RecordedRun, Result, Run, RunRecord, Summary, cli};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -4,10 +4,8 @@ use std::time::{Duration, Instant};
 
 use closecall::cli::RunRequest;
 use closecall::cli::progress::Progress;
-use closecall::run::Run;
-use closecall::run::recorded::RecordedRun;
-use closecall::util::threads::Helper;
-use closecall::{Error, Result};
+use closecall::internals::util::Helper;
+use closecall::{Error, RecordedRun, Result, Run};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 

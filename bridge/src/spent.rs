@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use closecall::run::step::StepPart;
+use closecall::internals::run::StepPart;
 
 /// The parts of a step, in order. Those from the broad phase on may run beside SUMO's next step.
 #[derive(Clone, Copy)]

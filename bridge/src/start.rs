@@ -6,9 +6,8 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use closecall::cli::RunRequest;
-use closecall::input::sumo_files;
-use closecall::traffic::net::Net;
-use closecall::{Error, Result};
+use closecall::internals::input as sumo_files;
+use closecall::{Error, Net, Result};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 

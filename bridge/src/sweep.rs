@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::batch::sweep::Task;
 use closecall::cli::{ReportEnd, Workers};
+use closecall::internals::batch::Task;
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;

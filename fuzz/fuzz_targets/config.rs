@@ -4,7 +4,8 @@
 
 use std::path::Path;
 
-use closecall::options::{Options, OptionsFile};
+use closecall::Options;
+use closecall::internals::options::OptionsFile;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|text: &str| {

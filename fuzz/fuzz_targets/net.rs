@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use closecall::traffic::net::Net;
+use closecall::Net;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -21,10 +21,12 @@ impl Brakes {
 }
 
 /// A model of the minimal collision distance μ.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum MuModel {
     /// The room at the narrowest moment until both stand.
+    #[default]
     Minimal,
     /// The room when both stand.
     AtRest,

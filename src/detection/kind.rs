@@ -6,9 +6,9 @@ use crate::options::thresholds::KindBounds;
 use crate::util::units::Radian;
 
 /// How the two road users of a pair meet, by the angle between their headings at the conflict point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
-#[value(rename_all = "snake_case")]
 pub enum Kind {
     /// The ego runs into a foe that drives in the same direction.
     RearEnd,

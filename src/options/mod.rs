@@ -3,15 +3,19 @@
 //! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
+#[cfg(feature = "cli")]
+mod settings;
 pub mod shortcut;
 pub mod thresholds;
+#[cfg(feature = "cli")]
 mod toml_file;
 mod type_options;
+#[cfg(feature = "cli")]
 mod values;
 
+use std::f64::consts::FRAC_PI_6;
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory, FromArgMatches, Parser, ValueEnum};
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
@@ -19,27 +23,32 @@ use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 use shortcut::Shortcut;
-use values::word;
 
+#[cfg(feature = "cli")]
 pub use toml_file::OptionsFile;
 pub use type_options::{BrakeSystem, TypeOptions};
+#[cfg(feature = "cli")]
 pub(crate) use values::{angle, not_negative, positive};
 
 /// The method that finds the conflicts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Mode {
     /// closecall's own method: paths, conflict points and the corrected μ.
+    #[default]
     Closecall,
     /// The paper's flow chart as printed (Guan et al. 2008, fig. 5), for comparison.
     Paper,
 }
 
 /// The path that a road user is expected to take while it brakes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum PathModel {
     /// Along the lanes of its route; needs a net.
+    #[default]
     Lanes,
     /// On a circle with its current curvature.
     Arc,
@@ -48,10 +57,12 @@ pub enum PathModel {
 }
 
 /// The deceleration of SUMO's vehicle type that a vehicle brakes with.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Deceleration {
     /// `emergencyDecel`, its maximum.
+    #[default]
     Emergency,
     /// `decel`, that of ordinary driving.
     Decel,
@@ -61,113 +72,114 @@ pub enum Deceleration {
 const RESPONSE_TIME: Second = 0.8;
 /// Default of the brake coordination time t2 of hydraulic brakes, in s (the paper's lower bound).
 const HYDRAULIC_DELAY: Second = 0.25;
+/// Default of the brake coordination time t2 of pneumatic brakes, in s (the paper's lower bound).
+const PNEUMATIC_DELAY: Second = 0.35;
 /// Default of the build-up time t3, in s.
 pub const BUILD_UP: Second = 0.1;
 /// Default of the reserve ε of μ, in m (eq. 21).
 pub const EPSILON: Metre = 0.5;
+/// Default bound of rear-end conflicts: 30°, in rad.
+const REAR_END_BELOW: Radian = FRAC_PI_6;
+/// Default bound of frontal conflicts: 150°, in rad.
+const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
+/// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
+const SERIOUS_TTC: Second = 1.5;
+/// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
+const SERIOUS_DRAC: MetrePerSecondSquared = 3.4;
 /// Default of t1 + t2 with hydraulic brakes, in s.
 pub const RESPONSE: Second = RESPONSE_TIME + HYDRAULIC_DELAY;
 
 /// The settings of the detector and of what is logged.
-#[derive(Clone, Debug, PartialEq, Args, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct Options {
     /// Method that finds conflicts: closecall's own, or the paper's flow chart as printed.
-    #[arg(long, value_enum, default_value = "closecall")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub mode: Mode,
     /// Model of the minimal collision distance μ.
-    #[arg(long, value_enum, default_value = "minimal")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub mu: MuModel,
     /// Expected path of a braking road user; without a net, `lanes` means straight on.
-    #[arg(long, value_enum, default_value = "lanes")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub path: PathModel,
     /// SUMO attribute that sets the deceleration of a vehicle type without a value of its own.
-    #[arg(long, value_enum, default_value = "emergency")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub decel: Deceleration,
     /// Response time t1 of the driver, in s (Guan et al. 2008, fig. 4).
-    #[arg(long, value_name = "S", default_value_t = RESPONSE_TIME, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = RESPONSE_TIME, value_parser = not_negative))]
     pub response_time: Second,
     /// Brake coordination time t2 of hydraulic brakes, in s (the paper's lower bound).
-    #[arg(long, value_name = "S", default_value_t = HYDRAULIC_DELAY, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = HYDRAULIC_DELAY, value_parser = not_negative))]
     pub hydraulic_delay: Second,
     /// Brake coordination time t2 of pneumatic brakes, in s (the paper's lower bound).
-    #[arg(long, value_name = "S", default_value_t = 0.35, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = PNEUMATIC_DELAY, value_parser = not_negative))]
     pub pneumatic_delay: Second,
     /// Build-up time t3 of the deceleration, in s.
-    #[arg(long, value_name = "S", default_value_t = BUILD_UP, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = BUILD_UP, value_parser = not_negative))]
     pub build_up: Second,
     /// Reserve ε of μ, in m (eq. 21).
-    #[arg(long, value_name = "M", default_value_t = EPSILON, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = EPSILON, value_parser = not_negative))]
     pub epsilon: Metre,
     /// A conflict is rear-end if the angle at the conflict point is below this, in rad (default 30°).
-    #[arg(long, value_name = "RAD", default_value_t = std::f64::consts::FRAC_PI_6, value_parser = angle)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = REAR_END_BELOW, value_parser = angle))]
     pub rear_end_below: Radian,
     /// A conflict is frontal if the angle at the conflict point is above this, in rad (default 150°).
-    #[arg(long, value_name = "RAD", default_value_t = 5.0 * std::f64::consts::FRAC_PI_6, value_parser = angle)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = FRONTAL_ABOVE, value_parser = angle))]
     pub frontal_above: Radian,
     /// A conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
-    #[arg(long, value_name = "S", default_value_t = 1.5, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = not_negative))]
     pub serious_ttc: Second,
     /// A conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
-    #[arg(long, value_name = "M/S²", default_value_t = 3.4, value_parser = not_negative)]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = not_negative))]
     pub serious_drac: MetrePerSecondSquared,
     /// Types of the SUMO polygons that are static obstacles.
-    #[arg(long, value_name = "TYPE,…", value_delimiter = ',')]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "TYPE,…", value_delimiter = ','))]
     pub obstacles: Vec<String>,
     /// Report only conflicts on the edges, lanes and junctions of this SUMO selection file.
-    #[arg(long, value_name = "FILE")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub filter: Option<PathBuf>,
     /// Also write encounters.csv, with a row per step of each pair in conflict.
-    #[arg(long)]
+    #[cfg_attr(feature = "cli", arg(long))]
     pub log_encounters: bool,
     /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
-    #[arg(long)]
+    #[cfg_attr(feature = "cli", arg(long))]
     pub keep_all: bool,
     /// Keep single tests, to measure what leaving out each one saves.
-    #[arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true)]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true))]
     #[serde(skip)]
     pub keep: Vec<Shortcut>,
     /// Settings of vehicle types (`[type.NAME]` in the TOML file).
-    #[arg(skip)]
+    #[cfg_attr(feature = "cli", arg(skip))]
     pub types: FxHashMap<String, TypeOptions>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        match Self::from_settings([]) {
-            Ok(options) => options,
-            Err(_) => unreachable!("the defaults are parsed by a test"),
+        Self {
+            mode: Mode::default(),
+            mu: MuModel::default(),
+            path: PathModel::default(),
+            decel: Deceleration::default(),
+            response_time: RESPONSE_TIME,
+            hydraulic_delay: HYDRAULIC_DELAY,
+            pneumatic_delay: PNEUMATIC_DELAY,
+            build_up: BUILD_UP,
+            epsilon: EPSILON,
+            rear_end_below: REAR_END_BELOW,
+            frontal_above: FRONTAL_ABOVE,
+            serious_ttc: SERIOUS_TTC,
+            serious_drac: SERIOUS_DRAC,
+            obstacles: Vec::new(),
+            filter: None,
+            log_encounters: false,
+            keep_all: false,
+            keep: Vec::new(),
+            types: FxHashMap::default(),
         }
     }
-}
-
-#[derive(Parser)]
-#[command(no_binary_name = true, disable_help_flag = true)]
-struct SettingsParser {
-    #[command(flatten)]
-    options: Options,
 }
 
 impl Options {
-    /// Options from names and values, as in a TOML file or Python keywords. A name is the long option with underscores;
-    /// the value of a flag is `true` or `false`.
-    ///
-    /// # Errors
-    /// [`Error::Value`] that names the setting if it is unknown or out of range.
-    pub fn from_settings<'a>(settings: impl IntoIterator<Item = (&'a str, String)>) -> Result<Self> {
-        let mut command = SettingsParser::command();
-        let mut given = Vec::new();
-        for (name, value) in settings {
-            let option = name.replace('_', "-");
-            if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
-                return Err(Error::Value(format!("unexpected argument '--{option}' found")));
-            }
-            given.extend(word(name, &value));
-        }
-        let matches = command.try_get_matches_from_mut(given).map_err(plain)?;
-        let settings = SettingsParser::from_arg_matches(&matches).map_err(plain)?;
-        settings.options.checked()
-    }
-
     /// Checks that the options are consistent.
     ///
     /// # Errors
@@ -180,40 +192,5 @@ impl Options {
             )));
         }
         Ok(self)
-    }
-}
-
-/// clap's message as one line, without the usage.
-fn plain(error: clap::Error) -> Error {
-    let text = error.to_string();
-    Error::Value(text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_defaults_are_the_documented_ones() {
-        let options = Options::from_settings([]).unwrap();
-        assert_eq!(options.mu, MuModel::Minimal);
-        assert_eq!((options.response_time, options.hydraulic_delay, options.epsilon), (0.8, 0.25, 0.5));
-    }
-
-    #[test]
-    fn a_setting_has_the_name_of_the_long_option() {
-        let options = Options::from_settings([("mu", "at-rest".to_owned()), ("keep_all", "true".to_owned())]).unwrap();
-        assert_eq!(options.mu, MuModel::AtRest);
-        assert!(options.keep_all);
-    }
-
-    #[test]
-    fn an_unknown_or_impossible_setting_is_named() {
-        let unknown = Options::from_settings([("colour", "red".to_owned())]).unwrap_err().to_string();
-        assert!(unknown.contains("--colour"), "{unknown}");
-        let unset = Options::from_settings([("colour", "false".to_owned())]).unwrap_err().to_string();
-        assert!(unset.contains("--colour"), "{unset}");
-        let negative = Options::from_settings([("epsilon", "-1".to_owned())]).unwrap_err().to_string();
-        assert!(negative.contains("--epsilon") && !negative.contains('\n'), "{negative}");
     }
 }

@@ -1,9 +1,8 @@
 //! Work that a run leaves out where the scene does not need it; `--keep` names single ones.
 
-use clap::ValueEnum;
-
 /// Work that a scene may not need.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Shortcut {
     /// The broad phase leaves out pairs whose areas do not meet. If kept, every pair enters the narrow phase.
     AreasApart,

@@ -6,15 +6,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::geometry::Point;
-use closecall::options::Options;
-use closecall::output::log::Log;
-use closecall::run::Run;
-use closecall::traffic::frame::State;
-use closecall::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
-use closecall::traffic::placement::Placement;
-use closecall::traffic::profile::Profile;
-use closecall::traffic::roster::{ProfileIndex, UserIndex};
+use closecall::internals::output::Log;
+use closecall::internals::traffic::EdgeFunction;
+use closecall::{EdgeIndex, LaneIndex, Net, Options, Placement, Point, Profile, ProfileIndex, Run, State, UserIndex};
 
 /// Steps of 1 s that a car needs from one end of its course to the other.
 const PERIOD: usize = 60;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::traffic::net::Net;
+use closecall::Net;
 
 const STREET: &str = r#"<net>
     <edge id="east" from="w" to="e"><lane id="east_0" index="0" length="200" width="3.2" shape="0,-1.6 200,-1.6"/></edge>

@@ -3,7 +3,8 @@
 
 use std::path::PathBuf;
 
-use closecall::traffic::frame::{SUMO_INVALID, State};
+use closecall::State;
+use closecall::internals::traffic::SUMO_INVALID;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 

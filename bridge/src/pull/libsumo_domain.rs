@@ -2,10 +2,8 @@
 
 use std::ops::RangeFrom;
 
-use closecall::run::Run;
-use closecall::traffic::frame::State;
-use closecall::traffic::roster::{ProfileIndex, Roster, UserIndex};
-use closecall::util::tight_vec::make_room;
+use closecall::internals::util::make_room;
+use closecall::{ProfileIndex, Roster, Run, State, UserIndex};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -12,9 +12,8 @@ mod reading;
 mod sumo;
 mod traci;
 
-use closecall::options::Options;
-use closecall::run::Run;
-use closecall::util::units::Second;
+use closecall::internals::util::Second;
+use closecall::{Options, Run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

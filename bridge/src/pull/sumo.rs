@@ -3,14 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::geometry::Point;
-use closecall::options::Options;
-use closecall::run::Run;
-use closecall::traffic::net::{EdgeIndex, Net};
-use closecall::traffic::profile::Profile;
-use closecall::traffic::roster::ProfileIndex;
-use closecall::traffic::sumo_type::SumoType;
-use closecall::util::units::Second;
+use closecall::internals::util::Second;
+use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, Run, SumoType};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;

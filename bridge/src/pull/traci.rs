@@ -2,12 +2,8 @@
 //!
 //! The names of its functions are interned: Python's attribute cache keeps every name that is looked up in every step.
 
-use closecall::options::Options;
-use closecall::run::Run;
-use closecall::traffic::frame::State;
-use closecall::traffic::placement::Placement;
-use closecall::traffic::roster::{ProfileIndex, UserIndex};
-use closecall::util::units::Second;
+use closecall::internals::util::Second;
+use closecall::{Options, Placement, ProfileIndex, Run, State, UserIndex};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};

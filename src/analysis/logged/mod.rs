@@ -18,4 +18,4 @@ pub use folders::{SUMMARY, log_folders};
 pub use pack::{Label, LabelValue, pack};
 pub use parquet::{PARQUET, Packed};
 pub use reader::ConflictReader;
-pub use run::{LoggedRun, LoggedSummary, LoggedVersions, record};
+pub use run::{LoggedRun, record};

@@ -22,15 +22,14 @@ use serde::Serialize;
 use super::logged::LoggedRun;
 use crate::{Error, Result};
 
-pub use collect::{Collection, Columns, ConflictGroup, Counts, LeftOutLog, MEASURES, Spot};
-pub use compare::{Comparison, MeasureDifference, RateDifference, Significance, compare};
-pub use extremes::{Crashes, Extrapolation, Tails, crashes};
-pub use gpd::Gpd;
+pub use collect::{Collection, LeftOutLog, MEASURES, Spot};
+pub use compare::{Comparison, Significance, compare};
+pub use extremes::{Crashes, Extrapolation};
 pub use group::By;
 pub use permutation::Test;
-pub use quantiles::{Quantiles, cliffs_delta, quantile};
-pub use rate::{IntervalMethod, Rate, Ratio, rate, rate_ratio};
-pub use worst::{WorstConflict, WorstOf};
+pub use quantiles::{Quantiles, quantile};
+pub use rate::{IntervalMethod, Rate, Ratio, rate};
+pub use worst::WorstConflict;
 
 /// The statistics that are asked for.
 #[derive(Clone, Debug)]

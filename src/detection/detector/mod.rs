@@ -136,6 +136,16 @@ impl Detector {
         self.shortcuts
     }
 
+    /// Both phases of one step for road users whose placement nobody knows: without a net, or with straight paths.
+    ///
+    /// With a net call [`Detector::track_paths`], [`Detector::set_placement`] for the rows that it returns,
+    /// [`Detector::broad_phase`] and [`Detector::narrow_phase`].
+    pub fn step(&mut self, frame: &Frame, roster: &Roster) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
+        self.track_paths(frame, roster);
+        self.broad_phase(frame, roster);
+        self.narrow_phase(frame, roster)
+    }
+
     /// What was left out so far.
     pub fn left_out(&self) -> Vec<LeftOut> {
         left_out::left_out(&self.work, self.shortcuts)

@@ -5,8 +5,9 @@
 //! vehicle came from, since the rear is still on them. Where no lane leads to the next edge of the route, the path ends
 //! with the lane.
 
-use smallvec::SmallVec;
 use std::sync::Arc;
+
+use smallvec::SmallVec;
 
 use super::foot::Foot;
 use super::lateral_offset::{Offset, OffsetLine};

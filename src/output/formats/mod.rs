@@ -6,8 +6,6 @@ mod trajectories;
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-
 use super::input_hash::Input;
 use crate::events::Conflict;
 use crate::traffic::frame::Frame;
@@ -19,13 +17,14 @@ use ssm::Ssm;
 use trajectories::Trajectories;
 
 /// Which files to write besides the log.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Args)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct OutputFiles {
     /// Write each conflict once in the format of SUMO's SSM device.
-    #[arg(long, value_name = "FILE")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub ssm_output: Option<PathBuf>,
     /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
-    #[arg(long, value_name = "FILE")]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub trj_output: Option<PathBuf>,
 }
 

@@ -13,7 +13,7 @@ mod tally;
 mod time;
 
 pub use cars::car;
-pub use tally::{Group, Property, PropertyResult, Unit};
+pub use tally::{Group, PropertyResult};
 
 use super::reference::chance::Chance;
 use tally::Tally;

@@ -8,7 +8,7 @@ mod finder;
 mod network;
 mod reader;
 
-pub use elements::{Edge, EdgeFunction, EdgeIndex, Junction, Lane, LaneIndex, Link};
+pub use elements::{EdgeFunction, EdgeIndex, Lane, LaneIndex, Link};
 pub use network::Net;
 
 #[cfg(test)]

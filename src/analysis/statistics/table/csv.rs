@@ -34,7 +34,7 @@ pub fn csv(tables: &[Table]) -> Result<String> {
 
 #[cfg(test)]
 mod tests {
-    use crate::analysis::statistics::table::Cell;
+    use super::super::cells::Cell;
     use crate::analysis::statistics::table::csv::*;
 
     #[test]

@@ -7,7 +7,6 @@ mod html;
 mod text;
 
 pub use crate::analysis::statistics::table::csv::csv;
-pub use cells::{Cell, Table};
 pub use contents::tables;
 pub use html::html;
 pub use text::text;

@@ -1,0 +1,74 @@
+//! What the bridge, the benches and the tests of this repository use of the crate besides its public interface.
+//!
+//! Not part of that interface: anything here may change in any version.
+
+#[cfg(feature = "cli")]
+pub mod batch {
+    pub use crate::batch::regress::outcome::Outcome;
+    pub use crate::batch::regress::scenario::RegressSettings;
+    pub use crate::batch::regress::statistics::comparisons;
+    pub use crate::batch::sweep::Task;
+}
+
+pub mod braking {
+    pub use crate::braking::stopping_distance;
+}
+
+pub mod detection {
+    pub use crate::detection::detector::LeftOut;
+    pub use crate::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
+    pub use crate::detection::path::Pose;
+    pub use crate::detection::path::track::Track;
+}
+
+pub mod geometry {
+    pub use crate::geometry::bisection::Bisection;
+    pub use crate::geometry::contact::{distance, plainly_touches, touches};
+    pub use crate::geometry::convex::ConvexOutline;
+    pub use crate::geometry::polygon::Polygon;
+    pub use crate::geometry::polylines::Lines;
+    pub use crate::geometry::rectangle::{Rectangle, direction};
+    pub use crate::geometry::separating_axes::{Contact, slide, translation};
+    pub use crate::geometry::sweep::{Movement, TOLERANCE};
+    pub use crate::geometry::{Bounds, Vector};
+}
+
+pub mod input {
+    pub use crate::input::replay::recording::Recording;
+    pub use crate::input::replay::routes::Routes;
+    pub use crate::input::replay::rows::RecordedStep;
+    pub use crate::input::sumo_files::{check_xml, fault, net_of};
+}
+
+pub mod options {
+    #[cfg(feature = "cli")]
+    pub use crate::options::OptionsFile;
+    pub use crate::options::{BUILD_UP, EPSILON, RESPONSE};
+}
+
+pub mod output {
+    pub use crate::output::input_hash::Input;
+    pub use crate::output::log::Log;
+    pub use crate::output::record::Versions;
+}
+
+pub mod run {
+    pub use crate::run::step::StepPart;
+}
+
+#[cfg(feature = "study")]
+pub mod study {
+    pub use crate::study::reference::chance::Chance;
+    pub use crate::study::stress::car;
+}
+
+pub mod traffic {
+    pub use crate::traffic::frame::SUMO_INVALID;
+    pub use crate::traffic::net::EdgeFunction;
+}
+
+pub mod util {
+    pub use crate::util::threads::{Helper, Team};
+    pub use crate::util::tight_vec::make_room;
+    pub use crate::util::units::Second;
+}
