@@ -7,6 +7,7 @@ pub mod batch {
     pub use crate::batch::regress::outcome::Outcome;
     pub use crate::batch::regress::scenario::RegressSettings;
     pub use crate::batch::regress::statistics::comparisons;
+    #[cfg(feature = "parquet")]
     pub use crate::batch::sweep::Task;
 }
 

@@ -48,6 +48,9 @@
 //! | `plot` | charts as PNG or SVG |
 //! | `study` | the study of error against run time, and the stress cases |
 
+// With some features off, parts that only those features use are left without a caller.
+#![cfg_attr(not(all(feature = "parquet", feature = "study")), allow(dead_code, unused_imports))]
+
 #[cfg(feature = "cli")]
 mod analysis;
 #[cfg(feature = "cli")]

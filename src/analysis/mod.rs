@@ -2,6 +2,7 @@
 
 pub mod dataset;
 pub mod logged;
+#[cfg(feature = "plot")]
 pub mod plot;
 pub mod report;
 pub mod statistics;

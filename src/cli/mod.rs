@@ -7,6 +7,7 @@ mod ending;
 mod files;
 mod mu;
 mod parse;
+#[cfg(feature = "plot")]
 mod plot;
 pub mod progress;
 mod regress;
@@ -21,16 +22,21 @@ mod stress;
 #[cfg(feature = "study")]
 mod study;
 mod sumo;
+#[cfg(feature = "parquet")]
 mod sweep;
+#[cfg(feature = "parquet")]
+mod workers;
 
 use std::ffi::OsString;
 use std::path::Path;
 
 use crate::batch::regress::Scenario;
 use crate::{Error, Result};
-use parse::{Command, ParseError, command, parse, parse_run, usage};
+use parse::{Command, ParseError, command, parse, usage};
 
-pub use sumo::{Distribute, ReportEnd, RunRequest, Simulate, Sumo, Workers};
+pub use sumo::{RunRequest, Simulate, Sumo};
+#[cfg(feature = "parquet")]
+pub use workers::{Distribute, ReportEnd, Workers};
 
 /// Runs the command line `words`, which begins with the program's name; returns the exit status.
 ///
@@ -51,7 +57,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
     };
     let done = match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
-        Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse_run),
+        #[cfg(feature = "parquet")]
+        Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),
         Command::Replay(arguments) => replay::run(*arguments, sumo).map(|()| 0),
         Command::Regress(arguments) => regress::run(arguments, &settings::known(&command()), sumo),
         Command::Mu(arguments) => mu::run(&arguments).map(|()| 0),
@@ -61,6 +68,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Command::Study(arguments) => study::run(&arguments, sumo).map(|()| 0),
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
+        #[cfg(feature = "plot")]
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),
     };
     match done {

@@ -5,9 +5,13 @@ use std::ffi::OsString;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::say::value;
-use super::{mu, plot, regress, replay, report, run, settings, stats, sweep};
+use super::{mu, regress, replay, report, run, settings, stats};
 use crate::{Error, Result};
 
+#[cfg(feature = "plot")]
+use super::plot;
+#[cfg(feature = "parquet")]
+use super::sweep;
 #[cfg(feature = "study")]
 use super::{stress, study};
 
@@ -24,6 +28,7 @@ pub(super) enum Command {
     #[command(args_override_self = true)]
     Run(Box<run::RunArgs>),
     /// Run a scenario with many seeds and options in parallel and collect the conflicts in one data set
+    #[cfg(feature = "parquet")]
     Sweep(Box<sweep::SweepArgs>),
     /// Check a recording (SUMO's fcd-output) for conflicts
     #[command(args_override_self = true)]
@@ -45,6 +50,7 @@ pub(super) enum Command {
     #[command(args_override_self = true)]
     Report(report::ReportArgs),
     /// Draw the charts of the report as PNG or SVG files
+    #[cfg(feature = "plot")]
     #[command(args_override_self = true)]
     Plot(plot::PlotArgs),
 }

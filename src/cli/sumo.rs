@@ -1,11 +1,12 @@
 //! The interface between the commands that run SUMO and the bridge that can.
 
 use std::ffi::OsString;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::say::value;
+#[cfg(feature = "parquet")]
+use super::workers::Distribute;
 use crate::Result;
-use crate::batch::sweep::Task;
 use crate::options::Options;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
@@ -15,6 +16,7 @@ pub struct Sumo<'a> {
     /// Runs a simulation in this process.
     pub simulate: &'a mut Simulate<'a>,
     /// Distributes the runs of a sweep to workers.
+    #[cfg(feature = "parquet")]
     pub distribute: &'a mut Distribute<'a>,
     /// The command line that starts closecall in a separate process, without arguments. The process ends when its standard
     /// input closes.
@@ -51,18 +53,3 @@ pub struct RunRequest {
 
 /// Runs SUMO with the checker attached.
 pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
-
-/// The workers that do the runs of a sweep.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Workers {
-    /// This number of processes on this machine.
-    Local(usize),
-    /// The workers of the Dask scheduler at this address.
-    Scheduler(String),
-}
-
-/// Takes the name of a task that has ended and, if it failed, why.
-pub type ReportEnd<'a> = dyn FnMut(&str, Option<&str>) + 'a;
-
-/// Does the tasks in a working folder and reports the end of each.
-pub type Distribute<'a> = dyn FnMut(&Workers, &Path, &[&Task], &mut ReportEnd) -> Result<()> + 'a;
