@@ -19,7 +19,6 @@ use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::tight_vec::make_room;
 use crate::util::units::Second;
 use extremes::{Extremes, Observation};
 
@@ -152,7 +151,6 @@ impl Tracker {
             }
             Err(place) => {
                 let extremes = Extremes::of(seen, self.records_moments, path);
-                make_room(&mut self.events, 1);
                 self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
                 place
             }

@@ -13,7 +13,6 @@ use super::rectangle::Rectangle;
 use super::separating_axes::{ContactInterval, outlines_touch, translation};
 use super::sweep::{Step, TOLERANCE};
 use super::{Bounds, Vector};
-use crate::util::tight_vec::{add, make_room};
 use crate::util::units::Metre;
 
 /// More than rounding can move anything, in m.
@@ -115,7 +114,7 @@ impl Swept {
 
     fn hull<'a>(&mut self, hulls: &'a mut Vec<Polygon>) -> &'a Polygon {
         let place = *self.hull.get_or_insert_with(|| {
-            add(hulls, self.step.hull().into());
+            hulls.push(self.step.hull().into());
             hulls.len() as u32 - 1
         });
         &hulls[place as usize]
@@ -191,7 +190,7 @@ impl Bisection {
 
     /// Adds a step.
     pub fn add(&mut self, step: Step) -> Part {
-        add(&mut self.parts, Swept::new(step));
+        self.parts.push(Swept::new(step));
         Part(self.parts.len() as u32 - 1)
     }
 
@@ -329,7 +328,6 @@ impl Bisection {
         }
         let halves = whole.halve();
         let first = self.parts.len() as u32;
-        make_room(&mut self.parts, halves.len());
         self.parts.extend(halves);
         self.parts[part as usize].halves = Some(first);
         first

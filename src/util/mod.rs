@@ -4,5 +4,4 @@ pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod input_file;
 pub mod threads;
-pub mod tight_vec;
 pub mod units;

@@ -10,7 +10,6 @@ use closecall::run::Run;
 use closecall::traffic::frame::State;
 use closecall::traffic::placement::Placement;
 use closecall::traffic::roster::{Roster, UserIndex};
-use closecall::util::tight_vec::make_room;
 use closecall::util::units::Second;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -273,11 +272,8 @@ impl Domain {
         let profile = profile(run, type_id.extract::<&str>()?)?;
         self.getters.enters(py, name);
         let user = run.enter(name, profile);
-        make_room(&mut self.live, 1);
         self.live.push(user);
-        make_room(&mut self.kept, 1);
         self.kept.push(Kept::default());
-        make_room(&mut self.by_id, 1);
         self.by_id.insert(rank, self.live.len() as u32 - 1);
         Ok(())
     }

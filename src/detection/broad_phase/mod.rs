@@ -22,7 +22,6 @@ use std::ops::Range;
 
 use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
-use crate::util::tight_vec::{fill, make_room};
 use crate::util::units::Metre;
 use extent::Extent;
 use pair_buffer::Near;
@@ -50,8 +49,8 @@ pub struct Search<S> {
     slots: Vec<S>,
     /// How often any two have changed places since slots were given.
     moved: usize,
-    /// Which items have a slot, a bit each; only while slots are given.
-    given: Vec<u64>,
+    /// Which items have a slot already; only while slots are given.
+    given: Vec<bool>,
     in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip, and the largest height.
@@ -128,24 +127,18 @@ impl<S: Slot> Search<S> {
     fn hold(&mut self, count: usize, item_of: impl Fn(u32) -> Option<u32>) {
         let Self { places, boxes, slots, given, .. } = self;
         given.clear();
-        fill(given, count.div_ceil(64), 0);
-        let mut is_first = |item: u32| {
-            let (word, bit) = (&mut given[item as usize / 64], 1 << (item % 64));
-            let is_first = *word & bit == 0;
-            *word |= bit;
-            is_first
-        };
+        given.resize(count, false);
+        let mut is_first = |item: u32| !std::mem::replace(&mut given[item as usize], true);
         // A place says which item its slot is for, until all have one.
         places.retain_mut(|place| {
             let item = item_of(slots[place.slot as usize].who()).filter(|item| is_first(*item));
             place.slot = item.unwrap_or_default();
             item.is_some()
         });
-        make_room(places, count - places.len());
         let others = (0..count as u32).filter(|item| is_first(*item));
         places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
-        fill(slots, count, S::default());
-        fill(boxes, count, Bounds::EMPTY);
+        slots.resize(count, S::default());
+        boxes.resize(count, Bounds::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
             slot.give(place.slot);
             place.slot = number;

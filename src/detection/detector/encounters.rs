@@ -17,7 +17,6 @@ use crate::geometry::{contact, cross};
 use crate::options::Mode;
 use crate::traffic::frame::State;
 use crate::traffic::profile::Category;
-use crate::util::tight_vec::add;
 use crate::util::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
@@ -302,7 +301,7 @@ impl StepInputs<'_> {
             collision,
             nearness: None,
         };
-        add(&mut found.encounters, encounter);
+        found.encounters.push(encounter);
         let Found { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || encounter.in_conflict() {
@@ -313,7 +312,7 @@ impl StepInputs<'_> {
                     encounters.pop();
                 }
             } else {
-                add(unmeasured, (number, met));
+                unmeasured.push((number, met));
             }
         }
     }

@@ -10,7 +10,6 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
 use crate::traffic::profile::Category;
-use crate::util::tight_vec::{add, fill, make_room};
 use crate::util::units::Metre;
 
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
@@ -88,7 +87,7 @@ impl Kept {
 impl OccupancyCache {
     /// Forgets those of the last step; slots below `slots` may be asked for.
     pub(super) fn begin(&mut self, slots: usize) {
-        fill(&mut self.places, slots, 0);
+        self.places.resize(slots, 0);
         let most = ((slots as f64).sqrt() * KEPT) as usize;
         self.most = most.clamp(KEPT_AT_LEAST, usize::from(u16::MAX) - 1);
         self.kept.iter_mut().for_each(Kept::clear);
@@ -119,7 +118,6 @@ impl OccupancyCache {
         let user = scene.user(slot);
         let Kept { laid, poses: all, .. } = &mut self.kept[0];
         let (profile, start) = (scene.profile(user), all.len());
-        make_room(all, MOST_POSES);
         let stop = scene.stop(user);
         scene.course(user, &[stop, stop + scene.options.epsilon], false, all);
         let poses = &all[start..];
@@ -139,7 +137,7 @@ impl OccupancyCache {
         };
         self.places[slot as usize] = laid.len() as u16;
         let way = Laid { slot, poses: (start as u32, all.len() as u32), covers: None, straight, bounds };
-        add(laid, way);
+        laid.push(way);
     }
 
     /// Lays the poses and the boxes around them.
@@ -167,7 +165,6 @@ impl OccupancyCache {
             }
             _ => of(poses),
         };
-        make_room(covers, poses.len().max(1));
         covers.push(whole);
         if !laid.straight {
             covers.extend(poses.windows(2).map(of));
