@@ -115,7 +115,6 @@ impl StepInputs<'_> {
         if self.go_onward(slots) {
             return self.meet_onward(work, slots, found);
         }
-        ways.begin_pair();
         slots.iter().for_each(|slot| ways.see(self, *slot));
         if self.shortcuts.paths_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
             work.paths_apart += 1;
