@@ -70,6 +70,5 @@ pub mod traffic {
 
 pub mod util {
     pub use crate::util::threads::{Helper, Team};
-    pub use crate::util::tight_vec::make_room;
     pub use crate::util::units::Second;
 }

@@ -101,9 +101,6 @@ impl Run {
         if outputs.want_lanes() {
             self.detector.keep_asking_for_lanes();
         }
-        if outputs.want_moments() {
-            self.tracker.record_moments();
-        }
         self.outputs = outputs;
     }
 

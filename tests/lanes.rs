@@ -8,7 +8,14 @@ mod street;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::{Detector, Frame, Net, Options, Placement, Point, Roster, State};
+use closecall::Detector;
+use closecall::Frame;
+use closecall::Net;
+use closecall::Options;
+use closecall::Placement;
+use closecall::Point;
+use closecall::Roster;
+use closecall::State;
 
 use street::street;
 

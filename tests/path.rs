@@ -4,7 +4,8 @@
 
 use closecall::Point;
 use closecall::internals::detection::Track;
-use closecall::internals::geometry::{Lines, Vector};
+use closecall::internals::geometry::Lines;
+use closecall::internals::geometry::Vector;
 use proptest::prelude::*;
 
 /// A front bumper nearer than this to the line is on it, in m.

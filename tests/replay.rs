@@ -6,8 +6,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::internals::input::{RecordedStep, Recording, Routes};
-use closecall::{EdgeIndex, Net};
+use closecall::EdgeIndex;
+use closecall::Net;
+use closecall::internals::input::RecordedStep;
+use closecall::internals::input::Recording;
+use closecall::internals::input::Routes;
 use proptest::prelude::*;
 
 /// One row with all its values.

@@ -7,7 +7,12 @@ mod street;
 
 use std::sync::Arc;
 
-use closecall::{Detector, Frame, Options, Placement, Roster, State};
+use closecall::Detector;
+use closecall::Frame;
+use closecall::Options;
+use closecall::Placement;
+use closecall::Roster;
+use closecall::State;
 
 use street::street;
 

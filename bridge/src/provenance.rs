@@ -2,8 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::internals::output::{Input, Versions};
-use closecall::{Options, Run, RunRecord, Summary};
+use closecall::Options;
+use closecall::Run;
+use closecall::RunRecord;
+use closecall::Summary;
+use closecall::internals::output::Input;
+use closecall::internals::output::Versions;
 use pyo3::prelude::*;
 
 use crate::error::exception;

@@ -76,9 +76,9 @@ pub struct Conflict {
     /// The same of the foe.
     #[serde(skip)]
     pub foe_snapshot: Snapshot,
-    /// When and where `ttc`, `drac` and `pet` were found; where nobody wanted to know it (`Tracker::record_moments`), none.
+    /// When and where `ttc`, `drac` and `pet` were found.
     #[serde(skip)]
-    pub found: Option<[Option<Moment>; 3]>,
+    pub found: [Option<Moment>; 3],
 }
 
 impl Conflict {
@@ -87,7 +87,7 @@ impl Conflict {
         let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref found, ref worst } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let (of_ego, of_foe) = (roster.profile_of(ego), roster.profile_of(foe));
-        let ([ego_speed, foe_speed], [ego_stood, foe_stood]) = (worst.speeds, &worst.stood);
+        let ([ego_speed, foe_speed], [ego_snapshot, foe_snapshot]) = (worst.speeds, worst.snapshots.clone());
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),
@@ -114,9 +114,9 @@ impl Conflict {
             y,
             lane,
             collision,
-            ego_snapshot: Snapshot::of(ego_stood, of_ego),
-            foe_snapshot: Snapshot::of(foe_stood, of_foe),
-            found: found.as_ref().map(|found| [found[0], found[1], entered]),
+            ego_snapshot,
+            foe_snapshot,
+            found: [found[0], found[1], entered],
         }
     }
 }

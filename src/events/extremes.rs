@@ -1,13 +1,13 @@
 //! What is known of an event under way: the step with the smallest margin, and the extremes of all its steps.
 
 use super::moment::Moment;
-use super::snapshot::Stood;
+use super::snapshot::Snapshot;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
-use crate::traffic::roster::UserIndex;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
@@ -17,6 +17,7 @@ const SAME_MARGIN: Metre = 1e-9;
 #[derive(Clone, Copy)]
 pub(super) struct Observation<'a> {
     pub frame: &'a Frame,
+    pub roster: &'a Roster,
     pub found: &'a Encounter,
 }
 
@@ -30,8 +31,8 @@ pub(super) struct Extremes {
     pub clearance: Metre,
     pub ttc: Option<Second>,
     pub drac: Option<MetrePerSecondSquared>,
-    /// When and where these two were found, if anybody wants to know it.
-    pub found: Option<Box<[Option<Moment>; 2]>>,
+    /// When and where the TTC and the DRAC were found.
+    pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
 }
 
@@ -51,8 +52,8 @@ pub(super) struct WorstStep {
     pub lane: Option<LaneIndex>,
     /// The ego's and the foe's.
     pub speeds: [MetrePerSecond; 2],
-    /// The same.
-    pub stood: [Stood; 2],
+    /// The ego's and the foe's.
+    pub snapshots: [Snapshot; 2],
 }
 
 impl Observation<'_> {
@@ -81,18 +82,18 @@ impl Observation<'_> {
 
 impl WorstStep {
     /// This step; `path` has the path of a row's front bumper.
-    fn of(&Observation { frame, found }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    fn of(&Observation { frame, roster, found }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let Encounter { ego, foe, kind, gap, mu, margin, angle, x, y, lane, .. } = *found;
-        let rows = [found.ego_row, found.foe_row];
-        let speeds = rows.map(|row| frame.state(row).speed);
-        let stood = rows.map(|row| Stood::of(frame.state(row), &path(row)));
-        Self { ego, foe, kind, time: frame.time, gap, mu, margin, angle, x, y, lane, speeds, stood }
+        let speeds = [found.ego_row, found.foe_row].map(|row| frame.state(row).speed);
+        let snapshots = [(ego, found.ego_row), (foe, found.foe_row)]
+            .map(|(user, row)| Snapshot::of(frame.state(row), roster.profile_of(user), &path(row)));
+        Self { ego, foe, kind, time: frame.time, gap, mu, margin, angle, x, y, lane, speeds, snapshots }
     }
 }
 
 impl Extremes {
-    /// Those of a first step; `path` has the path of a row's front bumper, `moments` says whether they are to be known.
-    pub fn of(seen: &Observation, moments: bool, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    /// Those of a first step; `path` has the path of a row's front bumper.
+    pub fn of(seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let moment = |_| seen.moment();
         Self {
             begin: seen.frame.time,
@@ -102,7 +103,7 @@ impl Extremes {
             clearance: seen.clearance(),
             ttc: seen.ttc(),
             drac: seen.drac(),
-            found: moments.then(|| Box::new([seen.ttc().map(moment), seen.drac().map(moment)])),
+            found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
         }
     }
@@ -118,8 +119,10 @@ impl Extremes {
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;
         let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
-        if let Some(found) = &mut self.found {
-            found.iter_mut().zip(taken).filter(|(_, taken)| *taken).for_each(|(found, _)| *found = Some(seen.moment()));
+        for (found, taken) in self.found.iter_mut().zip(taken) {
+            if taken {
+                *found = Some(seen.moment());
+            }
         }
     }
 }

@@ -19,7 +19,6 @@ use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::tight_vec::make_room;
 use crate::util::units::Second;
 use extremes::{Extremes, Observation};
 
@@ -51,7 +50,6 @@ pub struct Tracker {
     /// Closed, but its PET is not known yet.
     waiting: Vec<(Pair, Box<Event>)>,
     closed: Vec<Conflict>,
-    records_moments: bool,
 }
 
 /// Two road users, in their order.
@@ -79,11 +77,6 @@ impl Event {
 }
 
 impl Tracker {
-    /// Has conflicts say when and where their extremes were found.
-    pub fn record_moments(&mut self) {
-        self.records_moments = true;
-    }
-
     /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
     /// and ids. `path` has the path of a row's front bumper, from where it is.
     pub fn step<'a>(
@@ -98,7 +91,7 @@ impl Tracker {
             return &self.closed;
         }
         for found in encounters.filter(|found| found.in_conflict()) {
-            self.take(&Observation { frame, found }, roster, &path);
+            self.take(&Observation { frame, roster, found }, &path);
         }
         self.follow(frame, roster);
         self.close(frame);
@@ -139,7 +132,7 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, seen: &Observation, roster: &Roster, path: &impl Fn(u32) -> Vec<Point>) {
+    fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
         let Encounter { ego, foe, kind, .. } = *seen.found;
         let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
         let pair = [ego.min(foe), ego.max(foe)];
@@ -151,8 +144,7 @@ impl Tracker {
                 place
             }
             Err(place) => {
-                let extremes = Extremes::of(seen, self.records_moments, path);
-                make_room(&mut self.events, 1);
+                let extremes = Extremes::of(seen, path);
                 self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
                 place
             }
@@ -160,7 +152,7 @@ impl Tracker {
         let (_, event) = &mut self.events[place];
         if kind != Kind::RearEnd && event.driven.is_none() {
             let courses = pair.map(|user| {
-                let profile = roster.profile_of(user);
+                let profile = seen.roster.profile_of(user);
                 pet::Course::new(profile.length, profile.width)
             });
             event.driven = Some(Box::new(Driven { courses, pet: None }));

@@ -11,7 +11,6 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
-use crate::util::tight_vec::add;
 use crate::util::units::{Metre, Radian, Second};
 
 /// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
@@ -51,7 +50,7 @@ impl Course {
         let moment = Moment { time, front, heading };
         match &mut self.moments[..] {
             [.., before, last] if before.stands_as(last) && last.stands_as(&moment) => last.time = time,
-            _ => add(&mut self.moments, moment),
+            _ => self.moments.push(moment),
         }
     }
 

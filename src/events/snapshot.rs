@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use smallvec::SmallVec;
-
 use crate::geometry::Point;
 use crate::traffic::frame::State;
 use crate::traffic::profile::Profile;
@@ -28,43 +26,26 @@ pub struct Snapshot {
     pub path: Arc<[Point]>,
 }
 
-/// The same of an event under way, as far as its type does not say it.
-#[derive(Debug)]
-pub(super) struct Stood {
-    front: Point,
-    heading: Radian,
-    /// Of who goes straight on, its end.
-    path: SmallVec<[Point; 1]>,
-}
-
-impl Stood {
-    /// In this state, its front bumper about to go along these points.
-    pub fn of(state: &State, points: &[Point]) -> Self {
-        let front = state.front();
-        Self { front, heading: state.heading, path: drawn(&front, points) }
-    }
-}
-
 impl Snapshot {
-    /// Somebody of this type.
-    pub(super) fn of(stood: &Stood, profile: &Profile) -> Self {
-        let Stood { front, heading, ref path } = *stood;
-        Self { front, heading, length: profile.length, width: profile.width, path: path[..].into() }
+    /// A road user of this type in this state, its front bumper about to go along these points.
+    pub(super) fn of(state: &State, profile: &Profile, points: &[Point]) -> Self {
+        let front = state.front();
+        let path = drawn(&front, points).into();
+        Self { front, heading: state.heading, length: profile.length, width: profile.width, path }
     }
 }
 
 /// What comes after the first of these points, as many of them as a drawing needs; none of who stands.
-fn drawn(front: &Point, points: &[Point]) -> SmallVec<[Point; 1]> {
-    let mut kept = SmallVec::new();
+fn drawn(front: &Point, points: &[Point]) -> Vec<Point> {
+    let mut kept = Vec::new();
     if points.iter().any(|point| (point - front).norm() > DRAWN) {
         simplify(points, &mut kept);
-        kept.shrink_to_fit();
     }
     kept
 }
 
 /// Ramer, Douglas and Peucker: the points that keep a line within [`DRAWN`] of what it was, without the first.
-fn simplify(points: &[Point], kept: &mut SmallVec<[Point; 1]>) {
+fn simplify(points: &[Point], kept: &mut Vec<Point>) {
     let [first, between @ .., last] = points else { return };
     let furthest = (1..).zip(between).map(|(index, point)| (index, distance(point, first, last)));
     match furthest.max_by(|a, b| a.1.total_cmp(&b.1)) {

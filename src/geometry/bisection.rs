@@ -14,7 +14,6 @@ use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, outlines_touch};
 use super::sweep::{Movement, TOLERANCE};
 use super::swept_part::SweptPart;
-use crate::util::tight_vec::{add, make_room};
 use crate::util::units::Metre;
 
 /// Capacity, in parts and in hulls, of an instance that is kept between simulation steps. In `sumo_nets/town` one pair
@@ -60,7 +59,7 @@ impl Bisection {
 
     /// Adds a movement.
     pub fn add(&mut self, movement: Movement) -> Part {
-        add(&mut self.parts, SweptPart::new(movement));
+        self.parts.push(SweptPart::new(movement));
         Part(self.parts.len() as u32 - 1)
     }
 
@@ -209,7 +208,6 @@ impl Bisection {
         }
         let halves = whole.halve();
         let first = self.parts.len() as u32;
-        make_room(&mut self.parts, halves.len());
         self.parts.extend(halves);
         self.parts[part as usize].halves = Some(first);
         first

@@ -6,7 +6,6 @@ use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, ContactInterval, translation};
 use super::sweep::Movement;
 use super::{Bounds, Vector};
-use crate::util::tight_vec::add;
 use crate::util::units::Metre;
 
 /// An upper bound on rounding errors, in m.
@@ -40,7 +39,7 @@ impl SweptPart {
     /// A convex polygon around the area that the part covers.
     pub fn hull<'a>(&mut self, hulls: &'a mut Vec<Polygon>) -> &'a Polygon {
         let index = *self.hull.get_or_insert_with(|| {
-            add(hulls, self.movement.hull().into());
+            hulls.push(self.movement.hull().into());
             hulls.len() as u32 - 1
         });
         &hulls[index as usize]

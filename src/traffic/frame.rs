@@ -6,7 +6,6 @@
 
 use super::roster::UserIndex;
 use crate::geometry::Point;
-use crate::util::tight_vec::{self, add, make_room};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
@@ -87,8 +86,8 @@ impl Frame {
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
         let valid = state.is_valid();
         if valid {
-            add(&mut self.users, user);
-            add(&mut self.states, state);
+            self.users.push(user);
+            self.states.push(state);
             self.number(self.len() - 1);
         }
         valid
@@ -105,8 +104,7 @@ impl Frame {
         fill: impl FnOnce(&mut [State]) -> std::result::Result<(), E>,
     ) -> std::result::Result<(), E> {
         let first = self.len();
-        tight_vec::fill(&mut self.states, first + users.len(), State::NOWHERE);
-        make_room(&mut self.users, users.len());
+        self.states.resize(first + users.len(), State::NOWHERE);
         self.users.extend(users);
         let filled = fill(&mut self.states[first..]);
         let mut end = first;
@@ -130,7 +128,7 @@ impl Frame {
         for (row, UserIndex(user)) in (first as u32..).zip(&self.users[first..]) {
             let place = *user as usize;
             if place >= self.rows.len() {
-                tight_vec::fill(&mut self.rows, place + 1, ABSENT);
+                self.rows.resize(place + 1, ABSENT);
             }
             self.rows[place] = row;
         }

@@ -8,7 +8,6 @@ use rustc_hash::FxHashMap;
 use super::profile::{Category, Profile, origins};
 use crate::Result;
 use crate::geometry::polygon::Polygon;
-use crate::util::tight_vec::add;
 
 /// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -69,8 +68,8 @@ impl Roster {
                 UserIndex(index)
             }
             None => {
-                add(&mut self.ids, id.into());
-                add(&mut self.types, profile);
+                self.ids.push(id.into());
+                self.types.push(profile);
                 UserIndex(self.ids.len() as u32 - 1)
             }
         }

@@ -5,5 +5,4 @@ pub mod double_double;
 pub(crate) mod golden_section;
 pub(crate) mod input_file;
 pub mod threads;
-pub mod tight_vec;
 pub mod units;

@@ -2,8 +2,11 @@
 
 use std::ops::RangeFrom;
 
-use closecall::internals::util::make_room;
-use closecall::{ProfileIndex, Roster, Run, State, UserIndex};
+use closecall::ProfileIndex;
+use closecall::Roster;
+use closecall::Run;
+use closecall::State;
+use closecall::UserIndex;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rustc_hash::{FxHashMap, FxHashSet};
@@ -110,11 +113,8 @@ impl LibsumoDomain {
         let profile = profile(run, type_id.extract::<&str>()?)?;
         self.getters.compare(py, name);
         let user = run.enter(name, profile);
-        make_room(&mut self.live, 1);
         self.live.push(user);
-        make_room(&mut self.kept, 1);
         self.kept.push(KeptAddress::default());
-        make_room(&mut self.by_id, 1);
         self.by_id.insert(rank, self.live.len() as u32 - 1);
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! What is learnt of a part of the areas while they are laid, and sorted: how large, how far away, whether round.
 
-use super::fixed_box::Coarse;
-use crate::geometry::Vector;
+use super::strips::is_far;
+use crate::geometry::{Bounds, Vector};
 use crate::util::units::Metre;
 
 /// What is known of a part of the places.
@@ -26,8 +26,8 @@ impl Extent {
 
     /// Takes a box in; of one too far away only that is known.
     #[inline(always)]
-    pub fn include(&mut self, laid: &Coarse) {
-        if laid.is_far() {
+    pub fn include(&mut self, laid: &Bounds) {
+        if is_far(laid) {
             self.far = true;
             return;
         }

@@ -12,7 +12,6 @@
 
 mod area;
 mod extent;
-mod fixed_box;
 mod pair_buffer;
 mod place;
 mod slot;
@@ -21,12 +20,10 @@ mod strips;
 use std::iter::repeat_n;
 use std::ops::Range;
 
-use crate::geometry::Vector;
+use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
-use crate::util::tight_vec::{fill, make_room};
 use crate::util::units::Metre;
 use extent::Extent;
-use fixed_box::Coarse;
 use pair_buffer::Near;
 use place::{Place, length};
 
@@ -46,14 +43,14 @@ pub struct Search<S> {
     /// Those in strips, sorted; then the large ones.
     places: Vec<Place>,
     /// By slot, a box around its area.
-    boxes: Vec<Coarse>,
+    boxes: Vec<Bounds>,
     /// Whether any area is smaller than its box.
     has_round: bool,
     slots: Vec<S>,
     /// How often any two have changed places since slots were given.
     moved: usize,
-    /// Which items have a slot, a bit each; only while slots are given.
-    given: Vec<u64>,
+    /// Which items have a slot already; only while slots are given.
+    given: Vec<bool>,
     in_strips: usize,
     strip_height: Metre,
     /// Length along x of the longest box that has a strip, and the largest height.
@@ -116,7 +113,7 @@ impl<S: Slot> Search<S> {
                 block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));
                 for ((seen, slot), laid) in block.iter().zip(slots).zip(boxes) {
                     let area = area(seen, slot);
-                    *laid = Coarse::from(&area.bounds);
+                    *laid = area.bounds;
                     all.include(laid);
                     all.round |= area.is_round();
                 }
@@ -130,24 +127,18 @@ impl<S: Slot> Search<S> {
     fn hold(&mut self, count: usize, item_of: impl Fn(u32) -> Option<u32>) {
         let Self { places, boxes, slots, given, .. } = self;
         given.clear();
-        fill(given, count.div_ceil(64), 0);
-        let mut is_first = |item: u32| {
-            let (word, bit) = (&mut given[item as usize / 64], 1 << (item % 64));
-            let is_first = *word & bit == 0;
-            *word |= bit;
-            is_first
-        };
+        given.resize(count, false);
+        let mut is_first = |item: u32| !std::mem::replace(&mut given[item as usize], true);
         // A place says which item its slot is for, until all have one.
         places.retain_mut(|place| {
             let item = item_of(slots[place.slot as usize].who()).filter(|item| is_first(*item));
             place.slot = item.unwrap_or_default();
             item.is_some()
         });
-        make_room(places, count - places.len());
         let others = (0..count as u32).filter(|item| is_first(*item));
-        places.extend(others.map(|item| Place { begin: 0, strip: 0, slot: item }));
-        fill(slots, count, S::default());
-        fill(boxes, count, Coarse::EMPTY);
+        places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
+        slots.resize(count, S::default());
+        boxes.resize(count, Bounds::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
             slot.give(place.slot);
             place.slot = number;
@@ -166,11 +157,11 @@ impl<S: Slot> Search<S> {
             let strip = in_strips[start].strip;
             let (own, others) = in_strips.split_at(start + length(&in_strips[start..], strip));
             let above = &others[..length(others, strip + 1)];
-            let reaches = |a: &Place| Coarse::before(a.begin, self.largest.x);
+            let reaches = |a: &Place| a.begin - self.largest.x;
             let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
-                let [end, _] = laid(a).high();
+                let end = laid(a).high.x;
                 near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
                 let begin = reaches(a);
                 behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
@@ -181,7 +172,7 @@ impl<S: Slot> Search<S> {
         near.tell(&mut found);
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
-            let meets = |b: &&Place| laid(a).meets(laid(b));
+            let meets = |b: &&Place| laid(a).meet(laid(b));
             self.places[..place].iter().filter(meets).for_each(|b| found(a.slot, b.slot));
         }
     }
@@ -190,7 +181,7 @@ impl<S: Slot> Search<S> {
 #[cfg(test)]
 mod tests {
     use crate::detection::broad_phase::*;
-    use crate::geometry::{Bounds, Point};
+    use crate::geometry::Point;
     use proptest::prelude::*;
 
     fn all_pairs(areas: &[Area]) -> Vec<(u32, u32)> {

@@ -1,21 +1,21 @@
 //! Notes of pairs that are near each other: whose boxes meet is a matter of chance, and a processor that had to guess it would
 //! guess wrong for each road user. So nothing depends on it before there are many.
 
-use super::fixed_box::Coarse;
 use super::place::Place;
+use crate::geometry::Bounds;
 
 /// So many pairs are noted before they are told.
 const NOTED: usize = 64;
 
 /// Slots of two whose boxes meet.
 pub(super) struct Near<'a> {
-    boxes: &'a [Coarse],
+    boxes: &'a [Bounds],
     pairs: [(u32, u32); NOTED],
     count: usize,
 }
 
 impl<'a> Near<'a> {
-    pub(super) fn new(boxes: &'a [Coarse]) -> Self {
+    pub(super) fn new(boxes: &'a [Bounds]) -> Self {
         Self { boxes, pairs: [(0, 0); NOTED], count: 0 }
     }
 
@@ -33,7 +33,7 @@ impl<'a> Near<'a> {
                 self.tell(found);
             }
             self.pairs[self.count] = (a.slot, b.slot);
-            self.count += usize::from(laid.meets(&self.boxes[b.slot as usize]));
+            self.count += usize::from(laid.meet(&self.boxes[b.slot as usize]));
         }
     }
 

@@ -1,25 +1,26 @@
 //! Places along x, in strips: what is sorted.
 
-use super::fixed_box::Coarse;
+use crate::geometry::Bounds;
+use crate::util::units::Metre;
 
 /// Where a box begins: what is sorted, while the boxes stay in their slots.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
-    /// Its lowest x, in its own unit.
-    pub begin: i32,
+    /// Its lowest x.
+    pub begin: Metre,
     pub strip: i32,
     pub slot: u32,
 }
 
 impl Place {
     /// Where the box of its slot is now, and in which strip.
-    pub fn follow(&mut self, boxes: &[Coarse], per_metre: f64) {
+    pub fn follow(&mut self, boxes: &[Bounds], per_metre: f64) {
         let laid = &boxes[self.slot as usize];
-        let strips = laid.middle() * per_metre;
+        let strips = (laid.low.y + laid.high.y) / 2.0 * per_metre;
         // What `floor` says, without a call where the processor has no instruction for it.
         let towards_0 = strips as i32;
         self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
-        [self.begin, _] = laid.low();
+        self.begin = laid.low.x;
     }
 
     pub fn is_before(&self, other: &Self) -> bool {

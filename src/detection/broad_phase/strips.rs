@@ -4,10 +4,9 @@
 use std::iter::repeat_n;
 
 use super::extent::Extent;
-use super::fixed_box::FURTHEST;
 use super::place::insert;
 use super::{Search, Slot};
-use crate::geometry::Vector;
+use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 
@@ -17,12 +16,20 @@ const LARGE: f64 = 2.5;
 const SHARE_OF_LARGE: usize = 1000;
 /// No strip is lower than this, in m.
 const LOWEST_STRIP: Metre = 1.0;
+/// A box further from the origin than this, along x or y, has no strip, in m; nothing on earth is.
+const FURTHEST: Metre = 3.3e7;
 
 /// Strips stay as they are as long as they are at most this many times as high as they have to be.
 const SPARE_HEIGHT: f64 = 2.0;
 /// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
 /// many moves per road user.
 const MOVES: usize = 32;
+
+/// Whether a side is too far from the origin for a strip.
+#[inline]
+pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
+    [low.x, low.y, high.x, high.y].iter().any(|side| side.abs() >= FURTHEST)
+}
 
 impl<S: Slot> Search<S> {
     /// Sorts the areas of now.
@@ -57,7 +64,7 @@ impl<S: Slot> Search<S> {
         places.retain(|place| {
             let laid = &boxes[place.slot as usize];
             let size = laid.size();
-            if size.max() <= limit && !laid.is_far() {
+            if size.max() <= limit && !is_far(laid) {
                 largest = size.sup(&largest);
                 return true;
             }
@@ -82,7 +89,7 @@ impl<S: Slot> Search<S> {
         }
         // In another order the slots would be anywhere.
         self.moved = usize::MAX;
-        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.cmp(&b.begin)));
+        self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
     /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes

@@ -12,7 +12,6 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::share;
-use crate::util::tight_vec::{add, fill};
 
 impl Detector {
     /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller
@@ -22,12 +21,12 @@ impl Detector {
     /// followed, in a pair or not, and what phase 1 leaves out changes no path.
     pub fn track_paths(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
         if self.paths.len() < roster.len() {
-            fill(&mut self.paths, roster.len(), LanePath::default());
+            self.paths.resize_with(roster.len(), LanePath::default);
         }
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
         self.on_lanes.clear();
-        fill(&mut self.on_lanes, frame.len(), false);
+        self.on_lanes.resize(frame.len(), false);
         if self.turns() == PathSource::Lanes {
             for (row, Row { user, state }) in frame.rows().enumerate() {
                 if state.moves() && roster.profile_of(user).category == Category::Vehicle {
@@ -43,7 +42,7 @@ impl Detector {
         self.lengthen_all(frame, roster);
         self.look(frame, roster);
         if self.turns() == PathSource::Arcs {
-            fill(&mut self.turnings, self.paths.len(), Turning::default());
+            self.turnings.resize_with(self.paths.len(), Turning::default);
             self.turn(frame);
         }
         self.find_pairs(frame, roster);
@@ -102,7 +101,7 @@ impl Detector {
         let parts = (0..count.div_ceil(share)).map(|part| part * share..count.min((part + 1) * share));
         self.pairs.iter_mut().for_each(Vec::clear);
         self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
-            let mut found = |a: u32, b: u32| add(pairs, (a, b));
+            let mut found = |a: u32, b: u32| pairs.push((a, b));
             let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
             match (all, search.has_round()) {
                 (true, _) => every_pair(part, &mut found),

@@ -17,7 +17,6 @@ use crate::geometry::{contact, cross};
 use crate::options::Mode;
 use crate::traffic::frame::State;
 use crate::traffic::profile::Category;
-use crate::util::tight_vec::add;
 use crate::util::units::{Metre, Radian};
 
 /// Two road users further apart in height than this are no pair, in m: one is on a bridge.
@@ -115,7 +114,6 @@ impl StepInputs<'_> {
         if self.go_onward(slots) {
             return self.meet_onward(work, slots, found);
         }
-        ways.begin_pair();
         slots.iter().for_each(|slot| ways.see(self, *slot));
         if self.shortcuts.paths_apart && !is_known && !ways.bounds(self, a).meet(&ways.bounds(self, b)) {
             work.paths_apart += 1;
@@ -309,7 +307,7 @@ impl StepInputs<'_> {
             collision,
             nearness: None,
         };
-        add(&mut found.encounters, encounter);
+        found.encounters.push(encounter);
         let Found { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || encounter.in_conflict() {
@@ -320,7 +318,7 @@ impl StepInputs<'_> {
                     encounters.pop();
                 }
             } else {
-                add(unmeasured, (number, met));
+                unmeasured.push((number, met));
             }
         }
     }

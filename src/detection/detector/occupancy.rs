@@ -10,61 +10,29 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
 use crate::traffic::profile::Category;
-use crate::util::tight_vec::{add, fill, make_room};
 use crate::util::units::Metre;
 
 /// Hardly a way has more poses; the table of all grows by doubling where one has.
 pub(super) const MOST_POSES: usize = 64;
 
-/// A straight way has poses where it begins, where it stands and ε further.
+/// A straight path has a pose at its start, one where the road user stands and one ε further.
 const MOST_STRAIGHT: usize = 3;
 
-/// How many ways are kept: this many times the square root of the road users in the step. The search comes back to
-/// somebody after about one of its strips, and about the root of all stand in a strip.
-const KEPT: f64 = 0.5;
-
-/// No fewer are kept. With half as many, phase 2 would take 7 % more time on SUMO's A10.
-const KEPT_AT_LEAST: usize = 32;
-
-/// So many poses has a way, on average.
-const POSES: usize = 12;
-
-/// The ways of a step that were asked for last. Those of everybody took a quarter of the memory that a run holds per road
-/// user; whose way is asked for after it was forgotten has it laid again, and it is the same.
+/// The paths of a step that were asked for, until the step ends.
 #[derive(Default)]
 pub(super) struct OccupancyCache {
-    /// By slot, where its way is, if it is kept: among the newer or the older ones.
-    places: Vec<u16>,
-    /// So many newer ones make the older ones be forgotten.
-    most: usize,
-    /// The generations, the newer first.
-    kept: [Kept; 2],
-}
-
-/// OccupancyCache that were laid one after the other.
-struct Kept {
+    /// By slot, which of `laid` is its path; [`NOT_LAID`] as long as nobody asked.
+    numbers: Vec<u32>,
     laid: Vec<Laid>,
     poses: Vec<Pose>,
     covers: Vec<SweptBounds>,
 }
 
-impl Default for Kept {
-    /// With the memory for the least that is kept, so that it does not grow with what is looked at.
-    fn default() -> Self {
-        let poses = KEPT_AT_LEAST * POSES + MOST_POSES;
-        Self {
-            // That of a pair's second road user may come on top.
-            laid: Vec::with_capacity(KEPT_AT_LEAST + 1),
-            poses: Vec::with_capacity(poses),
-            covers: Vec::with_capacity(poses),
-        }
-    }
-}
+const NOT_LAID: u32 = u32::MAX;
 
 /// The way of who is in a slot.
 #[derive(Clone, Copy)]
 struct Laid {
-    slot: u32,
     poses: (u32, u32),
     /// Where its covers begin, that of the whole way and those from pose to pose; none as long as nobody asked.
     covers: Option<u32>,
@@ -73,35 +41,14 @@ struct Laid {
     bounds: Bounds,
 }
 
-impl Kept {
-    fn clear(&mut self) {
+impl OccupancyCache {
+    /// Forgets the paths of the last step; slots below `slots` may be asked for.
+    pub(super) fn begin(&mut self, slots: usize) {
+        self.numbers.clear();
+        self.numbers.resize(slots, NOT_LAID);
         self.laid.clear();
         self.poses.clear();
         self.covers.clear();
-    }
-
-    fn find(&self, slot: u32, place: u16) -> Option<&Laid> {
-        self.laid.get(place as usize).filter(|laid| laid.slot == slot)
-    }
-}
-
-impl OccupancyCache {
-    /// Forgets those of the last step; slots below `slots` may be asked for.
-    pub(super) fn begin(&mut self, slots: usize) {
-        fill(&mut self.places, slots, 0);
-        let most = ((slots as f64).sqrt() * KEPT) as usize;
-        self.most = most.clamp(KEPT_AT_LEAST, usize::from(u16::MAX) - 1);
-        self.kept.iter_mut().for_each(Kept::clear);
-    }
-
-    /// Forgets the older ones if there are enough newer ones. The ways of a pair are laid and looked at between two
-    /// calls.
-    pub(super) fn begin_pair(&mut self) {
-        let [newer, older] = &mut self.kept;
-        if newer.laid.len() >= self.most {
-            std::mem::swap(newer, older);
-            newer.clear();
-        }
     }
 
     /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
@@ -117,9 +64,8 @@ impl OccupancyCache {
             return;
         }
         let user = scene.user(slot);
-        let Kept { laid, poses: all, .. } = &mut self.kept[0];
+        let all = &mut self.poses;
         let (profile, start) = (scene.profile(user), all.len());
-        make_room(all, MOST_POSES);
         let stop = scene.stop(user);
         scene.course(user, &[stop, stop + scene.options.epsilon], false, all);
         let poses = &all[start..];
@@ -137,20 +83,15 @@ impl OccupancyCache {
             }
             bounds.grown(TOLERANCE)
         };
-        self.places[slot as usize] = laid.len() as u16;
-        let way = Laid { slot, poses: (start as u32, all.len() as u32), covers: None, straight, bounds };
-        add(laid, way);
+        self.numbers[slot as usize] = self.laid.len() as u32;
+        self.laid.push(Laid { poses: (start as u32, all.len() as u32), covers: None, straight, bounds });
     }
 
     /// Lays the poses and the boxes around them.
     pub(super) fn cover(&mut self, scene: &StepInputs, slot: u32) {
         self.lay(scene, slot);
-        let place = self.places[slot as usize];
-        let Some(Kept { laid, poses, covers }) = self.kept.iter_mut().find(|kept| kept.find(slot, place).is_some())
-        else {
-            return;
-        };
-        let laid = &mut laid[place as usize];
+        let Self { numbers, laid, poses, covers } = self;
+        let laid = &mut laid[numbers[slot as usize] as usize];
         if laid.covers.is_some() {
             return;
         }
@@ -167,7 +108,6 @@ impl OccupancyCache {
             }
             _ => of(poses),
         };
-        make_room(covers, poses.len().max(1));
         covers.push(whole);
         if !laid.straight {
             covers.extend(poses.windows(2).map(of));
@@ -177,14 +117,14 @@ impl OccupancyCache {
     /// The box around all that it covers on its way.
     pub(super) fn bounds(&self, scene: &StepInputs, slot: u32) -> Bounds {
         match self.find(slot) {
-            Some((_, laid)) => laid.bounds,
+            Some(laid) => laid.bounds,
             None => scene.reach.area(scene.user(slot)).bounds,
         }
     }
 
     /// The boxes around all that it covers on its way, if that was covered.
     pub(super) fn cover_of(&self, slot: u32) -> &SweptBounds {
-        let found = self.find(slot).and_then(|(kept, laid)| kept.covers.get(laid.covers? as usize));
+        let found = self.find(slot).and_then(|laid| self.covers.get(laid.covers? as usize));
         found.unwrap_or(&SweptBounds::EVERYWHERE)
     }
 
@@ -196,22 +136,21 @@ impl OccupancyCache {
     /// Who is in a slot whose way was covered.
     pub(super) fn covered<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
         let mut mover = scene.mover(slot);
-        if let Some((kept, laid)) = self.find(slot) {
-            mover.poses = &kept.poses[laid.poses.0 as usize..laid.poses.1 as usize];
+        if let Some(laid) = self.find(slot) {
+            mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
             mover.straight = laid.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.distance);
             if let Some(start) = laid.covers {
                 let steps = if laid.straight { 0 } else { mover.poses.len().saturating_sub(1) };
-                mover.cover = &kept.covers[start as usize];
-                mover.covers = &kept.covers[start as usize + 1..][..steps];
+                mover.cover = &self.covers[start as usize];
+                mover.covers = &self.covers[start as usize + 1..][..steps];
             }
         }
         mover
     }
 
-    fn find(&self, slot: u32) -> Option<(&Kept, &Laid)> {
-        let place = self.places[slot as usize];
-        self.kept.iter().find_map(|kept| kept.find(slot, place).map(|laid| (kept, laid)))
+    fn find(&self, slot: u32) -> Option<&Laid> {
+        self.laid.get(self.numbers[slot as usize] as usize)
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::worker::Worker;
 use crate::detection::encounter::Encounter;
-use crate::util::tight_vec::fill;
 
 /// Counted together: so many rows have hardly more than a few encounters.
 const TOGETHER: u32 = 16;
@@ -33,7 +32,7 @@ impl Order {
         };
         let start_of = |(first, _): (u32, u32)| (first / TOGETHER) as usize;
         self.starts.clear();
-        fill(&mut self.starts, count / TOGETHER as usize + 2, 0);
+        self.starts.resize(count / TOGETHER as usize + 2, 0);
         for (rows, ..) in places() {
             self.starts[start_of(rows) + 1] += 1;
         }
@@ -42,7 +41,7 @@ impl Order {
         }
         self.sorted.clear();
         let found = self.starts.last().map_or(0, |end| *end as usize);
-        fill(&mut self.sorted, found, RowPlace::default());
+        self.sorted.resize(found, RowPlace::default());
         for found in places() {
             let place = &mut self.starts[start_of(found.0)];
             self.sorted[*place as usize] = found;

@@ -93,11 +93,6 @@ impl Outputs {
         self.trajectories.is_some()
     }
 
-    /// Whether any of them reports when and where the extremes of a conflict occurred.
-    pub(crate) fn want_moments(&self) -> bool {
-        self.ssm.is_some()
-    }
-
     /// Notes where on the net the road user of a row is.
     pub(crate) fn place(&mut self, row: u32, placement: &Placement) {
         if let Some(trajectories) = &mut self.trajectories {

@@ -65,7 +65,7 @@ fn element(conflict: &Conflict) -> String {
         decimal(conflict.begin),
         decimal(conflict.end)
     );
-    let [ttc, drac, pet] = conflict.found.unwrap_or_default();
+    let [ttc, drac, pet] = conflict.found;
     for (name, value, moment, code) in [
         ("minTTC", conflict.ttc, ttc, code),
         ("maxDRAC", conflict.drac, drac, code),
