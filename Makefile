@@ -1,20 +1,27 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-# Every simulation imports libsumo, which takes 0.3 s longer without Python's bytecode.
+# Where the environment forbids bytecode, every simulation compiles libsumo's Python modules again: 0.3 s.
 export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml
 
-.PHONY: demo test lint regress stress study fuzz accuracy bench docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
 
-test: $(VENV)/wheel $(VENV)/tests ## set everything up and run all tests, Rust and Python
-	cargo test --workspace --exclude closecall-bridge
+RUST_TESTS := cargo test --workspace --exclude closecall-bridge
+
+# pip mostly unpacks on one core, meanwhile cargo compiles on the others.
+test: $(VENV)/wheel ## set everything up and run all tests, Rust and Python
+	$(MAKE) --no-print-directory --jobs 2 $(VENV)/tests rust-tests
+	$(RUST_TESTS)
 	$(BIN)/closecall stress --cases 100000
-	$(BIN)/pytest
+	$(BIN)/pytest --numprocesses auto --dist worksteal
+
+rust-tests:
+	$(RUST_TESTS) --no-run
 
 stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a million of them
 	$(BIN)/closecall stress --cases 1000000
@@ -84,7 +91,7 @@ $(VENV)/made:
 	$(BIN)/pip install --quiet --disable-pip-version-check "maturin>=1.9,<2"
 	touch $@
 
-# --no-compile: of SUMO's hundreds of tools hardly one is ever imported.
+# --no-compile: most of the installed modules are never imported, and those that are get their bytecode then.
 $(VENV)/wheel: $(VENV)/made $(SOURCES)
 	rm -rf target/wheels
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python $(BIN)/maturin build --release --quiet --interpreter $(BIN)/python --out target/wheels
@@ -93,7 +100,7 @@ $(VENV)/wheel: $(VENV)/made $(SOURCES)
 	touch $@
 
 $(VENV)/tests: $(VENV)/made tests/requirements.txt
-	$(BIN)/pip install --quiet --disable-pip-version-check -r tests/requirements.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -r tests/requirements.txt
 	touch $@
 
 $(VENV)/benches: $(VENV)/made benches/requirements.txt

@@ -70,7 +70,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();
     let record = record(&arguments, options)?;
-    // Interrupts are caught from the first question on, so it is asked only once there is something to lose.
+    // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
     let mut recorded = RecordedRun::open(run, record, &out, &arguments.outputs)?;

@@ -43,7 +43,7 @@ pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
                 study::measure(axis, &plan, Some(&mut record))?
             }
             None if axis == Axis::Path && arguments.only.is_none() => {
-                eprintln!("left out: this binary was built without Python and cannot run SUMO");
+                eprintln!("skipped: this binary was built without Python and cannot run SUMO");
                 continue;
             }
             None => study::measure(axis, &plan, None)?,

@@ -21,7 +21,7 @@ use crate::util::units::Second;
 
 type Pairs = Vec<(u32, u32)>;
 type SearchMethod = (&'static str, fn(&[Circle], &mut Search<u32>, &mut Pairs));
-type Traffic = (&'static str, fn(&mut Chance, usize) -> Vec<Circle>);
+type TrafficPattern = (&'static str, fn(&mut Chance, usize) -> Vec<Circle>);
 
 const DEFAULT: &str = "sweep in strips";
 const METHODS: [SearchMethod; 6] = [
@@ -34,7 +34,7 @@ const METHODS: [SearchMethod; 6] = [
         search.pairs(&circles.iter().copied().map(Area::from).collect::<Vec<_>>(), pairs);
     }),
 ];
-const SCENES: [Traffic; 3] = [("uniform", uniform), ("platoons", platoons), ("jam", jam)];
+const SCENES: [TrafficPattern; 3] = [("uniform", uniform), ("platoons", platoons), ("jam", jam)];
 
 /// A method that takes longer than this is not measured with ten times the road users: in a quick study, and in a full one.
 const TOO_SLOW: [Second; 2] = [0.2, 2.0];

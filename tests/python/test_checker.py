@@ -167,8 +167,8 @@ def test_a_vehicle_removed_by_the_script_leaves_the_scene(scenario: Copy) -> Non
     config = scenario("left_turn")
     with_libsumo, with_traci = (python(REMOVE.replace("{module}", module), config) for module in ("libsumo", "traci"))
     assert (with_libsumo.returncode, with_traci.returncode) == (0, 0), with_libsumo.stderr + with_traci.stderr
-    said = [done.stdout.splitlines()[-1] for done in (with_libsumo, with_traci)]
-    assert said[0] == said[1] and said[0].endswith(" 120"), said
+    outputs = [done.stdout.splitlines()[-1] for done in (with_libsumo, with_traci)]
+    assert outputs[0] == outputs[1] and outputs[0].endswith(" 120"), outputs
 
 
 ANOTHER = """
@@ -241,7 +241,7 @@ def test_a_row_that_is_not_finite_is_ignored() -> None:
 
 
 @pytest.mark.parametrize(
-    ("states", "said"),
+    ("states", "message"),
     [
         ({"x": [0.0]}, '"x" has 1 values, "id" has 2'),
         ({"x": [0.0, 9.0], "length": [-5.0, 5.0]}, "length is -5"),
@@ -249,8 +249,8 @@ def test_a_row_that_is_not_finite_is_ignored() -> None:
         ({"x": [0.0, 9.0], "id": ["a", "a"]}, '"a" is there twice'),
     ],
 )
-def test_impossible_frames_are_refused(states: dict[str, Any], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_impossible_frames_are_refused(states: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         cc.Checker().step(0.0, {**CAR, **states})
 
 

@@ -153,8 +153,8 @@ def test_a_removed_vehicle_is_absent_through_every_interface(tmp_path: Path) -> 
 @needs_compiled
 @needs_valgrind
 def test_valgrind_finds_no_fault_in_compiled_calls(tmp_path: Path) -> None:
-    said = under_valgrind(tmp_path, "-c", CHECK, NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none")
-    asked = json.loads(said.splitlines()[-1])
+    output = under_valgrind(tmp_path, "-c", CHECK, NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none")
+    asked = json.loads(output.splitlines()[-1])
     assert asked["taken"]
     assert asked["steps"]["person"] > asked["calls"]["person"]
 

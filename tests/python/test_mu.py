@@ -142,7 +142,7 @@ def test_arrays_broadcast_as_in_numpy() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "said"),
+    ("changed", "message"),
     [
         ({"decel": 0.0}, "decel is 0"),
         ({"speed": -1.0}, "speed is -1"),
@@ -153,8 +153,8 @@ def test_arrays_broadcast_as_in_numpy() -> None:
         ({"model": "best"}, "minimal, at_rest or paper"),
     ],
 )
-def test_a_value_out_of_its_range_is_named(changed: dict[str, Any], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_a_value_out_of_its_range_is_named(changed: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         values: dict[str, Any] = {"speed": 10.0, "foe_speed": 5.0, **changed}
         cc.mu(**values)
 

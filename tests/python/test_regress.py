@@ -57,13 +57,13 @@ def test_any_number_of_jobs_prints_the_same_report(blessed: Copy, tmp_path: Path
     for folder in folders:
         settings(folder, "[regress]\nseeds = [42, 43]\n")
     assert closecall("regress", *folders, "--bless").returncode == 0
-    said = set()
+    reports = set()
     for jobs in ("1", "2", "4", "2"):
         junit = tmp_path / "junit.xml"
         done = closecall("regress", *folders, "--jobs", jobs, "--junit", junit)
         assert done.returncode == 0, done.stdout + done.stderr
-        said.add((done.stdout, junit.read_bytes()))
-    ((text, _),) = said
+        reports.add((done.stdout, junit.read_bytes()))
+    ((text, _),) = reports
     assert text.splitlines()[-1] == "3 scenarios: 3 pass"
 
 
@@ -80,9 +80,9 @@ def test_a_folder_runs_all_scenarios_and_only_selects_some(blessed: Copy, tmp_pa
 def test_a_driver_type_with_half_the_headway_is_named(blessed: Copy) -> None:
     folder = blessed("motorway")
     edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
-    said = differs(folder)
-    assert "changed since blessed: motorway.rou.xml: vType car: tau 1.5 → 0.75" in said
-    assert re.search(r"new: seed \d+ rear_end \S+ with \S+, .* s to .* s, on \S+ at \(.*\): \w+, gap .* m", said)
+    report = differs(folder)
+    assert "changed since blessed: motorway.rou.xml: vType car: tau 1.5 → 0.75" in report
+    assert re.search(r"new: seed \d+ rear_end \S+ with \S+, .* s to .* s, on \S+ at \(.*\): \w+, gap .* m", report)
 
 
 def test_a_signal_phase_lengthened_by_three_seconds_is_named(blessed: Copy) -> None:
@@ -97,8 +97,8 @@ def test_a_removed_stop_sign_is_named(blessed: Copy) -> None:
     netconvert = Path(sys.executable).with_name("netconvert")
     command = [str(netconvert), "-c", "priority.netccfg", "-o", "priority.net.xml"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True, timeout=60)
-    said = differs(folder)
-    assert "changed since blessed: priority.net.xml: junction stop: type priority_stop → priority" in said
+    report = differs(folder)
+    assert "changed since blessed: priority.net.xml: junction stop: type priority_stop → priority" in report
 
 
 def test_an_epsilon_raised_by_half_a_metre_is_named(blessed: Copy) -> None:
@@ -111,16 +111,16 @@ def test_an_epsilon_raised_by_half_a_metre_is_named(blessed: Copy) -> None:
 def test_a_changed_vehicle_length_is_named(blessed: Copy) -> None:
     folder = blessed("roundabout")
     edit(folder / "roundabout.rou.xml", '(<vType id="car"[^>]*) length="4.6"', r'\1 length="4.7"')
-    said = differs(folder)
-    assert "changed since blessed: roundabout.rou.xml: vType car: length 4.6 → 4.7" in said
+    report = differs(folder)
+    assert "changed since blessed: roundabout.rou.xml: vType car: length 4.6 → 4.7" in report
 
 
 def test_a_difference_without_changed_inputs_is_reported_as_such(blessed: Copy) -> None:
     folder = blessed("rear_end")
     edit(folder / "expected" / "conflicts.csv", "rear_end,serious", "rear_end,critical")
-    said = differs(folder)
-    assert "severity critical → serious" in said
-    assert "versions, options and input files are those blessed" in said
+    report = differs(folder)
+    assert "severity critical → serious" in report
+    assert "versions, options and input files are those blessed" in report
 
 
 def test_an_added_comment_passes_and_is_reported(blessed: Copy) -> None:
@@ -175,8 +175,8 @@ def test_another_sumo_version_is_compared_by_statistics(blessed: Copy) -> None:
     assert other.returncode == 0, other.stdout
     assert "compared by statistics, not exactly (SUMO 1." in other.stdout
     edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
-    said = differs(folder)
-    assert re.search(r"rear_end conflicts per run: [\d.]+ → [\d.]+ \(p = 0\.00\d+\)", said), said
+    report = differs(folder)
+    assert re.search(r"rear_end conflicts per run: [\d.]+ → [\d.]+ \(p = 0\.00\d+\)", report), report
 
 
 def test_statistics_tolerate_other_seeds_and_detect_half_the_headway(blessed: Copy) -> None:
@@ -186,8 +186,8 @@ def test_statistics_tolerate_other_seeds_and_detect_half_the_headway(blessed: Co
     other = closecall("regress", folder, "--seeds", "11,12,13,14,15,16,17,18")
     assert (other.returncode, "0 of " in other.stdout) == (0, True), other.stdout
     edit(folder / "motorway.rou.xml", '(<vType id="car"[^>]*) tau="1.5"', r'\1 tau="0.75"')
-    said = differs(folder)
-    assert "all conflicts per vehicle-km" in said and "rear_end conflicts per run" in said
+    report = differs(folder)
+    assert "all conflicts per vehicle-km" in report and "rear_end conflicts per run" in report
 
 
 def test_too_few_seeds_for_a_test_are_refused(blessed: Copy) -> None:
@@ -284,9 +284,9 @@ def test_ctrl_c_ends_the_simulations_too(blessed: Copy, tmp_path: Path) -> None:
     log = tmp_path / "kept" / "town" / "seed-42" / "conflicts.csv"
     wait_for_rows(log, process, 10)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=30)
-    assert (process.returncode, said.count("\n")) == (130, 1), said
-    assert "interrupted" in said
+    _, message = process.communicate(timeout=30)
+    assert (process.returncode, message.count("\n")) == (130, 1), message
+    assert "interrupted" in message
     size = log.stat().st_size
     time.sleep(0.5)
     assert log.stat().st_size == size

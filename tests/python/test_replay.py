@@ -99,10 +99,10 @@ def test_a_truncated_recording_is_checked_up_to_its_end(scenario: Copy, tmp_path
     recording = record(config, "fcd.xml")
     text = recording.read_text()
     recording.write_text(text[: int(len(text) * 0.8)])
-    status, said = replay(config, recording, tmp_path)
+    status, message = replay(config, recording, tmp_path)
     assert status == 3
-    assert said.count("\n") == 1
-    assert "fcd.xml: cut short after time" in said
+    assert message.count("\n") == 1
+    assert "fcd.xml: cut short after time" in message
     assert [row["kind"] for row in rows(tmp_path / "conflicts.csv")] == ["rear_end"]
     assert json.loads((tmp_path / "run.json").read_text())["complete"] is False
 
@@ -112,16 +112,16 @@ def test_truncated_gzip_and_csv_recordings_are_detected(scenario: Copy, tmp_path
     plain = record(config, "fcd.xml").read_bytes()
     packed = tmp_path / "fcd.xml.gz"
     packed.write_bytes(gzip.compress(plain)[:-2000])
-    status, said = replay(config, packed, tmp_path / "packed")
-    assert (status, said.count("\n")) == (3, 1), said
+    status, message = replay(config, packed, tmp_path / "packed")
+    assert (status, message.count("\n")) == (3, 1), message
     table = record(config, "fcd.csv")
     table.write_text(table.read_text().rstrip("\n")[:-3])
-    status, said = replay(config, table, tmp_path / "table")
-    assert (status, said.count("\n")) == (3, 1), said
+    status, message = replay(config, table, tmp_path / "table")
+    assert (status, message.count("\n")) == (3, 1), message
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "expected"),
     [
         ("", "the file is empty"),
         ("<routes/>", "not an fcd-output"),
@@ -135,13 +135,13 @@ def test_truncated_gzip_and_csv_recordings_are_detected(scenario: Copy, tmp_path
         (f'<fcd-export><timestep time="0">{STANDING % "inf"}</timestep></fcd-export>', 'x is "inf", not a number'),
     ],
 )
-def test_a_file_that_is_not_a_recording_is_refused(text: str, said: str, scenario: Copy, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_recording_is_refused(text: str, expected: str, scenario: Copy, tmp_path: Path) -> None:
     recording = tmp_path / "fcd"
     recording.write_text(text)
     status, message = replay(scenario("rear_end"), recording, tmp_path / "out")
     assert status == 2
     assert message.count("\n") == 1
-    assert said in message
+    assert expected in message
     assert not (tmp_path / "out").exists()
 
 
@@ -150,9 +150,9 @@ def test_a_recording_of_another_place_is_refused(scenario: Copy, tmp_path: Path)
     recording = record(config, "fcd.xml", "--end", "60")
     moved = tmp_path / "moved.xml"
     moved.write_text(re.sub(r' x="([^"]+)"', lambda x: f' x="{float(x[1]) + 9e3}"', recording.read_text()))
-    code, said = replay(config, moved, tmp_path / "log")
+    code, message = replay(config, moved, tmp_path / "log")
     assert code == 2
-    assert "moved.xml" in said and "on lane" in said and "--fcd-output.geo" in said
+    assert "moved.xml" in message and "on lane" in message and "--fcd-output.geo" in message
     assert replay(config, recording, tmp_path / "log")[0] == 0
 
 
@@ -182,8 +182,8 @@ def test_types_that_no_file_defines_are_reported(scenario: Copy, tmp_path: Path)
     defined.write_text('<routes><vType id="car"/></routes>')
     net = config.with_suffix(".net.xml")
     done = closecall("replay", recording, "--net", net, "--route-files", defined, "--out", tmp_path / "out")
-    told = [line for line in done.stdout.splitlines() if line.startswith("types ")]
-    assert [line.split(":")[0] for line in told] == ['types (none), "a", "b", "c", "d" and 2 more'], done.stderr
+    reported = [line for line in done.stdout.splitlines() if line.startswith("types ")]
+    assert [line.split(":")[0] for line in reported] == ['types (none), "a", "b", "c", "d" and 2 more'], done.stderr
 
 
 def repeat(recording: Path, times: int, seconds: float) -> None:
@@ -204,9 +204,9 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     process = begin("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
     wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=30)
+    _, message = process.communicate(timeout=30)
     assert process.returncode == 130
-    assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; what was found so far is in the log\n", said), said
+    assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; what was found so far is in the log\n", message), message
     found = json.loads((tmp_path / "out" / "run.json").read_text())
     assert found["complete"] is False and found["summary"]["steps"] < 400
     assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(

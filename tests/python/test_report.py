@@ -100,8 +100,8 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
         "delta_v",
     ]
     names += ["ego_speed", "foe_speed", "angle", "x", "y", "lane", "collision"]
-    for who in ("ego", "foe"):
-        names += [f"{who}_{what}" for what in ["x", "y", "heading", "length", "width", "path"]]
+    for role in ("ego", "foe"):
+        names += [f"{role}_{what}" for what in ["x", "y", "heading", "length", "width", "path"]]
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, names, lineterminator="\n")
@@ -110,7 +110,7 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
             time, x, y = chance.uniform(0, 3600), chance.uniform(0, 5000), chance.uniform(0, 3000)
             mu = chance.uniform(5, 50)
             gap = chance.uniform(0, mu)
-            row: dict[str, Any] = {name: f"{chance.uniform(0, 10):.6f}" for name in names}
+            row: dict[str, Any] = dict.fromkeys(names, f"{chance.uniform(0, 10):.6f}")
             row |= {"id": number + 1, "ego": f"vehicle_{number % 20000}", "foe": f"vehicle_{number % 19997}"}
             row |= {"kind": chance.choice(["rear_end", "rear_end", "frontal", "side"]), "collision": "false"}
             row |= {"severity": chance.choices(["caution", "serious", "critical"], [80, 18, 2])[0]}
@@ -187,10 +187,10 @@ def test_medians_equal_those_of_the_margins(count: int, browser: Any, tmp_path: 
     log = made_up(tmp_path / "log", count)
     assert closecall("report", log, "-o", tmp_path / "r.html").returncode == 0
     margins = [float(row["margin"]) for row in rows(log / "conflicts.csv")]
-    told = Opened(browser, tmp_path / "r.html").text("#distributions")
-    medians = re.findall(rf"{count} of {count} have one, median (\S+) m\n", told.replace("−", "-"))
+    text = Opened(browser, tmp_path / "r.html").text("#distributions")
+    medians = re.findall(rf"{count} of {count} have one, median (\S+) m\n", text.replace("−", "-"))
     # The page stores centimetres.
-    assert any(float(median) == pytest.approx(statistics.median(margins), abs=0.011) for median in medians), told
+    assert any(float(median) == pytest.approx(statistics.median(margins), abs=0.011) for median in medians), text
 
 
 def test_zooming_keeps_the_same_scale_on_both_axes(browser: Any, town: Path) -> None:
@@ -311,7 +311,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
     (cut / "conflicts.csv").write_text((cut / "conflicts.csv").read_text().replace(",mu,", ",nu,"))
     broken = made_up(tmp_path / "broken", 2)
     (broken / "run.json").write_text("{")
-    for words, said in (
+    for words, message in (
         ((tmp_path / "gone",), "gone: No such file"),
         ((tmp_path / "empty",), "there is no log in it: no conflicts.csv"),
         ((bad,), "line 2: gap: "),
@@ -322,7 +322,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
     ):
         done = closecall("report", *words, cwd=tmp_path)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
-        assert said in done.stderr, (words, done.stderr)
+        assert message in done.stderr, (words, done.stderr)
 
 
 def test_an_old_log_without_places_has_no_drawings(browser: Any, tmp_path: Path) -> None:

@@ -111,11 +111,11 @@ def test_the_net_is_the_one_that_sumo_runs_on(scenario: Copy, tmp_path: Path) ->
     net = config.with_name("side.net.xml")
     assert closecall("run", config, "-o", tmp_path / "named").returncode == 0
     config.write_text(config.read_text().replace('"side.net.xml"', f'"{other.with_name("frontal.net.xml")}"'))
-    done = closecall("run", config, "--out", tmp_path / "told", "--", "--net-file", net)
+    done = closecall("run", config, "--out", tmp_path / "overridden", "--", "--net-file", net)
     assert done.returncode == 0, done.stderr
-    named, told = [(tmp_path / out / "conflicts.csv").read_bytes() for out in ("named", "told")]
-    assert named == told
-    assert rows(tmp_path / "told" / "conflicts.csv")[0]["lane"]
+    named, overridden = [(tmp_path / out / "conflicts.csv").read_bytes() for out in ("named", "overridden")]
+    assert named == overridden
+    assert rows(tmp_path / "overridden" / "conflicts.csv")[0]["lane"]
 
 
 def test_paper_mode_runs_the_flow_chart_as_printed(scenario: Copy, tmp_path: Path) -> None:
@@ -159,10 +159,10 @@ def test_ctrl_c_and_sigterm_end_a_run_cleanly(asked: signal.Signals, scenario: C
     out = config.parent / "closecall-out"
     wait_for_rows(out / "conflicts.csv", process, 50)
     process.send_signal(asked)
-    _, said = process.communicate(timeout=60)
+    _, message = process.communicate(timeout=60)
     assert process.returncode == 130
-    assert "interrupted at" in said
-    assert "Traceback" not in said
+    assert "interrupted at" in message
+    assert "Traceback" not in message
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is False
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
@@ -175,8 +175,8 @@ def test_a_seed_chosen_by_sumo_is_recorded_as_unknown(scenario: Copy, tmp_path: 
         done = closecall("run", config, "--end", "5", "--quiet", "--out", out, "--", "--random")
         assert (done.returncode, done.stderr) == (0, "")
         assert json.loads((out / "run.json").read_text())["seed"] is None
-    told = closecall("stats", *outs)
-    assert told.returncode == 0 and "repeats" not in told.stdout + told.stderr
+    stats = closecall("stats", *outs)
+    assert stats.returncode == 0 and "repeats" not in stats.stdout + stats.stderr
     refused = closecall("run", config, "--seed", "3", "--out", tmp_path / "c", "--", "--random")
     assert refused.returncode == 2
     assert "option random is on" in refused.stderr and refused.stderr.count("\n") == 1
@@ -191,8 +191,8 @@ def test_settings_for_unused_types_are_reported(scenario: Copy, tmp_path: Path) 
     settings.write_text("".join(f"[type.'{kind}']\ndecel = 5.0\n" for kind in [*kinds, "cra", "car@one"]))
     words = ("--config", settings, "--obstacles", "kiosk", "--out", tmp_path)
     done = closecall("run", config, *words)
-    told = [line for line in done.stdout.splitlines() if "no road user of this type" in line]
-    assert [line.split(":")[0] for line in told] == ["[type.car@one]", "[type.cra]", "obstacles kiosk"]
+    reported = [line for line in done.stdout.splitlines() if "no road user of this type" in line]
+    assert [line.split(":")[0] for line in reported] == ["[type.car@one]", "[type.cra]", "obstacles kiosk"]
     quiet = closecall("run", config, *words, "--quiet")
     assert (quiet.returncode, quiet.stdout) == (0, "")
 

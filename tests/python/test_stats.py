@@ -313,9 +313,9 @@ def test_an_unusable_log_gets_one_clear_line(tmp_path: Path) -> None:
     unrun = tmp_path / "unrun"
     shutil.copytree(good, unrun)
     (unrun / "run.json").unlink()
-    for words, said in [*cases, ((unrun,), "run.json: No such file")]:
+    for words, message in [*cases, ((unrun,), "run.json: No such file")]:
         done = closecall("stats", *words)
-        assert done.returncode == 2 and said in done.stderr, (words, done)
+        assert done.returncode == 2 and message in done.stderr, (words, done)
         assert done.stderr.count("\n") == 1 and not done.stdout, done
 
 

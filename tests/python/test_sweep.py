@@ -102,8 +102,8 @@ def done(once: Once) -> Path:
             with suppress(OSError):
                 other.bind(("127.0.0.1", 8787))
                 other.listen()
-            said = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
-        assert said.stdout == f"8 runs in {out}/conflicts\n" and said.stderr == ""
+            result = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
+        assert result.stdout == f"8 runs in {out}/conflicts\n" and result.stderr == ""
 
     return once("sweep", fill)
 
@@ -131,9 +131,9 @@ def test_a_sweeps_run_equals_closecall_run(done: Path, tmp_path: Path) -> None:
         record = json.loads(file.schema_arrow.metadata[b"closecall.run.json"])
         print(json.dumps({"rows": file.read().to_pylist(), "record": record}))
     """
-    said = python(script, path)
-    assert said.returncode == 0, said.stderr
-    found = json.loads(said.stdout)
+    result = python(script, path)
+    assert result.returncode == 0, result.stderr
+    found = json.loads(result.stdout)
     logged = rows(tmp_path / "log" / "conflicts.csv")
     assert len(logged) > 5 and len(found["rows"]) == len(logged)
     for row, line in zip(found["rows"], logged):
@@ -216,8 +216,8 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
     words = ("--out", out, "--workers", "1", *SHORT)
     sweep(config, "--seeds", "1-2", *words)
     first = files(out)
-    said = sweep(config, "--seeds", "1-3", *words)
-    assert "2 of them were there already" in said.stdout
+    result = sweep(config, "--seeds", "1-3", *words)
+    assert "2 of them were there already" in result.stdout
     second = files(out)
     assert len(second) == 3 and first.items() <= second.items()
     begun = time.monotonic()
@@ -270,13 +270,13 @@ def test_a_sweep_refuses_the_folder_of_a_log(tmp_path: Path) -> None:
 def test_a_failed_run_is_reported_and_the_others_continue(scenario: Copy, tmp_path: Path) -> None:
     out = tmp_path / "out"
     words = ("--seeds", "1-2", "--vary", "sumo:step-length=0.5,-1", "--out", out, "--workers", "2", *SHORT)
-    said = sweep(scenario("side"), *words, status=1)
+    result = sweep(scenario("side"), *words, status=1)
     assert set(files(out)) == {"sumo.step-length-0.5_seed-1", "sumo.step-length-0.5_seed-2"}
-    lines = said.stderr.splitlines()
-    assert len(lines) == 2, said.stderr
+    lines = result.stderr.splitlines()
+    assert len(lines) == 2, result.stderr
     for line in lines:
         assert line.startswith("closecall: run sumo.step-length--1_seed-") and "failed twice: " in line
-    assert "2 failed; the same command tries them again" in said.stdout
+    assert "2 failed; the same command tries them again" in result.stdout
 
 
 def simulations(of: psutil.Process) -> list[psutil.Process]:
@@ -354,9 +354,9 @@ def test_a_sweep_runs_on_a_scheduler_given_by_address(cluster: Cluster, tmp_path
 
 def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
-    # Dask tries an address for 30 s unless it is told otherwise.
+    # Dask tries an address for 30 s unless configured otherwise.
     impatient = {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "1s"}
-    for words, said in (
+    for words, message in (
         (("gone.sumocfg", "--seeds", "1"), "gone.sumocfg: No such file"),
         ((config,), "--seeds"),
         ((config, "--seeds", "3-1"), "ends before it begins"),
@@ -372,15 +372,15 @@ def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -
     ):
         done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path, env=impatient)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
-        assert said in done.stderr, (words, done.stderr)
+        assert message in done.stderr, (words, done.stderr)
     assert not files(tmp_path / "out")
 
 
 def test_help_lists_the_sweep_and_its_options() -> None:
     assert "  sweep " in closecall("--help").stdout
-    told = closecall("sweep", "--help").stdout
+    text = closecall("sweep", "--help").stdout
     for word in ("--seeds", "--vary", "--workers", "--scheduler", "--epsilon", "--end", "SUMO OPTIONS"):
-        assert word in told
+        assert word in text
 
 
 def test_encounters_are_written_beside_the_conflicts(scenario: Copy, tmp_path: Path) -> None:
