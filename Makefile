@@ -11,7 +11,8 @@ SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc')
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
 
-RUST_TESTS := cargo test --workspace --exclude closecall-bridge
+# Tests are compiled once and run: what an incremental build writes would not be read.
+RUST_TESTS := CARGO_INCREMENTAL=0 cargo test --workspace --exclude closecall-bridge
 
 # pip mostly unpacks on one core, meanwhile cargo compiles on the others.
 test: $(VENV)/wheel ## set everything up and run all tests, Rust and Python

@@ -31,7 +31,7 @@ LAYERS = [
     ["batch"],
     ["study"],
     ["cli"],
-    ["", "main"],
+    ["internals", "", "main"],
 ]
 LAYER_OF = {name: height for height, names in enumerate(LAYERS) for name in names}
 

@@ -16,16 +16,9 @@ use std::path::Path;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use closecall::Detector;
-use closecall::Frame;
-use closecall::Options;
-use closecall::Profile;
-use closecall::Roster;
-use closecall::Shortcut;
-use closecall::State;
-use closecall::UserIndex;
 use closecall::internals::study::Chance;
 use closecall::internals::util::Team;
+use closecall::{Detector, Frame, Options, Profile, Roster, Shortcut, State, UserIndex};
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 

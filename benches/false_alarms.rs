@@ -5,9 +5,7 @@
 
 use std::path::PathBuf;
 
-use closecall::internals::batch::Outcome;
-use closecall::internals::batch::RegressSettings;
-use closecall::internals::batch::comparisons;
+use closecall::internals::batch::{Outcome, RegressSettings, comparisons};
 
 const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;

@@ -8,14 +8,9 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::Point;
-use closecall::internals::geometry::ConvexOutline;
-use closecall::internals::geometry::Rectangle;
-use closecall::internals::geometry::Vector;
-use closecall::internals::geometry::distance;
-use closecall::internals::geometry::plainly_touches;
-use closecall::internals::geometry::slide;
-use closecall::internals::geometry::touches;
-use closecall::internals::geometry::translation;
+use closecall::internals::geometry::{
+    ConvexOutline, Rectangle, Vector, distance, plainly_touches, slide, touches, translation,
+};
 use closecall::internals::study::Chance;
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::query::{self, ShapeCastOptions};

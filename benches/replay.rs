@@ -15,12 +15,8 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
-use closecall::Net;
-use closecall::Options;
-use closecall::Replay;
-use closecall::Run;
-use closecall::internals::input::RecordedStep;
-use closecall::internals::input::Recording;
+use closecall::internals::input::{RecordedStep, Recording};
+use closecall::{Net, Options, Replay, Run};
 
 /// Parallel roads, far enough apart that their traffic never meets.
 const ROADS: usize = 20;

@@ -2,14 +2,7 @@
 //!
 //!     cargo run --example frame_by_hand
 
-use closecall::Detector;
-use closecall::Frame;
-use closecall::Options;
-use closecall::Profile;
-use closecall::Result;
-use closecall::Roster;
-use closecall::State;
-use closecall::SumoType;
+use closecall::{Detector, Frame, Options, Profile, Result, Roster, State, SumoType};
 
 fn main() -> Result<()> {
     let options = Options::default();

@@ -2,12 +2,7 @@
 //!
 //!     cargo run --example own_source
 
-use closecall::Options;
-use closecall::Profile;
-use closecall::Result;
-use closecall::Run;
-use closecall::State;
-use closecall::SumoType;
+use closecall::{Options, Profile, Result, Run, State, SumoType};
 
 /// Length of a step in s.
 const STEP: f64 = 0.1;

@@ -5,12 +5,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::Error;
-use closecall::Net;
-use closecall::Options;
-use closecall::Replay;
-use closecall::Result;
-use closecall::Run;
+use closecall::{Error, Net, Options, Replay, Result, Run};
 
 fn main() -> Result<()> {
     let mut paths = std::env::args_os().skip(1).map(PathBuf::from);

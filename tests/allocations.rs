@@ -5,13 +5,7 @@
 #[path = "common/counting.rs"]
 mod counting;
 
-use closecall::Detector;
-use closecall::Frame;
-use closecall::Options;
-use closecall::PathModel;
-use closecall::Roster;
-use closecall::State;
-use closecall::UserIndex;
+use closecall::{Detector, Frame, Options, PathModel, Roster, State, UserIndex};
 
 /// Four lanes of cars that close up and spread again; every tenth crosses.
 fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {

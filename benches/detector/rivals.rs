@@ -1,9 +1,8 @@
 //! Alternatives to the detector. They only find the pairs that might meet, without distances along a path, kinds or μ.
 
-use closecall::Profile;
-use closecall::State;
 use closecall::internals::braking::stopping_distance;
 use closecall::internals::geometry::direction;
+use closecall::{Profile, State};
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector};
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy, BvhWorkspace};

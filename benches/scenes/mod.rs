@@ -3,11 +3,8 @@
 use std::io::Write;
 use std::path::Path;
 
-use closecall::Options;
-use closecall::Profile;
-use closecall::State;
-use closecall::SumoType;
 use closecall::internals::study::Chance;
+use closecall::{Options, Profile, State, SumoType};
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 

@@ -2,12 +2,7 @@
 
 use std::path::PathBuf;
 
-use closecall::Ending;
-use closecall::Net;
-use closecall::Options;
-use closecall::OutputFiles;
-use closecall::RecordedRun;
-use closecall::Run;
+use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

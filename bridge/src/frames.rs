@@ -1,12 +1,6 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 
-use closecall::Options;
-use closecall::Profile;
-use closecall::ProfileIndex;
-use closecall::Run;
-use closecall::State;
-use closecall::SumoType;
-use closecall::UserIndex;
+use closecall::{Options, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

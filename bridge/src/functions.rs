@@ -1,18 +1,9 @@
 //! Single formulas on arrays: μ, and contact and distance of rectangles.
 
 use clap::ValueEnum;
-use closecall::Brakes;
-use closecall::Braking;
-use closecall::Kind;
-use closecall::MuModel;
-use closecall::Point;
-use closecall::SumoType;
-use closecall::internals;
-use closecall::internals::geometry::Rectangle;
-use closecall::internals::geometry::Vector;
-use closecall::internals::options::BUILD_UP;
-use closecall::internals::options::EPSILON;
-use closecall::internals::options::RESPONSE;
+use closecall::internals::geometry::{Rectangle, Vector};
+use closecall::internals::options::{BUILD_UP, EPSILON, RESPONSE};
+use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType, internals};
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
 use pyo3::exceptions::PyValueError;

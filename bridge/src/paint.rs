@@ -3,13 +3,7 @@
 
 use std::collections::hash_map::Entry;
 
-use closecall::Alarm;
-use closecall::Category;
-use closecall::Kind;
-use closecall::Roster;
-use closecall::Run;
-use closecall::Severity;
-use closecall::UserIndex;
+use closecall::{Alarm, Category, Kind, Roster, Run, Severity, UserIndex};
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 

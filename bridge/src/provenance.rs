@@ -2,12 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::Options;
-use closecall::Run;
-use closecall::RunRecord;
-use closecall::Summary;
-use closecall::internals::output::Input;
-use closecall::internals::output::Versions;
+use closecall::internals::output::{Input, Versions};
+use closecall::{Options, Run, RunRecord, Summary};
 use pyo3::prelude::*;
 
 use crate::error::exception;

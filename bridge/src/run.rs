@@ -4,22 +4,12 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::Ending;
-use closecall::Error;
-use closecall::RecordedRun;
-use closecall::Result;
-use closecall::Run;
-use closecall::RunRecord;
-use closecall::Summary;
-use closecall::cli;
-use closecall::cli::ReportEnd;
-use closecall::cli::RunRequest;
-use closecall::cli::Sumo;
-use closecall::cli::Workers;
+use closecall::cli::{ReportEnd, RunRequest, Sumo, Workers};
 use closecall::internals::batch::Task;
 use closecall::internals::detection::LeftOut;
 use closecall::internals::input as sumo_files;
 use closecall::internals::output::Input;
+use closecall::{Ending, Error, RecordedRun, Result, Run, RunRecord, Summary, cli};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

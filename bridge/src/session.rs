@@ -2,13 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use closecall::Error;
-use closecall::RecordedRun;
-use closecall::Result;
-use closecall::Run;
 use closecall::cli::RunRequest;
 use closecall::cli::progress::Progress;
 use closecall::internals::util::Helper;
+use closecall::{Error, RecordedRun, Result, Run};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 

@@ -5,11 +5,9 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use closecall::Error;
-use closecall::Net;
-use closecall::Result;
 use closecall::cli::RunRequest;
 use closecall::internals::input as sumo_files;
+use closecall::{Error, Net, Result};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 

@@ -2,11 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::Error;
-use closecall::Result;
-use closecall::cli::ReportEnd;
-use closecall::cli::Workers;
+use closecall::cli::{ReportEnd, Workers};
 use closecall::internals::batch::Task;
+use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 

@@ -4,8 +4,7 @@
 
 use std::path::Path;
 
-use closecall::internals::input::RecordedStep;
-use closecall::internals::input::Recording;
+use closecall::internals::input::{RecordedStep, Recording};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {

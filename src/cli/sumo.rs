@@ -4,12 +4,13 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use super::say::value;
-#[cfg(feature = "parquet")]
-use super::workers::Distribute;
 use crate::Result;
 use crate::options::Options;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
+
+#[cfg(feature = "parquet")]
+use super::workers::Distribute;
 
 /// What the bridge offers the commands that run SUMO.
 pub struct Sumo<'a> {

@@ -6,19 +6,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::EdgeIndex;
-use closecall::LaneIndex;
-use closecall::Net;
-use closecall::Options;
-use closecall::Placement;
-use closecall::Point;
-use closecall::Profile;
-use closecall::ProfileIndex;
-use closecall::Run;
-use closecall::State;
-use closecall::UserIndex;
 use closecall::internals::output::Log;
 use closecall::internals::traffic::EdgeFunction;
+use closecall::{EdgeIndex, LaneIndex, Net, Options, Placement, Point, Profile, ProfileIndex, Run, State, UserIndex};
 
 /// Steps of 1 s that a car needs from one end of its course to the other.
 const PERIOD: usize = 60;

@@ -2,11 +2,7 @@
 
 use std::ops::RangeFrom;
 
-use closecall::ProfileIndex;
-use closecall::Roster;
-use closecall::Run;
-use closecall::State;
-use closecall::UserIndex;
+use closecall::{ProfileIndex, Roster, Run, State, UserIndex};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -12,9 +12,8 @@ mod reading;
 mod sumo;
 mod traci;
 
-use closecall::Options;
-use closecall::Run;
 use closecall::internals::util::Second;
+use closecall::{Options, Run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

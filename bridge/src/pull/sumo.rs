@@ -3,15 +3,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::EdgeIndex;
-use closecall::Net;
-use closecall::Options;
-use closecall::Point;
-use closecall::Profile;
-use closecall::ProfileIndex;
-use closecall::Run;
-use closecall::SumoType;
 use closecall::internals::util::Second;
+use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, Run, SumoType};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;

@@ -2,13 +2,8 @@
 //!
 //! The names of its functions are interned: Python's attribute cache keeps every name that is looked up in every step.
 
-use closecall::Options;
-use closecall::Placement;
-use closecall::ProfileIndex;
-use closecall::Run;
-use closecall::State;
-use closecall::UserIndex;
 use closecall::internals::util::Second;
+use closecall::{Options, Placement, ProfileIndex, Run, State, UserIndex};
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};

@@ -1,17 +1,9 @@
 //! Where movements touch: equal, to the last bit, to trying all parts of both.
 
 use closecall::Point;
-use closecall::internals::geometry::Bisection;
-use closecall::internals::geometry::Bounds;
-use closecall::internals::geometry::Contact;
-use closecall::internals::geometry::ConvexOutline;
-use closecall::internals::geometry::Movement;
-use closecall::internals::geometry::Polygon;
-use closecall::internals::geometry::Rectangle;
-use closecall::internals::geometry::TOLERANCE;
-use closecall::internals::geometry::Vector;
-use closecall::internals::geometry::direction;
-use closecall::internals::geometry::translation;
+use closecall::internals::geometry::{
+    Bisection, Bounds, Contact, ConvexOutline, Movement, Polygon, Rectangle, TOLERANCE, Vector, direction, translation,
+};
 use proptest::prelude::*;
 
 /// The fraction of a movement at which it touches another's area, by all hulls of the other whose whole is touched.

@@ -1,15 +1,8 @@
 //! TTC of two road users that keep their speed, compared with parry2d's linear `cast_shapes`.
 
-#![allow(clippy::unwrap_used, reason = "a test may")]
-
 use closecall::Point;
-use closecall::internals::detection::HORIZON;
-use closecall::internals::detection::Pose;
-use closecall::internals::detection::SteadyMotion;
-use closecall::internals::detection::time_to_collision;
-use closecall::internals::geometry::Rectangle;
-use closecall::internals::geometry::direction;
-use closecall::internals::geometry::distance;
+use closecall::internals::detection::{HORIZON, Pose, SteadyMotion, time_to_collision};
+use closecall::internals::geometry::{Rectangle, direction, distance};
 use parry2d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry2d_f64::query::{ShapeCastOptions, cast_shapes};
 use parry2d_f64::shape::Cuboid;

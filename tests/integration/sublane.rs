@@ -1,20 +1,10 @@
 //! The sublane model: a vehicle that drifts to the side stays within its lanes.
 
-#![allow(clippy::unwrap_used, reason = "a test may")]
-
-#[path = "common/street.rs"]
-mod street;
-
 use std::sync::Arc;
 
-use closecall::Detector;
-use closecall::Frame;
-use closecall::Options;
-use closecall::Placement;
-use closecall::Roster;
-use closecall::State;
+use closecall::{Detector, Frame, Options, Placement, Roster, State};
 
-use street::street;
+use super::street::street;
 
 /// Number of encounters when the eastbound car is at y and drifts to the left.
 fn encounters(y: f64, drift: f64) -> usize {

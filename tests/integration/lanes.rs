@@ -1,23 +1,11 @@
 //! The path that is built from a road user's lane, heading and route.
 
-#![allow(clippy::unwrap_used, reason = "a test may")]
-
-#[path = "common/street.rs"]
-mod street;
-
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::Detector;
-use closecall::Frame;
-use closecall::Net;
-use closecall::Options;
-use closecall::Placement;
-use closecall::Point;
-use closecall::Roster;
-use closecall::State;
+use closecall::{Detector, Frame, Net, Options, Placement, Point, Roster, State};
 
-use street::street;
+use super::street::street;
 
 /// Whether the path of a car on the westbound lane, with this heading and route, leads west.
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {

@@ -1,11 +1,8 @@
 //! Following a line gives the same distances, to the last bit, as searching all of it in every step.
 
-#![allow(clippy::unwrap_used, reason = "a test may")]
-
 use closecall::Point;
 use closecall::internals::detection::Track;
-use closecall::internals::geometry::Lines;
-use closecall::internals::geometry::Vector;
+use closecall::internals::geometry::{Lines, Vector};
 use proptest::prelude::*;
 
 /// A front bumper nearer than this to the line is on it, in m.

@@ -1,16 +1,11 @@
 //! Recordings as replay reads them, compared with the simplest readers of the same files: those of the crates csv and
 //! quick-xml, which parse every text anew.
 
-#![allow(clippy::unwrap_used, clippy::panic, missing_docs, reason = "tests")]
-
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::EdgeIndex;
-use closecall::Net;
-use closecall::internals::input::RecordedStep;
-use closecall::internals::input::Recording;
-use closecall::internals::input::Routes;
+use closecall::internals::input::{RecordedStep, Recording, Routes};
+use closecall::{EdgeIndex, Net};
 use proptest::prelude::*;
 
 /// One row with all its values.

@@ -1,22 +1,9 @@
 //! Scenes with two vehicles, straight on and without a net, compared with the definitions in docs/model.md.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
-
-use closecall::BrakeSystem;
-use closecall::Detector;
-use closecall::Encounter;
-use closecall::Frame;
-use closecall::Kind;
-use closecall::Mode;
-use closecall::Options;
-use closecall::PathModel;
-use closecall::Profile;
-use closecall::Roster;
-use closecall::Shortcut;
-use closecall::State;
-use closecall::SumoType;
-use closecall::TypeOptions;
-use closecall::UserIndex;
+use closecall::{
+    BrakeSystem, Detector, Encounter, Frame, Kind, Mode, Options, PathModel, Profile, Roster, Shortcut, State,
+    SumoType, TypeOptions, UserIndex,
+};
 use proptest::prelude::*;
 
 /// A car of 5 m by 2 m that brakes with 8 m/s² after 1 s, without build-up.

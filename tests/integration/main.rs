@@ -1,0 +1,13 @@
+//! Tests that cross modules, in one program: it is linked once.
+
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
+
+mod bisection;
+mod detector;
+mod lanes;
+mod path;
+mod replay;
+#[path = "../common/street.rs"]
+mod street;
+mod sublane;
+mod time_to_collision;
