@@ -3,8 +3,8 @@ of the same simulation, how much is in use, with the checker and without.
 
     python benches/memory.py
 
-What does not depend on the traffic (the net, the program) falls out: the figure is the growth of the difference from
-the first step with a tenth of the most road users to the one with the most. Both are run nine times, of which the
+The figure is the growth of the difference from the first step with a tenth of the most road users to the one with the
+most: this cancels what does not depend on the traffic (the net, the program). Both are run nine times, of which the
 median counts: with other addresses SUMO alone holds up to 50 kB less. Python's own allocator is switched off, so that
 what it holds is counted too, and so is glibc's cache per thread: what is free in it counts as in use. glibc only.
 """

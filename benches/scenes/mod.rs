@@ -18,7 +18,7 @@ pub fn car() -> Profile {
     Profile::vehicle(&SumoType::car("car"), &Options::default())
 }
 
-/// Writes who is where (rectangles: centre, heading in rad, length, width), for programs that are not ours.
+/// Writes the road users' rectangles (centre, heading in rad, length, width), for other programs.
 pub fn write(cars: &[State], path: &Path) -> std::io::Result<()> {
     let car = car();
     let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
@@ -44,8 +44,8 @@ fn jam(chance: &mut Chance, count: usize) -> Vec<State> {
     (0..count).map(car).collect()
 }
 
-/// Platoons of 20 at 50 km/h, 25 m apart, on a grid of two-way streets 200 m apart. From one to the next in its lane there
-/// are 25 to 225 m: 1,600 cars per hour and lane, almost as many as pass. Where streets cross nobody waits.
+/// Platoons of 20 at 50 km/h, 25 m apart, on a grid of two-way streets 200 m apart. Platoons in a lane are 25 to 225 m
+/// apart: 1,600 cars per hour and lane, close to capacity. No vehicle waits where streets cross.
 fn platoons(chance: &mut Chance, count: usize) -> Vec<State> {
     const CARS: usize = 20;
     const APART: f64 = 25.0;
@@ -69,7 +69,7 @@ fn platoons(chance: &mut Chance, count: usize) -> Vec<State> {
     cars
 }
 
-/// One on 400 m², anywhere, any way, up to 50 km/h.
+/// One road user per 400 m², at random positions and headings, up to 50 km/h.
 fn uniform(chance: &mut Chance, count: usize) -> Vec<State> {
     let side = (count as f64 * 400.0).sqrt();
     let mut car =

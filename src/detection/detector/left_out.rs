@@ -1,7 +1,7 @@
-//! What a run left out, why, and how often.
+//! The work that a run left out, why, and how often.
 //!
-//! Leaving out changes no result. Pairs that are none by definition (both stand, both are persons, on different levels)
-//! are only counted.
+//! Leaving out changes no result. Pairs that cannot conflict by definition (both stand, both are persons, on different
+//! levels) are only counted.
 
 use std::fmt;
 
@@ -10,19 +10,19 @@ use serde::Serialize;
 use super::shortcuts::Shortcuts;
 use super::work::Work;
 
-/// Something that was left out.
+/// A kind of work that was left out.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct LeftOut {
-    /// What.
+    /// The kind of work.
     pub what: &'static str,
     /// Why the result is the same without it.
     pub why: &'static str,
-    /// How often it was left out; none where it was left out altogether.
+    /// How often it was left out; none where the whole run did without.
     pub times: Option<u64>,
 }
 
 impl LeftOut {
-    /// Something that the whole run did without.
+    /// Work that the whole run did without.
     pub fn altogether(what: &'static str, why: &'static str) -> Self {
         Self { what, why, times: None }
     }
@@ -38,7 +38,7 @@ impl fmt::Display for LeftOut {
     }
 }
 
-/// What the detector left out while it did this work.
+/// What the detector left out, by its counts.
 pub(super) fn left_out(work: &Work, shortcuts: Shortcuts) -> Vec<LeftOut> {
     let tests = [
         ("frontal", "no opposing ways within reach", work.frontal == 0),
