@@ -2,7 +2,7 @@
 //! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
 //! per pair, and all pairs, by that test and by the cheapest there is. `cargo bench --bench detector`.
 //!
-//! Straight paths: without SUMO nobody has a route. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road
+//! Straight paths: without SUMO there are no routes. `-- --scenes FOLDER` also writes the scenes of up to 10⁴ road
 //! users, for benches/commonroad.py.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
@@ -22,23 +22,23 @@ use closecall::{Detector, Frame, Options, Profile, Roster, Shortcut, State, User
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 
-/// With more road users than this parry2d and all pairs are not asked.
+/// With more road users than this, parry2d and all pairs are not measured.
 const LARGE: usize = 100_000;
 
-/// So many turns each way to look at a step has. What else the machine does comes and goes, for seconds at a time: of a
-/// time the least counts, of how many times one way takes as long as the other in the same turn the median.
+/// Turns of each method. Other load on the machine comes and goes for seconds at a time, so a time is the least of all
+/// turns, and a ratio the median of those within a turn.
 const TURNS: usize = 9;
 
-/// Before each turn both cores are kept busy for so many s: in the last one all but the first methods need only one.
+/// Both cores are kept busy for this long before each turn, in s, because most methods leave the second one idle.
 const WAKING: f64 = 0.5;
 
-/// All pairs take long: they have a turn only in the first of these.
+/// All pairs take long, so they take part in the first turns only.
 const TURNS_OF_ALL_PAIRS: usize = 3;
 
-/// The times of one way to look at a step, in s.
+/// The times of one method, in s.
 struct Times {
     name: String,
-    /// Of the turn under way.
+    /// Those of the current turn.
     turn: Vec<f64>,
     /// The median of each turn.
     medians: Vec<f64>,
@@ -67,7 +67,7 @@ impl Times {
         println!("step,{scene},{},{count},{:.1},ns per road user", self.name, least * 1e9 / count as f64);
     }
 
-    /// Prints it, and how many times as long as another one this takes in the same turn.
+    /// Prints it, and the ratio to another method's time in the same turn.
     fn print_beside(&self, other: &Self, scene: &str, count: usize) {
         self.print(scene, count);
         let mut ratios = self.medians.iter().zip(&other.medians).map(|(own, other)| own / other).collect::<Vec<_>>();
@@ -80,8 +80,8 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Keeps two cores busy for so many seconds: a virtual machine's second core, which had nothing to do, is given to it little by
-/// little. Two threads gained a third of what they gain on cores that have been busy, as both are where SUMO is beside.
+/// Keeps two cores busy. A virtual machine gets an idle second core back only little by little: two threads gained a
+/// third of what they gain on busy cores, as beside SUMO.
 fn wake_both_cores(seconds: f64) {
     let until = Instant::now() + std::time::Duration::from_secs_f64(seconds);
     let busy = || while black_box(Instant::now()) < until {};
@@ -106,10 +106,10 @@ fn main() {
     }
 }
 
-/// To and fro: nobody yields here, and however many steps there are, they shall not drive into each other.
+/// Times of the steps, to and fro: no road user yields here, so they must not drive on into each other.
 const TIMES: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
 
-/// The road users of a scene, who go to and fro.
+/// The road users of a scene, which go to and fro.
 struct Scene {
     roster: Roster,
     start: Vec<State>,
@@ -140,16 +140,16 @@ impl Scene {
     }
 }
 
-/// A detector without a net, asked for what a run asks it for.
+/// A detector without a net, set up as a run does.
 fn detector(options: &Options) -> Detector {
     let mut detector = Detector::new(options, None);
     detector.set_conflicts_only(true);
     detector
 }
 
-/// A way to look at a step: the detector or a rival.
+/// A method: the detector or a rival.
 trait Look {
-    /// Looks at the step.
+    /// Does the step.
     fn look(&mut self, scene: &Scene);
 
     /// Its times: of the whole, then of its parts.
@@ -183,8 +183,8 @@ impl Look for Phases {
     }
 }
 
-/// Two detectors at the same time, each with the whole step on a thread of its own: what two threads gain on this machine
-/// where neither waits for the other.
+/// Two detectors at once, each doing the whole step on its own thread: the most that two threads can gain on this
+/// machine.
 struct AtOnce(Team, [Detector; 2], Times);
 
 impl AtOnce {
@@ -230,7 +230,7 @@ impl<Contacts: FnMut(&[State], &Profile) -> usize> Look for Rival<Contacts> {
     }
 }
 
-/// In each turn one after the other looks at all steps: then its data are in the cache, not another's.
+/// In each turn one method after the other does all steps, so that its own data are in the cache.
 fn measure(name: &str, start: Vec<State>) {
     let (count, options) = (start.len(), Options::default());
     let mut scene = Scene::new(start);
@@ -256,7 +256,7 @@ fn measure(name: &str, start: Vec<State>) {
     let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
     let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
     let steps = TIMES.repeat((500_000 / TURNS / count).clamp(1, 16));
-    // In the first few steps of a turn a second thread has still to wake up.
+    // A second thread wakes up during the first few steps of a turn.
     let own_steps = if count > LARGE { steps.clone() } else { TIMES.repeat((500_000 / TURNS / count).clamp(4, 16)) };
     for number in 0..TURNS {
         let mut turn = |look: &mut dyn Look, steps: &[f64]| {

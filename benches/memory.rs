@@ -1,7 +1,7 @@
-//! What a run holds in memory after the first hour and after a day of traffic that comes and goes (tests/memory.rs
-//! promises that it is the same). `cargo bench --bench memory`.
+//! Memory that a run holds after the first hour and after a day of traffic that comes and goes (tests/memory.rs checks
+//! that it is the same). `cargo bench --bench memory`.
 //!
-//! What it holds per road user beside SUMO: benches/memory.py.
+//! For the memory per road user beside SUMO, see benches/memory.py.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 

@@ -1,4 +1,4 @@
-//! Once warm, the detector takes no memory any more: counted by the allocator itself.
+//! A warm detector allocates no memory: counted by the allocator itself.
 
 #![allow(clippy::unwrap_used, reason = "a test may")]
 
@@ -19,7 +19,7 @@ fn step(frame: &mut Frame, users: &[UserIndex], number: u32) {
     }
 }
 
-/// Rings of cars that drive round and round, each ring through its neighbours, all as fast.
+/// Rings of cars at equal speed, each ring crossing its neighbours.
 fn round_step(frame: &mut Frame, users: &[UserIndex], number: u32) {
     const ROUND: f64 = 20.0;
     frame.begin(f64::from(number) * 0.1);
@@ -38,7 +38,7 @@ fn assert_warm_allocates_nothing(options: &Options, step: impl Fn(&mut Frame, &[
     let mut detector = Detector::new(options, None);
     let mut frame = Frame::default();
     let (mut before, mut found) = (0, 0);
-    // One round to get warm, then the same one again.
+    // The first round warms up; the second must allocate nothing.
     for number in 0..40 {
         if number == 20 {
             before = counting::allocations();

@@ -1,4 +1,4 @@
-//! What is known of an event under way: the step with the smallest margin, and the extremes of all its steps.
+//! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
 use super::moment::Moment;
 use super::snapshot::Snapshot;
@@ -21,7 +21,7 @@ pub(super) struct Observation<'a> {
     pub found: &'a Encounter,
 }
 
-/// The extremes so far; of which values a [`super::Conflict`] says.
+/// The extremes so far; [`super::Conflict`] describes the values.
 #[derive(Debug)]
 pub(super) struct Extremes {
     pub begin: Second,
@@ -110,7 +110,7 @@ impl Extremes {
 
     /// Adds a later step of the same event.
     pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
-        // Of margins that only rounding tells apart the first stays.
+        // Of margins that differ by rounding only, the first is kept.
         if seen.found.margin < self.worst.margin - SAME_MARGIN {
             self.worst = WorstStep::of(seen, path);
         }
@@ -127,7 +127,7 @@ impl Extremes {
     }
 }
 
-/// Takes the value of a step where it is beyond the one known so far; whether it was.
+/// Takes the value of a step where it is beyond the extreme so far; returns whether it was.
 fn take_if(known: &mut Option<f64>, now: Option<f64>, is_beyond: fn(&f64, &f64) -> bool) -> bool {
     let is_taken = now.is_some_and(|now| known.is_none_or(|known| is_beyond(&now, &known)));
     if is_taken {

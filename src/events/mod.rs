@@ -1,7 +1,7 @@
 //! Encounters become conflicts: one event per pair and run of steps with margin < 0.
 //!
 //! An event opens at the first step with margin < 0 and closes when the margin has been ≥ 0 for [`CLOSES_AFTER`] or
-//! one of the two is no road user any more. A side or frontal event then waits for its PET, at most [`pet::WAIT`].
+//! one of the two has left the scene. A side or frontal event then waits for its PET, at most [`pet::WAIT`].
 
 mod event;
 mod extremes;
@@ -26,10 +26,10 @@ pub use snapshot::Snapshot;
 
 /// How long the margin must be ≥ 0 before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
-/// Simulated times are sums of steps: what differs by less is the same moment, in s.
+/// Simulated times are sums of steps: times that differ by less are equal, in s.
 const SAME_MOMENT: Second = 1e-6;
 
-/// Both road users of an event that goes on, and how bad it is now: what is painted.
+/// The road users of an open event and its current severity, as painted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Alarm {
     /// The ego of the last step in conflict.
@@ -42,7 +42,7 @@ pub struct Alarm {
     pub kind: Kind,
 }
 
-/// Follows the pairs in conflict from step to step.
+/// Follows the pairs in conflict over the steps.
 #[derive(Debug, Default)]
 pub struct Tracker {
     /// In the order of the pairs.
@@ -60,13 +60,13 @@ type Pair = [UserIndex; 2];
 struct Event {
     alarm: Alarm,
     extremes: Extremes,
-    driven: Option<Box<Driven>>,
+    driven: Option<Box<PetTracker>>,
 }
 
-/// What the two of a side or frontal event have driven since it began, in their order, and the PET as far as it is known.
+/// The paths that the two of a side or frontal event have driven since it began, in their order, and the PET so far.
 #[derive(Debug)]
-struct Driven {
-    courses: [pet::Course; 2],
+struct PetTracker {
+    paths: [pet::DrivenPath; 2],
     pet: Option<pet::Pet>,
 }
 
@@ -77,8 +77,8 @@ impl Event {
 }
 
 impl Tracker {
-    /// Takes the encounters of one step; returns the conflicts that are settled by it, in the order of their begin
-    /// and ids. `path` has the path of a row's front bumper, from where it is.
+    /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
+    /// `path` returns the path of a row's front bumper, from where it is.
     pub fn step<'a>(
         &mut self,
         frame: &Frame,
@@ -105,12 +105,12 @@ impl Tracker {
         &self.closed
     }
 
-    /// Forgets them, and gives back their memory: a step in which many close would keep it for the rest of the run.
+    /// Forgets them and frees their memory, which a step in which many close would otherwise keep for the rest of the run.
     pub fn forget_closed(&mut self) {
         self.closed = Vec::new();
     }
 
-    /// Closes whatever is still open: the run has ended.
+    /// Closes all open events at the end of the run.
     pub fn finish(&mut self, roster: &Roster) -> &[Conflict] {
         self.closed.clear();
         self.waiting.append(&mut self.events);
@@ -119,12 +119,12 @@ impl Tracker {
         &self.closed
     }
 
-    /// The events that go on, in no order that means anything.
+    /// The open events, in no particular order.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.events.iter().map(|(_, event)| event.alarm)
     }
 
-    /// The conflicts that go on or wait for their PET, as they are now, in the order of their begin and ids.
+    /// The conflicts that are open or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
         let events = self.events.iter().chain(&self.waiting);
         let mut open = events.map(|(_, event)| event.conflict(roster)).collect::<Vec<_>>();
@@ -151,27 +151,27 @@ impl Tracker {
         };
         let (_, event) = &mut self.events[place];
         if kind != Kind::RearEnd && event.driven.is_none() {
-            let courses = pair.map(|user| {
+            let paths = pair.map(|user| {
                 let profile = seen.roster.profile_of(user);
-                pet::Course::new(profile.length, profile.width)
+                pet::DrivenPath::new(profile.length, profile.width)
             });
-            event.driven = Some(Box::new(Driven { courses, pet: None }));
+            event.driven = Some(Box::new(PetTracker { paths, pet: None }));
         }
     }
 
-    /// Records where the pairs of side and frontal events go.
+    /// Records the paths of the pairs in side and frontal events.
     fn follow(&mut self, frame: &Frame, roster: &Roster) {
         for (pair, event) in self.events.iter_mut().chain(&mut self.waiting) {
             let Some(driven) = &mut event.driven else { continue };
-            for (user, course) in pair.iter().zip(&mut driven.courses) {
-                // An index that was given to another road user meanwhile is not followed.
-                let Some(row) = frame.row_of(*user).filter(|_| !course.has_ended()) else {
-                    course.end();
+            for (user, path) in pair.iter().zip(&mut driven.paths) {
+                // An index given to another road user meanwhile is not followed.
+                let Some(row) = frame.row_of(*user).filter(|_| !path.has_ended()) else {
+                    path.end();
                     continue;
                 };
                 if roster.profile_of(*user).category != Category::Obstacle {
                     let state = frame.state(row);
-                    course.push(frame.time, state.front(), state.heading);
+                    path.push(frame.time, state.front(), state.heading);
                 }
             }
         }
@@ -187,18 +187,18 @@ impl Tracker {
 
     /// Passes on the closed events whose PET is known, or will not be.
     fn settle(&mut self, time: Second, at_once: bool, roster: &Roster) {
-        // For all of the step, but no longer: what a long wait in small steps needs would be kept for the rest of the run.
+        // One for the step, not kept: a long wait in small steps would otherwise hold its memory for the rest of the run.
         let mut halves = Bisection::default();
         let settled = self.waiting.extract_if(.., |(_, event)| {
             let since = time - event.extremes.end;
             if let (Some(driven), true) = (&mut event.driven, event.extremes.worst.kind != Kind::RearEnd) {
-                let Driven { courses, pet } = &mut **driven;
+                let PetTracker { paths, pet } = &mut **driven;
                 let last_call = at_once
                     || since >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
-                    || courses.iter().any(pet::Course::has_ended);
+                    || paths.iter().any(pet::DrivenPath::has_ended);
                 let just_closed = since < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    *pet = pet::post_encroachment_time(&mut halves, &courses[0], &courses[1]);
+                    *pet = pet::post_encroachment_time(&mut halves, &paths[0], &paths[1]);
                     return last_call || pet.is_some_and(|pet| pet.is_final);
                 }
                 return false;
@@ -221,13 +221,13 @@ mod tests {
     use crate::traffic::profile::Profile;
     use crate::traffic::sumo_type::SumoType;
 
-    struct Scene {
+    struct TrackedPair {
         tracker: Tracker,
         roster: Roster,
         users: [UserIndex; 2],
     }
 
-    impl Scene {
+    impl TrackedPair {
         fn new() -> Self {
             let mut roster = Roster::default();
             let sumo = SumoType { width: 2.0, ..SumoType::car("car") };
@@ -271,8 +271,8 @@ mod tests {
     }
 
     #[test]
-    fn a_conflict_is_open_until_the_margin_was_positive_for_a_second() {
-        let mut scene = Scene::new();
+    fn a_conflict_closes_after_a_second_of_positive_margin() {
+        let mut scene = TrackedPair::new();
         for (time, margin) in [(0.0, 1.0), (0.5, -1.0), (1.0, -3.0), (1.5, -2.0), (2.0, 1.0)] {
             assert_eq!(scene.step(time, margin), []);
         }
@@ -283,8 +283,8 @@ mod tests {
     }
 
     #[test]
-    fn of_margins_that_only_rounding_tells_apart_the_first_is_the_smallest() {
-        let mut scene = Scene::new();
+    fn of_margins_equal_but_for_rounding_the_first_counts() {
+        let mut scene = TrackedPair::new();
         for (time, margin) in [(0.0, -1.0), (0.5, -3.0), (1.0, -3.0 - 1e-14), (1.5, -1.0)] {
             scene.step(time, margin);
         }
@@ -293,8 +293,8 @@ mod tests {
     }
 
     #[test]
-    fn a_margin_that_is_positive_for_less_than_a_second_is_the_same_conflict() {
-        let mut scene = Scene::new();
+    fn less_than_a_second_of_positive_margin_continues_the_conflict() {
+        let mut scene = TrackedPair::new();
         for (time, margin) in [(0.0, -1.0), (0.9, 1.0), (1.5, -2.0), (2.0, 1.0)] {
             scene.step(time, margin);
         }
@@ -304,14 +304,14 @@ mod tests {
 
     #[test]
     fn a_conflict_closes_when_one_of_the_two_leaves() {
-        let mut scene = Scene::new();
+        let mut scene = TrackedPair::new();
         scene.step(0.0, -1.0);
         assert_eq!(scene.step_with(0.1, &[(0, 0.0)], -1.0, Kind::RearEnd).len(), 1);
     }
 
     #[test]
-    fn a_side_conflict_waits_for_what_both_really_do() {
-        let mut scene = Scene::new();
+    fn a_side_conflict_waits_for_its_pet() {
+        let mut scene = TrackedPair::new();
         let both = [(0, 0.0), (1, 20.0)];
         scene.step_with(0.0, &both, -1.0, Kind::Side);
         assert_eq!(scene.step_with(1.0, &both, 1.0, Kind::Side), []);

@@ -7,7 +7,7 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 pub struct Moment {
     /// The time, in s; for the PET, when the second enters the conflict area.
     pub time: Second,
-    /// The ego's front-bumper centre at the meeting place of that step, x in m.
+    /// The ego's front-bumper centre at the conflict point of that step, x in m.
     pub x: Metre,
     /// The same, y in m.
     pub y: Metre,

@@ -1,9 +1,9 @@
 //! Post-encroachment time: how long after the first has left the conflict area the second enters it.
 //!
-//! Measured on what both really drove. The conflict area is where the two corridors, the areas that their rectangles
-//! covered, overlap: the first leaves it when its rectangle touches the other's corridor for the last time, the
-//! second enters it when its rectangle touches the first's corridor for the first time. As long as the second is in that
-//! corridor, its own may still come to overlap with where the first was later: the time is known when it has left.
+//! Measured on the paths that both really drove. A corridor is the area that a rectangle covered; the conflict area is
+//! where the two corridors overlap. The first leaves it when its rectangle touches the other's corridor for the last
+//! time. The second enters it when its rectangle touches the first's corridor for the first time. While the second is in
+//! that corridor, its own may still overlap a later part of it, so the time is final when the second has left.
 
 use crate::detection::path::Pose;
 use crate::geometry::bisection::{Bisection, Part};
@@ -13,76 +13,77 @@ use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
 use crate::util::units::{Metre, Radian, Second};
 
-/// Who has not entered the conflict area this long after the conflict closed is not waited for, in s.
+/// How long after a conflict closed its PET is waited for, in s.
 pub const WAIT: Second = 5.0;
 
-/// What one road user drove: its rectangle at each time.
+/// The path that one road user drove: its rectangle at each time.
 #[derive(Clone, Debug, Default)]
-pub struct Course {
-    moments: Vec<Moment>,
+pub struct DrivenPath {
+    poses: Vec<TimedPose>,
     length: Metre,
     width: Metre,
     ended: bool,
 }
 
-/// Where its front bumper was at a time, and which way it headed.
+/// The position of its front bumper at a time, and its heading.
 #[derive(Clone, Copy, Debug)]
-struct Moment {
+struct TimedPose {
     time: Second,
     front: Point,
     heading: Radian,
 }
 
-impl Moment {
+impl TimedPose {
     fn stands_as(&self, other: &Self) -> bool {
         (self.front, self.heading) == (other.front, other.heading)
     }
 }
 
-impl Course {
-    /// Of who is of this length and width.
+impl DrivenPath {
+    /// An empty path of a road user of this length and width.
     pub fn new(length: Metre, width: Metre) -> Self {
         Self { length, width, ..Self::default() }
     }
 
-    /// Adds where its front bumper is at a time, and which way it heads; one that stands adds nothing.
+    /// Adds the position of its front bumper at a time, and its heading. While it stands, no more is kept than when it
+    /// began and ended.
     pub fn push(&mut self, time: Second, front: Point, heading: Radian) {
-        let moment = Moment { time, front, heading };
-        match &mut self.moments[..] {
-            [.., before, last] if before.stands_as(last) && last.stands_as(&moment) => last.time = time,
-            _ => self.moments.push(moment),
+        let pose = TimedPose { time, front, heading };
+        match &mut self.poses[..] {
+            [.., before, last] if before.stands_as(last) && last.stands_as(&pose) => last.time = time,
+            _ => self.poses.push(pose),
         }
     }
 
-    /// It is no road user any more.
+    /// Marks that it has left the scene.
     pub fn end(&mut self) {
         self.ended = true;
     }
 
-    /// Whether it is no road user any more.
+    /// Whether it has left the scene.
     pub fn has_ended(&self) -> bool {
         self.ended
     }
 
-    fn pose(&self, moment: &Moment) -> Pose {
-        Pose { distance: 0.0, front: moment.front, axis: direction(moment.heading) }
+    fn pose(&self, pose: &TimedPose) -> Pose {
+        Pose { distance: 0.0, front: pose.front, axis: direction(pose.heading) }
     }
 
     fn bounds_at(&self, pose: &Pose) -> Bounds {
         Rectangle::behind(pose.front, pose.axis, self.length, self.width).bounds()
     }
 
-    /// The box around all that it covered; larger than what rounding can do.
+    /// The box around all that it covered, larger than any rounding error.
     fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
-        self.moments.iter().for_each(|moment| bounds.join(&self.bounds_at(&self.pose(moment))));
+        self.poses.iter().for_each(|pose| bounds.join(&self.bounds_at(&self.pose(pose))));
         bounds.grown(TOLERANCE)
     }
 
     /// The steps that may touch what lies within these bounds.
     fn corridor(&self, near: &Bounds, halves: &mut Bisection) -> Corridor {
-        let steps = self.moments.windows(2).filter_map(|pair| {
-            let [start, end] = [&pair[0], &pair[1]].map(|moment| self.pose(moment));
+        let steps = self.poses.windows(2).filter_map(|pair| {
+            let [start, end] = [&pair[0], &pair[1]].map(|pose| self.pose(pose));
             let mut bounds = self.bounds_at(&start);
             bounds.join(&self.bounds_at(&end));
             if !bounds.grown(TOLERANCE).meet(near) {
@@ -91,11 +92,11 @@ impl Course {
             let part = halves.add(start.movement_to(&end, self.length, self.width));
             Some((pair[0].time, pair[1].time, part))
         });
-        Corridor { steps: steps.collect(), end: self.moments.last().map_or(0.0, |moment| moment.time) }
+        Corridor { steps: steps.collect(), end: self.poses.last().map_or(0.0, |pose| pose.time) }
     }
 }
 
-/// What one road user covered, as far as the other may have been there.
+/// The area that one road user covered, as far as the other may have been there.
 struct Corridor {
     steps: Vec<(Second, Second, Part)>,
     /// When it ends.
@@ -103,8 +104,7 @@ struct Corridor {
 }
 
 impl Corridor {
-    /// The first time at which it touches the other's corridor. Most of the time goes into the steps after that: they are
-    /// not looked at.
+    /// The first time at which it touches the other's corridor. The steps after it, which cost most, are not tested.
     fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
         self.steps.iter().find_map(|&(from, to, part)| {
             let enters = other.touch(part, Contact::Entry, halves)?;
@@ -122,14 +122,14 @@ impl Corridor {
         (!still).then_some(from + (to - from) * leaves)
     }
 
-    /// The part of a step of the other at which that touches this corridor.
+    /// The fraction of a step of the other at which it touches this corridor.
     fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<f64> {
         let touch = self.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
         (touch != which.none()).then_some(touch)
     }
 }
 
-/// What two courses say of the PET.
+/// A post-encroachment time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pet {
     /// From when the first has left the conflict area until the second enters it, in s.
@@ -140,9 +140,9 @@ pub struct Pet {
     pub is_final: bool,
 }
 
-/// The PET of two courses; none where the corridors do not overlap, or both are in the conflict area at once, as where one
-/// merges behind the other. Of `halves` only the memory is used.
-pub fn post_encroachment_time(halves: &mut Bisection, a: &Course, b: &Course) -> Option<Pet> {
+/// The PET of two driven paths. None where the corridors do not overlap, or both are in the conflict area at once, as
+/// where one merges behind the other. `halves` only lends its allocations.
+pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath) -> Option<Pet> {
     let near = a.bounds().shared_with(&b.bounds())?;
     halves.clear();
     let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
@@ -160,9 +160,9 @@ mod tests {
     use crate::events::pet::*;
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
-    fn course(heading: f64, arrives: f64) -> Course {
+    fn course(heading: f64, arrives: f64) -> DrivenPath {
         let axis = direction(heading);
-        let mut course = Course::new(4.0, 2.0);
+        let mut course = DrivenPath::new(4.0, 2.0);
         for step in 0..=20 {
             let time = f64::from(step) * 0.5;
             let front = Point::origin() + axis * ((time - arrives) * 10.0);
@@ -185,8 +185,8 @@ mod tests {
     }
 
     /// A car that turns left from the south to the west on a radius of 9 m, with 8 m/s, in steps of this length.
-    fn turn(step: f64) -> Course {
-        let mut course = Course::new(4.0, 2.0);
+    fn turn(step: f64) -> DrivenPath {
+        let mut course = DrivenPath::new(4.0, 2.0);
         let steps = (4.0 / step).round() as u32;
         for time in (0..=steps).map(|number| f64::from(number) * step) {
             let way = 8.0 * (time - 1.0);
@@ -201,7 +201,7 @@ mod tests {
     #[test]
     fn a_turn_in_long_steps_covers_hardly_more_than_in_short_ones() {
         let crossing = |step: f64| {
-            let mut course = Course::new(4.0, 2.0);
+            let mut course = DrivenPath::new(4.0, 2.0);
             let steps = (8.0 / step).round() as u32;
             for time in (0..=steps).map(|number| f64::from(number) * step) {
                 course.push(time, Point::new(10.0 * (time - 5.0), 5.0), 0.0);
@@ -215,10 +215,10 @@ mod tests {
     #[test]
     fn it_is_known_when_the_second_has_left() {
         let first = turn(0.1);
-        // It crosses the way out of the turn at an angle.
+        // It crosses the exit of the turn at an angle.
         let axis = direction(2.6);
         let second = |until: f64| {
-            let mut course = Course::new(4.0, 2.0);
+            let mut course = DrivenPath::new(4.0, 2.0);
             for time in (0..=80).map(|number| f64::from(number) * 0.1).take_while(|time| *time < until) {
                 course.push(time, Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), 2.6);
             }
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn who_follows_on_the_same_way_has_none() {
+    fn a_follower_on_the_same_path_has_no_pet() {
         assert_eq!(post_encroachment_time(&mut Bisection::default(), &course(0.0, 2.0), &course(0.0, 4.0)), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Where one of a pair stood at the worst step, how large it is and where it was about to go: what a drawing needs.
+//! One road user of a pair at the worst step, as a drawing needs it: position, size and planned path.
 
 use std::sync::Arc;
 
@@ -7,8 +7,7 @@ use crate::traffic::frame::State;
 use crate::traffic::profile::Profile;
 use crate::util::units::{Metre, Radian};
 
-/// A point of a path that lies nearer than this to the line between its neighbours is left out, in m: less than a
-/// drawing shows.
+/// A point of a path nearer than this to the line between its neighbours is left out, in m: a drawing does not show it.
 const DRAWN: Metre = 0.05;
 
 /// One road user of a conflict at the step with the smallest margin.
@@ -22,7 +21,7 @@ pub struct Snapshot {
     pub length: Metre,
     /// Width in m; 0 for an obstacle.
     pub width: Metre,
-    /// Where its front bumper would go from here until it has braked to a stand; empty for who stands.
+    /// The path of its front bumper from here until it has braked to a stand; empty where it stands.
     pub path: Arc<[Point]>,
 }
 
@@ -35,7 +34,7 @@ impl Snapshot {
     }
 }
 
-/// What comes after the first of these points, as many of them as a drawing needs; none of who stands.
+/// The points after the first that a drawing needs; none where the road user stands.
 fn drawn(front: &Point, points: &[Point]) -> Vec<Point> {
     let mut kept = Vec::new();
     if points.iter().any(|point| (point - front).norm() > DRAWN) {
@@ -44,7 +43,7 @@ fn drawn(front: &Point, points: &[Point]) -> Vec<Point> {
     kept
 }
 
-/// Ramer, Douglas and Peucker: the points that keep a line within [`DRAWN`] of what it was, without the first.
+/// Ramer, Douglas and Peucker: adds the points that keep a line within [`DRAWN`], without the first.
 fn simplify(points: &[Point], kept: &mut Vec<Point>) {
     let [first, between @ .., last] = points else { return };
     let furthest = (1..).zip(between).map(|(index, point)| (index, distance(point, first, last)));
@@ -85,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn who_stands_has_no_path() {
+    fn a_standing_road_user_has_no_path() {
         assert_eq!(path(&[(0.0, 0.0), (0.0, 0.0)]), []);
         assert_eq!(path(&[(0.0, 0.0)]), []);
     }

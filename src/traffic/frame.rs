@@ -1,7 +1,7 @@
-//! The road users of one step, a row each, and the roster that says who they are.
+//! The road users of one step, a row each.
 //!
 //! A [`Roster`] holds what does not change while a road user is in the scene (id, type, size, brakes); a [`Frame`]
-//! holds what changes in every step. Both are filled by whoever has the data (the bridge from libsumo, replay
+//! holds what changes in every step. Both are filled by the source of the data (the bridge from libsumo, replay
 //! from a file, a caller from arrays) and only read by the detector.
 
 use super::roster::UserIndex;
@@ -27,7 +27,7 @@ pub struct State {
 }
 
 impl State {
-    /// No state: of who is no road user in this step.
+    /// Placeholder for a road user that is absent in this step.
     pub const NOWHERE: Self = Self { x: f64::NAN, y: f64::NAN, z: f64::NAN, heading: f64::NAN, speed: f64::NAN };
 
     /// The front bumper's centre.
@@ -35,7 +35,7 @@ impl State {
         Point::new(self.x, self.y)
     }
 
-    /// Whether it moves at all: slower than SUMO's own threshold for halting would be too coarse.
+    /// Whether it moves at all. SUMO's own threshold for halting would be too coarse.
     pub fn moves(&self) -> bool {
         self.speed > 0.0
     }
@@ -49,9 +49,9 @@ impl State {
 /// A road user in a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Row {
-    /// Who it is.
+    /// The road user.
     pub user: UserIndex,
-    /// Where it is.
+    /// Its state.
     pub state: State,
 }
 
@@ -81,8 +81,8 @@ impl Frame {
         self.states.clear();
     }
 
-    /// Adds a road user's row. What has no valid position (SUMO's invalid value, NaN, infinities) or no valid
-    /// speed is no road user in this step: it is left out, and `false` returned.
+    /// Adds a road user's row. Without a valid position (SUMO's invalid value, NaN and infinities are not) or a valid
+    /// speed it is absent in this step: the row is left out, and `false` returned.
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
         let valid = state.is_valid();
         if valid {
@@ -93,11 +93,11 @@ impl Frame {
         valid
     }
 
-    /// Adds a row for each of these road users. `fill` is given the states of all, [`State::NOWHERE`], and may fill them in
-    /// any order; who then still is no road user in this step, as [`Frame::push`] has it, is left out.
+    /// Adds a row for each of these road users. `fill` gets all their states, each [`State::NOWHERE`], and may set them in
+    /// any order. Rows that are then still invalid, as in [`Frame::push`], are left out.
     ///
     /// # Errors
-    /// That of `fill`; nobody is added then.
+    /// That of `fill`; no row is added then.
     pub fn extend<E>(
         &mut self,
         users: impl ExactSizeIterator<Item = UserIndex>,
@@ -123,7 +123,7 @@ impl Frame {
         filled
     }
 
-    /// Says of whom the rows from this one on are.
+    /// Records the rows of the road users from this row on.
     fn number(&mut self, first: usize) {
         for (row, UserIndex(user)) in (first as u32..).zip(&self.users[first..]) {
             let place = *user as usize;
@@ -139,32 +139,32 @@ impl Frame {
         self.users.len()
     }
 
-    /// Whether nobody is in the scene.
+    /// Whether the step has no road users.
     pub fn is_empty(&self) -> bool {
         self.users.is_empty()
     }
 
-    /// Everybody, in the order in which they were added.
+    /// All rows, in the order in which they were added.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = Row> + Clone {
         self.users.iter().zip(&self.states).map(|(user, state)| Row { user: *user, state: *state })
     }
 
-    /// What stands in a row.
+    /// A row.
     pub fn row(&self, row: u32) -> Row {
         Row { user: self.user(row), state: *self.state(row) }
     }
 
-    /// Who stands in a row.
+    /// The road user of a row.
     pub fn user(&self, row: u32) -> UserIndex {
         self.users[row as usize]
     }
 
-    /// The state in a row.
+    /// The state of a row.
     pub fn state(&self, row: u32) -> &State {
         &self.states[row as usize]
     }
 
-    /// In which row a road user stands, the last one if in several; none where it is no road user in this step.
+    /// The row of a road user, the last one if it has several; none where it is absent in this step.
     pub fn row_of(&self, user: UserIndex) -> Option<u32> {
         self.rows.get(user.0 as usize).copied().filter(|row| *row != ABSENT)
     }
@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_filled_in_any_order_stand_in_their_own_without_those_who_are_nowhere() {
+    fn rows_filled_in_any_order_skip_absent_road_users() {
         let mut frame = Frame::default();
         frame.push(UserIndex(7), HERE);
         let fill = |states: &mut [State]| {
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_is_added_where_filling_fails() {
+    fn no_row_is_added_where_filling_fails() {
         let mut frame = Frame::default();
         frame.push(UserIndex(7), HERE);
         let fill = |states: &mut [State]| {

@@ -10,11 +10,11 @@ use crate::util::units::{Metre, MetrePerSecond};
 pub struct Placement {
     /// The lane that its front bumper is on.
     pub lane: LaneIndex,
-    /// Its front bumper's way from the lane's beginning, in SUMO's lane length, in m.
+    /// Distance of its front bumper from the lane's beginning, in SUMO's lane length, in m.
     pub position: Metre,
-    /// Its route, where that is new or may have changed; none where it has not, or nobody knows one.
+    /// Its route, where that is new or may have changed; none where it has not changed or is unknown.
     pub route: Option<Arc<[EdgeIndex]>>,
-    /// Which edge of the route it is on, or left last when it is within a junction.
+    /// The edge of the route that it is on; within a junction, the edge that it left last.
     pub route_position: usize,
     /// Speed to the left across the lane, in m/s; other than 0 while a lane change is under way.
     pub lateral_speed: MetrePerSecond,

@@ -1,4 +1,4 @@
-//! What all road users of one type have in common, from what SUMO says of the type and what the options set.
+//! The properties that all road users of a type share, from SUMO's type and the options.
 
 use super::sumo_type::SumoType;
 use crate::braking::Brakes;
@@ -6,23 +6,23 @@ use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
-/// What sort of road user it is, as far as the model distinguishes.
+/// The sort of road user, as far as the model distinguishes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Category {
-    /// A vehicle (bicycles too): it brakes as its [`Brakes`] say.
+    /// A vehicle, bicycles included: it brakes with its [`Brakes`].
     Vehicle,
-    /// A person on foot: stops within a step. Two persons are no pair.
+    /// A person on foot: stops within a step. Two persons are not a pair.
     Person,
-    /// A static obstacle with a polygon for a shape and no heading of its own.
+    /// A static obstacle: its shape is a polygon, and it has no heading.
     Obstacle,
 }
 
 impl Category {
-    /// How many there are.
+    /// The number of categories.
     pub(crate) const COUNT: usize = 3;
 }
 
-/// What all road users of one type have in common.
+/// The properties that all road users of a type share.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// SUMO's type id.
@@ -33,7 +33,7 @@ pub struct Profile {
     pub length: Metre,
     /// Width in m.
     pub width: Metre,
-    /// Length in m of what its heading is the direction of: the first carriage, or all of it.
+    /// Length in m of the part whose direction the heading is: the first carriage, or the whole vehicle.
     pub chord: Metre,
     /// Mass in kg.
     pub mass: Kilogram,
@@ -44,7 +44,7 @@ pub struct Profile {
 /// Classes whose vehicles have air brakes.
 const PNEUMATIC_CLASSES: [&str; 6] = ["truck", "trailer", "bus", "coach", "army", "delivery_truck"];
 
-/// A person walks on for the step under way and then stands: with this deceleration within millimetres.
+/// A person walks on for the current step and then stops; at this deceleration, within millimetres.
 const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
 
 /// The length of the first carriage of SUMO's articulated shapes, in m: SUMO's heading is the chord from its rear to
@@ -57,13 +57,13 @@ fn chord(shape: &str, length: Metre) -> Metre {
     carriage.map_or(length, |(_, carriage)| carriage.min(length))
 }
 
-/// The name of a type of polygons among those of road users.
+/// The name of a type of polygons among the types of road users.
 pub(crate) fn obstacle_name(polygon_type: &str) -> String {
     format!("polygon:{polygon_type}")
 }
 
-/// A type and those that it may have been made from: once a script sets a vehicle's length alone, SUMO calls the type
-/// `TYPE@VEHICLE`, and either may itself have an @ in its id. The likeliest come first.
+/// A type and those that it may have been made from, likeliest first. When a script sets the length of one vehicle, SUMO
+/// calls its type `TYPE@VEHICLE`, and either id may itself contain an @.
 pub(crate) fn origins(name: &str) -> impl Iterator<Item = &str> {
     std::iter::once(name).chain(name.rmatch_indices('@').map(|(end, _)| &name[..end]))
 }
@@ -73,7 +73,7 @@ fn settings(name: &str, options: &Options) -> TypeOptions {
 }
 
 impl Profile {
-    /// Whether it is possible.
+    /// Checks that the values are possible.
     ///
     /// # Errors
     /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
@@ -98,7 +98,7 @@ impl Profile {
         Ok(())
     }
 
-    /// The profile of a vehicle type: `[type.NAME]` first, then the general settings, then SUMO.
+    /// The profile of a vehicle type: from `[type.NAME]` first, then the general settings, then SUMO.
     pub fn vehicle(sumo: &SumoType, options: &Options) -> Self {
         let set = settings(&sumo.name, options);
         let system = set.brakes.unwrap_or_else(|| {
@@ -165,14 +165,14 @@ mod tests {
     use crate::traffic::profile::*;
 
     #[test]
-    fn a_type_made_for_one_vehicle_has_the_settings_of_what_it_was_made_from_unless_it_has_its_own() {
+    fn a_type_made_for_one_vehicle_inherits_its_settings() {
         let mut options = Options::default();
         for (name, width) in [("car", 1.5), ("car@b", 3.0), ("car@wide", 2.5)] {
             options.types.insert(name.to_owned(), TypeOptions { width: Some(width), ..TypeOptions::default() });
         }
         let width = |name: &str| Profile::vehicle(&SumoType::car(name), &options).width;
         assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
-        // Neither the type's own id nor the vehicle's is free of @.
+        // Both the type's id and the vehicle's may contain an @.
         assert_eq!(["car@wide@a", "car@wide@b@1", "car@c@1"].map(width), [2.5, 2.5, 1.5]);
     }
 }

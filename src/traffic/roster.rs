@@ -1,4 +1,4 @@
-//! Which road users are in the scene: what does not change while they are there (id, type, size, brakes).
+//! The road users in the scene: what does not change while they are there (id, type, size, brakes).
 
 use std::sync::Arc;
 
@@ -9,21 +9,21 @@ use super::profile::{Category, Profile, origins};
 use crate::Result;
 use crate::geometry::polygon::Polygon;
 
-/// Which road user of a [`Roster`]: valid from its entering to its leaving the scene, then given to another.
+/// A road user of a [`Roster`]: valid from when it enters the scene until it leaves, then given to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct UserIndex(pub u32);
 
-/// Which [`Profile`] of a [`Roster`].
+/// A [`Profile`] of a [`Roster`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ProfileIndex(pub u32);
 
-/// Everybody in the scene, by [`UserIndex`].
+/// The road users in the scene, by [`UserIndex`].
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
-    /// SUMO's; short ones stand in the table itself.
+    /// SUMO's ids.
     ids: Vec<EcoString>,
     types: Vec<ProfileIndex>,
-    /// Those of obstacles, in convex parts.
+    /// The shapes of obstacles, in convex parts.
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
     profiles: Vec<Profile>,
     free: Vec<u32>,
@@ -36,7 +36,7 @@ impl Roster {
     /// Adds a type, or finds it by its name.
     ///
     /// # Errors
-    /// As [`Profile::check`] has them.
+    /// Those of [`Profile::check`].
     pub fn profile(&mut self, profile: Profile) -> Result<ProfileIndex> {
         if let Some(known) = self.profile_named(&profile.name, profile.category) {
             return Ok(known);
@@ -48,17 +48,17 @@ impl Roster {
         Ok(index)
     }
 
-    /// The type that was added under this name.
+    /// The type added under this name.
     pub fn profile_named(&self, name: &str, category: Category) -> Option<ProfileIndex> {
         self.by_name.get(name)?[category as usize]
     }
 
-    /// Whether anybody was of a type that settings name so.
+    /// Whether any road user had a type that settings refer to by this name.
     pub fn has_any_of(&self, name: &str) -> bool {
         self.by_name.keys().any(|known| origins(known).any(|origin| origin == name))
     }
 
-    /// Takes a road user into the scene.
+    /// Adds a road user to the scene.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
         self.changes += 1;
         match self.free.pop() {
@@ -75,21 +75,21 @@ impl Roster {
         }
     }
 
-    /// Takes an obstacle with a polygon for a shape into the scene.
+    /// Adds an obstacle whose shape is a polygon to the scene.
     pub fn enter_shaped(&mut self, id: &str, profile: ProfileIndex, shape: Arc<[Polygon]>) -> UserIndex {
         let user = self.enter(id, profile);
         self.shapes.insert(user, shape);
         user
     }
 
-    /// Lets a road user leave; its index may be given to another from now on.
+    /// Removes a road user; its index may be given to another from now on.
     pub fn leave(&mut self, user: UserIndex) {
         self.changes += 1;
         self.shapes.remove(&user);
         self.free.push(user.0);
     }
 
-    /// How often anybody has entered or left.
+    /// The number of times that a road user entered or left.
     pub fn changes(&self) -> u64 {
         self.changes
     }
@@ -104,7 +104,7 @@ impl Roster {
         self.shapes.get(&user).map_or(&[], |shape| &**shape)
     }
 
-    /// Which type this road user has.
+    /// The index of this road user's type.
     pub fn type_of(&self, user: UserIndex) -> ProfileIndex {
         self.types[user.0 as usize]
     }
@@ -124,7 +124,7 @@ impl Roster {
         self.ids.len()
     }
 
-    /// Whether nobody was ever in the scene.
+    /// Whether no road user was ever in the scene.
     pub fn is_empty(&self) -> bool {
         self.ids.is_empty()
     }

@@ -1,8 +1,8 @@
-//! What SUMO says of a type of road users; of one that says nothing itself, SUMO's defaults by vehicle class.
+//! SUMO's types of road users, and its defaults by vehicle class.
 
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared};
 
-/// What SUMO says of a vehicle or person type.
+/// A vehicle or person type, as SUMO describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SumoType {
     /// The type's id.
@@ -24,7 +24,7 @@ pub struct SumoType {
 }
 
 impl SumoType {
-    /// A type of this vehicle class that says nothing else; a class that SUMO does not have is the first, a passenger car.
+    /// A type with the defaults of a vehicle class; those of a passenger car where SUMO does not have the class.
     pub fn of_class(name: &str, class: &str) -> Self {
         let known = CLASSES.iter().find(|(known, ..)| *known == class).unwrap_or(&CLASSES[0]);
         let (_, length, width, mass, emergency_decel, decel) = *known;
@@ -47,8 +47,8 @@ impl SumoType {
     }
 }
 
-/// SUMO's defaults by vehicle class, as SUMO 1.28 tells them: length and width in m, mass in kg, `emergencyDecel` and
-/// `decel` in m/s². A class that is not here has those of the first.
+/// SUMO 1.28's defaults by vehicle class: length and width in m, mass in kg, `emergencyDecel` and
+/// `decel` in m/s². Other classes have those of the first.
 const CLASSES: [(&str, f64, f64, f64, f64, f64); 23] = [
     ("passenger", 5.0, 1.8, 1500.0, 9.0, 4.5),
     ("emergency", 6.5, 2.16, 5000.0, 9.0, 4.5),

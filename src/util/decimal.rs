@@ -1,4 +1,4 @@
-//! Numbers as text with so many decimals: the same bytes as `{:.6}`, several times as fast.
+//! Numbers as text with a fixed number of decimals: the same bytes as `{:.6}`, several times as fast.
 //!
 //! The crates for this (ryu, dtoa and what builds on them) write as many digits as a number needs; rounding those once
 //! more is not rounding the number.
@@ -14,7 +14,7 @@ const IN_DOUBT: f64 = 1.0 / 512.0;
 /// Room for the digits below [`LARGEST`] and a point.
 const DIGITS: usize = 16;
 
-/// Appends a number with so many decimals, 6 at most; rounded as it is exactly, half to even, as all formatting does.
+/// Appends a number with `decimals` decimals, 6 at most. The exact value is rounded half to even, as all formatting does.
 ///
 /// Large numbers, those in doubt and those that are none are left to the standard library.
 pub fn push_fixed(text: &mut String, value: f64, decimals: usize) {

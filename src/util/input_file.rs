@@ -12,7 +12,7 @@ use crate::{Error, Result};
 pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
     let is_regular = std::fs::metadata(path).map(|it| it.is_file() || it.is_dir());
     if !is_regular.map_err(|source| Error::file(path, source))? {
-        // Not opened before: that would wait for who writes into it.
+        // Checked before opening, because opening a pipe waits for its writer.
         return Err(Error::content(path, "a pipe or device; it is read more than once, so it has to be a file"));
     }
     let mut file = File::open(path).map_err(|source| Error::file(path, source))?;
@@ -27,7 +27,7 @@ pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
     })
 }
 
-/// What quick-xml says, in one line.
+/// A message of quick-xml in one line.
 pub fn xml_message(error: &quick_xml::Error) -> String {
     error.to_string().replace('\n', " ")
 }

@@ -1,4 +1,4 @@
-//! What has nothing to do with traffic: units, numbers, memory, threads, files.
+//! Helpers that know nothing of traffic: units, numbers, threads, files.
 
 pub(crate) mod decimal;
 pub mod double_double;

@@ -1,4 +1,4 @@
-//! Work for several threads: the same for each, on its part of a step, or something else beside what the caller does.
+//! Threads: a team that shares the work of a step, and a helper that works beside the caller.
 
 use std::panic::resume_unwind;
 use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
@@ -8,47 +8,46 @@ use std::time::{Duration, Instant};
 
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Fewer road users than this are not worth waking a thread for: of 5,000 in a jam two threads save nothing of the step, of
-/// 5,000 in platoons a quarter, of 5,000 anywhere two fifths.
+/// Road users per thread that are worth waking one for. Two threads save nothing of a step with 5,000 road users in a
+/// jam, a quarter in platoons, and two fifths where they are spread uniformly.
 const LEAST_SHARE: usize = 2500;
 
-/// So many parts the work has for each thread: who has to wake, or has a slower core, does fewer of them.
+/// Chunks per thread; a thread that wakes late or runs slower takes fewer.
 const PARTS: usize = 8;
 
-/// A helper looks for work so long before it sleeps. To wake it takes the caller up to 70 µs on a virtual machine, as long
-/// as both phases of 50 road users; of a step that takes SUMO longer than this, it is little.
+/// How long a helper polls for work before it sleeps. Waking it costs the caller up to 70 µs on a virtual machine, as
+/// much as both phases for 50 road users; in a step that takes SUMO longer than this, that is little.
 const AWAKE: Duration = Duration::from_millis(1);
 
 /// The caller's thread and those that help it.
 ///
-/// No more help than have work: who waits for some looks for it again and again at first. One thread too many on two
-/// cores made attached runs up to 7 % longer (SUMO's A10).
+/// Only as many threads help as have work, because a waiting thread polls at first. One thread too many on two cores
+/// made attached runs up to 7 % longer (SUMO's A10).
 #[derive(Default)]
 pub struct Team {
     helpers: Option<ThreadPool>,
 }
 
 impl Team {
-    /// So many threads, the caller's among them; that one alone where the system gives no more.
+    /// A team of `threads`, the caller's included; only the caller's where the system refuses more.
     pub fn new(threads: usize) -> Self {
         let helpers = threads.saturating_sub(1);
-        // No helper: for rayon 0 would be as many as there are cores.
+        // rayon takes 0 threads as one per core.
         Self { helpers: (helpers > 0).then(|| ThreadPoolBuilder::new().num_threads(helpers).build().ok()).flatten() }
     }
 
-    /// How many threads there are.
+    /// The number of threads.
     pub fn threads(&self) -> usize {
         1 + self.helpers.as_ref().map_or(0, ThreadPool::current_num_threads)
     }
 
-    /// How many threads so many road users are worth.
+    /// The number of threads worth using for `count` road users.
     pub fn busy(&self, count: usize) -> usize {
         (count / LEAST_SHARE).clamp(1, self.threads())
     }
 
-    /// Each part of the work once, by whichever worker is free; the first is the caller's thread's. It takes parts from
-    /// the front and every other worker from the back: two of them have the same parts in each step, but for those in
-    /// the middle.
+    /// Does each part of the work once, by the next free worker; the first worker runs on the caller's thread. That takes
+    /// parts from the front, and all others from the back: two workers then get mostly the same parts in every step.
     pub fn each<Worker: Send, Part: Send>(
         &self,
         workers: impl IntoIterator<Item = Worker>,
@@ -79,14 +78,14 @@ impl Team {
     }
 }
 
-/// How many of so many items a part of the work has, for so many busy threads; at least one.
+/// The items in a part of the work, for `count` items and `busy` threads; at least one.
 pub fn share(busy: usize, count: usize) -> usize {
     count.div_ceil(if busy > 1 { busy * PARTS } else { 1 }).max(1)
 }
 
-/// A thread that does the same to all that it is given, while the caller does something else.
+/// A thread that does the same work on each item it is given, while the caller does something else.
 ///
-/// Having done that it looks for more for a millisecond before it sleeps.
+/// It polls for a millisecond for the next item before it sleeps.
 pub struct Helper<Item, Done> {
     give: SyncSender<Item>,
     take_back: Receiver<(Item, Done)>,
@@ -95,7 +94,7 @@ pub struct Helper<Item, Done> {
 }
 
 impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
-    /// A thread for this work; none where the system gives no more.
+    /// A thread for this work; none where the system refuses one.
     pub fn new(work: impl Fn(&mut Item) -> Done + Send + 'static) -> Option<Self> {
         let (give, given) = sync_channel(1);
         let (give_back, take_back) = sync_channel(1);
@@ -110,13 +109,13 @@ impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
         Some(Self { give, take_back, thread: Some(thread::Builder::new().spawn(all).ok()?) })
     }
 
-    /// Has the work done to an item while the caller's thread does its own; returns when both are done.
+    /// Has the helper work on an item while the caller's thread runs `own`; returns when both are done.
     pub fn beside<T>(&mut self, item: Item, own: impl FnOnce() -> T) -> (Item, Done, T) {
         let given = self.give.send(item);
         let own = own();
         match given.ok().and_then(|()| wait_for(&self.take_back)) {
             Some((item, done)) => (item, done, own),
-            // It has panicked, and so does who waits for it.
+            // The helper has panicked: pass the panic on.
             None => {
                 let said = self.thread.take().and_then(|thread| thread.join().err());
                 resume_unwind(said.unwrap_or_else(|| Box::new("the helper has gone")))
@@ -125,7 +124,7 @@ impl<Item: Send + 'static, Done: Send + 'static> Helper<Item, Done> {
     }
 }
 
-/// What comes next; none where the other side has gone.
+/// The next item; none where the other side has gone.
 fn wait_for<T>(from: &Receiver<T>) -> Option<T> {
     let started = Instant::now();
     loop {
@@ -133,13 +132,13 @@ fn wait_for<T>(from: &Receiver<T>) -> Option<T> {
             Ok(item) => return Some(item),
             Err(TryRecvError::Disconnected) => return None,
             Err(TryRecvError::Empty) if started.elapsed() > AWAKE => return from.recv().ok(),
-            // Whoever else wants the processor goes first.
+            // Let other threads run first.
             Err(TryRecvError::Empty) => thread::yield_now(),
         }
     }
 }
 
-/// How many processors this process may use; 1 where that is not known.
+/// The number of processors this process may use; 1 where that is unknown.
 pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
@@ -154,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn every_part_is_done_once_by_however_many() {
+    fn every_part_is_done_once_by_any_number_of_workers() {
         for threads in [1, 2, 5] {
             for workers in 1..=threads {
                 let (mut sums, mut done) = (vec![0; workers], [0; 99]);
@@ -192,7 +191,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "what the helper says")]
-    fn who_waits_for_a_helper_that_panics_does_so_too() {
+    fn a_helper_that_panics_makes_its_caller_panic() {
         let mut helper = Helper::new(|fails: &mut bool| assert!(!*fails, "what the helper says")).unwrap();
         assert_eq!(helper.beside(false, || 7), (false, (), 7));
         helper.beside(true, || 7);

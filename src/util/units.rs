@@ -1,6 +1,6 @@
-//! Units as types: every quantity is an `f64` in SI units, and its alias says which; and how many of something there are, in words.
+//! Units as types: every quantity is an `f64` in SI units, named by its alias. Also counts in words.
 
-/// A length, way or distance in m.
+/// A length or distance in m.
 pub type Metre = f64;
 /// A point in time or a duration in s.
 pub type Second = f64;
@@ -13,7 +13,7 @@ pub type Radian = f64;
 /// A mass in kg.
 pub type Kilogram = f64;
 
-/// So many of them, in words.
+/// A count in words, as in `2 runs`.
 pub(crate) fn counted(number: u64, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

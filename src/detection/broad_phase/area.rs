@@ -1,9 +1,9 @@
-//! What a road user may cover until it stands.
+//! The area that a road user may cover until it stands.
 
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
 
-/// What a road user may cover until it stands, whichever way it turns.
+/// Holds all that a road user may cover until it stands, whichever way it turns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
     /// Centre, x.
@@ -14,7 +14,7 @@ pub struct Circle {
     pub radius: Metre,
 }
 
-/// Where a road user stays until it stands: within the box, and within the circle around the middle of it.
+/// A road user stays within the box, and within the circle around the box's middle, until it stands.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Area {
     /// The box.
@@ -24,7 +24,7 @@ pub struct Area {
 }
 
 impl Area {
-    /// Whether it is smaller than its box.
+    /// Whether the circle cuts the corners of the box.
     pub fn is_round(&self) -> bool {
         self.radius < f64::INFINITY
     }
@@ -34,7 +34,7 @@ impl Area {
         self.bounds.meet(&other.bounds) && self.circles_meet(other)
     }
 
-    /// Whether two do whose boxes meet.
+    /// Whether the circles of two areas meet; only of use where their boxes do.
     pub fn circles_meet(&self, other: &Self) -> bool {
         let (middle, other_middle) = (self.middle(), other.middle());
         let reach = self.radius + other.radius;

@@ -1,22 +1,22 @@
-//! What is learnt of a part of the areas while they are laid, and sorted: how large, how far away, whether round.
+//! Sums and maxima over one thread's share of the areas: how large they are, how far away, whether round.
 
 use super::strips::is_far;
 use crate::geometry::{Bounds, Vector};
 use crate::util::units::Metre;
 
-/// What is known of a part of the places.
+/// Sums and maxima over a share of the areas.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Extent {
     /// Sum of the sizes.
     pub sum: Metre,
     /// Largest length along x, and largest height.
     pub largest: Vector,
-    /// Whether one is too far away for a strip.
+    /// Whether a box is too far away for a strip.
     pub far: bool,
-    /// Whether one is smaller than its box.
+    /// Whether an area is smaller than its box.
     pub round: bool,
     pub sorted: bool,
-    /// How often two changed places while they were sorted.
+    /// Swaps while they were sorted.
     pub moved: usize,
 }
 
@@ -24,7 +24,7 @@ impl Extent {
     pub const EMPTY: Self =
         Self { sum: 0.0, largest: Vector::new(0.0, 0.0), far: false, round: false, sorted: true, moved: 0 };
 
-    /// Takes a box in; of one too far away only that is known.
+    /// Adds a box. One too far away only sets `far`.
     #[inline(always)]
     pub fn include(&mut self, laid: &Bounds) {
         if is_far(laid) {

@@ -1,13 +1,13 @@
-//! Phase 1, pre-collision ("radar"): which pairs are near enough that they might meet.
+//! The broad phase (the paper's "pre-collision" phase, its radar): which pairs are near enough to meet.
 //!
 //! The paper (eq. 4) tests the distance to every other vehicle against the ego's detection radius. Here each road
-//! user has an area that holds everything it may cover until it stands: where its way is known, straight on or along its
-//! lanes, the box around that, else a circle around its centre. A pair is kept where two areas meet, so no pair that is
-//! an encounter is dropped.
+//! user has an area that holds everything it may cover until it stands. Where its path is known, straight on or along
+//! its lanes, the area is the box around that; otherwise it is a circle around the centre. A pair is kept where two
+//! areas meet, so the broad phase drops no encounter.
 //!
-//! Which areas to compare: their boxes are sorted into strips along x, each as high as the highest of them, and within
-//! a strip by x. From every box the sweep looks ahead in its own strip and to both sides in the next (sweep and prune,
-//! Cohen et al. 1995, in strips, so that a wide scene does not make it quadratic). `closecall study --only candidates`
+//! The boxes are sorted into strips along x, each at least as high as the highest box, and within a strip by x. From
+//! every box the sweep looks ahead in its own strip and to both sides in the next one (sweep and prune, Cohen et al.
+//! 1995; strips keep it from growing quadratic in a wide scene). `closecall study --only candidates`
 //! compares it with all pairs, a grid, a plain sweep, parry2d's and rstar's trees.
 
 mod area;
@@ -24,38 +24,38 @@ use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 use extent::Extent;
-use pair_buffer::Near;
-use place::{Place, length};
+use pair_buffer::PairBuffer;
+use place::{StripEntry, length};
 
 pub use area::{Area, Circle};
 pub use slot::Slot;
 
-/// Until road users have changed places so often, on average, everybody stays in its slot, as long as they are as many: who
-/// has moved meanwhile is hardly further from those next to it in memory, and what its slot knows of it holds.
+/// Slots are reassigned after this many swaps per road user, or when their number changes. Until then neighbours on
+/// the road are still close in memory, and what a slot holds stays valid.
 const STAY: usize = 128;
 
-/// So many items are seen one after the other before their areas are asked for: the processor waits for memory once.
+/// Items read one after the other before their areas are computed, so that their cache misses overlap.
 const BLOCK: usize = 64;
 
-/// Finds the pairs of areas whose boxes meet; keeps its memory, and the order that it found, from step to step.
+/// Finds the pairs of areas whose boxes meet. Keeps its allocations and the sorted order between steps.
 #[derive(Default)]
 pub struct Search<S> {
-    /// Those in strips, sorted; then the large ones.
-    places: Vec<Place>,
-    /// By slot, a box around its area.
+    /// The boxes in strips, sorted, then the large ones.
+    places: Vec<StripEntry>,
+    /// By slot, the box of its area.
     boxes: Vec<Bounds>,
     /// Whether any area is smaller than its box.
     has_round: bool,
     slots: Vec<S>,
-    /// How often any two have changed places since slots were given.
+    /// Swaps since slots were assigned.
     moved: usize,
-    /// Which items have a slot already; only while slots are given.
+    /// Which items have a slot already, while slots are assigned.
     given: Vec<bool>,
     in_strips: usize,
     strip_height: Metre,
-    /// Length along x of the longest box that has a strip, and the largest height.
+    /// Largest length along x and largest height of a box that has a strip.
     largest: Vector,
-    large: Vec<Place>,
+    large: Vec<StripEntry>,
     parts: Vec<Extent>,
 }
 
@@ -64,7 +64,7 @@ impl Search<u32> {
     pub fn pairs(&mut self, areas: &[Area], pairs: &mut Vec<(u32, u32)>) {
         pairs.clear();
         let item_of = |who: u32| Some(who).filter(|who| (*who as usize) < areas.len());
-        self.lay(areas.len(), &Team::default(), true, item_of, |_| (), |(), item| areas[*item as usize]);
+        self.update(areas.len(), &Team::default(), true, item_of, |_| (), |(), item| areas[*item as usize]);
         self.sweep(0..areas.len(), |a, b| {
             let (a, b) = (self.slots[a as usize], self.slots[b as usize]);
             if areas[a as usize].meets(&areas[b as usize]) {
@@ -75,31 +75,32 @@ impl Search<u32> {
 }
 
 impl<S: Slot> Search<S> {
-    /// What stands in the slots of this step.
+    /// The slots of this step.
     pub fn slots(&self) -> &[S] {
         &self.slots
     }
 
-    /// Whether the area of somebody in this step is smaller than its box: two whose boxes meet may be apart.
+    /// Whether any area of this step is smaller than its box, so that two areas may be apart though their boxes meet.
     pub fn has_round(&self) -> bool {
         self.has_round
     }
 
-    /// Gives each of so many items, numbered from 0, its place, by the threads of a team. `item_of` says which of
-    /// them belongs to whom a slot knows; `are_same`, whether they are likely to be those of the last step, in the same order. `see`
-    /// fetches what is said of an item, `area` says where that is now and keeps what else is known of it in its slot. Slots
-    /// are in the order in which a step shortly before ended: those that meet are near each other.
-    pub fn lay<Seen: Copy + Default>(
+    /// Updates the slot and the box of `count` items, numbered from 0, and sorts the boxes.
+    ///
+    /// `item_of` returns the item of a road user that has a slot. `are_same` tells that the items are probably those of
+    /// the last step, in the same order. `see` reads an item; `area` returns its area and updates its slot. Slots keep
+    /// the sorted order of a recent step, so that boxes that meet are close in memory.
+    pub fn update<View: Copy + Default>(
         &mut self,
         count: usize,
         team: &Team,
         are_same: bool,
         item_of: impl Fn(u32) -> Option<u32>,
-        see: impl Fn(u32) -> Seen + Sync,
-        area: impl Fn(&Seen, &mut S) -> Area + Sync,
+        see: impl Fn(u32) -> View + Sync,
+        area: impl Fn(&View, &mut S) -> Area + Sync,
     ) {
         if self.places.len() != count || self.moved >= STAY * count || !are_same {
-            self.hold(count, item_of);
+            self.assign_slots(count, item_of);
         }
         let busy = team.busy(count);
         let share = share(busy, count);
@@ -108,7 +109,7 @@ impl<S: Slot> Search<S> {
         let parts = self.parts.iter_mut().zip(self.boxes.chunks_mut(share)).zip(self.slots.chunks_mut(share));
         team.each(repeat_n((), busy), parts, |(), ((part, boxes), slots)| {
             let mut all = Extent::EMPTY;
-            let mut block = [Seen::default(); BLOCK];
+            let mut block = [View::default(); BLOCK];
             for (boxes, slots) in boxes.chunks_mut(BLOCK).zip(slots.chunks_mut(BLOCK)) {
                 block.iter_mut().zip(&*slots).for_each(|(seen, slot)| *seen = see(slot.item()));
                 for ((seen, slot), laid) in block.iter().zip(slots).zip(boxes) {
@@ -123,56 +124,56 @@ impl<S: Slot> Search<S> {
         self.sort(team);
     }
 
-    /// Gives each of so many items a slot: whoever was there in the order in which the last step ended, then the others.
-    fn hold(&mut self, count: usize, item_of: impl Fn(u32) -> Option<u32>) {
+    /// Assigns the slots: first to the items of the last step in its sorted order, then to the others.
+    fn assign_slots(&mut self, count: usize, item_of: impl Fn(u32) -> Option<u32>) {
         let Self { places, boxes, slots, given, .. } = self;
         given.clear();
         given.resize(count, false);
         let mut is_first = |item: u32| !std::mem::replace(&mut given[item as usize], true);
-        // A place says which item its slot is for, until all have one.
+        // Until all items have a slot, `slot` holds the item.
         places.retain_mut(|place| {
             let item = item_of(slots[place.slot as usize].who()).filter(|item| is_first(*item));
             place.slot = item.unwrap_or_default();
             item.is_some()
         });
         let others = (0..count as u32).filter(|item| is_first(*item));
-        places.extend(others.map(|item| Place { begin: 0.0, strip: 0, slot: item }));
+        places.extend(others.map(|item| StripEntry { begin: 0.0, strip: 0, slot: item }));
         slots.resize(count, S::default());
         boxes.resize(count, Bounds::EMPTY);
         for ((number, place), slot) in (0..).zip(places).zip(slots) {
-            slot.give(place.slot);
+            slot.set_item(place.slot);
             place.slot = number;
         }
         self.moved = 0;
     }
 
-    /// From each of these of the sorted places ahead in its own strip, and to both sides in the next; from a large one
-    /// at everybody before it. `found` gets the slots of two whose boxes meet.
+    /// Sweeps from these boxes of the sorted order: ahead in their own strip and to both sides in the next. A large box
+    /// is compared with all before it. `found` gets the slots of two boxes that meet.
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
-        let laid = |place: &Place| &self.boxes[place.slot as usize];
-        let mut near = Near::new(&self.boxes);
+        let laid = |place: &StripEntry| &self.boxes[place.slot as usize];
+        let mut near = PairBuffer::new(&self.boxes);
         let mut start = from.start;
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
             let (own, others) = in_strips.split_at(start + length(&in_strips[start..], strip));
             let above = &others[..length(others, strip + 1)];
-            let reaches = |a: &Place| a.begin - self.largest.x;
+            let reaches = |a: &StripEntry| a.begin - self.largest.x;
             let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
                 let end = laid(a).high.x;
-                near.note(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
+                near.push(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
                 let begin = reaches(a);
                 behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
-                near.note(a, above[behind..].iter().take_while(|b| b.begin <= end), &mut found);
+                near.push(a, above[behind..].iter().take_while(|b| b.begin <= end), &mut found);
             }
             start = own.len();
         }
-        near.tell(&mut found);
+        near.flush(&mut found);
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
-            let meets = |b: &&Place| laid(a).meet(laid(b));
+            let meets = |b: &&StripEntry| laid(a).meet(laid(b));
             self.places[..place].iter().filter(meets).for_each(|b| found(a.slot, b.slot));
         }
     }
@@ -197,17 +198,17 @@ mod tests {
     }
 
     #[derive(Clone, Default)]
-    struct Known {
+    struct TestSlot {
         item: u32,
         who: u32,
     }
 
-    impl Slot for Known {
+    impl Slot for TestSlot {
         fn item(&self) -> u32 {
             self.item
         }
 
-        fn give(&mut self, item: u32) {
+        fn set_item(&mut self, item: u32) {
             self.item = item;
         }
 
@@ -216,15 +217,15 @@ mod tests {
         }
     }
 
-    /// What the search finds, swept in this many parts, in order.
-    fn found(search: &mut Search<Known>, areas: &[Area], who: &[u32], parts: usize) -> Vec<(u32, u32)> {
+    /// The sorted pairs that the search finds, swept in this many parts.
+    fn found(search: &mut Search<TestSlot>, areas: &[Area], who: &[u32], parts: usize) -> Vec<(u32, u32)> {
         let (count, mut pairs) = (areas.len(), Vec::new());
-        let area = |(): &(), known: &mut Known| {
+        let area = |(): &(), known: &mut TestSlot| {
             known.who = who[known.item as usize];
             areas[known.item as usize]
         };
         let item_of = |known| who.iter().position(|who| *who == known).map(|item| item as u32);
-        search.lay(count, &Team::new(parts), true, item_of, |_| (), area);
+        search.update(count, &Team::new(parts), true, item_of, |_| (), area);
         let share = count.div_ceil(parts).max(1);
         for start in (0..count).step_by(share) {
             search.sweep(start..(start + share).min(count), |a, b| {
@@ -244,7 +245,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn none_is_lost_from_step_to_step_whoever_comes_and_goes(
+        fn no_pair_is_lost_while_road_users_come_and_go(
             starts in prop::collection::vec((-300.0..300.0, -300.0..300.0, -9.0..9.0, -9.0..9.0, 0.5..20.0), 0..60),
             changes in prop::collection::vec(prop::option::weighted(0.3, (any::<usize>(), any::<bool>())), 40),
         ) {
@@ -255,7 +256,7 @@ mod tests {
                     (*x, *y) = (*x + *along, *y + *up);
                 }
                 match change {
-                    // Now and then one that is there already.
+                    // Sometimes a road user that is there already.
                     Some((place, true)) => {
                         let who = if place % 5 == 0 { 3 } else { step };
                         cars.insert(place % (cars.len() + 1), (who, (f64::from(step % 300), 0.0, 1.0, -1.0, 9.0)));
@@ -289,7 +290,7 @@ mod tests {
     }
 
     #[test]
-    fn however_long_boxes_are_none_is_too_far_ahead_to_meet() {
+    fn long_boxes_meet_others_far_ahead() {
         let [long, short] = [(0.0, 0.0, 3e7), (2.9e7, -1.0, 1.0)].map(|(x, y, radius)| Circle { x, y, radius }.into());
         let areas = [long, long, long, short];
         assert_eq!(found(&mut Search::default(), &areas, &[0, 1, 2, 3], 1), all_pairs(&areas));

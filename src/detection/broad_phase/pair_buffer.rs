@@ -1,44 +1,44 @@
-//! Notes of pairs that are near each other: whose boxes meet is a matter of chance, and a processor that had to guess it would
-//! guess wrong for each road user. So nothing depends on it before there are many.
+//! A buffer of candidate pairs. Whether two boxes overlap is unpredictable, so candidate pairs are buffered without a
+//! branch.
 
-use super::place::Place;
+use super::place::StripEntry;
 use crate::geometry::Bounds;
 
-/// So many pairs are noted before they are told.
-const NOTED: usize = 64;
+/// Capacity in pairs.
+const CAPACITY: usize = 64;
 
-/// Slots of two whose boxes meet.
-pub(super) struct Near<'a> {
+/// Slots of pairs whose boxes meet.
+pub(super) struct PairBuffer<'a> {
     boxes: &'a [Bounds],
-    pairs: [(u32, u32); NOTED],
+    pairs: [(u32, u32); CAPACITY],
     count: usize,
 }
 
-impl<'a> Near<'a> {
+impl<'a> PairBuffer<'a> {
     pub(super) fn new(boxes: &'a [Bounds]) -> Self {
-        Self { boxes, pairs: [(0, 0); NOTED], count: 0 }
+        Self { boxes, pairs: [(0, 0); CAPACITY], count: 0 }
     }
 
-    /// Notes the others whose boxes meet that of `a`.
+    /// Adds the pairs of `a` and the others whose boxes meet its own.
     #[inline(always)]
-    pub(super) fn note<'b>(
+    pub(super) fn push<'b>(
         &mut self,
-        a: &Place,
-        others: impl Iterator<Item = &'b Place>,
+        a: &StripEntry,
+        others: impl Iterator<Item = &'b StripEntry>,
         found: &mut impl FnMut(u32, u32),
     ) {
         let laid = self.boxes[a.slot as usize];
         for b in others {
-            if self.count == NOTED {
-                self.tell(found);
+            if self.count == CAPACITY {
+                self.flush(found);
             }
             self.pairs[self.count] = (a.slot, b.slot);
             self.count += usize::from(laid.meet(&self.boxes[b.slot as usize]));
         }
     }
 
-    /// Tells those noted, and forgets them.
-    pub(super) fn tell(&mut self, found: &mut impl FnMut(u32, u32)) {
+    /// Passes all pairs on and empties the buffer.
+    pub(super) fn flush(&mut self, found: &mut impl FnMut(u32, u32)) {
         self.pairs[..self.count].iter().for_each(|(a, b)| found(*a, *b));
         self.count = 0;
     }

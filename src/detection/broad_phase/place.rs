@@ -1,23 +1,23 @@
-//! Places along x, in strips: what is sorted.
+//! Entries of the sorted order: by strip, then by x.
 
 use crate::geometry::Bounds;
 use crate::util::units::Metre;
 
-/// Where a box begins: what is sorted, while the boxes stay in their slots.
+/// Where a box begins. Entries are sorted while the boxes stay in their slots.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct StripEntry {
     /// Its lowest x.
     pub begin: Metre,
     pub strip: i32,
     pub slot: u32,
 }
 
-impl Place {
-    /// Where the box of its slot is now, and in which strip.
+impl StripEntry {
+    /// Updates it to where its box is now.
     pub fn follow(&mut self, boxes: &[Bounds], per_metre: f64) {
         let laid = &boxes[self.slot as usize];
         let strips = (laid.low.y + laid.high.y) / 2.0 * per_metre;
-        // What `floor` says, without a call where the processor has no instruction for it.
+        // Floor by a cast: `floor` is a library call where the target has no instruction for it.
         let towards_0 = strips as i32;
         self.strip = towards_0.saturating_sub(i32::from(f64::from(towards_0) > strips));
         self.begin = laid.low.x;
@@ -28,14 +28,14 @@ impl Place {
     }
 }
 
-/// How many of these sorted places, which begin with that strip or a later one, are in it.
-pub(super) fn length(places: &[Place], strip: i32) -> usize {
+/// The number of these sorted entries that are in `strip`; none is in an earlier one.
+pub(super) fn length(places: &[StripEntry], strip: i32) -> usize {
     places.partition_point(|place| place.strip <= strip)
 }
 
-/// Moves a place to where it belongs among the sorted ones before it; `false` where that takes more moves than are left:
-/// then all are still there.
-pub(super) fn insert(places: &mut [Place], from: usize, moves: &mut usize) -> bool {
+/// Moves an entry to where it belongs among the sorted ones before it. Returns `false` where that takes more moves than
+/// are left; all entries are still there then.
+pub(super) fn insert(places: &mut [StripEntry], from: usize, moves: &mut usize) -> bool {
     if !places[from].is_before(&places[from - 1]) {
         return true;
     }

@@ -1,24 +1,24 @@
-//! Slots: where in the search's memory somebody is.
+//! Slots: where the search keeps what it knows of a road user.
 
-/// What stands in a slot of a [`Search`](super::Search).
+/// The content of a slot of a [`Search`](super::Search).
 pub trait Slot: Clone + Default + Send {
-    /// Which of the caller's items has the slot, in this step.
+    /// The caller's item that has the slot in this step.
     fn item(&self) -> u32;
 
-    /// Gives the slot to another.
-    fn give(&mut self, item: u32);
+    /// Assigns the slot to another item.
+    fn set_item(&mut self, item: u32);
 
-    /// Whose item it was last, by a small number that stays the same from step to step.
+    /// The road user whose item it was last, by a small number that does not change between steps.
     fn who(&self) -> u32;
 }
 
-/// The item is all that is known.
+/// A slot that holds its item only.
 impl Slot for u32 {
     fn item(&self) -> u32 {
         *self
     }
 
-    fn give(&mut self, item: u32) {
+    fn set_item(&mut self, item: u32) {
         *self = item;
     }
 

@@ -1,5 +1,5 @@
-//! The order of the boxes: in strips along x, each as high as the highest of them, and within a strip by x. What is
-//! larger than most, or too far away, comes after all strips and is compared with everybody.
+//! The order of the boxes: in strips along x, each at least as high as the highest box, and within a strip by x. Boxes
+//! much larger than the mean, or too far away, come after all strips and are compared with every box before them.
 
 use std::iter::repeat_n;
 
@@ -10,19 +10,19 @@ use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 
-/// A box larger than this many mean ones is compared with everybody: it would make all strips high.
+/// A box larger than this many mean ones has no strip: it would make all strips high.
 const LARGE: f64 = 2.5;
-/// No more than one in so many is: that would be all pairs again. Where more are that large, strips are higher.
+/// At most one box in this many has no strip, as each is compared with all others. Where more are large, strips are higher.
 const SHARE_OF_LARGE: usize = 1000;
-/// No strip is lower than this, in m.
+/// Lowest strip, in m.
 const LOWEST_STRIP: Metre = 1.0;
 /// A box further from the origin than this, along x or y, has no strip, in m; nothing on earth is.
 const FURTHEST: Metre = 3.3e7;
 
-/// Strips stay as they are as long as they are at most this many times as high as they have to be.
+/// Strips keep their height until they are more than this many times as high as needed.
 const SPARE_HEIGHT: f64 = 2.0;
-/// From one step to the next few road users overtake: sorting what is nearly sorted by insertion is given up after this
-/// many moves per road user.
+/// Few road users overtake within a step, so the order is nearly sorted: insertion sort is given up after this many
+/// moves per road user.
 const MOVES: usize = 32;
 
 /// Whether a side is too far from the origin for a strip.
@@ -32,7 +32,7 @@ pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
 }
 
 impl<S: Slot> Search<S> {
-    /// Sorts the areas of now.
+    /// Sorts the current areas.
     pub(super) fn sort(&mut self, team: &Team) {
         let (all, count) = (self.all_parts(), self.places.len());
         (self.largest, self.has_round) = (all.largest, all.round);
@@ -52,12 +52,12 @@ impl<S: Slot> Search<S> {
         self.parts.iter().fold(Extent::EMPTY, Extent::join)
     }
 
-    /// Whether so many are larger than this.
+    /// Whether at least `many` boxes are larger than `limit`.
     fn are_large(&self, limit: Metre, many: usize) -> bool {
         self.boxes.iter().filter(|laid| laid.size().max() > limit).nth(many - 1).is_some()
     }
 
-    /// Sets aside what is larger than this, and what is too far away for a strip. The others stay in their order.
+    /// Sets aside the boxes larger than `limit` and those too far away for a strip. The others keep their order.
     fn part_large(&mut self, limit: Metre) {
         let mut largest = Vector::zeros();
         let Self { places, boxes, large, .. } = self;
@@ -74,8 +74,8 @@ impl<S: Slot> Search<S> {
         self.largest = largest;
     }
 
-    /// Sorts the boxes by strip, and within each along x. Two that meet are then in the same strip or in neighbouring
-    /// ones.
+    /// Sorts the boxes by strip, and within a strip along x. Two boxes that meet are then in the same strip or in
+    /// neighbouring ones.
     fn sort_in_strips(&mut self, team: &Team) {
         let least = self.largest.y.max(LOWEST_STRIP);
         if (least..=SPARE_HEIGHT * least).contains(&self.strip_height) {
@@ -87,13 +87,13 @@ impl<S: Slot> Search<S> {
             let per_metre = 1.0 / self.strip_height;
             self.places.iter_mut().for_each(|place| place.follow(&self.boxes, per_metre));
         }
-        // In another order the slots would be anywhere.
+        // A full sort invalidates the order of the slots: reassign them in the next step.
         self.moved = usize::MAX;
         self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
-    /// Brings the places to where the areas are now, and sorts them by insertion, each thread its part, where that takes
-    /// few moves; whether it did.
+    /// Updates the entries and sorts them by insertion, each thread its part. Returns `false` where that takes too many
+    /// moves.
     fn is_nearly_sorted(&mut self, team: &Team) -> bool {
         let (boxes, per_metre, count) = (&self.boxes, 1.0 / self.strip_height, self.places.len());
         let busy = team.busy(count);
@@ -115,7 +115,7 @@ impl<S: Slot> Search<S> {
         }
         let mut moves = MOVES * share;
         for bound in (share..self.places.len()).step_by(share) {
-            // Of a sorted part only its beginning may belong before it.
+            // Parts are sorted, so only the first entries of one may belong further ahead.
             let mut place = bound;
             while place < self.places.len() && self.places[place].is_before(&self.places[place - 1]) {
                 if !insert(&mut self.places, place, &mut moves) {

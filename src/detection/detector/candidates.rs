@@ -1,4 +1,4 @@
-//! Who is where and how far each needs to stand; phase 1: which pairs may meet before they do.
+//! Where the road users are and how far each needs to stop; the broad phase: which pairs may meet before they stand.
 
 use std::ops::Range;
 
@@ -14,11 +14,11 @@ use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::share;
 
 impl Detector {
-    /// Who is still on its path. Returns the frame's rows whose lane the detector has to know for both phases; the caller
-    /// says it with [`Detector::place`], and leaves out whom it cannot place.
+    /// Checks which road users are still on their paths. Returns the rows of the frame whose lane the detector needs for
+    /// both phases. The caller sets it with [`Detector::set_placement`], and skips those it cannot place.
     ///
-    /// A path that is laid in another step may be another one, within what counts as being on it: so everybody is
-    /// followed, in a pair or not, and what phase 1 leaves out changes no path.
+    /// A path built in another step may differ within the tolerance of being on it. So every road user is followed,
+    /// whether in a pair or not, and what the broad phase leaves out changes no path.
     pub fn track_paths(&mut self, frame: &Frame, roster: &Roster) -> &[u32] {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
@@ -37,10 +37,10 @@ impl Detector {
         &self.unplaced
     }
 
-    /// Phase 1: which pairs may meet.
+    /// The broad phase: finds the pairs that may meet.
     pub fn broad_phase(&mut self, frame: &Frame, roster: &Roster) {
         self.lengthen_all(frame, roster);
-        self.look(frame, roster);
+        self.update_areas(frame, roster);
         if self.turns() == PathSource::Arcs {
             self.turnings.resize_with(self.paths.len(), Turning::default);
             self.turn(frame);
@@ -48,7 +48,7 @@ impl Detector {
         self.find_pairs(frame, roster);
     }
 
-    /// What makes road users turn.
+    /// Where paths come from.
     pub(super) fn turns(&self) -> PathSource {
         match self.options.path {
             _ if self.options.mode == Mode::Paper => PathSource::Straight,
@@ -58,15 +58,15 @@ impl Detector {
         }
     }
 
-    /// Everybody in its slot, with the area of now.
-    fn look(&mut self, frame: &Frame, roster: &Roster) {
+    /// Updates every road user's slot and area.
+    fn update_areas(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
         let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
-        let who_is_there = (roster.changes(), frame.len());
-        let are_same = std::mem::replace(&mut self.who_was_there, who_is_there) == who_is_there;
-        self.search.lay(
+        let this_step = (roster.changes(), frame.len());
+        let are_same = std::mem::replace(&mut self.last_step, this_step) == this_step;
+        self.search.update(
             frame.len(),
             &self.team,
             are_same,
@@ -79,7 +79,7 @@ impl Detector {
         );
     }
 
-    /// How the paths of now turn, where they are arcs.
+    /// Updates the curvature of the paths, where they are arcs.
     fn turn(&mut self, frame: &Frame) {
         for user in self.search.slots() {
             let front = frame.state(user.row).front();
@@ -91,7 +91,7 @@ impl Detector {
         }
     }
 
-    /// The pairs whose areas meet, those that each thread has found.
+    /// Finds the pairs whose areas meet, each thread its part.
     fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
@@ -118,7 +118,7 @@ impl Detector {
         self.work.pairs += found;
     }
 
-    /// Follows a row's path along the lanes, or asks for its lane.
+    /// Follows a row's path along the lanes, or adds it to those whose lane is needed.
     fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
         let of_net = lines_of(self.net.as_deref());
         self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, front);
@@ -130,14 +130,14 @@ impl Detector {
     }
 }
 
-/// Each of these slots with all before it.
+/// Pairs each of these slots with all before it.
 fn every_pair(slots: Range<usize>, mut found: impl FnMut(u32, u32)) {
     for slot in slots {
         (0..slot).for_each(|other| found(other as u32, slot as u32));
     }
 }
 
-/// How many pairs so many road users are.
+/// The number of pairs among `count` road users.
 fn all_pairs(count: usize) -> u64 {
     let count = count as u64;
     count * count.saturating_sub(1) / 2

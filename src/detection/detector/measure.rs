@@ -1,9 +1,9 @@
-//! Phase 2, second half: the gap of a pair whose foe has to come and go first; of a pair in conflict clearance, TTC, DRAC,
-//! severity.
+//! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the clearance, TTC, DRAC and
+//! severity of a pair in conflict.
 
 use super::reach::User;
 use super::step::StepInputs;
-use super::worker::{Found, Met, Scratch, Worker};
+use super::worker::{Findings, Met, Scratch, Worker};
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures;
@@ -15,21 +15,21 @@ use crate::options::Mode;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 impl StepInputs<'_> {
-    /// How far ahead somebody's path has to be known to measure a pair that it is in.
+    /// How far ahead a road user's path has to be known to measure a pair that it is in.
     pub(super) fn way_to_measure(&self, user: &User, meeting: &ConflictPoint) -> Metre {
         (self.state(user).speed * ttc::HORIZON).max(self.furthest_way_out(user, meeting))
     }
 
-    /// Measures what a worker could not measure at once.
+    /// Measures the pairs that a worker could not measure at once.
     pub(super) fn measure_all(&self, worker: &mut Worker) {
-        let Found { encounters, unmeasured, scratch, .. } = &mut worker.found;
+        let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
             let (ego, foe) = (self.mover(met.slots[0]), self.mover(met.slots[1]));
             self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
 
-    /// Completes what is known of a pair that would meet: the ego and its foe.
+    /// Completes the encounter of a pair that would meet: the ego and its foe.
     pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &mut Encounter) {
         if met.leaves {
             encounter.foe_distance = self.way_out(scratch, pair[1], met);
@@ -43,17 +43,17 @@ impl StepInputs<'_> {
         }
     }
 
-    /// The way that holds the one at which the foe is out of the way.
+    /// A distance along the path at which the foe has surely left the conflict point.
     pub(super) fn furthest_way_out(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
         let profile = self.profile(foe);
-        // The foe is out when its rear has passed the ego's whole rectangle, whatever way that lies.
+        // The foe has left when its rear has passed the ego's whole rectangle, however that is turned.
         meeting.foe_distance
             + profile.length
             + 2.0 * (meeting.ego_rectangle.half_length + meeting.ego_rectangle.half_width)
             + profile.width
     }
 
-    /// The foe's way until it has left the ego's meeting place.
+    /// The foe's distance until it has left the ego's conflict point.
     fn way_out(&self, scratch: &mut Scratch, foe: &Participant, met: &Met) -> Metre {
         let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
         poses.clear();
@@ -82,7 +82,7 @@ impl StepInputs<'_> {
         Nearness { clearance, ttc, drac, severity }
     }
 
-    /// The time to collision; where there is one, the deceleration that avoids it.
+    /// The time to collision and, where there is one, the deceleration that avoids it.
     fn ttc_and_drac(
         &self,
         scratch: &mut Scratch,

@@ -1,8 +1,9 @@
 //! Frame in, encounters out: both phases, one after the other.
 //!
-//! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output. What a
-//! step changes in what is remembered is done by one thread, in `look` and here; what only reads it (`ways`, `meet`,
-//! `measure`) by as many as the caller wants, each on its part of the pairs. The results are the same.
+//! A pure function of the frames and placements it was given so far: no clock, no randomness, no input or output. One
+//! thread updates what is kept between steps, in `candidates` and here. The modules that only read it (`occupancy`,
+//! `encounters`, `measure`) run on as many threads as the caller wants, each on its part of the pairs. The results are
+//! the same for any number of threads.
 
 mod candidates;
 mod encounters;
@@ -34,7 +35,7 @@ use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 use reach::{Paths, Reach, StepView, Turning, User};
-use row_order::Order;
+use row_order::RowOrder;
 use shortcuts::Shortcuts;
 use step::StepInputs;
 use worker::Worker;
@@ -53,17 +54,17 @@ pub struct Detector {
     conflicts_only: bool,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: Vec<LanePath>,
-    /// The same; empty where paths are no arcs.
+    /// By [`UserIndex`]; empty unless paths are arcs.
     turnings: Vec<Turning>,
-    /// Who is on its path along lanes, by row of the frame.
+    /// By row of the frame, whether the road user is on its path along lanes.
     on_lanes: Vec<bool>,
-    /// Everybody in the step in a slot: who meets is near in memory too.
+    /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
-    /// How often anybody had entered or left until the last step, and how many were in it.
-    who_was_there: (u64, usize),
-    order: Order,
+    /// The roster's changes until the last step, and the number of road users in that step.
+    last_step: (u64, usize),
+    order: RowOrder,
     unplaced: Vec<u32>,
-    /// Slots of two whose areas meet, those that each thread has found.
+    /// By thread, the slots of the pairs whose areas meet.
     pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
     team: Team,
@@ -84,8 +85,8 @@ impl Detector {
             turnings: Vec::new(),
             on_lanes: Vec::new(),
             search: Search::default(),
-            who_was_there: (0, 0),
-            order: Order::default(),
+            last_step: (0, 0),
+            order: RowOrder::default(),
             unplaced: Vec::new(),
             pairs: vec![Vec::new()],
             workers: vec![Worker::default()],
@@ -93,50 +94,50 @@ impl Detector {
         }
     }
 
-    /// Looks at the pairs of a step with so many threads, at least one; the results are the same.
+    /// Sets the number of threads, at least one; the results are the same.
     pub fn set_threads(&mut self, threads: usize) {
         self.team = Team::new(threads);
         self.pairs.resize_with(self.team.threads(), Vec::new);
         self.workers.resize_with(self.team.threads(), Worker::default);
     }
 
-    /// Says whether no road user's route changes while it is in the scene, so that a path once laid holds until the
-    /// road user leaves it; without such word routes may change.
+    /// Sets whether routes stay the same while a road user is in the scene. A path then holds until the road user leaves
+    /// it. By default routes may change.
     pub fn set_fixed_routes(&mut self, fixed: bool) {
         self.routes_may_change = !fixed;
     }
 
-    /// Whether no road user's route changes while it is in the scene.
+    /// Whether routes stay the same while a road user is in the scene.
     pub fn has_fixed_routes(&self) -> bool {
         !self.routes_may_change
     }
 
-    /// Says whether road users move to the side without changing lanes (SUMO's sublane model).
+    /// Sets whether road users move sideways without changing lanes (SUMO's sublane model).
     pub fn set_sublane(&mut self, sublane: bool) {
         self.sublane = sublane;
     }
 
-    /// Whether they may.
+    /// Whether road users move sideways without changing lanes.
     pub fn sublane(&self) -> bool {
         self.sublane
     }
 
-    /// Says that encounters which are no conflict may be left out of what [`Detector::detect`] finds.
+    /// Sets whether [`Detector::narrow_phase`] may leave out encounters that are not conflicts.
     pub fn set_conflicts_only(&mut self, only: bool) {
         self.conflicts_only = only;
     }
 
-    /// Has the lane of everybody who drives asked for in every step: somebody else wants to know it.
+    /// Asks for the lane of every vehicle in every step, because an output needs it.
     pub fn keep_asking_for_lanes(&mut self) {
         self.shortcuts.known_paths = false;
     }
 
-    /// What is left out.
+    /// The shortcuts that are taken.
     pub fn shortcuts(&self) -> Shortcuts {
         self.shortcuts
     }
 
-    /// Both phases of one step for road users whose placement nobody knows: without a net, or with straight paths.
+    /// Both phases of one step for road users without a placement: without a net, or with straight paths.
     ///
     /// With a net call [`Detector::track_paths`], [`Detector::set_placement`] for the rows that it returns,
     /// [`Detector::broad_phase`] and [`Detector::narrow_phase`].
@@ -151,12 +152,12 @@ impl Detector {
         left_out::left_out(&self.work, self.shortcuts)
     }
 
-    /// What was done so far.
+    /// The work done so far.
     pub fn work(&self) -> Work {
         self.work
     }
 
-    /// Forgets a road user that has left the scene: its index may be given to another.
+    /// Forgets a road user that has left the scene, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
         if let Some(path) = self.paths.get_mut(user.0 as usize) {
             path.clear();
@@ -166,17 +167,17 @@ impl Detector {
         }
     }
 
-    /// Whether the road user of a row is still on the path that was laid before.
+    /// Whether the road user of a row is still on the path built before.
     pub fn keeps_path(&self, row: u32) -> bool {
         self.on_lanes[row as usize]
     }
 
-    /// Whether the route that a road user was said to have is known from this place in it on.
+    /// Whether a road user's route is known from this position on.
     pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
         self.paths.get(user.0 as usize).is_some_and(|path| path.knows_route(position))
     }
 
-    /// Where the road user of a row is on the net, if it is not on its path still or that is not that of its route.
+    /// Sets a road user's place on the net. No effect while it is still on a path that matches its route.
     pub fn set_placement(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
@@ -197,7 +198,8 @@ impl Detector {
         self.on_lanes[row as usize] = !path.track.is_empty();
     }
 
-    /// Phase 2: the pairs that would meet, in the order of the frame's rows. The frame is that of [`Detector::approach`].
+    /// The narrow phase: finds the pairs that would meet, in the order of the frame's rows. Call
+    /// [`Detector::broad_phase`] with the same frame first.
     pub fn narrow_phase(
         &mut self,
         frame: &Frame,
@@ -206,7 +208,7 @@ impl Detector {
         let mut workers = std::mem::take(&mut self.workers);
         for worker in &mut workers {
             worker.found.clear();
-            worker.ways.begin(self.search.slots().len());
+            worker.occupancy.begin(self.search.slots().len());
         }
         let scene = self.scene(frame, roster);
         let busy = self.team.busy(frame.len());
@@ -236,18 +238,18 @@ impl Detector {
         self.encounters()
     }
 
-    /// What [`Detector::detect`] has found in the last step, as far as it was retained.
+    /// The encounters of the last step that were retained.
     pub fn encounters(&self) -> impl ExactSizeIterator<Item = &Encounter> + Clone {
         self.order.sorted(&self.workers)
     }
 
-    /// Forgets those encounters that are not to be kept.
+    /// Keeps only the encounters for which `keep` returns true.
     pub fn retain(&mut self, keep: impl FnMut(&mut Encounter) -> bool) {
         self.order.retain(&mut self.workers, keep);
     }
 
-    /// Sees to it that all paths reach as far as both phases look, in a pair or not: who came to the end of its path
-    /// would be given another one.
+    /// Extends all paths as far as both phases look, whether in a pair or not: a road user at the end of its path would
+    /// get another one.
     fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
         let Some(net) = &self.net else { return };
         for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
@@ -259,7 +261,7 @@ impl Detector {
         }
     }
 
-    /// Sees to it that somebody's path reaches so far ahead, if the route does.
+    /// Extends a road user's path this far ahead, if its route reaches that far.
     fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
         if let Some(net) = &self.net {
             self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).chord, way);

@@ -1,5 +1,5 @@
-//! Where the road users of a step will go: their poses, and the boxes around what they cover on the way. Laid when
-//! somebody asks, then kept until the step ends.
+//! Where the road users of a step will go: their poses, and the boxes around what they cover. Computed on demand and kept
+//! until the step ends.
 
 use super::reach::User;
 use super::step::StepInputs;
@@ -12,7 +12,7 @@ use crate::options::{Mode, PathModel};
 use crate::traffic::profile::Category;
 use crate::util::units::Metre;
 
-/// Hardly a way has more poses; the table of all grows by doubling where one has.
+/// Initial capacity: few paths have more poses.
 pub(super) const MOST_POSES: usize = 64;
 
 /// A straight path has a pose at its start, one where the road user stands and one ε further.
@@ -21,23 +21,23 @@ const MOST_STRAIGHT: usize = 3;
 /// The paths of a step that were asked for, until the step ends.
 #[derive(Default)]
 pub(super) struct OccupancyCache {
-    /// By slot, which of `laid` is its path; [`NOT_LAID`] as long as nobody asked.
+    /// By slot, which of `built` is its path; [`NOT_BUILT`] until it is asked for.
     numbers: Vec<u32>,
-    laid: Vec<Laid>,
+    built: Vec<BuiltPath>,
     poses: Vec<Pose>,
     covers: Vec<SweptBounds>,
 }
 
-const NOT_LAID: u32 = u32::MAX;
+const NOT_BUILT: u32 = u32::MAX;
 
-/// The way of who is in a slot.
+/// The path of the road user in a slot.
 #[derive(Clone, Copy)]
-struct Laid {
+struct BuiltPath {
     poses: (u32, u32),
-    /// Where its covers begin, that of the whole way and those from pose to pose; none as long as nobody asked.
+    /// Index of its first cover: that of the whole path, then those between poses. None until asked for.
     covers: Option<u32>,
     straight: bool,
-    /// The box around all that it covers on the way.
+    /// The box around all that it covers.
     bounds: Bounds,
 }
 
@@ -45,21 +45,21 @@ impl OccupancyCache {
     /// Forgets the paths of the last step; slots below `slots` may be asked for.
     pub(super) fn begin(&mut self, slots: usize) {
         self.numbers.clear();
-        self.numbers.resize(slots, NOT_LAID);
-        self.laid.clear();
+        self.numbers.resize(slots, NOT_BUILT);
+        self.built.clear();
         self.poses.clear();
         self.covers.clear();
     }
 
-    /// Lays the poses until it stands and ε further, unless it can only go straight on: then phase 1 has said where it
-    /// will be.
+    /// Computes the poses until the road user stands and ε further. Not needed where it can only go straight on, as the
+    /// broad phase has its box.
     pub(super) fn see(&mut self, scene: &StepInputs, slot: u32) {
         if !scene.user(slot).ahead {
-            self.lay(scene, slot);
+            self.build(scene, slot);
         }
     }
 
-    fn lay(&mut self, scene: &StepInputs, slot: u32) {
+    fn build(&mut self, scene: &StepInputs, slot: u32) {
         if self.find(slot).is_some() {
             return;
         }
@@ -77,71 +77,71 @@ impl OccupancyCache {
             scene.reach.area(user).bounds
         } else {
             let mut bounds = Bounds::EMPTY;
-            // What lies between the first and the last of a straight way their boxes hold.
+            // The boxes of the first and last pose of a straight path hold all between them.
             for pose in poses.iter().step_by(if straight { (poses.len() - 1).max(1) } else { 1 }) {
                 bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
             }
             bounds.grown(TOLERANCE)
         };
-        self.numbers[slot as usize] = self.laid.len() as u32;
-        self.laid.push(Laid { poses: (start as u32, all.len() as u32), covers: None, straight, bounds });
+        self.numbers[slot as usize] = self.built.len() as u32;
+        self.built.push(BuiltPath { poses: (start as u32, all.len() as u32), covers: None, straight, bounds });
     }
 
-    /// Lays the poses and the boxes around them.
+    /// Computes the poses and the boxes around them.
     pub(super) fn cover(&mut self, scene: &StepInputs, slot: u32) {
-        self.lay(scene, slot);
-        let Self { numbers, laid, poses, covers } = self;
-        let laid = &mut laid[numbers[slot as usize] as usize];
-        if laid.covers.is_some() {
+        self.build(scene, slot);
+        let Self { numbers, built, poses, covers } = self;
+        let built = &mut built[numbers[slot as usize] as usize];
+        if built.covers.is_some() {
             return;
         }
-        laid.covers = Some(covers.len() as u32);
+        built.covers = Some(covers.len() as u32);
         let profile = scene.profile(scene.user(slot));
-        let poses = &poses[laid.poses.0 as usize..laid.poses.1 as usize];
+        let poses = &poses[built.poses.0 as usize..built.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.shortcuts.paths_apart {
-            true => SweptBounds::of(poses, profile.length, profile.width).unwrap_or_else(|| laid.bounds.into()),
+            true => SweptBounds::of(poses, profile.length, profile.width).unwrap_or_else(|| built.bounds.into()),
             false => SweptBounds::EVERYWHERE,
         };
         let whole = match poses {
-            [first, .., last] if laid.straight && poses.len() <= MOST_STRAIGHT && scene.shortcuts.paths_apart => {
-                SweptBounds::straight(first, last, profile.length, profile.width, laid.bounds)
+            [first, .., last] if built.straight && poses.len() <= MOST_STRAIGHT && scene.shortcuts.paths_apart => {
+                SweptBounds::straight(first, last, profile.length, profile.width, built.bounds)
             }
             _ => of(poses),
         };
         covers.push(whole);
-        if !laid.straight {
+        if !built.straight {
             covers.extend(poses.windows(2).map(of));
         }
     }
 
-    /// The box around all that it covers on its way.
+    /// The box around all that a road user covers on its path.
     pub(super) fn bounds(&self, scene: &StepInputs, slot: u32) -> Bounds {
         match self.find(slot) {
-            Some(laid) => laid.bounds,
+            Some(built) => built.bounds,
             None => scene.reach.area(scene.user(slot)).bounds,
         }
     }
 
-    /// The boxes around all that it covers on its way, if that was covered.
+    /// The boxes around all that a road user covers, if [`Self::cover`] was called for it.
     pub(super) fn cover_of(&self, slot: u32) -> &SweptBounds {
-        let found = self.find(slot).and_then(|laid| self.covers.get(laid.covers? as usize));
+        let found = self.find(slot).and_then(|built| self.covers.get(built.covers? as usize));
         found.unwrap_or(&SweptBounds::EVERYWHERE)
     }
 
-    /// Who is in a slot, with its way if that is not simply ahead.
+    /// The road user in a slot, with its path unless that is straight ahead.
     pub(super) fn mover<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
         if scene.user(slot).ahead { scene.mover(slot) } else { self.covered(scene, slot) }
     }
 
-    /// Who is in a slot whose way was covered.
+    /// The road user in a slot, after [`Self::cover`].
     pub(super) fn covered<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
         let mut mover = scene.mover(slot);
-        if let Some(laid) = self.find(slot) {
-            mover.poses = &self.poses[laid.poses.0 as usize..laid.poses.1 as usize];
-            mover.straight = laid.straight;
+        if let Some(built) = self.find(slot) {
+            mover.poses = &self.poses[built.poses.0 as usize..built.poses.1 as usize];
+            mover.straight = built.straight;
             mover.reach = mover.poses.last().map_or(0.0, |pose| pose.distance);
-            if let Some(start) = laid.covers {
-                let steps = if laid.straight { 0 } else { mover.poses.len().saturating_sub(1) };
+            if let Some(start) = built.covers {
+                let steps = if built.straight { 0 } else { mover.poses.len().saturating_sub(1) };
                 mover.cover = &self.covers[start as usize];
                 mover.covers = &self.covers[start as usize + 1..][..steps];
             }
@@ -149,13 +149,13 @@ impl OccupancyCache {
         mover
     }
 
-    fn find(&self, slot: u32) -> Option<&Laid> {
-        self.laid.get(self.numbers[slot as usize] as usize)
+    fn find(&self, slot: u32) -> Option<&BuiltPath> {
+        self.built.get(self.numbers[slot as usize] as usize)
     }
 }
 
 impl<'a> StepInputs<'a> {
-    /// Who is in a slot, without its way.
+    /// The road user in a slot, without its path.
     pub(super) fn mover(&self, slot: u32) -> Participant<'a> {
         let user = self.user(slot);
         let (profile, state) = (self.roster.profile_at(user.profile), self.state(user));
@@ -179,8 +179,9 @@ impl<'a> StepInputs<'a> {
         mover
     }
 
-    /// Adds a road user's poses at the given ways, and between, as far as its path is known; `beyond` that straight on.
-    pub(super) fn course(&self, user: &User, ways: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
+    /// Adds a road user's poses at the given distances and between, as far as its path is known; `beyond` that straight
+    /// on.
+    pub(super) fn course(&self, user: &User, distances: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
         let (User { axis, category, on_lanes, .. }, front) = (*user, self.state(user).front());
         if category == Category::Obstacle {
             return;
@@ -188,14 +189,14 @@ impl<'a> StepInputs<'a> {
         let chord = || self.profile(user).chord;
         if on_lanes {
             let (track, lines) = self.paths.track(user.index);
-            return track.poses(lines, axis, chord(), ways, beyond, poses);
+            return track.poses(lines, axis, chord(), distances, beyond, poses);
         }
         poses.push(Pose { distance: 0.0, front, axis });
-        let ways = &ways[ways.partition_point(|way| *way <= 0.0)..];
+        let distances = &distances[distances.partition_point(|distance| *distance <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, chord(), ways, poses);
+            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, chord(), distances, poses);
         } else {
-            straight::poses(front, axis, ways, poses);
+            straight::poses(front, axis, distances, poses);
         }
     }
 }

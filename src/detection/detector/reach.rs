@@ -1,4 +1,4 @@
-//! What both phases know of each road user in the current step, and how far it reaches until it stands.
+//! The data that both phases share for each road user of a step, and how far it reaches until it stands.
 
 use super::shortcuts::Shortcuts;
 use crate::braking::{stopping_distance, stopping_distance_paper};
@@ -16,30 +16,30 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, Radian};
 
-/// How a road user turns, as far as the last two steps tell.
+/// The curvature of a road user's arc, from its last two steps.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Turning {
     pub last: Option<(Point, Vector)>,
     pub curvature: f64,
 }
 
-/// What the phases know of a road user in the step under way, besides its row of the frame.
+/// A road user in the current step, besides its row of the frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct User {
     pub heading: Radian,
-    /// Where that leads.
+    /// Unit vector of the heading.
     pub axis: Vector,
-    /// Which row of the frame.
+    /// Its row of the frame.
     pub row: u32,
     pub index: UserIndex,
     pub profile: ProfileIndex,
     pub category: Category,
-    /// Whether it goes straight on until it stands: it has no lanes and no arc, or its lane leads straight on.
+    /// Whether it goes straight on until it stands: without lanes or an arc, or on a lane that leads straight on.
     pub ahead: bool,
     pub on_lanes: bool,
 }
 
-/// What makes road users turn.
+/// Where paths come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PathSource {
     Straight,
@@ -47,7 +47,7 @@ pub(super) enum PathSource {
     Lanes,
 }
 
-/// Everybody's path, and the lines of the net's lanes, on which most of them are.
+/// All paths, and the lines of the net's lanes, which most of them follow.
 #[derive(Clone, Copy)]
 pub(super) struct Paths<'a> {
     paths: &'a [LanePath],
@@ -59,13 +59,13 @@ impl<'a> Paths<'a> {
         Self { paths, of_net: lines_of(net) }
     }
 
-    /// Where somebody is, and on which lines.
+    /// A road user's track, and the lines that it is on.
     pub(super) fn track(&self, user: UserIndex) -> (&'a Track, &'a Lines) {
         let path = &self.paths[user.0 as usize];
         (&path.track, path.lines(self.of_net))
     }
 
-    /// The lane at a way ahead of somebody.
+    /// The lane at a distance ahead of a road user.
     pub(super) fn lane_at(&self, user: UserIndex, way: Metre) -> Option<LaneIndex> {
         self.paths[user.0 as usize].lane_at(self.of_net, way)
     }
@@ -75,7 +75,7 @@ pub(super) fn lines_of(net: Option<&Net>) -> &Lines {
     net.map_or(Lines::NONE, |net| &net.lines)
 }
 
-/// What the step under way says of everybody.
+/// The current step, as both phases read it.
 #[derive(Clone, Copy)]
 pub(super) struct StepView<'a> {
     pub frame: &'a Frame,
@@ -86,7 +86,7 @@ pub(super) struct StepView<'a> {
     pub paths: Paths<'a>,
 }
 
-/// What is said of who stands in a row, fetched from where it is.
+/// A row of the frame and its road user's type.
 #[derive(Clone, Copy, Default)]
 pub(super) struct RowView {
     pub row: Row,
@@ -94,16 +94,16 @@ pub(super) struct RowView {
 }
 
 impl StepView<'_> {
-    /// What is said of who stands in a row.
+    /// Reads a row.
     #[inline]
     pub fn see(&self, row: u32) -> RowView {
         let row = self.frame.row(row);
         RowView { row, profile: self.roster.type_of(row.user) }
     }
 
-    /// Who stands in a row. Whoever was `last` in its slot is mostly the same: one that heads as it did has the same axis,
-    /// without asking for sine and cosine.
-    // Always: by a call it would be written twice, and the second time wait for the first, 15 ns per road user.
+    /// The road user of a row. Mostly it was also the `last` in its slot; where the heading is the same, so is the axis,
+    /// and sine and cosine are not computed again.
+    // Always inlined: as a call it would write the result twice, at 15 ns per road user.
     #[inline(always)]
     pub fn user(&self, row: u32, seen: &RowView, last: &User) -> User {
         let RowView { row: Row { user: index, ref state }, profile: type_index } = *seen;
@@ -133,7 +133,7 @@ impl StepView<'_> {
 }
 
 impl Default for User {
-    /// Nobody yet.
+    /// An empty slot.
     fn default() -> Self {
         Self {
             heading: 0.0,
@@ -153,7 +153,7 @@ impl Slot for User {
         self.row
     }
 
-    fn give(&mut self, item: u32) {
+    fn set_item(&mut self, item: u32) {
         self.row = item;
     }
 
@@ -162,7 +162,7 @@ impl Slot for User {
     }
 }
 
-/// How far somebody of this type still moves.
+/// The distance until a road user of this type stands.
 #[inline(always)]
 pub(super) fn stop(state: &State, profile: &Profile) -> Metre {
     if state.moves() { stopping_distance(state.speed, &profile.brakes) } else { 0.0 }
@@ -175,11 +175,11 @@ pub(super) struct Reach<'a> {
     roster: &'a Roster,
     paths: Paths<'a>,
     epsilon: Metre,
-    /// Whether whose way is known has a box around that.
+    /// Whether a known path is searched by the box around it, not by a circle.
     has_boxes: bool,
-    /// Whether the distance counts, whichever way that is, and the stopping distance is that of the paper.
+    /// Whether the paper's circle and stopping distance apply.
     on_paper: bool,
-    /// Whether who has no lanes turns.
+    /// Whether road users without lanes turn.
     on_arcs: bool,
 }
 
@@ -197,13 +197,13 @@ impl<'a> Reach<'a> {
         Self { frame, roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
     }
 
-    /// What somebody may cover until it stands, and ε further.
+    /// The area that a road user may cover until it stands and ε further.
     pub(super) fn area(&self, user: &User) -> Area {
         self.area_of(user, self.frame.state(user.row))
     }
 
-    /// The same of somebody whose state is at hand.
-    // Always, for the same reason.
+    /// The same for a state already read.
+    // Always inlined, for the same reason as `user`.
     #[inline(always)]
     pub(super) fn area_of(&self, user: &User, state: &State) -> Area {
         let (profile, front) = (self.roster.profile_at(user.profile), state.front());
@@ -222,13 +222,13 @@ impl<'a> Reach<'a> {
             return bounds.grown(TOLERANCE + beside).into();
         }
         if user.on_lanes && self.has_boxes {
-            // Its front is on the line ahead, the rest of it nowhere further from there than that.
+            // Its front is on the line ahead; no part of it is further from there than this.
             let behind = profile.length + profile.width / 2.0;
             let (track, lines) = self.paths.track(user.index);
             return track.bounds_ahead(lines, reach).grown(TOLERANCE + behind).into();
         }
         if self.on_arcs {
-            // Its tail swings out: it may get further than its front.
+            // Its tail swings out and may reach further than its front.
             let behind = profile.length.hypot(profile.width / 2.0);
             return Circle { x: front.x, y: front.y, radius: reach + behind + TOLERANCE }.into();
         }

@@ -3,7 +3,7 @@
 use crate::options::Options;
 use crate::options::shortcut::Shortcut;
 
-/// What is left out of a run where the scene does not need it.
+/// The shortcuts of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shortcuts {
     /// [`Shortcut::AreasApart`].
@@ -17,7 +17,7 @@ pub struct Shortcuts {
 }
 
 impl Shortcuts {
-    /// What these options leave out: all but what they keep.
+    /// All but those that these options keep the run from.
     pub fn of(options: &Options) -> Self {
         let shortcuts = |what| !options.keep_all && !options.keep.contains(&what);
         Self {

@@ -9,7 +9,7 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::Roster;
 use crate::util::units::Metre;
 
-/// What phase 2 reads of the step under way.
+/// The inputs of the narrow phase in the current step.
 #[derive(Clone, Copy)]
 pub(super) struct StepInputs<'a> {
     pub options: &'a Options,
@@ -32,7 +32,7 @@ impl StepInputs<'_> {
         self.frame.state(user.row)
     }
 
-    /// How far somebody still moves.
+    /// The distance until a road user stands.
     #[inline(always)]
     pub fn stop(&self, user: &User) -> Metre {
         reach::stop(self.state(user), self.profile(user))

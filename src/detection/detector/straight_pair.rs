@@ -1,10 +1,10 @@
-//! Two that go straight on along their headings, on no lanes: what they cover is two rectangles, and to lay these for each
-//! pair takes less than to keep them.
+//! Two road users without lanes that go straight on along their headings. They cover two rectangles, which are cheaper
+//! to compute for each pair than to keep.
 
 use super::reach::User;
 use super::step::StepInputs;
 use super::work::Work;
-use super::worker::Found;
+use super::worker::Findings;
 use crate::detection::narrow_phase::Participant;
 use crate::detection::path::{Pose, straight};
 use crate::geometry::Point;
@@ -13,23 +13,23 @@ use crate::geometry::sweep::TOLERANCE;
 use crate::traffic::profile::Category;
 use crate::util::units::Metre;
 
-/// Poses where somebody is now, where it stands and ε further; who stands has fewer.
-struct Onward {
+/// Poses where a road user is now, where it stands and ε further; fewer where it stands already.
+struct StraightPoses {
     poses: [Pose; 3],
     count: usize,
 }
 
-impl Onward {
+impl StraightPoses {
     fn of(front: Point, user: &User, stop: Metre, reach: Metre) -> Self {
         let now = straight::pose(front, user.axis, 0.0);
-        let mut onward = Self { poses: [now; 3], count: 1 };
+        let mut straight_poses = Self { poses: [now; 3], count: 1 };
         for way in [stop, reach] {
             if way > 0.0 {
-                onward.poses[onward.count] = straight::pose(front, user.axis, way);
-                onward.count += 1;
+                straight_poses.poses[straight_poses.count] = straight::pose(front, user.axis, way);
+                straight_poses.count += 1;
             }
         }
-        onward
+        straight_poses
     }
 
     fn poses(&self) -> &[Pose] {
@@ -38,16 +38,16 @@ impl Onward {
 }
 
 impl StepInputs<'_> {
-    /// Whether both do, and phase 1 has compared the boxes around all that they cover.
-    pub(super) fn go_onward(&self, slots: [u32; 2]) -> bool {
-        let goes_onward = |user: &User| user.ahead && !user.on_lanes && user.category != Category::Obstacle;
+    /// Whether both go straight on, and the broad phase has compared the boxes around all that they cover.
+    pub(super) fn go_straight(&self, slots: [u32; 2]) -> bool {
+        let goes_straight = |user: &User| user.ahead && !user.on_lanes && user.category != Category::Obstacle;
         self.shortcuts.areas_apart
             && self.shortcuts.paths_apart
-            && slots.iter().all(|slot| goes_onward(self.user(*slot)))
+            && slots.iter().all(|slot| goes_straight(self.user(*slot)))
     }
 
-    /// Where they would meet.
-    pub(super) fn meet_onward(&self, work: &mut Work, slots: [u32; 2], found: &mut Found) {
+    /// Finds where they would meet.
+    pub(super) fn meet_straight(&self, work: &mut Work, slots: [u32; 2], found: &mut Findings) {
         let (mut first, mut second) = (self.mover(slots[0]), self.mover(slots[1]));
         let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
         let covered = |mover: &Participant| mover.rectangle.swept(&(mover.rectangle.axis * mover.reach), TOLERANCE);
@@ -55,11 +55,11 @@ impl StepInputs<'_> {
             work.paths_apart += 1;
             return;
         }
-        let onward = |slot: u32, mover: &Participant| {
+        let straight_poses = |slot: u32, mover: &Participant| {
             let user = self.user(slot);
-            Onward::of(self.state(user).front(), user, mover.stop, mover.reach)
+            StraightPoses::of(self.state(user).front(), user, mover.stop, mover.reach)
         };
-        let (of_first, of_second) = (onward(slots[0], &first), onward(slots[1], &second));
+        let (of_first, of_second) = (straight_poses(slots[0], &first), straight_poses(slots[1], &second));
         first.poses = of_first.poses();
         second.poses = of_second.poses();
         self.sweep(work, slots, [&first, &second], in_line, found);

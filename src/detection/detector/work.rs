@@ -1,31 +1,31 @@
-//! How much work each part of the detector had.
+//! Counts of the detector's work.
 
-/// How much each part of the detector had to do since the run began, and what it could leave out.
+/// Counts since the run began: what each part of the detector did, and what it left out.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 pub struct Work {
-    /// Road users, counted in every step.
+    /// Road users, summed over the steps.
     pub rows: u64,
-    /// Pairs that phase 1 lets through.
+    /// Pairs that pass the broad phase.
     pub pairs: u64,
     /// Pairs left out because they are too far apart to meet before both stand.
     pub areas_apart: u64,
-    /// Of the others, left out because both stand.
+    /// Pairs that pass, but are left out because both stand.
     pub both_stand: u64,
     /// Left out because one is on a bridge above the other.
     pub other_level: u64,
     /// Left out because both are persons.
     pub both_persons: u64,
-    /// Left out because the boxes around both ways do not meet.
+    /// Left out because the boxes around both paths are apart.
     pub paths_apart: u64,
     /// Settled in one dimension.
     pub in_line: u64,
     /// Swept.
     pub swept: u64,
-    /// Looked at for a frontal encounter: in one dimension and opposed, or met at such an angle.
+    /// Tested for a frontal encounter: opposed in one dimension, or met at such an angle.
     pub frontal: u64,
     /// Met at an angle of a side encounter.
     pub side: u64,
-    /// Road users that were still on the path laid before.
+    /// Road users that were still on the path built before.
     pub known_paths: u64,
 }
 

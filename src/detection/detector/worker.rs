@@ -1,4 +1,4 @@
-//! What one thread needs for its part of a step, and what it finds.
+//! One thread's memory for its part of a step, and what it finds.
 
 use super::occupancy::{MOST_POSES, OccupancyCache};
 use super::work::Work;
@@ -7,26 +7,26 @@ use crate::detection::narrow_phase::ConflictPoint;
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
 
-/// One thread, and what it finds among the pairs that it looks at.
+/// One thread's state, and what it finds among its pairs.
 #[derive(Default)]
 pub(super) struct Worker {
     pub work: Work,
-    pub ways: OccupancyCache,
-    pub found: Found,
+    pub occupancy: OccupancyCache,
+    pub found: Findings,
 }
 
 /// The pairs that would meet.
 #[derive(Default)]
-pub(super) struct Found {
+pub(super) struct Findings {
     pub encounters: Vec<Encounter>,
     /// Which of them are not measured yet.
     pub unmeasured: Vec<(u32, Met)>,
     pub scratch: Scratch,
 }
 
-/// Memory for what is forgotten with the pair.
+/// Allocations reused for each pair.
 pub(super) struct Scratch {
-    /// Poses further ahead than the ways of the step: the ego's and the foe's.
+    /// Poses further ahead than the paths of the step: the ego's and the foe's.
     pub courses: [Vec<Pose>; 2],
     pub halves: Bisection,
 }
@@ -37,7 +37,7 @@ impl Default for Scratch {
     }
 }
 
-/// What measuring a pair that would meet starts from.
+/// The input for measuring a pair that would meet.
 #[derive(Clone, Copy)]
 pub(super) struct Met {
     /// The ego's slot and the foe's.
@@ -45,11 +45,11 @@ pub(super) struct Met {
     pub meeting: ConflictPoint,
     /// cos α.
     pub sigma: f64,
-    /// Whether the gap waits for when the foe has left the meeting place.
+    /// Whether the gap depends on when the foe has left the conflict point.
     pub leaves: bool,
 }
 
-impl Found {
+impl Findings {
     pub fn clear(&mut self) {
         self.encounters.clear();
         self.unmeasured.clear();
