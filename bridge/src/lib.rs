@@ -4,6 +4,7 @@
 //! `closecall` finds the conflicts, [`paint`] shows them in sumo-gui.
 
 mod checker;
+mod conflict;
 mod error;
 mod frames;
 mod functions;
@@ -21,7 +22,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _closecall {
     #[pymodule_export]
-    use super::checker::{Checker, Conflict};
+    use super::checker::Checker;
+    #[pymodule_export]
+    use super::conflict::Conflict;
     #[pymodule_export]
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
