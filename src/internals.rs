@@ -3,6 +3,11 @@
 //! Not part of that interface: anything here may change in any version.
 
 #[cfg(feature = "cli")]
+pub mod analysis {
+    pub use crate::analysis::logged::ConflictReader;
+}
+
+#[cfg(feature = "cli")]
 pub mod batch {
     pub use crate::batch::regress::outcome::Outcome;
     pub use crate::batch::regress::scenario::RegressSettings;
@@ -51,6 +56,7 @@ pub mod output {
     pub use crate::output::input_hash::Input;
     pub use crate::output::log::Log;
     pub use crate::output::record::Versions;
+    pub use crate::output::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
 }
 
 pub mod run {

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use closecall::internals::output::{Context, LoggedConflict};
 use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::conflict::Conflict;
 use crate::error::exception;
 use crate::frames::Frames;
 use crate::paint::Painter;
@@ -161,8 +163,11 @@ impl Checker {
     /// All conflicts so far; the open ones as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let conflicts = self.recorded.run.conflicts();
-        PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.recorded.run.net())))
+        let run = &self.recorded.run;
+        let context = |number| Context { number, net: run.net(), roster: &run.roster };
+        let conflicts = run.conflicts();
+        let logged = (1..).zip(&conflicts).map(|(number, conflict)| LoggedConflict::new(conflict, context(number)));
+        PyList::new(py, logged.map(Conflict).collect::<Vec<_>>())
     }
 
     /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
@@ -193,71 +198,4 @@ pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
 /// Whether libsumo runs sumo-gui. traci is not asked, because a plain SUMO would print an error.
 fn has_gui(source: &Bound<PyAny>) -> bool {
     pull::is_libsumo(source) && source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
-}
-
-/// One conflict: a pair of road users and a run of steps in which they were closer than they can safely be.
-///
-/// SI units; everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and
-/// `pet`, which are the event's extremes. None where a measure does not exist.
-#[pyclass(frozen, get_all, module = "closecall", name = "Conflict")]
-pub struct Conflict {
-    ego: String,
-    foe: String,
-    kind: &'static str,
-    severity: &'static str,
-    begin: f64,
-    end: f64,
-    time: f64,
-    gap: f64,
-    mu: f64,
-    margin: f64,
-    clearance: f64,
-    ttc: Option<f64>,
-    drac: Option<f64>,
-    pet: Option<f64>,
-    delta_v: f64,
-    ego_speed: f64,
-    foe_speed: f64,
-    angle: f64,
-    x: f64,
-    y: f64,
-    lane: Option<String>,
-    collision: bool,
-}
-
-impl Conflict {
-    fn new(from: closecall::Conflict, net: Option<&Net>) -> Self {
-        Self {
-            ego: from.ego.to_string(),
-            foe: from.foe.to_string(),
-            kind: from.kind.name(),
-            severity: from.severity.name(),
-            begin: from.begin,
-            end: from.end,
-            time: from.time,
-            gap: from.gap,
-            mu: from.mu,
-            margin: from.margin,
-            clearance: from.clearance,
-            ttc: from.ttc,
-            drac: from.drac,
-            pet: from.pet,
-            delta_v: from.delta_v,
-            ego_speed: from.ego_speed,
-            foe_speed: from.foe_speed,
-            angle: from.angle,
-            x: from.x,
-            y: from.y,
-            lane: from.lane.and_then(|lane| net.map(|net| net.lane_id(lane).to_owned())),
-            collision: from.collision,
-        }
-    }
-}
-
-#[pymethods]
-impl Conflict {
-    fn __repr__(&self) -> String {
-        let Self { ego, foe, kind, severity, time, margin, .. } = self;
-        format!("Conflict(ego={ego:?}, foe={foe:?}, kind={kind}, severity={severity}, time={time}, margin={margin:.3})")
-    }
 }

@@ -4,6 +4,7 @@
 //! the conflicts, [`paint`] shows them in sumo-gui.
 
 mod checker;
+mod conflict;
 mod error;
 mod frames;
 mod functions;
@@ -23,7 +24,9 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _closecall {
     #[pymodule_export]
-    use super::checker::{Checker, Conflict};
+    use super::checker::Checker;
+    #[pymodule_export]
+    use super::conflict::{Conflict, read_log};
     #[pymodule_export]
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
@@ -35,6 +38,7 @@ mod _closecall {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        Conflict::add_attributes(module.py())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -1,4 +1,4 @@
-//! One conflict, as it is told.
+//! One conflict: what a run reports.
 
 use ecow::EcoString;
 use serde::Serialize;
@@ -15,8 +15,8 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 
 /// One conflict: a pair and a run of steps with margin < 0.
 ///
-/// Everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and `pet`,
-/// which are the event's extremes, and `severity`, its worst.
+/// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes
+/// `clearance`, `ttc`, `drac` and `pet`. The columns of a log follow from it: [`crate::output::schema`].
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// SUMO's id of the ego.
@@ -39,7 +39,7 @@ pub struct Conflict {
     pub end: Second,
     /// The step with the smallest margin, in s.
     pub time: Second,
-    /// The room that was left, in m.
+    /// The room that is left, in m.
     pub gap: Metre,
     /// The minimal collision distance, in m.
     pub mu: Metre,
@@ -59,18 +59,18 @@ pub struct Conflict {
     pub ego_speed: MetrePerSecond,
     /// Speed of the foe, in m/s.
     pub foe_speed: MetrePerSecond,
-    /// Angle α at the meeting place, in rad.
+    /// Angle α at the conflict point, in rad.
     pub angle: Radian,
-    /// The ego's front-bumper centre at the meeting place, x in m.
+    /// The ego's front-bumper centre at the conflict point, x in m.
     pub x: Metre,
     /// The same, y in m.
     pub y: Metre,
-    /// The lane of the meeting place.
+    /// The lane of the conflict point.
     #[serde(skip)]
     pub lane: Option<LaneIndex>,
     /// Whether the rectangles overlapped in any step.
     pub collision: bool,
-    /// Where the ego stood and was about to go.
+    /// Where the ego was and would go.
     #[serde(skip)]
     pub ego_snapshot: Snapshot,
     /// The same of the foe.
@@ -82,12 +82,14 @@ pub struct Conflict {
 }
 
 impl Conflict {
-    /// What an event has come to so far, between two who are in the roster still, and its PET.
+    /// The event so far, of two road users that are still in the roster, and its PET.
     pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
         let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref found, ref worst } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
-        let (of_ego, of_foe) = (roster.profile_of(ego), roster.profile_of(foe));
-        let ([ego_speed, foe_speed], [ego_snapshot, foe_snapshot]) = (worst.speeds, worst.snapshots.clone());
+        let ego_type = roster.profile_of(ego);
+        let foe_type = roster.profile_of(foe);
+        let [ego_speed, foe_speed] = worst.speeds;
+        let [ego_snapshot, foe_snapshot] = worst.snapshots.clone();
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),
@@ -106,7 +108,7 @@ impl Conflict {
             ttc,
             drac,
             pet: pet.map(|pet| pet.lasts),
-            delta_v: measures::delta_v((ego_speed, of_ego.mass), (foe_speed, of_foe.mass), angle),
+            delta_v: measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle),
             ego_speed,
             foe_speed,
             angle,

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from closecall import Conflict
+from closecall._closecall import read_log
 from closecall.pytest_plugin import RunScenario
-from conftest import NETS
+from conftest import NETS, rows
 
 pytest_plugins = ["pytester"]
 
@@ -20,6 +22,18 @@ def test_plain_asserts_work_on_conflicts(closecall_scenario: RunScenario) -> Non
     assert conflict.ttc is None or conflict.ttc > 0
     assert not conflict.collision
     assert run.summary["collisions"] == 0
+
+
+def test_a_conflict_has_an_attribute_for_every_column(closecall_scenario: RunScenario) -> None:
+    run = closecall_scenario(NETS / "side")
+    (conflict,), (row,) = run.conflicts, rows(run.log / "conflicts.csv")
+    assert [name for name in vars(Conflict) if not name.startswith("_")] == list(row)
+    for column, cell in row.items():
+        value = getattr(conflict, column)
+        shown = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+        assert shown == cell or float(shown) == float(cell), column
+    (again,) = read_log(run.log)
+    assert again == conflict and hash(again) == hash(conflict)
 
 
 def test_options_and_the_scenarios_own_settings_apply(closecall_scenario: RunScenario) -> None:

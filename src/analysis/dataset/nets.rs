@@ -1,4 +1,4 @@
-//! Which net the conflicts are drawn on, and what there is to say about it.
+//! The net that the conflicts are drawn on, and notes about it.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -10,29 +10,29 @@ use crate::traffic::net::Net;
 use crate::util::input_file::open;
 use crate::{Error, Result};
 
-/// The root element of a net stands within so many bytes; netconvert writes its options before it.
+/// The root element of a net is within this many bytes; netconvert writes its options before it.
 const HEAD: u64 = 1 << 16;
 
 /// The net under the conflicts.
 #[derive(Debug, Default)]
 pub struct Ground {
-    /// The net; none where it is gone.
+    /// The net; none if its file is gone.
     pub net: Option<Net>,
     /// What the reader of the report should know about it.
     pub notes: Vec<String>,
 }
 
-/// One run's net file, as its `run.json` has it.
+/// One run's net file, as its `run.json` names it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Named {
     path: PathBuf,
     sha256: String,
 }
 
-/// Reads the net that was given, or the one that the first log names.
+/// Reads the given net, or else the one that the first log names.
 ///
 /// # Errors
-/// An error that names the given file and what is wrong with it. A net that a log names may be gone.
+/// An error that names the given file and what is wrong with it. If a net that a log names is gone, that is a note.
 pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result<Ground> {
     let named = logs.iter().zip(records).map(|(log, record)| named(log, record)).collect::<Vec<_>>();
     let mut hashes = named.iter().flatten().map(|net| &net.sha256).collect::<Vec<_>>();
@@ -66,7 +66,7 @@ pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result
     Ok(ground)
 }
 
-/// Says so where the file is not what a run was made on.
+/// Adds a note if the file is not the one that a run was made on.
 fn note_change(path: &Path, hashes: &[&String], notes: &mut Vec<String>) {
     let known = Input::of(path).is_ok_and(|input| hashes.is_empty() || hashes.contains(&&input.sha256));
     if !known {
@@ -77,8 +77,8 @@ fn note_change(path: &Path, hashes: &[&String], notes: &mut Vec<String>) {
     }
 }
 
-/// The net among a run's inputs. Its path is as it was given to the run; a log beside its scenario was perhaps moved
-/// with it.
+/// The net among a run's inputs. Its path is the one that the run was given; if no file is there, one of the same name
+/// beside the log counts, as the two may have been moved together.
 fn named(log: &Path, record: &Value) -> Option<Named> {
     let inputs = record.get("inputs")?.as_array()?;
     let text = |input: &Value, key: &str| input.get(key).and_then(Value::as_str).map(str::to_owned);
@@ -98,7 +98,7 @@ fn named(log: &Path, record: &Value) -> Option<Named> {
     Some(placed.swap_remove(place))
 }
 
-/// Whether a file has a net's root element.
+/// Whether a file has the root element of a net.
 fn is_net(path: &Path) -> bool {
     let mut head = Vec::new();
     let read = open(path).map(|file| file.take(HEAD).read_to_end(&mut head).is_ok());

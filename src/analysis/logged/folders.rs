@@ -3,11 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::parquet::PARQUET;
 use crate::output::log::CONFLICTS;
 use crate::{Error, Result};
 
-/// How deep a sweep's folders may lie below the one that was named: a guard against links that lead upwards.
+/// The name of the conflicts' file in a sweep.
+pub const PARQUET: &str = "conflicts.parquet";
+/// The name of the file of counts that a blessed scenario has.
+pub const SUMMARY: &str = "summary.json";
+
+/// How many levels below a named folder are searched: a guard against links that lead upwards.
 const DEEPEST: usize = 16;
 
 /// The log folders among these and below them, each once, in the order of their paths.
@@ -28,7 +32,7 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         if found.len() == before {
             return Err(Error::content(
                 folder,
-                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at no depth"),
+                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at any depth"),
             ));
         }
     }
@@ -43,11 +47,13 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 
 fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
     let entries = fs::read_dir(folder).map_err(|source| Error::file(folder, source))?;
-    let (mut below, mut is_log, mut is_blessed) = (Vec::new(), false, false);
+    let mut below = Vec::new();
+    let mut is_log = false;
+    let mut is_blessed = false;
     for entry in entries {
         let path = entry.map_err(|source| Error::file(folder, source))?.path();
         let name = path.file_name().unwrap_or_default();
-        // Hidden is what a sweep has not finished.
+        // A hidden folder is a run that its sweep has not finished.
         if path.is_dir() && !name.as_encoded_bytes().starts_with(b".") {
             below.push(path);
         } else {
@@ -55,7 +61,7 @@ fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
             is_blessed |= name == SUMMARY;
         }
     }
-    // What `closecall regress` has blessed lies beside the scenario's own log, and is none.
+    // What `closecall regress` has blessed looks like a log, but is none.
     if is_log && !is_blessed {
         found.push(folder.to_owned());
     }
@@ -86,6 +92,3 @@ mod tests {
         fs::remove_dir_all(top).unwrap();
     }
 }
-
-/// The name of the file of counts.
-pub const SUMMARY: &str = "summary.json";

@@ -1,21 +1,27 @@
 //! Logs read back: the folders, how each run was made, and its conflicts one by one.
 //!
-//! The one place that knows how a log is read; statistics, reports and comparisons take conflicts from here. A folder
-//! is a log where it holds `conflicts.csv`, or `conflicts.parquet` as a sweep writes it; several may lie below one
-//! folder, at any depth.
+//! Statistics, reports and Python take conflicts from here. A folder is a log if it holds `conflicts.csv`, or
+//! `conflicts.parquet` as a sweep writes it. Several logs may be below one folder, at any depth.
 
 mod conflicts;
 mod csv;
-mod fields;
 mod folders;
+#[cfg(feature = "parquet")]
 mod pack;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "no_parquet.rs"]
 mod parquet;
 mod reader;
 mod run;
 
-pub use conflicts::{LoggedConflict, LoggedSnapshot};
-pub use folders::{SUMMARY, log_folders};
+pub use folders::{PARQUET, SUMMARY, log_folders};
+#[cfg(feature = "parquet")]
 pub use pack::{Label, LabelValue, pack};
-pub use parquet::{PARQUET, Packed};
+#[cfg(feature = "parquet")]
+pub use parquet::Packed;
 pub use reader::ConflictReader;
 pub use run::{LoggedRun, record};
+
+pub use crate::output::schema::LoggedConflict;

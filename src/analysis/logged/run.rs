@@ -4,21 +4,22 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::parquet::{PARQUET, Packed};
+use super::folders::PARQUET;
+use super::parquet::Packed;
 use crate::output::input_hash::Input;
 use crate::output::log::RUN;
 use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
-/// How a run was made: what statistics need of `run.json`.
+/// How a run was made: the part of `run.json` that statistics need.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct LoggedRun {
     /// Versions of what took part.
     pub versions: LoggedVersions,
     /// The SUMO configuration, or the recording that was replayed.
     pub scenario: PathBuf,
-    /// SUMO's random seed; none where nothing was simulated, or SUMO chose one that it does not tell (its option random).
+    /// SUMO's random seed; none where nothing was simulated, or SUMO chose one itself (its option random).
     pub seed: Option<String>,
     /// Length of a step in s.
     pub step_length: Option<Second>,
@@ -28,7 +29,7 @@ pub struct LoggedRun {
     pub inputs: Vec<Input>,
     /// The detector's options.
     pub options: serde_json::Value,
-    /// Whether the run came to its end.
+    /// Whether the run reached its end.
     pub complete: bool,
     /// What it found.
     pub summary: LoggedSummary,
@@ -43,34 +44,35 @@ pub struct LoggedVersions {
     pub sumo: Option<String>,
 }
 
-/// How long a run was, what it found in counts, and how much traffic it had.
+/// How long a run was, its counts, and how much traffic it had.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct LoggedSummary {
     /// First step, in s.
     pub begin: Second,
     /// Last step, in s.
     pub end: Second,
-    /// Steps that were checked; 0 where the run was killed or goes on.
+    /// Steps that were checked; 0 if the run was killed or still goes on.
     pub steps: u64,
     /// Conflicts by kind and severity.
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// How much traffic it was.
+    /// The amount of traffic.
     pub exposure: Exposure,
 }
 
-/// The text of a log folder's `run.json`, and the file that it is in: that of its own, or `conflicts.parquet`.
+/// The text of a log folder's `run.json`, and the file that holds it: `run.json` itself or `conflicts.parquet`.
 ///
 /// # Errors
 /// [`Error::File`] where neither is there; [`Error::Content`] where the Parquet file has none or cannot be read.
 pub fn record(folder: &Path) -> Result<(PathBuf, String)> {
-    let (own, packed) = (folder.join(RUN), folder.join(PARQUET));
+    let own = folder.join(RUN);
+    let packed = folder.join(PARQUET);
     if own.exists() || !packed.exists() {
         let text = std::fs::read_to_string(&own).map_err(|source| Error::file(&own, source))?;
         return Ok((own, text));
     }
-    let record = Packed::of(&packed)?.record;
+    let record = Packed::record_of(&packed)?;
     Ok((packed, record))
 }
 
@@ -78,7 +80,7 @@ impl LoggedRun {
     /// Reads the [`fn@record`] of a log folder.
     ///
     /// # Errors
-    /// [`Error::File`] or [`Error::Line`] where it is missing or is not what closecall writes.
+    /// [`Error::File`] or [`Error::Line`] where it is missing or closecall did not write it.
     pub fn read(folder: &Path) -> Result<Self> {
         let (path, text) = record(folder)?;
         serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))

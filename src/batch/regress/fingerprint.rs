@@ -1,4 +1,4 @@
-//! What an input file was: its hash, and the parts by which people change a scenario, so that a change has a name.
+//! The fingerprint of an input file: its hash, and the parts that are usually edited, so that a change can be named.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use crate::Result;
 use crate::output::input_hash::Input;
 
-/// More parts of one sort than this are not kept: what is expected should stay smaller than the net.
+/// If a file has more parts of one sort than this, none is kept: expected results should stay smaller than the net.
 const MOST_PARTS: usize = 1000;
 
 /// A part's attributes by name.
@@ -29,7 +29,7 @@ pub struct Fingerprint {
 }
 
 impl Fingerprint {
-    /// Reads the parts of a file; one that is no XML has none.
+    /// Reads the parts of a file; one that is not XML has none.
     ///
     /// # Errors
     /// [`crate::Error::File`] where it cannot be read.
@@ -39,7 +39,7 @@ impl Fingerprint {
         Ok(Self { parts: parts(&path)?, path: name, sha256: input.sha256 })
     }
 
-    /// What differs from `now`, in words, the file's name first; empty where nothing does.
+    /// What differs from `now`, in words, the file's name first; empty if nothing does.
     pub fn changes(&self, now: &Self) -> Vec<String> {
         if self.sha256 == now.sha256 {
             return Vec::new();
@@ -82,7 +82,7 @@ fn parts(path: &Path) -> Result<BTreeMap<String, Attributes>> {
             Ok(Event::Start(tag) | Event::Empty(tag)) => tag,
             Ok(Event::Eof) => break,
             Ok(_) => continue,
-            // SUMO has read the file: what it takes and this reader does not has no parts.
+            // SUMO could read the file, so this is not the user's error: the file has no parts.
             Err(_) => return Ok(BTreeMap::new()),
         };
         let sort = tag.name().as_ref().to_owned();
@@ -103,7 +103,7 @@ fn parts(path: &Path) -> Result<BTreeMap<String, Attributes>> {
             }
             _ => continue,
         }
-        // Junctions within junctions come and go with every build of a net.
+        // Internal junctions change with every build of a net.
         if sort == "junction" && attributes.get("type").is_some_and(|kind| kind == "internal") {
             continue;
         }
@@ -119,7 +119,7 @@ fn parts(path: &Path) -> Result<BTreeMap<String, Attributes>> {
     Ok(parts)
 }
 
-/// A phase becomes an attribute of its program: `phase 3`, its seconds and its lights.
+/// Makes a phase an attribute of its program: `phase 3`, its seconds and its lights.
 fn add_phase(program: &mut Attributes, phase: &Attributes) {
     let number = program.keys().filter(|name| name.starts_with("phase ")).count();
     let text = |name: &str| phase.get(name).map_or("", String::as_str);
@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_that_is_no_xml_has_a_hash_only() {
+    fn a_file_that_is_not_xml_has_only_a_hash() {
         assert!(fingerprint("a,b\n1,2\n").parts.is_empty());
     }
 }

@@ -3,7 +3,7 @@
 //! Each run becomes a row of measures: counts by kind and severity, collisions, rates per vehicle-kilometre, traffic,
 //! and the 10th, 50th and 90th percentiles of TTC, PET and margin. The test is [`super::permutation`].
 
-use super::outcome::{Outcome, Row, SeedSummary};
+use super::outcome::{Outcome, SeedConflict, SeedSummary};
 use super::permutation::adjusted_p;
 use super::scenario::{RegressSettings, Tolerance};
 use crate::analysis::statistics::quantile;
@@ -127,7 +127,7 @@ impl RunMeasure {
         }
     }
 
-    fn of(self, seed: &SeedSummary, rows: &[&Row]) -> Option<f64> {
+    fn of(self, seed: &SeedSummary, rows: &[&SeedConflict]) -> Option<f64> {
         let count = |kind: Option<Kind>, severity: Option<Severity>| {
             let wanted = seed.conflicts.iter().filter(|count| {
                 kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)

@@ -1,0 +1,85 @@
+//! Python's `Conflict`: an attribute for each column of the log.
+
+use std::path::PathBuf;
+
+use closecall::internals::analysis::ConflictReader;
+use closecall::internals::output::{COLUMNS, Column, LoggedConflict, Value};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyTuple};
+
+use crate::error::exception;
+
+/// One conflict: a pair of road users and a run of steps in which they were closer than they can safely be.
+///
+/// Its attributes are the columns of conflicts.csv (docs/log.md). None where a measure does not exist.
+#[pyclass(frozen, module = "closecall", name = "Conflict", eq, hash)]
+#[derive(PartialEq)]
+pub struct Conflict(pub LoggedConflict);
+
+impl std::hash::Hash for Conflict {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        let LoggedConflict { ego, foe, begin, .. } = &self.0;
+        (ego, foe, begin.to_bits()).hash(state);
+    }
+}
+
+#[pymethods]
+impl Conflict {
+    fn __repr__(&self) -> String {
+        let LoggedConflict { ego, foe, kind, severity, time, margin, .. } = &self.0;
+        let kind = kind.name();
+        let severity = severity.name();
+        format!("Conflict(ego={ego:?}, foe={foe:?}, kind={kind}, severity={severity}, time={time}, margin={margin:.3})")
+    }
+}
+
+impl Conflict {
+    /// Gives the class its attributes, one property per column.
+    pub fn add_attributes(py: Python) -> PyResult<()> {
+        let class = py.get_type::<Self>();
+        let property = py.import("builtins")?.getattr("property")?;
+        for column in &COLUMNS {
+            let getter = PyCFunction::new_closure(py, None, None, |arguments, _: Option<&Bound<PyDict>>| {
+                Self::attribute(arguments, column)
+            })?;
+            let keywords = PyDict::new(py);
+            keywords.set_item("doc", documentation(column))?;
+            class.setattr(column.name, property.call((getter,), Some(&keywords))?)?;
+        }
+        Ok(())
+    }
+
+    fn attribute(arguments: &Bound<PyTuple>, column: &Column) -> PyResult<Py<PyAny>> {
+        let conflict = arguments.get_item(0)?.cast_into::<Self>()?;
+        let py = arguments.py();
+        match (column.get)(&conflict.get().0) {
+            Value::Count(count) => count.into_py_any(py),
+            Value::Number(number) => number.into_py_any(py),
+            Value::Flag(flag) => flag.into_py_any(py),
+            Value::Text("") | Value::Missing => Ok(py.None()),
+            Value::Text(text) => text.into_py_any(py),
+        }
+    }
+}
+
+fn documentation(column: &Column) -> String {
+    let meaning = column.meaning.trim();
+    match column.unit() {
+        "" => meaning.to_owned(),
+        unit => format!("{meaning}, in {unit}"),
+    }
+}
+
+/// The conflicts of a log folder, in the order of the file.
+///
+/// Raises:
+///     OSError: the log is missing or cannot be read.
+///     ValueError: it is not a log.
+#[pyfunction]
+pub fn read_log(py: Python, folder: PathBuf) -> PyResult<Vec<Conflict>> {
+    let read = || -> closecall::Result<Vec<_>> {
+        ConflictReader::open(&folder)?.with_snapshots().map(|conflict| conflict.map(Conflict)).collect()
+    };
+    py.detach(read).map_err(exception)
+}
