@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use closecall::options::Options;
 use closecall::output::log::Log;
 use closecall::output::record::RunRecord;
+use closecall::output::schema::{Context, LoggedConflict};
 use closecall::run::Run;
 use closecall::traffic::net::Net;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
@@ -172,8 +173,10 @@ impl Checker {
     /// All conflicts so far, those that still go on as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let context = |number| Context { number, net: self.run.net(), roster: &self.run.roster };
         let conflicts = self.run.conflicts();
-        PyList::new(py, conflicts.into_iter().map(|conflict| Conflict::new(conflict, self.run.net())))
+        let logged = (1..).zip(&conflicts).map(|(number, conflict)| LoggedConflict::new(conflict, context(number)));
+        PyList::new(py, logged.map(Conflict).collect::<Vec<_>>())
     }
 
     /// Counts by kind and severity, the traffic that was checked, and, once it is closed, what was left out, as in `run.json`.

@@ -1,72 +1,85 @@
-//! What Python sees of a conflict.
+//! Python's `Conflict`: an attribute for each column of the log.
 
-use closecall::traffic::net::Net;
+use std::path::PathBuf;
+
+use closecall::analysis::logged::ConflictReader;
+use closecall::output::schema::{COLUMNS, Column, LoggedConflict, Value};
+use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use pyo3::types::{PyCFunction, PyDict, PyTuple};
+
+use crate::error::exception;
 
 /// One conflict: a pair of road users and a run of steps in which they were closer than they can safely be.
 ///
-/// SI units; everything from `time` on is of the step with the smallest margin, except `clearance`, `ttc`, `drac` and
-/// `pet`, which are the event's extremes. None where a measure does not exist.
-#[pyclass(frozen, get_all, module = "closecall", name = "Conflict")]
-pub struct Conflict {
-    ego: String,
-    foe: String,
-    kind: &'static str,
-    severity: &'static str,
-    begin: f64,
-    end: f64,
-    time: f64,
-    gap: f64,
-    mu: f64,
-    margin: f64,
-    clearance: f64,
-    ttc: Option<f64>,
-    drac: Option<f64>,
-    pet: Option<f64>,
-    delta_v: f64,
-    ego_speed: f64,
-    foe_speed: f64,
-    angle: f64,
-    x: f64,
-    y: f64,
-    lane: Option<String>,
-    collision: bool,
-}
+/// Its attributes are the columns of conflicts.csv (docs/log.md). None where a measure does not exist.
+#[pyclass(frozen, module = "closecall", name = "Conflict", eq, hash)]
+#[derive(PartialEq)]
+pub struct Conflict(pub LoggedConflict);
 
-impl Conflict {
-    /// A conflict of a run on this net.
-    pub fn new(from: closecall::events::Conflict, net: Option<&Net>) -> Self {
-        Self {
-            ego: from.ego.to_string(),
-            foe: from.foe.to_string(),
-            kind: from.kind.name(),
-            severity: from.severity.name(),
-            begin: from.begin,
-            end: from.end,
-            time: from.time,
-            gap: from.gap,
-            mu: from.mu,
-            margin: from.margin,
-            clearance: from.clearance,
-            ttc: from.ttc,
-            drac: from.drac,
-            pet: from.pet,
-            delta_v: from.delta_v,
-            ego_speed: from.ego_speed,
-            foe_speed: from.foe_speed,
-            angle: from.angle,
-            x: from.x,
-            y: from.y,
-            lane: from.lane.and_then(|lane| net.map(|net| net.lane_id(lane).to_owned())),
-            collision: from.collision,
-        }
+impl std::hash::Hash for Conflict {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        let LoggedConflict { ego, foe, begin, .. } = &self.0;
+        (ego, foe, begin.to_bits()).hash(state);
     }
 }
 
 #[pymethods]
 impl Conflict {
     fn __repr__(&self) -> String {
-        let Self { ego, foe, kind, severity, time, margin, .. } = self;
+        let LoggedConflict { ego, foe, kind, severity, time, margin, .. } = &self.0;
+        let kind = kind.name();
+        let severity = severity.name();
         format!("Conflict(ego={ego:?}, foe={foe:?}, kind={kind}, severity={severity}, time={time}, margin={margin:.3})")
     }
+}
+
+impl Conflict {
+    /// Gives the class its attributes, one property per column.
+    pub fn add_attributes(py: Python) -> PyResult<()> {
+        let class = py.get_type::<Self>();
+        let property = py.import("builtins")?.getattr("property")?;
+        for column in &COLUMNS {
+            let getter = PyCFunction::new_closure(py, None, None, |arguments, _: Option<&Bound<PyDict>>| {
+                Self::attribute(arguments, column)
+            })?;
+            let keywords = PyDict::new(py);
+            keywords.set_item("doc", documentation(column))?;
+            class.setattr(column.name, property.call((getter,), Some(&keywords))?)?;
+        }
+        Ok(())
+    }
+
+    fn attribute(arguments: &Bound<PyTuple>, column: &Column) -> PyResult<Py<PyAny>> {
+        let conflict = arguments.get_item(0)?.cast_into::<Self>()?;
+        let py = arguments.py();
+        match (column.get)(&conflict.get().0) {
+            Value::Count(count) => count.into_py_any(py),
+            Value::Number(number) => number.into_py_any(py),
+            Value::Flag(flag) => flag.into_py_any(py),
+            Value::Text("") | Value::Missing => Ok(py.None()),
+            Value::Text(text) => text.into_py_any(py),
+        }
+    }
+}
+
+fn documentation(column: &Column) -> String {
+    let meaning = column.meaning.trim();
+    match column.unit() {
+        "" => meaning.to_owned(),
+        unit => format!("{meaning}, in {unit}"),
+    }
+}
+
+/// The conflicts of a log folder, in the order of the file.
+///
+/// Raises:
+///     OSError: the log is missing or cannot be read.
+///     ValueError: it is not a log.
+#[pyfunction]
+pub fn read_log(py: Python, folder: PathBuf) -> PyResult<Vec<Conflict>> {
+    let read = || -> closecall::Result<Vec<_>> {
+        ConflictReader::open(&folder)?.with_snapshots().map(|conflict| conflict.map(Conflict)).collect()
+    };
+    py.detach(read).map_err(exception)
 }

@@ -24,7 +24,7 @@ mod _closecall {
     #[pymodule_export]
     use super::checker::Checker;
     #[pymodule_export]
-    use super::conflict::Conflict;
+    use super::conflict::{Conflict, read_log};
     #[pymodule_export]
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
@@ -36,6 +36,7 @@ mod _closecall {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        Conflict::add_attributes(module.py())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

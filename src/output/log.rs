@@ -1,28 +1,27 @@
-//! What a run leaves on disk: `conflicts.csv`, `encounters.csv` on request, `run.json`.
+//! The log of a run: `conflicts.csv`, `encounters.csv` on request, `run.json`.
 //!
-//! Rows are written as conflicts close, whole rows in one call each step, so that after a kill whatever closed before
-//! is there. A kill within that call may leave the last row half (Linux ends a write between two pages then):
-//! [`crate::analysis::logged`] leaves it out.
+//! Rows are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had closed. A
+//! kill during that call may cut the last row short (Linux then ends a write between two pages);
+//! [`crate::analysis::logged`] ignores that row.
 
 use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::record::RunRecord;
+use super::schema::{COLUMNS, Context, LoggedConflict, Value};
 use crate::detection::encounter::Encounter;
 use crate::events::Conflict;
-use crate::geometry::Point;
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
-use crate::util::decimal;
-use crate::util::units::{Metre, Second};
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// The name of the conflicts' file.
 pub const CONFLICTS: &str = "conflicts.csv";
 /// The name of the encounters' file.
 pub const ENCOUNTERS: &str = "encounters.csv";
-/// The name of the file that says how the run was made.
+/// The name of the file that records how the run was made.
 pub const RUN: &str = "run.json";
 
 /// The files of the log in a folder.
@@ -30,46 +29,6 @@ pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
     [CONFLICTS, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
 }
 
-/// The columns of [`CONFLICTS`].
-pub const CONFLICT_COLUMNS: [&str; 37] = [
-    "id",
-    "ego",
-    "foe",
-    "kind",
-    "severity",
-    "begin",
-    "end",
-    "time",
-    "gap",
-    "mu",
-    "margin",
-    "clearance",
-    "ttc",
-    "drac",
-    "pet",
-    "delta_v",
-    "ego_speed",
-    "foe_speed",
-    "angle",
-    "x",
-    "y",
-    "lane",
-    "collision",
-    "ego_type",
-    "foe_type",
-    "ego_x",
-    "ego_y",
-    "ego_heading",
-    "ego_length",
-    "ego_width",
-    "ego_path",
-    "foe_x",
-    "foe_y",
-    "foe_heading",
-    "foe_length",
-    "foe_width",
-    "foe_path",
-];
 /// The columns of [`ENCOUNTERS`].
 pub const ENCOUNTER_COLUMNS: [&str; 10] =
     ["time", "ego", "foe", "kind", "gap", "mu", "margin", "ttc", "drac", "severity"];
@@ -79,13 +38,13 @@ pub const ENCOUNTER_COLUMNS: [&str; 10] =
 pub struct Log {
     folder: PathBuf,
     made_folder: bool,
-    conflicts: Table,
-    encounters: Option<Table>,
+    conflicts: CsvFile,
+    encounters: Option<CsvFile>,
     written: u64,
 }
 
 impl Log {
-    /// Makes the folder where there is none, and the files' first lines in it.
+    /// Makes the folder if it does not exist, and in it the files with their first lines.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
@@ -93,7 +52,7 @@ impl Log {
         let made_folder = !folder.exists();
         fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
         let encounters = folder.join(ENCOUNTERS);
-        // Those of an earlier run would be taken for this one's.
+        // An earlier run's files would be taken for this run's.
         let stale = if with_encounters { vec![RUN] } else { vec![RUN, ENCOUNTERS] };
         for name in stale {
             let path = folder.join(name);
@@ -102,8 +61,8 @@ impl Log {
             }
         }
         Ok(Self {
-            conflicts: Table::create(folder.join(CONFLICTS), &CONFLICT_COLUMNS)?,
-            encounters: with_encounters.then(|| Table::create(encounters, &ENCOUNTER_COLUMNS)).transpose()?,
+            conflicts: CsvFile::create(folder.join(CONFLICTS), COLUMNS.map(|column| column.name))?,
+            encounters: with_encounters.then(|| CsvFile::create(encounters, ENCOUNTER_COLUMNS)).transpose()?,
             folder: folder.to_owned(),
             made_folder,
             written: 0,
@@ -113,61 +72,20 @@ impl Log {
     /// Appends conflicts that have closed.
     ///
     /// # Errors
-    /// [`Error::File`] where the disk takes no more.
+    /// [`Error::File`] where the file cannot be written, as on a full disk.
     pub fn append_conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for conflict in conflicts {
             self.written += 1;
-            let (ego, foe) = (&conflict.ego_snapshot, &conflict.foe_snapshot);
-            self.conflicts.row(&[
-                Cell::Count(self.written),
-                Cell::Text(&conflict.ego),
-                Cell::Text(&conflict.foe),
-                Cell::Text(conflict.kind.name()),
-                Cell::Text(conflict.severity.name()),
-                Cell::Number(conflict.begin),
-                Cell::Number(conflict.end),
-                Cell::Number(conflict.time),
-                Cell::Number(conflict.gap),
-                Cell::Number(conflict.mu),
-                Cell::Number(conflict.margin),
-                Cell::Number(conflict.clearance),
-                Cell::maybe(conflict.ttc),
-                Cell::maybe(conflict.drac),
-                Cell::maybe(conflict.pet),
-                Cell::Number(conflict.delta_v),
-                Cell::Number(conflict.ego_speed),
-                Cell::Number(conflict.foe_speed),
-                Cell::Number(conflict.angle),
-                Cell::Number(conflict.x),
-                Cell::Number(conflict.y),
-                match (conflict.lane, net) {
-                    (Some(lane), Some(net)) => Cell::Text(net.lane_id(lane)),
-                    _ => Cell::Empty,
-                },
-                Cell::Text(if conflict.collision { "true" } else { "false" }),
-                Cell::Text(&roster.profile_at(conflict.ego_profile).name),
-                Cell::Text(&roster.profile_at(conflict.foe_profile).name),
-                Cell::Number(ego.front.x),
-                Cell::Number(ego.front.y),
-                Cell::Number(ego.heading),
-                Cell::Number(ego.length),
-                Cell::Number(ego.width),
-                Cell::Path(&ego.path),
-                Cell::Number(foe.front.x),
-                Cell::Number(foe.front.y),
-                Cell::Number(foe.heading),
-                Cell::Number(foe.length),
-                Cell::Number(foe.width),
-                Cell::Path(&foe.path),
-            ])?;
+            let logged = LoggedConflict::new(conflict, Context { number: self.written, net, roster });
+            self.conflicts.write_row(COLUMNS.iter().map(|column| (column.get)(&logged)))?;
         }
         self.conflicts.flush()
     }
 
-    /// Appends the pairs in conflict of one step, where that was asked for.
+    /// Appends the pairs in conflict of one step, if the log has encounters.
     ///
     /// # Errors
-    /// [`Error::File`] where the disk takes no more.
+    /// [`Error::File`] where the file cannot be written, as on a full disk.
     pub fn append_encounters<'a>(
         &mut self,
         time: Second,
@@ -177,17 +95,18 @@ impl Log {
         let Some(table) = &mut self.encounters else { return Ok(()) };
         for found in encounters {
             let Some(near) = &found.nearness else { continue };
-            table.row(&[
-                Cell::Number(time),
-                Cell::Text(roster.id(found.ego)),
-                Cell::Text(roster.id(found.foe)),
-                Cell::Text(found.kind.name()),
-                Cell::Number(found.gap),
-                Cell::Number(found.mu),
-                Cell::Number(found.margin),
-                Cell::maybe(near.ttc),
-                Cell::maybe(near.drac),
-                Cell::Text(near.severity.name()),
+            let maybe = |value: Option<f64>| value.map_or(Value::Missing, Value::Number);
+            table.write_row([
+                Value::Number(time),
+                Value::Text(roster.id(found.ego)),
+                Value::Text(roster.id(found.foe)),
+                Value::Text(found.kind.name()),
+                Value::Number(found.gap),
+                Value::Number(found.mu),
+                Value::Number(found.margin),
+                maybe(near.ttc),
+                maybe(near.drac),
+                Value::Text(near.severity.name()),
             ])?;
         }
         table.flush()
@@ -205,9 +124,9 @@ impl Log {
         fs::rename(&draft, &path).map_err(|source| Error::file(&path, source))
     }
 
-    /// Takes back what was written: the input could not be used after all.
+    /// Removes what was written: the input could not be used after all.
     pub fn discard(self) {
-        // What cannot be removed stays: the error that led here is the one to be told.
+        // A file that cannot be removed stays: the error to report is the one that led here.
         for path in
             [Some(&self.conflicts.path), self.encounters.as_ref().map(|table| &table.path)].into_iter().flatten()
         {
@@ -222,66 +141,26 @@ impl Log {
 
 /// One CSV file.
 #[derive(Debug)]
-struct Table {
+struct CsvFile {
     path: PathBuf,
     rows: csv::Writer<WholeRows>,
-    /// Of the cell that is being written.
+    /// The text of the cell that is being written.
     text: String,
 }
 
-/// The largest coordinate of a path, in m, that is written as 0.
-const HALF_A_CENTIMETRE: Metre = 0.005;
-
-/// One cell of a row.
-enum Cell<'a> {
-    Text(&'a str),
-    Number(f64),
-    Count(u64),
-    /// As x y x y …, to the centimetre; without commas, so that no cell needs quotes.
-    Path(&'a [Point]),
-    Empty,
-}
-
-impl Cell<'_> {
-    fn maybe(value: Option<f64>) -> Self {
-        value.map_or(Self::Empty, Self::Number)
-    }
-
-    /// What stands in the cell; made in `text` where it is not there yet.
-    fn text<'a>(&'a self, text: &'a mut String) -> &'a str {
-        text.clear();
-        match self {
-            Self::Text(text) => return text,
-            Self::Number(value) => return decimal::shortest(*value, text),
-            Self::Count(count) => text.push_str(&count.to_string()),
-            Self::Path(points) => {
-                for (number, value) in points.iter().flat_map(|point| [point.x, point.y]).enumerate() {
-                    if number > 0 {
-                        text.push(' ');
-                    }
-                    // What rounds to 0 has no sign: that would be one of rounding, another on another machine.
-                    decimal::push_fixed(text, if value.abs() < HALF_A_CENTIMETRE { 0.0 } else { value }, 2);
-                }
-            }
-            Self::Empty => {}
-        }
-        text
-    }
-}
-
-impl Table {
-    fn create(path: PathBuf, columns: &[&str]) -> Result<Self> {
+impl CsvFile {
+    fn create<const N: usize>(path: PathBuf, columns: [&str; N]) -> Result<Self> {
         let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
         let rows = WholeRows { file, written: 0, waiting: Vec::new() };
         let mut table = Self { path, rows: csv::Writer::from_writer(rows), text: String::new() };
-        table.row(&columns.iter().map(|column| Cell::Text(column)).collect::<Vec<_>>())?;
+        table.write_row(columns.map(Value::Text))?;
         table.flush()?;
         Ok(table)
     }
 
-    fn row(&mut self, cells: &[Cell]) -> Result<()> {
+    fn write_row<'a>(&mut self, values: impl IntoIterator<Item = Value<'a>>) -> Result<()> {
         let Self { rows, text, .. } = self;
-        let written = cells.iter().try_for_each(|cell| rows.write_field(cell.text(text)));
+        let written = values.into_iter().try_for_each(|value| rows.write_field(value.text(text)));
         let written = written.and_then(|()| rows.write_record(None::<&[u8]>));
         written.map_err(|error| self.unwritable(error.into()))
     }
@@ -295,11 +174,11 @@ impl Table {
     }
 }
 
-/// A file to which rows go when they are flushed, all in one call; what was flushed so far is whole.
+/// A file that gets the rows waiting at a flush in one call, so that it holds whole rows only.
 #[derive(Debug)]
 struct WholeRows {
     file: File,
-    /// How many bytes are on disk.
+    /// Bytes on disk.
     written: u64,
     waiting: Vec<u8>,
 }
@@ -316,16 +195,16 @@ impl Write for WholeRows {
             Ok(()) => self.written += self.waiting.len() as u64,
             Err(_) => self.take_back(),
         }
-        // A step with many rows would keep its room for the rest of the run.
+        // The buffer of a step with many rows would stay for the rest of the run.
         self.waiting = Vec::new();
         done
     }
 }
 
 impl WholeRows {
-    /// No row is left half where the disk is full, and the next one follows the last whole one.
+    /// Removes a row that a full disk cut short, so that the next row follows the last whole one.
     fn take_back(&mut self) {
-        // If not even that can be done, that is no news.
+        // The error of the write itself is reported already.
         let _ = self.file.set_len(self.written);
         let _ = self.file.seek(SeekFrom::Start(self.written));
     }
@@ -336,7 +215,7 @@ mod tests {
     use crate::output::log::*;
 
     #[test]
-    fn after_a_row_that_the_disk_took_half_of_the_next_one_is_whole() {
+    fn the_row_after_a_half_written_one_is_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.csv");
         let mut rows = WholeRows { file: File::create(&path).unwrap(), written: 0, waiting: b"first\n".to_vec() };
@@ -346,12 +225,6 @@ mod tests {
         rows.write_all(b"third\n").unwrap();
         rows.flush().unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "first\nthird\n");
-    }
-
-    #[test]
-    fn a_path_writes_what_rounds_to_nothing_without_a_sign() {
-        let points = [(-0.0, -4e-16), (-0.0049, -0.0051)].map(|(x, y)| Point::new(x, y));
-        assert_eq!(Cell::Path(&points).text(&mut String::new()), "0.00 0.00 0.00 -0.01");
     }
 
     #[test]

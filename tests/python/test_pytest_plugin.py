@@ -1,12 +1,14 @@
-"""The fixture `closecall_scenario`, as somebody else's tests use it."""
+"""The fixture `closecall_scenario`, as a user's tests use it."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
 import pytest
+from closecall import Conflict
+from closecall._closecall import read_log
 from closecall.pytest_plugin import RunScenario
-from conftest import NETS
+from conftest import NETS, rows
 
 pytest_plugins = ["pytester"]
 
@@ -20,6 +22,18 @@ def test_a_test_asserts_on_conflicts_with_plain_asserts(closecall_scenario: RunS
     assert conflict.ttc is None or conflict.ttc > 0
     assert not conflict.collision
     assert run.summary["collisions"] == 0
+
+
+def test_a_conflict_has_an_attribute_for_every_column(closecall_scenario: RunScenario) -> None:
+    run = closecall_scenario(NETS / "side")
+    (conflict,), (row,) = run.conflicts, rows(run.log / "conflicts.csv")
+    assert [name for name in vars(Conflict) if not name.startswith("_")] == list(row)
+    for column, cell in row.items():
+        value = getattr(conflict, column)
+        shown = "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+        assert shown == cell or float(shown) == float(cell), column
+    (again,) = read_log(run.log)
+    assert again == conflict and hash(again) == hash(conflict)
 
 
 def test_options_and_settings_beside_the_scenario_count(closecall_scenario: RunScenario) -> None:
@@ -41,7 +55,7 @@ def test_what_cannot_be_used_is_said(closecall_scenario: RunScenario, tmp_path: 
         closecall_scenario(tmp_path)
 
 
-def test_a_relative_path_starts_at_the_folder_of_the_test(pytester: pytest.Pytester) -> None:
+def test_a_relative_path_starts_at_the_tests_folder(pytester: pytest.Pytester) -> None:
     nets = pytester.mkdir("nets")
     for file in (NETS / "frontal").iterdir():
         if file.is_file():

@@ -1,57 +1,54 @@
-//! The conflicts of several logs, with the net under them: what a page or a picture is made of.
+//! The conflicts of several logs, and their net: what a report or a picture is made of.
 
 mod logs;
 pub(crate) mod nets;
-pub(crate) mod rows;
+pub(crate) mod worst;
 
 use std::path::{Path, PathBuf};
 
-use logs as log_files;
-use serde_json::Value;
-
-use super::logged::log_folders;
+use super::logged::{ConflictReader, log_folders};
 use crate::Result;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::options::Options;
+use crate::output::schema::{Column, Value};
 use crate::traffic::net::Net;
 use crate::util::units::Second;
 use nets::Ground;
-use rows::{NUMBERS, Row, Worst};
+use worst::{RunConflict, WorstConflicts};
 
-/// The conflicts of several logs; of very many the worst (300,000).
+/// The conflicts of several logs; of more than 300,000, the worst.
 #[derive(Debug)]
 pub struct Conflicts {
     /// The folders of the logs.
     pub(super) logs: Vec<PathBuf>,
     /// Their `run.json`; null where there is none.
-    pub(super) records: Vec<Value>,
-    /// The net, and what there is to say about it.
+    pub(super) records: Vec<serde_json::Value>,
+    /// The net, and notes about it.
     pub(super) ground: Ground,
     /// The conflicts, worst first.
-    pub(super) rows: Vec<Row>,
+    pub(super) conflicts: Vec<RunConflict>,
     /// How many there are in the logs.
     pub(super) seen: u64,
 }
 
-/// Reads the logs in `folders`, each a log itself or a folder of logs; the net from `net`, or from where the first log
-/// says it was.
+/// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
+/// first log.
 ///
 /// # Errors
 /// [`crate::Error::File`] where a folder cannot be read, [`crate::Error::Content`] where a folder holds no log,
-/// [`crate::Error::Line`] where a row of `conflicts.csv` is not as `docs/log.md` has it.
+/// [`crate::Error::Line`] where a row of `conflicts.csv` is not as docs/log.md describes it.
 pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
     let logs = log_folders(folders)?;
-    let mut worst = Worst::default();
+    let mut worst = WorstConflicts::default();
     for (run, log) in (0..).zip(&logs) {
-        log_files::rows(log, |mut row| {
-            row.run = run;
-            worst.push(row);
-        })?;
+        for conflict in ConflictReader::open(log)?.with_snapshots() {
+            worst.push(RunConflict { run, conflict: conflict? });
+        }
     }
-    let records = logs.iter().map(|log| log_files::record(log)).collect::<Result<Vec<_>>>()?;
+    let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
     let mut ground = nets::find(net, &logs, &records)?;
-    // As it is written when a run begins; null where there is none at all.
+    // A record without steps is that of a run that has begun; null means that there is no record.
     let without = records.iter().filter(|record| record["summary"]["steps"].as_u64().is_none_or(|steps| steps == 0));
     let without = without.count();
     if without > 0 {
@@ -62,7 +59,7 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
         ));
     }
     let seen = worst.seen();
-    Ok(Conflicts { logs, records, ground, rows: worst.into_rows(), seen })
+    Ok(Conflicts { logs, records, ground, conflicts: worst.into_sorted(), seen })
 }
 
 impl Conflicts {
@@ -71,18 +68,20 @@ impl Conflicts {
         self.ground.net.as_ref()
     }
 
-    /// Kind, severity and meeting place of each.
+    /// Kind, severity and conflict point of each.
     pub fn places(&self) -> impl Iterator<Item = (Kind, Severity, Point)> {
-        let (x, y) = (column("x"), column("y"));
-        self.rows.iter().filter_map(move |row| {
-            Some((Kind::ALL[usize::from(row.kind)], severity(row), Point::new(row.number(x)?, row.number(y)?)))
-        })
+        self.conflicts
+            .iter()
+            .map(|RunConflict { conflict, .. }| (conflict.kind, conflict.severity, Point::new(conflict.x, conflict.y)))
     }
 
-    /// The values of a number column of `conflicts.csv`, where there is one, each with the conflict's severity.
+    /// The values of a number column of `conflicts.csv`, each with the conflict's severity.
     pub fn numbers(&self, name: &str) -> impl Iterator<Item = (Severity, f64)> {
-        let place = column(name);
-        self.rows.iter().filter_map(move |row| Some((severity(row), row.number(place)?)))
+        let column = Column::named(name);
+        self.conflicts.iter().filter_map(move |RunConflict { conflict, .. }| match (column?.get)(conflict) {
+            Value::Number(number) => Some((conflict.severity, number)),
+            _ => None,
+        })
     }
 
     /// First and last second of all runs.
@@ -93,7 +92,7 @@ impl Conflicts {
         (begin.min(end), end)
     }
 
-    /// From where on a measure makes a conflict serious, by the first run's options; none where it does not.
+    /// The threshold beyond which a measure makes a conflict serious, by the first run's options; none if it never does.
     pub fn threshold(&self, name: &str) -> Option<f64> {
         let options = Options::default();
         let (key, default) = match name {
@@ -104,12 +103,4 @@ impl Conflicts {
         let set = self.records.iter().find_map(|record| record.get("options")?.get(key)?.as_f64());
         Some(set.unwrap_or(default)).filter(|threshold| *threshold > 0.0)
     }
-}
-
-fn severity(row: &Row) -> Severity {
-    Severity::ALL[usize::from(row.severity)]
-}
-
-fn column(name: &str) -> usize {
-    NUMBERS.iter().position(|(known, _)| *known == name).unwrap_or(NUMBERS.len())
 }

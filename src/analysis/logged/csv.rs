@@ -4,26 +4,23 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use super::conflicts::{LoggedConflict, LoggedSnapshot};
+use crate::output::schema::{COLUMNS, LoggedConflict, Presence, Value};
 use crate::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
 #[derive(Debug)]
-pub struct CsvRows {
+pub struct CsvLog {
     path: PathBuf,
     reader: csv::Reader<Take<File>>,
     header: csv::StringRecord,
     row: csv::StringRecord,
-    /// Where in a row ego's and foe's snapshots are, if they are wanted and there.
-    snapshots: Option<[StancePlaces; 2]>,
+    /// Where in a row each of the [`COLUMNS`] is; none where the file lacks it or it is not to be read.
+    places: [Option<usize>; COLUMNS.len()],
 }
 
-/// Where in a row x, y, heading, length, width and path are.
-type StancePlaces = [usize; 6];
-
-impl CsvRows {
-    /// Opens the file and checks its columns and its end. What follows the last whole row is left out where the run
-    /// was killed while it wrote that, or is about to write more: where it `has_no_result`.
+impl CsvLog {
+    /// Opens the file and checks its columns and its end. A row that is cut short at the end is ignored if the log
+    /// `has_no_result`: the run was killed while it wrote the row, or is still writing it.
     pub fn open(path: &Path, has_no_result: impl FnOnce() -> bool) -> Result<Self> {
         let fault = |source| Error::file(path, source);
         let mut file = File::open(path).map_err(fault)?;
@@ -38,28 +35,33 @@ impl CsvRows {
         file.seek(SeekFrom::Start(0)).map_err(fault)?;
         let mut reader = csv::Reader::from_reader(file.take(whole));
         let header = reader.headers().map_err(|error| unreadable(path, &error))?.clone();
-        for column in REQUIRED {
-            if !header.iter().any(|known| known == column) {
-                return Err(Error::line(path, 1, format!("the column \"{column}\" is missing")));
-            }
-        }
-        Ok(Self { path: path.to_owned(), reader, header, row: csv::StringRecord::new(), snapshots: None })
-    }
-
-    /// From now on rows have their snapshots, where the file has them.
-    pub fn read_snapshots(&mut self) {
-        let places = |who: &str| {
-            let mut places = [0; 6];
-            for (place, name) in places.iter_mut().zip(["x", "y", "heading", "length", "width", "path"]) {
-                let name = format!("{who}_{name}");
-                *place = self.header.iter().position(|known| known == name)?;
-            }
-            Some(places)
+        let mut log = Self {
+            path: path.to_owned(),
+            reader,
+            header,
+            row: csv::StringRecord::new(),
+            places: [None; COLUMNS.len()],
         };
-        self.snapshots = places("ego").zip(places("foe")).map(<[StancePlaces; 2]>::from);
+        log.read_columns(|presence| presence != Presence::Snapshot);
+        let mut places = COLUMNS.iter().zip(log.places);
+        let missing = places.find(|(column, place)| column.presence == Presence::Required && place.is_none());
+        match missing {
+            Some((column, _)) => Err(Error::line(path, 1, format!("the column \"{}\" is missing", column.name))),
+            None => Ok(log),
+        }
     }
 
-    /// The columns.
+    /// Reads the snapshots as well, where the file has them.
+    pub fn read_snapshots(&mut self) {
+        self.read_columns(|_| true);
+    }
+
+    fn read_columns(&mut self, is_wanted: impl Fn(Presence) -> bool) {
+        let place = |name: &str| self.header.iter().position(|known| known == name);
+        self.places = COLUMNS.map(|column| place(column.name).filter(|_| is_wanted(column.presence)));
+    }
+
+    /// The columns of the file.
     pub fn columns(&self) -> Vec<String> {
         self.header.iter().map(str::to_owned).collect()
     }
@@ -69,55 +71,25 @@ impl CsvRows {
         &self.path
     }
 
-    /// The next row; none after the last.
+    /// The next conflict; none after the last.
     pub fn read(&mut self) -> Result<Option<LoggedConflict>> {
         let more = self.reader.read_record(&mut self.row).map_err(|error| unreadable(&self.path, &error))?;
         if !more {
             return Ok(None);
         }
-        let conflict = self.row.deserialize::<LoggedConflict>(Some(&self.header));
-        let mut conflict = conflict.map_err(|error| unreadable(&self.path, &error))?;
-        let line = || self.row.position().map_or(0, csv::Position::line);
-        if let Some(number) = conflict.not_finite() {
-            return Err(Error::line(&self.path, line(), format!("{number} is no number of a log")));
-        }
-        if let Some([ego, foe]) = &self.snapshots {
-            let stance = |places| self.stance(places).map_err(|message| Error::line(&self.path, line(), message));
-            conflict.snapshots = Some(Box::new([stance(ego)?, stance(foe)?]));
-        }
-        Ok(Some(conflict))
-    }
-
-    fn stance(&self, places: &StancePlaces) -> std::result::Result<LoggedSnapshot, String> {
-        let cell = |place: usize| self.row.get(place).unwrap_or_default();
-        let number = |place: usize| match cell(place) {
-            "" => Ok(0.0),
-            text => {
-                let number = text.parse::<f64>().ok().filter(|number| number.is_finite());
-                number.ok_or_else(|| format!("\"{text}\" is no number"))
-            }
+        let cell = |column: usize| match self.places[column].and_then(|place| self.row.get(place)) {
+            Some(text) => COLUMNS[column].column_type.parse(text),
+            None => Ok(Value::Missing),
         };
-        let [x, y, heading, length, width, path] = *places;
-        Ok(LoggedSnapshot {
-            x: number(x)?,
-            y: number(y)?,
-            heading: number(heading)?,
-            length: number(length)?,
-            width: number(width)?,
-            path: cell(path).to_owned(),
-        })
+        let line = self.row.position().map_or(0, csv::Position::line);
+        LoggedConflict::from_cells(cell).map(Some).map_err(|message| Error::line(&self.path, line, message))
     }
 }
 
-/// The columns without which a row is no [`LoggedConflict`].
-const REQUIRED: [&str; 23] = {
-    let [required @ .., _, _, _, _, _, _, _, _, _, _, _, _, _, _] = crate::output::log::CONFLICT_COLUMNS;
-    required
-};
-
-/// How many of a file's bytes whole rows take: those that end with a line end.
+/// How many bytes of a file its whole rows take: those that end with a line end.
 fn whole_rows(file: &mut File, length: u64) -> std::io::Result<u64> {
-    let (mut end, mut block) = (length, [0; 4096]);
+    let mut end = length;
+    let mut block = [0; 4096];
     while end > 0 {
         let begin = end.saturating_sub(block.len() as u64);
         let part = &mut block[..(end - begin) as usize];
@@ -137,10 +109,6 @@ fn unreadable(path: &Path, error: &csv::Error) -> Error {
         csv::ErrorKind::Io(source) => return Error::file(path, std::io::Error::new(source.kind(), source.to_string())),
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("the row has {len} cells, not {expected_len}")
-        }
-        csv::ErrorKind::Deserialize { err, .. } => {
-            let column = err.field().and_then(|field| crate::output::log::CONFLICT_COLUMNS.get(field as usize));
-            column.map_or_else(|| err.kind().to_string(), |column| format!("{column}: {}", err.kind()))
         }
         csv::ErrorKind::Utf8 { err, .. } => err.to_string(),
         _ => error.to_string(),
@@ -171,8 +139,13 @@ mod tests {
         conflicts
     }
 
+    /// The columns of [`ROW`]; a later version may have more.
     fn header() -> String {
-        crate::output::log::CONFLICT_COLUMNS.join(",") + "\n"
+        let first = "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,ego_speed,\
+                     foe_speed,angle,x,y,lane,collision,ego_type,foe_type,";
+        let snapshots =
+            ["ego", "foe"].map(|who| format!("{who}_x,{who}_y,{who}_heading,{who}_length,{who}_width,{who}_path"));
+        format!("{first}{}\n", snapshots.join(","))
     }
 
     #[test]
@@ -189,26 +162,26 @@ mod tests {
     }
 
     #[test]
-    fn of_a_run_that_was_killed_as_it_wrote_a_row_the_whole_ones_are_read() {
+    fn a_half_row_of_a_killed_run_is_ignored() {
         let path = tempfile::NamedTempFile::new().unwrap().into_temp_path();
-        // The half row is longer than what is looked through at once.
+        // The half row is longer than the blocks in which its begin is searched.
         let half = ROW.replace("truck", &"truck".repeat(2000));
         fs::write(&path, header() + ROW + &half[..half.len() - 1]).unwrap();
-        let mut rows = CsvRows::open(&path, || true).unwrap();
+        let mut rows = CsvLog::open(&path, || true).unwrap();
         assert_eq!(rows.read().unwrap().map(|conflict| conflict.id), Some(1));
         assert_eq!(rows.read().unwrap(), None);
-        assert!(CsvRows::open(&path, || false).is_err());
+        assert!(CsvLog::open(&path, || false).is_err());
     }
 
     #[test]
-    fn what_is_wrong_is_named_with_its_line() {
+    fn an_error_names_its_line() {
         for (name, text, said) in [
             ("empty", String::new(), "it is empty"),
             ("schema", "time,ego\n".to_owned(), "line 1: the column \"id\" is missing"),
             ("cells", header() + ROW + "2,a,b,side\n", "line 3: the row has 4 cells, not 37"),
             ("cut", header() + &ROW[..ROW.len() - 1], "its last row is cut short"),
-            ("kind", header() + &ROW.replace("side", "odd"), "line 2: unknown variant"),
-            ("number", header() + &ROW.replace("-2", "NaN"), "line 2: NaN is no number of a log"),
+            ("kind", header() + &ROW.replace("side", "odd"), "line 2: kind: \"odd\" is not a kind"),
+            ("number", header() + &ROW.replace("-2", "NaN"), "line 2: margin: NaN is not a finite number"),
         ] {
             let message = read(name, &text).unwrap_err().to_string();
             assert!(message.contains(said) && !message.contains('\n'), "{message}");

@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DoubleType, Int64Type};
+use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
@@ -13,18 +13,16 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::conflicts::LoggedConflict;
-use super::fields::{FIELDS, Field};
-use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, unreadable};
+use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical, unreadable};
 use super::reader::ConflictReader;
 use super::run::record;
-use crate::output::log::CONFLICT_COLUMNS;
+use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
 use crate::{Error, Result};
 
-/// So many rows are a row group: what is in memory while one is written.
+/// Rows of a row group: what is in memory while one is written.
 const GROUP: usize = 1 << 16;
 
-/// A column that is the same in all rows of a run, and tells it from the others of a sweep.
+/// A column with the same value in all rows of a run, which tells the run from the others of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Label {
     /// The column's name.
@@ -53,7 +51,7 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> R
     let (_, record) = record(folder)?;
     let within = out.parent().unwrap_or(Path::new(""));
     fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
-    // Hidden, so that nobody takes it for a part of the data set; its own name, should two write the same run.
+    // Hidden, as it is not yet a part of the data set; its name is its own, as two processes may write the same run.
     let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
     let draft = draft.map_err(|source| Error::file(within, source))?;
     let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
@@ -69,7 +67,7 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> R
     draft.persist(out).map(|_| ()).map_err(|error| Error::file(out, error.error))
 }
 
-/// Temporary files are their owner's alone; a data set is read by others too.
+/// Only its owner can read a temporary file; others read a data set too.
 #[cfg(unix)]
 fn readable_by_all(path: &Path) -> std::io::Result<()> {
     use std::os::unix::fs::PermissionsExt;
@@ -113,9 +111,9 @@ fn write(
         let mut group = writer.next_row_group()?;
         let mut written = 0;
         while let Some(mut column) = group.next_column()? {
-            match FIELDS.get(written) {
-                Some(field) => fill(&mut column, &rows, *field)?,
-                None => repeat(&mut column, rows.len(), &labels[written - FIELDS.len()].value)?,
+            match COLUMNS.get(written) {
+                Some(of_log) => fill(&mut column, &rows, of_log)?,
+                None => repeat(&mut column, rows.len(), &labels[written - COLUMNS.len()].value)?,
             }
             column.close()?;
             written += 1;
@@ -136,13 +134,13 @@ fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
         };
         column.build().map(Arc::new)
     };
-    let mut columns = Vec::with_capacity(FIELDS.len() + labels.len());
-    for (name, field) in CONFLICT_COLUMNS.into_iter().zip(FIELDS) {
-        let repetition = match field {
-            Field::Count(_) | Field::Flag(_) => Repetition::REQUIRED,
-            Field::Text(_) | Field::Number(_) => Repetition::OPTIONAL,
+    let mut columns = Vec::with_capacity(COLUMNS.len() + labels.len());
+    for Column { name, column_type, .. } in COLUMNS {
+        let repetition = match column_type {
+            ColumnType::Count | ColumnType::Flag => Repetition::REQUIRED,
+            ColumnType::Text | ColumnType::Number => Repetition::OPTIONAL,
         };
-        columns.push(column(name, field.physical(), repetition)?);
+        columns.push(column(name, physical(column_type), repetition)?);
     }
     for label in labels {
         let physical = match label.value {
@@ -155,37 +153,49 @@ fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
     Type::group_type_builder("conflict").with_fields(columns).build()
 }
 
-/// Writes a column of the log.
+/// Writes a column of the log; a number that is missing and an empty text are null.
 fn fill(
     column: &mut SerializedColumnWriter<'_>,
-    rows: &[LoggedConflict],
-    field: Field,
+    conflicts: &[LoggedConflict],
+    of_log: &Column,
 ) -> std::result::Result<(), ParquetError> {
-    match field {
-        Field::Count(of) => {
-            let values = rows.iter().map(of).collect::<Vec<_>>();
-            column.typed::<Int64Type>().write_batch(&values, None, None)?;
+    let values = conflicts.iter().map(of_log.get);
+    match of_log.column_type {
+        ColumnType::Count => {
+            let counts =
+                values.filter_map(|value| if let Value::Count(count) = value { Some(count as i64) } else { None });
+            column.typed::<Int64Type>().write_batch(&counts.collect::<Vec<_>>(), None, None)?;
         }
-        Field::Flag(of) => {
-            let values = rows.iter().map(of).collect::<Vec<_>>();
-            column.typed::<BoolType>().write_batch(&values, None, None)?;
+        ColumnType::Flag => {
+            let flags = values.filter_map(|value| if let Value::Flag(flag) = value { Some(flag) } else { None });
+            column.typed::<BoolType>().write_batch(&flags.collect::<Vec<_>>(), None, None)?;
         }
-        Field::Number(of) => {
-            let levels = rows.iter().map(|row| i16::from(of(row).is_some())).collect::<Vec<_>>();
-            let values = rows.iter().filter_map(of).collect::<Vec<_>>();
-            column.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
+        ColumnType::Number => {
+            let numbers = values.map(|value| if let Value::Number(number) = value { Some(number) } else { None });
+            write_optional::<DoubleType>(column, numbers)?;
         }
-        Field::Text(of) => {
-            let levels = rows.iter().map(|row| i16::from(!of(row).is_empty())).collect::<Vec<_>>();
-            let texts = rows.iter().map(of).filter(|text| !text.is_empty());
-            let values = texts.map(ByteArray::from).collect::<Vec<_>>();
-            column.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
+        ColumnType::Text => {
+            let texts = values.map(|value| match value {
+                Value::Text(text) if !text.is_empty() => Some(ByteArray::from(text)),
+                _ => None,
+            });
+            write_optional::<ByteArrayType>(column, texts)?;
         }
     }
     Ok(())
 }
 
-/// Writes a column that is the same in all rows.
+fn write_optional<T: DataType>(
+    column: &mut SerializedColumnWriter<'_>,
+    values: impl Iterator<Item = Option<T::T>>,
+) -> std::result::Result<(), ParquetError> {
+    let mut levels = Vec::new();
+    let present = values.inspect(|value| levels.push(i16::from(value.is_some()))).flatten().collect::<Vec<_>>();
+    column.typed::<T>().write_batch(&present, Some(&levels), None)?;
+    Ok(())
+}
+
+/// Writes a label: the same value in all rows.
 fn repeat(
     column: &mut SerializedColumnWriter<'_>,
     rows: usize,
@@ -220,14 +230,26 @@ mod tests {
         .map(|(name, value)| Label { name: name.to_owned(), value })
     }
 
+    /// A value of a column in the row of this number; some are missing.
+    fn cell(column: &Column, id: usize) -> String {
+        match (column.name, column.column_type) {
+            ("ego", _) => format!("\"a,{id}\""),
+            ("kind", _) => "side".to_owned(),
+            ("severity", _) => "serious".to_owned(),
+            (_, ColumnType::Count) => id.to_string(),
+            (_, ColumnType::Flag) => id.is_multiple_of(2).to_string(),
+            _ if column.is_optional() && (id + column.name.len()).is_multiple_of(3) => String::new(),
+            (name, ColumnType::Text) => format!("{name} {}", id % 7),
+            (name, ColumnType::Number) => format!("-{}.25", id % 100 + name.len()),
+        }
+    }
+
     fn packed(name: &str, rows: usize) -> (Vec<LoggedConflict>, Vec<LoggedConflict>, Packed) {
         let folder = std::env::temp_dir().join(format!("closecall-pack-{name}-{}", std::process::id()));
         fs::create_dir_all(folder.join("log")).unwrap();
-        let mut text = CONFLICT_COLUMNS.join(",") + "\n";
+        let mut text = COLUMNS.map(|column| column.name).join(",") + "\n";
         for id in 1..=rows {
-            let (ttc, lane) = if id % 3 == 0 { ("", "") } else { ("1.25", ":J_0_1") };
-            text += &format!("{id},\"a,{id}\",b,side,serious,0,1,0.5,1,3,-2.25,0.4,{ttc},3.5,,2,10,5,1.57,7,8,{lane},");
-            text += &format!("{},car,truck,1,2,0.5,5,1.8,1 2 3 4,5,6,1,0,0,\n", id % 2 == 0);
+            text += &(COLUMNS.map(|column| cell(&column, id)).join(",") + "\n");
         }
         fs::write(folder.join("log").join(CONFLICTS), text).unwrap();
         fs::write(folder.join("log").join(RUN), "{}\n").unwrap();
@@ -235,7 +257,7 @@ mod tests {
         assert_eq!(fs::read_dir(folder.join("p")).unwrap().count(), 1, "a draft is left");
         let read = |folder: &Path| {
             let reader = ConflictReader::open(folder).unwrap().with_snapshots();
-            assert_eq!(reader.columns(), CONFLICT_COLUMNS);
+            assert_eq!(reader.columns(), COLUMNS.map(|column| column.name));
             reader.collect::<Result<Vec<_>>>().unwrap()
         };
         let both = (read(&folder.join("log")), read(&folder.join("p")));
@@ -245,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_packed_is_what_was_logged_also_across_row_groups() {
+    fn a_packed_log_reads_the_same_across_row_groups() {
         for rows in [0, 1, 5000, GROUP + 10] {
             let (logged, packed, beside) = packed(&format!("rows{rows}"), rows);
             assert_eq!(logged.len(), rows);

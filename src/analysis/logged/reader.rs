@@ -1,70 +1,71 @@
-//! Reads the conflicts of a log one by one, whatever file they are in.
+//! Reads the conflicts of a log one by one, from CSV or Parquet.
 
 use std::path::Path;
 
-use super::conflicts::LoggedConflict;
-use super::csv::CsvRows;
-use super::parquet::{PARQUET, ParquetRows};
+use super::csv::CsvLog;
+use super::parquet::{PARQUET, ParquetLog};
 use super::run::LoggedRun;
 use crate::Result;
 use crate::output::log::CONFLICTS;
+use crate::output::schema::LoggedConflict;
 
-/// The conflicts of one log folder, one by one, in the order of the file; memory is bounded however many there are.
+/// The conflicts of one log folder, one by one, in the order of the file. Memory does not grow with their number.
 #[derive(Debug)]
 pub struct ConflictReader {
-    rows: Rows,
+    file: LogFile,
     failed: bool,
 }
 
-/// What the folder holds.
+/// The file that holds them.
 #[derive(Debug)]
-enum Rows {
-    Csv(Box<CsvRows>),
-    Parquet(Box<ParquetRows>),
+enum LogFile {
+    Csv(Box<CsvLog>),
+    Parquet(Box<ParquetLog>),
 }
 
 impl ConflictReader {
-    /// Opens the `conflicts.csv` of a log folder, or its `conflicts.parquet` where there is no other. Of a run that was
-    /// killed, or goes on, a last row that is half is left out.
+    /// Opens the `conflicts.csv` of a log folder, or else its `conflicts.parquet`. Ignores a last row that is cut short if
+    /// the run was killed or is still going on.
     ///
     /// # Errors
     /// [`crate::Error::File`] where it cannot be read; [`crate::Error::Content`] where it is empty or cut short;
-    /// [`crate::Error::Line`] where its first line is not that of a log.
+    /// [`crate::Error::Line`] where its first line lacks a column.
     pub fn open(folder: &Path) -> Result<Self> {
-        let (csv, parquet) = (folder.join(CONFLICTS), folder.join(PARQUET));
+        let csv = folder.join(CONFLICTS);
+        let parquet = folder.join(PARQUET);
         let is_csv = csv.exists() || !parquet.exists();
-        let rows = if is_csv {
+        let file = if is_csv {
             let has_no_result = || LoggedRun::read(folder).is_ok_and(|run| run.summary.steps == 0);
-            Rows::Csv(Box::new(CsvRows::open(&csv, has_no_result)?))
+            LogFile::Csv(Box::new(CsvLog::open(&csv, has_no_result)?))
         } else {
-            Rows::Parquet(Box::new(ParquetRows::open(&parquet)?))
+            LogFile::Parquet(Box::new(ParquetLog::open(&parquet)?))
         };
-        Ok(Self { rows, failed: false })
+        Ok(Self { file, failed: false })
     }
 
-    /// Reads the snapshots too, where the log has them.
+    /// Reads the snapshots as well, where the log has them.
     #[must_use]
     pub fn with_snapshots(mut self) -> Self {
-        match &mut self.rows {
-            Rows::Csv(rows) => rows.read_snapshots(),
-            Rows::Parquet(rows) => rows.read_snapshots(),
+        match &mut self.file {
+            LogFile::Csv(log) => log.read_snapshots(),
+            LogFile::Parquet(log) => log.read_snapshots(),
         }
         self
     }
 
-    /// The columns of the file, without those that tell the runs of a sweep apart.
+    /// The columns of the file, without the labels of a sweep.
     pub fn columns(&self) -> Vec<String> {
-        match &self.rows {
-            Rows::Csv(rows) => rows.columns(),
-            Rows::Parquet(rows) => rows.columns(),
+        match &self.file {
+            LogFile::Csv(log) => log.columns(),
+            LogFile::Parquet(log) => log.columns(),
         }
     }
 
     /// The file.
     pub fn path(&self) -> &Path {
-        match &self.rows {
-            Rows::Csv(rows) => rows.path(),
-            Rows::Parquet(rows) => rows.path(),
+        match &self.file {
+            LogFile::Csv(log) => log.path(),
+            LogFile::Parquet(log) => log.path(),
         }
     }
 }
@@ -76,9 +77,9 @@ impl Iterator for ConflictReader {
         if self.failed {
             return None;
         }
-        let read = match &mut self.rows {
-            Rows::Csv(rows) => rows.read(),
-            Rows::Parquet(rows) => rows.read(),
+        let read = match &mut self.file {
+            LogFile::Csv(log) => log.read(),
+            LogFile::Parquet(log) => log.read(),
         };
         self.failed = read.is_err();
         read.transpose()

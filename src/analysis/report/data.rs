@@ -1,33 +1,37 @@
-//! What the page draws, as JSON: columns instead of rows, numbers rounded, repeated words once.
+//! The page's data as JSON: columns instead of rows, numbers rounded, repeated words once.
 
 use std::path::PathBuf;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Map, Value, json};
 
 use super::roads;
 use crate::analysis::dataset::Conflicts;
-use crate::analysis::dataset::rows::{NUMBERS, Row, Snapshot};
+use crate::analysis::dataset::worst::RunConflict;
 use crate::detection::kind::{Kind, Severity};
 use crate::options::Options;
+use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 use crate::traffic::net::{EdgeFunction, Net};
 
-/// So many of the worst conflicts can be drawn, with both rectangles and paths.
+/// The worst conflicts, this many, can be drawn with both rectangles and paths.
 const DRAWN: usize = 2_000;
+/// The number column that nothing on the page shows.
+const NOT_SHOWN: &str = "clearance";
 
-/// All of the page's data. No `<` is in it: what stands in a page's script must not end it.
+/// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
 pub fn json(found: Conflicts) -> String {
-    let Conflicts { logs, records, ground, mut rows, seen } = found;
-    for row in rows.iter_mut().skip(DRAWN) {
-        row.snapshots = None;
-    }
-    rows.sort_unstable_by_key(|row| (row.run, row.id));
+    let Conflicts { logs, records, ground, mut conflicts, seen } = found;
+    let key = |one: &RunConflict| (one.run, one.conflict.id);
+    let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
+    conflicts.sort_unstable_by_key(key);
+    let drawn = (0..).zip(&conflicts).filter(|(_, one)| drawn.contains(&key(one))).filter_map(drawing);
+    let drawn = drawn.collect::<Vec<_>>();
     let data = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "seen": seen,
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
-        "conflicts": columns(&rows, ground.net.as_ref()),
+        "conflicts": columns(&conflicts, drawn, ground.net.as_ref()),
         "runs": runs(&logs, records),
         "defaults": Options::default(),
         "net": ground.net.as_ref().map(roads::json),
@@ -46,7 +50,7 @@ fn runs(logs: &[PathBuf], records: Vec<Value>) -> Vec<Value> {
     records.into_iter().zip(logs).map(with_folder).collect()
 }
 
-/// Words that repeat: a column has their places in the list.
+/// Words that repeat: a column holds their places in the list.
 #[derive(Default)]
 struct Words<'a> {
     list: Vec<&'a str>,
@@ -62,28 +66,33 @@ impl<'a> Words<'a> {
     }
 }
 
-fn columns(rows: &[Row], net: Option<&Net>) -> Value {
+fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value {
     let mut columns = Map::new();
     let mut add = |name: &str, column: Value| drop(columns.insert(name.to_owned(), once(column)));
-    let (mut ids, mut types, mut lanes) = (Words::default(), Words::default(), Words::default());
-    for (who, name) in ["ego", "foe"].into_iter().enumerate() {
-        add(name, rows.iter().map(|row| ids.place(&row.ids[who])).collect());
-        add(&format!("{name}_type"), rows.iter().map(|row| types.place(&row.types[who])).collect());
-    }
-    add("lane", rows.iter().map(|row| lanes.place(&row.lane)).collect());
-    add("id", rows.iter().map(|row| row.id).collect());
+    let conflicts = || rows.iter().map(|row| &row.conflict);
+    let mut ids = Words::default();
+    add("ego", conflicts().map(|conflict| ids.place(&conflict.ego)).collect());
+    add("foe", conflicts().map(|conflict| ids.place(&conflict.foe)).collect());
+    let mut types = Words::default();
+    add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)).collect());
+    add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)).collect());
+    let mut lanes = Words::default();
+    add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)).collect());
+    add("id", conflicts().map(|conflict| conflict.id).collect());
     add("run", rows.iter().map(|row| row.run).collect());
-    add("kind", rows.iter().map(|row| row.kind).collect());
-    add("severity", rows.iter().map(|row| row.severity).collect());
-    add("collision", rows.iter().map(|row| u8::from(row.collision)).collect());
-    for (place, (name, decimals)) in NUMBERS.into_iter().enumerate() {
-        add(name, rows.iter().map(|row| row.numbers[place].map(|value| rounded(value, decimals))).collect());
+    add("kind", conflicts().map(|conflict| rank(&Kind::ALL, conflict.kind)).collect());
+    add("severity", conflicts().map(|conflict| rank(&Severity::ALL, conflict.severity)).collect());
+    add("collision", conflicts().map(|conflict| u8::from(conflict.collision)).collect());
+    for column in COLUMNS.iter().filter(|column| is_shown_number(column)) {
+        let number = |conflict| match (column.get)(conflict) {
+            Cell::Number(number) => Some(rounded(number, decimals(column))),
+            _ => None,
+        };
+        add(column.name, conflicts().map(number).collect());
     }
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
     let spot_of_lane = spots.iter().map(|spot| places.place(spot)).collect::<Vec<_>>();
-    let drawn = (0..).zip(rows).filter_map(|(row, kept)| Some((row, kept.snapshots.as_deref()?)));
-    let drawn = drawn.map(|(row, [ego, foe]): (usize, _)| json!([row, stance(ego), stance(foe)])).collect::<Vec<_>>();
     json!({
         "count": rows.len(),
         "columns": columns,
@@ -96,7 +105,20 @@ fn columns(rows: &[Row], net: Option<&Net>) -> Value {
     })
 }
 
-/// A column that is the same in every row as that one value.
+fn is_shown_number(column: &Column) -> bool {
+    column.column_type == ColumnType::Number && column.presence != Presence::Snapshot && column.name != NOT_SHOWN
+}
+
+/// How many decimals the page has: more for an angle, as it turns a whole length.
+fn decimals(column: &Column) -> i32 {
+    if column.unit() == "rad" { 3 } else { 2 }
+}
+
+fn rank<T: PartialEq>(all: &[T], one: T) -> usize {
+    all.iter().position(|known| *known == one).unwrap_or_default()
+}
+
+/// A column with the same value in every row becomes that value.
 fn once(column: Value) -> Value {
     match column {
         Value::Array(mut values) if values.windows(2).all(|pair| pair[0] == pair[1]) => {
@@ -106,7 +128,7 @@ fn once(column: Value) -> Value {
     }
 }
 
-/// The edge or junction that a lane belongs to, in words; as its id says where there is no net.
+/// The edge or junction of a lane, in words; without a net, guessed from the lane's id.
 fn spot(lane: &str, net: Option<&Net>) -> String {
     let known = net.and_then(|net| {
         let edge = &net.edges[net.lanes[net.lane(lane)?.0 as usize].edge.0 as usize];
@@ -122,15 +144,25 @@ fn spot(lane: &str, net: Option<&Net>) -> String {
     })
 }
 
-/// A stance as x, y, heading, length, width and the numbers of its path.
-fn stance(stance: &Snapshot) -> Vec<f64> {
-    let path = stance.path.split(' ').filter_map(|number| number.parse::<f64>().ok());
-    stance.numbers.into_iter().map(|number| rounded(number, 3)).chain(path).collect()
+/// The row of a conflict, and both of its snapshots: x, y, heading, length, width and the numbers of the path. None where
+/// the log has no snapshots.
+fn drawing((row, RunConflict { conflict, .. }): (usize, &RunConflict)) -> Option<Value> {
+    let LoggedConflict { ego_x, ego_y, ego_heading, ego_length, ego_width, ego_path, .. } = conflict;
+    let LoggedConflict { foe_x, foe_y, foe_heading, foe_length, foe_width, foe_path, .. } = conflict;
+    let ego = snapshot([ego_x, ego_y, ego_heading, ego_length, ego_width], ego_path)?;
+    let foe = snapshot([foe_x, foe_y, foe_heading, foe_length, foe_width], foe_path)?;
+    Some(json!([row, ego, foe]))
+}
+
+fn snapshot(numbers: [&Option<f64>; 5], path: &str) -> Option<Vec<f64>> {
+    let mut snapshot = numbers.into_iter().map(|number| Some(rounded((*number)?, 3))).collect::<Option<Vec<_>>>()?;
+    snapshot.extend(path.split(' ').filter_map(|number| number.parse::<f64>().ok()));
+    Some(snapshot)
 }
 
 fn rounded(value: f64, decimals: i32) -> f64 {
     let scale = 10_f64.powi(decimals);
-    // Adding 0 makes the 0 of -0.
+    // Adding 0 turns -0 into 0.
     (value * scale).round() / scale + 0.0
 }
 
@@ -139,7 +171,7 @@ mod tests {
     use crate::analysis::report::data::*;
 
     #[test]
-    fn a_lane_without_a_net_is_on_the_edge_or_junction_that_its_id_says() {
+    fn without_a_net_a_lane_is_where_its_id_says() {
         assert_eq!(spot("a_b_0", None), "edge a_b");
         assert_eq!(spot(":J_1_3_0", None), "junction J_1");
         assert_eq!(spot("", None), "");
@@ -147,20 +179,19 @@ mod tests {
 
     #[test]
     fn a_script_in_an_id_cannot_end_the_data() {
-        let row = Row {
-            run: 0,
-            id: 1,
-            kind: 0,
-            severity: 0,
-            collision: false,
-            numbers: [None; NUMBERS.len()],
-            ids: ["</script><script>".into(), "b".into()],
-            types: Default::default(),
-            lane: "".into(),
-            snapshots: None,
+        let cell = |column: usize| match COLUMNS[column].name {
+            "ego" => Ok(Cell::Text("</script><script>")),
+            name => COLUMNS[column].column_type.parse(match name {
+                "kind" => "side",
+                "severity" => "caution",
+                "collision" => "false",
+                _ => "1",
+            }),
         };
-        let ground = Default::default();
-        let text = json(Conflicts { logs: Vec::new(), records: Vec::new(), ground, rows: vec![row], seen: 1 });
+        let conflict = LoggedConflict::from_cells(cell).unwrap();
+        let conflicts = vec![RunConflict { run: 0, conflict }];
+        let text =
+            json(Conflicts { logs: Vec::new(), records: Vec::new(), ground: Default::default(), conflicts, seen: 1 });
         assert!(!text.contains('<'));
         let read: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(read["conflicts"]["ids"][0], "</script><script>");

@@ -1,14 +1,17 @@
-//! [`super::Level::Exact`]: byte for byte; what differs is explained conflict by conflict.
+//! [`super::Level::Exact`]: byte for byte; differences are explained conflict by conflict.
 
 use super::matching::matched;
-use super::outcome::{Outcome, Row, SeedSummary};
-use crate::output::log::CONFLICT_COLUMNS;
+use super::outcome::{Outcome, SeedConflict, SeedSummary};
+use crate::output::schema::{COLUMNS, Column};
 
-/// The columns that say how bad a conflict was, and where.
+/// The columns that tell how bad a conflict was, and where.
 const TELLING: [&str; 12] =
     ["severity", "collision", "begin", "end", "gap", "mu", "margin", "ttc", "drac", "pet", "delta_v", "lane"];
 
-/// What differs between what is expected and what was found.
+/// The measures in the description of a conflict.
+const MEASURES: [&str; 5] = ["gap", "margin", "ttc", "drac", "pet"];
+
+/// What differs between expected and found results.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Differences {
     /// Conflicts that were not expected.
@@ -17,7 +20,7 @@ pub struct Differences {
     pub gone: Vec<String>,
     /// Conflicts with other values.
     pub changed: Vec<String>,
-    /// Differences beside the conflicts: seeds, traffic, order.
+    /// Other differences: seeds, traffic, order.
     pub other: Vec<String>,
 }
 
@@ -27,7 +30,7 @@ impl Differences {
         [&self.new, &self.gone, &self.changed, &self.other].iter().all(|differences| differences.is_empty())
     }
 
-    /// The number of each sort, in words.
+    /// The number of each, in words.
     pub fn counts(&self) -> String {
         let named = [(self.new.len(), "new"), (self.gone.len(), "gone"), (self.changed.len(), "changed")];
         let counts = named.map(|(count, name)| format!("{count} {name}")).join(", ");
@@ -36,10 +39,11 @@ impl Differences {
     }
 }
 
-/// Compares; empty exactly where `conflicts.csv` is the same byte for byte and so are steps and traffic.
+/// Compares; empty exactly if `conflicts.csv` is the same byte for byte and steps and traffic are equal.
 pub fn differences(expected: &Outcome, found: &Outcome) -> Differences {
     let mut differences = Differences::default();
-    let (old, new) = (expected.seeds(), found.seeds());
+    let old = expected.seeds();
+    let new = found.seeds();
     if old != new {
         differences.other.push(format!("seeds {} → {}", list(&old), list(&new)));
     }
@@ -60,17 +64,17 @@ pub fn differences(expected: &Outcome, found: &Outcome) -> Differences {
     differences
 }
 
-/// A conflict in one line: who, when, where, how bad.
-pub fn described(row: &Row) -> String {
-    let measures = [("gap", "m"), ("margin", "m"), ("ttc", "s"), ("drac", "m/s²"), ("pet", "s")];
-    let told = measures.iter().filter(|(name, _)| !row.text(name).is_empty());
-    let told = told.map(|(name, unit)| format!("{name} {} {unit}", row.text(name))).collect::<Vec<_>>().join(", ");
+/// A conflict in one line: the pair, when, where, how bad.
+pub fn described(row: &SeedConflict) -> String {
+    let measures = MEASURES.into_iter().filter_map(Column::named).filter(|column| !row.text(column.name).is_empty());
+    let told = measures.map(|column| format!("{} {} {}", column.name, row.text(column.name), column.unit()));
+    let told = told.collect::<Vec<_>>().join(", ");
     let hit = if row.text("collision") == "true" { ", collision" } else { "" };
     format!("{}: {}, {told}{hit}", place(row), row.severity.name())
 }
 
 /// Seed, kind, pair, time and place.
-fn place(row: &Row) -> String {
+fn place(row: &SeedConflict) -> String {
     let lane = if row.text("lane").is_empty() { String::new() } else { format!("on {} ", row.text("lane")) };
     format!(
         "seed {} {} {} with {}, {} s to {} s, {lane}at ({}, {})",
@@ -85,24 +89,25 @@ fn place(row: &Row) -> String {
     )
 }
 
-/// What differs, old and new: the columns that say how bad it was and where, or, if they are the same, the others.
-fn changed(before: &Row, now: &Row) -> Option<String> {
-    let value = |row: &Row, column: &str| match row.text(column) {
+/// What differs, old and new: the columns that tell how bad it was and where, or, if they are equal, the others.
+fn changed(before: &SeedConflict, now: &SeedConflict) -> Option<String> {
+    let value = |row: &SeedConflict, column: &str| match row.text(column) {
         "" => "none".to_owned(),
         text => text.to_owned(),
     };
     let told = |columns: &[&str]| {
-        // The number of the row says nothing.
+        // The number of a row changes with every conflict before it.
         let differing = columns.iter().filter(|column| **column != "id" && before.text(column) != now.text(column));
         let told = differing.map(|column| format!("{column} {} → {}", value(before, column), value(now, column)));
         told.collect::<Vec<_>>().join(", ")
     };
-    let told = [told(&TELLING), told(&CONFLICT_COLUMNS)].into_iter().find(|told| !told.is_empty())?;
+    let told = [told(&TELLING), told(&COLUMNS.map(|column| column.name))].into_iter().find(|told| !told.is_empty())?;
     Some(format!("{}: {told}", place(now)))
 }
 
 fn traffic(before: &SeedSummary, now: &SeedSummary) -> Option<String> {
-    let (old, new) = (before.exposure, now.exposure);
+    let old = before.exposure;
+    let new = now.exposure;
     let numbers = [
         ("steps", before.steps as f64, now.steps as f64),
         ("vehicles", old.vehicles as f64, new.vehicles as f64),

@@ -1,8 +1,8 @@
-//! Which conflict of one run is which of another: the same seed, pair (in either order) and kind, and the same time.
+//! Matches the conflicts of two runs: those with the same seed, pair (in either order), kind and time.
 
 use std::collections::BTreeMap;
 
-use super::outcome::Row;
+use super::outcome::SeedConflict;
 use crate::detection::kind::Kind;
 use crate::events::CLOSES_AFTER;
 use crate::util::units::Second;
@@ -10,22 +10,22 @@ use crate::util::units::Second;
 /// The conflicts of two outcomes, side by side.
 #[derive(Debug, Default)]
 pub struct Matching<'a> {
-    /// In both: before and now, in the order of now.
-    pub pairs: Vec<(&'a Row, &'a Row)>,
+    /// In both, before and now, in the order of the current run.
+    pub pairs: Vec<(&'a SeedConflict, &'a SeedConflict)>,
     /// Only now.
-    pub new: Vec<&'a Row>,
+    pub new: Vec<&'a SeedConflict>,
     /// Only before.
-    pub gone: Vec<&'a Row>,
+    pub gone: Vec<&'a SeedConflict>,
 }
 
-/// What two rows must have in common, but for the time.
+/// What two conflicts must have in common besides the time.
 type Key<'a> = (u32, &'a str, &'a str, Kind);
 
-/// Matches the conflicts of `before` with those of `now`; of several that overlap, those that overlap longest.
+/// Matches the conflicts of `before` with those of `now`. If several overlap, the longest overlap wins.
 ///
-/// Two that are less than [`CLOSES_AFTER`] apart overlap as well: within one run they would be one conflict.
-pub fn matched<'a>(before: &'a [Row], now: &'a [Row]) -> Matching<'a> {
-    let mut candidates: BTreeMap<Key, (Vec<&Row>, Vec<&Row>)> = BTreeMap::new();
+/// Two that are less than [`CLOSES_AFTER`] apart count as overlapping: within one run they would be one conflict.
+pub fn matched<'a>(before: &'a [SeedConflict], now: &'a [SeedConflict]) -> Matching<'a> {
+    let mut candidates: BTreeMap<Key, (Vec<&SeedConflict>, Vec<&SeedConflict>)> = BTreeMap::new();
     for row in before {
         candidates.entry(key(row)).or_default().0.push(row);
     }
@@ -40,19 +40,20 @@ pub fn matched<'a>(before: &'a [Row], now: &'a [Row]) -> Matching<'a> {
         matching.gone.append(&mut old);
         matching.new.append(&mut new);
     }
-    let order = |a: &Row, b: &Row| (a.seed).cmp(&b.seed).then(a.begin.total_cmp(&b.begin));
+    let order = |a: &SeedConflict, b: &SeedConflict| (a.seed).cmp(&b.seed).then(a.begin.total_cmp(&b.begin));
     matching.pairs.sort_by(|a, b| order(a.1, b.1));
     matching.new.sort_by(|a, b| order(a, b));
     matching.gone.sort_by(|a, b| order(a, b));
     matching
 }
 
-fn key(row: &Row) -> Key<'_> {
-    let (ego, foe) = (row.ego.as_str(), row.foe.as_str());
+fn key(row: &SeedConflict) -> Key<'_> {
+    let ego = row.ego.as_str();
+    let foe = row.foe.as_str();
     (row.seed, ego.min(foe), ego.max(foe), row.kind)
 }
 
-fn longest_overlap(old: &[&Row], new: &[&Row]) -> Option<(usize, usize)> {
+fn longest_overlap(old: &[&SeedConflict], new: &[&SeedConflict]) -> Option<(usize, usize)> {
     let mut longest: Option<(Second, usize, usize)> = None;
     for (i, before) in old.iter().enumerate() {
         for (j, now) in new.iter().enumerate() {

@@ -1,7 +1,7 @@
-//! What a scenario's runs gave, one for each seed: also what is expected of it, in two files.
+//! The results of a scenario's runs, one per seed; the expected results are the same, in two files.
 //!
-//! `conflicts.csv` holds the rows of all seeds with the seed as first column; `summary.json` the versions, the options,
-//! the input files and the counts and traffic of each seed.
+//! `conflicts.csv` holds the rows of all seeds with the seed as first column. `summary.json` holds the versions, the
+//! options, the input files, and the counts and traffic of each seed.
 
 use std::path::Path;
 
@@ -12,17 +12,18 @@ use super::fingerprint::Fingerprint;
 use crate::analysis::logged::{LoggedRun, SUMMARY};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
+use crate::output::schema::{COLUMNS, LoggedConflict};
 use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
-/// What a scenario's runs gave.
+/// The results of a scenario's runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
     /// How the runs were made, and their counts.
     pub summary: RunsSummary,
     /// The conflicts of all seeds, in the order of seeds and rows.
-    pub conflicts: Vec<Row>,
+    pub conflicts: Vec<SeedConflict>,
     /// `conflicts.csv`, byte for byte.
     pub csv: Vec<u8>,
 }
@@ -44,7 +45,7 @@ pub struct RunsSummary {
     pub options: Value,
     /// Input files with their hashes and parts.
     pub inputs: Vec<Fingerprint>,
-    /// What each seed gave.
+    /// The counts and traffic of each seed.
     pub seeds: Vec<SeedSummary>,
 }
 
@@ -57,15 +58,15 @@ pub struct SeedSummary {
     pub steps: u64,
     /// Conflicts by kind and severity.
     pub conflicts: Vec<Count>,
-    /// Conflicts in which the two touched.
+    /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// How much traffic it was.
+    /// The amount of traffic.
     pub exposure: Exposure,
 }
 
-/// One row of `conflicts.csv`.
+/// One conflict of the runs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Row {
+pub struct SeedConflict {
     /// SUMO's random seed.
     pub seed: u32,
     /// SUMO's id of the ego.
@@ -80,16 +81,22 @@ pub struct Row {
     pub begin: Second,
     /// Last step with margin < 0, in s.
     pub end: Second,
-    /// All cells, as they stand in the columns of the file.
+    /// The cells of the row, the seed first.
     cells: csv::StringRecord,
 }
 
-impl Row {
-    /// The text in a column of [`log::CONFLICT_COLUMNS`]; empty where there is none.
+impl SeedConflict {
+    /// The conflict in a row; none where a cell does not fit its column.
+    fn new(cells: csv::StringRecord) -> Option<Self> {
+        let cell = |column: usize| COLUMNS[column].column_type.parse(cells.get(column + 1).unwrap_or_default());
+        let LoggedConflict { ego, foe, kind, severity, begin, end, .. } = LoggedConflict::from_cells(cell).ok()?;
+        Some(Self { seed: cells.get(0)?.parse().ok()?, ego, foe, kind, severity, begin, end, cells })
+    }
+
+    /// The text in a column; empty where there is none.
     pub fn text(&self, column: &str) -> &str {
-        // The seed stands before them.
-        let place = log::CONFLICT_COLUMNS.iter().position(|name| *name == column).map(|place| place + 1);
-        place.and_then(|place| self.cells.get(place)).unwrap_or_default()
+        let place = COLUMNS.iter().position(|known| known.name == column);
+        place.and_then(|place| self.cells.get(place + 1)).unwrap_or_default()
     }
 
     /// The number in a column, if there is one.
@@ -137,24 +144,25 @@ impl Outcome {
             }
         }
         let bytes = csv.into_inner().map_err(|error| Error::Value(error.to_string()))?;
-        let summary = summary.ok_or_else(|| Error::content(folder, "no seed to run"))?;
-        Ok(Self { conflicts: rows(&bytes, &folder.join(log::CONFLICTS))?, csv: bytes, summary })
+        let summary = summary.ok_or_else(|| Error::content(folder, "the scenario has no seeds"))?;
+        Ok(Self { conflicts: conflicts(&bytes, &folder.join(log::CONFLICTS))?, csv: bytes, summary })
     }
 
-    /// Reads what is expected; none where nothing is blessed.
+    /// Reads the expected results; none where nothing is blessed.
     ///
     /// # Errors
     /// An error that names the file that cannot be read or does not hold what it should.
     pub fn read(expected: &Path) -> Result<Option<Self>> {
-        let (table, summary) = (expected.join(log::CONFLICTS), expected.join(SUMMARY));
+        let table = expected.join(log::CONFLICTS);
+        let summary = expected.join(SUMMARY);
         if !table.exists() && !summary.exists() {
             return Ok(None);
         }
         let csv = std::fs::read(&table).map_err(|source| Error::file(&table, source))?;
-        Ok(Some(Self { summary: read_json(&summary)?, conflicts: rows(&csv, &table)?, csv }))
+        Ok(Some(Self { summary: read_json(&summary)?, conflicts: conflicts(&csv, &table)?, csv }))
     }
 
-    /// Writes this as what is expected.
+    /// Writes this as the expected results.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
@@ -175,7 +183,7 @@ impl Outcome {
     }
 }
 
-/// Copies a run's rows, the seed before them.
+/// Copies a run's rows and puts the seed before them.
 fn append(csv: &mut csv::Writer<Vec<u8>>, seed: u32, path: &Path, with_header: bool) -> Result<()> {
     let fail = |error: csv::Error| Error::content(path, error.to_string());
     let mut reader = csv::ReaderBuilder::new().has_headers(false).from_path(path).map_err(fail)?;
@@ -189,11 +197,11 @@ fn append(csv: &mut csv::Writer<Vec<u8>>, seed: u32, path: &Path, with_header: b
     Ok(())
 }
 
-fn rows(csv: &[u8], path: &Path) -> Result<Vec<Row>> {
+fn conflicts(csv: &[u8], path: &Path) -> Result<Vec<SeedConflict>> {
     let fail = |error: csv::Error| Error::content(path, error.to_string());
     let mut reader = csv::Reader::from_reader(csv);
     let header = reader.headers().map_err(fail)?;
-    if !header.iter().eq(std::iter::once("seed").chain(log::CONFLICT_COLUMNS)) {
+    if !header.iter().eq(std::iter::once("seed").chain(COLUMNS.map(|column| column.name))) {
         return Err(Error::line(path, 1, "these are not the columns of this version; bless again"));
     }
     reader
@@ -201,22 +209,9 @@ fn rows(csv: &[u8], path: &Path) -> Result<Vec<Row>> {
         .map(|record| {
             let record = record.map_err(fail)?;
             let line = record.position().map_or(1, csv::Position::line);
-            row(record).ok_or_else(|| Error::line(path, line, "this is no row of a conflict"))
+            SeedConflict::new(record).ok_or_else(|| Error::line(path, line, "this is not the row of a conflict"))
         })
         .collect()
-}
-
-fn row(cells: csv::StringRecord) -> Option<Row> {
-    Some(Row {
-        seed: cells.get(0)?.parse().ok()?,
-        ego: cells.get(2)?.to_owned(),
-        foe: cells.get(3)?.to_owned(),
-        kind: *Kind::ALL.iter().find(|kind| cells.get(4) == Some(kind.name()))?,
-        severity: *Severity::ALL.iter().find(|severity| cells.get(5) == Some(severity.name()))?,
-        begin: cells.get(6)?.parse().ok()?,
-        end: cells.get(7)?.parse().ok()?,
-        cells,
-    })
 }
 
 fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T> {
@@ -240,7 +235,7 @@ fn sumo_options(words: &[String]) -> Vec<String> {
     options
 }
 
-/// Six decimals, as in the CSV files: what is beyond depends on the order of sums.
+/// Six decimals, as in the CSV files: further digits depend on the order of sums.
 fn rounded(exposure: Exposure) -> Exposure {
     let round = |value: f64| (value * 1e6).round() / 1e6;
     Exposure {
@@ -255,7 +250,7 @@ mod tests {
     use crate::batch::regress::outcome::*;
 
     #[test]
-    fn the_configuration_and_the_seed_are_no_options() {
+    fn the_configuration_and_the_seed_are_not_options() {
         let words = ["-c", "a.sumocfg", "--end", "20", "--seed", "4", "--no-warnings"].map(str::to_owned);
         assert_eq!(sumo_options(&words), ["--end 20", "--no-warnings"]);
     }

@@ -3,7 +3,7 @@
 //! Each run becomes a row of measures: counts by kind and severity, collisions, rates per vehicle-kilometre, traffic,
 //! and the tenth, the middle and the ninetieth percentile of TTC, PET and margin. The test is [`super::permutation`].
 
-use super::outcome::{Outcome, Row, SeedSummary};
+use super::outcome::{Outcome, SeedConflict, SeedSummary};
 use super::permutation::adjusted_p;
 use super::scenario::{Settings, Tolerance};
 use crate::analysis::statistics::quantile;
@@ -125,7 +125,7 @@ impl Measure {
         }
     }
 
-    fn of(self, seed: &SeedSummary, rows: &[&Row]) -> Option<f64> {
+    fn of(self, seed: &SeedSummary, rows: &[&SeedConflict]) -> Option<f64> {
         let count = |kind: Option<Kind>, severity: Option<Severity>| {
             let wanted = seed.conflicts.iter().filter(|count| {
                 kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)

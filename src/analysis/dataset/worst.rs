@@ -1,0 +1,61 @@
+//! Conflicts of several runs, worst first; of many, only the worst are kept.
+
+use std::cmp::Ordering;
+
+use crate::output::schema::LoggedConflict;
+
+/// The most conflicts that are kept.
+pub const MOST: usize = 300_000;
+
+/// A conflict, and the run that it is of.
+#[derive(Clone, Debug)]
+pub struct RunConflict {
+    /// Place of the run among the logs.
+    pub run: u32,
+    /// The conflict, with its snapshots.
+    pub conflict: LoggedConflict,
+}
+
+/// Worst first: by severity, collision, TTC, margin; equal ones in the order of the logs.
+pub fn by_badness(a: &RunConflict, b: &RunConflict) -> Ordering {
+    let ttc = |kept: &RunConflict| kept.conflict.ttc.unwrap_or(f64::INFINITY);
+    (b.conflict.severity, b.conflict.collision)
+        .cmp(&(a.conflict.severity, a.conflict.collision))
+        .then_with(|| ttc(a).total_cmp(&ttc(b)))
+        .then_with(|| a.conflict.margin.total_cmp(&b.conflict.margin))
+        .then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
+}
+
+/// The [`MOST`] worst conflicts: memory stays bounded however many there are.
+#[derive(Debug, Default)]
+pub struct WorstConflicts {
+    kept: Vec<RunConflict>,
+    seen: u64,
+}
+
+impl WorstConflicts {
+    /// Adds a conflict.
+    pub fn push(&mut self, conflict: RunConflict) {
+        self.seen += 1;
+        self.kept.push(conflict);
+        if self.kept.len() >= 2 * MOST {
+            self.prune();
+        }
+    }
+
+    /// How many conflicts were added.
+    pub fn seen(&self) -> u64 {
+        self.seen
+    }
+
+    /// The conflicts that are kept, worst first.
+    pub fn into_sorted(mut self) -> Vec<RunConflict> {
+        self.prune();
+        self.kept
+    }
+
+    fn prune(&mut self) {
+        self.kept.sort_unstable_by(by_badness);
+        self.kept.truncate(MOST);
+    }
+}

@@ -1,0 +1,320 @@
+//! The schema of a conflict: one row per column of `conflicts.csv`.
+//!
+//! The log, both readers, the Parquet files of a sweep, the report's data and Python's `Conflict` loop over [`COLUMNS`];
+//! a test compares the table in docs/log.md and the Python stub with it. To add a measure, write its formula in
+//! [`crate::detection::measures`] and add an `Optional` row here; logs of earlier versions have no such column.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::value::Field;
+use crate::detection::kind::{Kind, Severity};
+use crate::events::{Conflict, Snapshot};
+use crate::traffic::net::Net;
+use crate::traffic::roster::{ProfileIndex, Roster};
+use crate::util::decimal;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+
+pub use super::value::{ColumnType, Value};
+
+/// A text that may be missing: it is empty then.
+pub type OptionalText = String;
+
+/// What a conflict does not know itself: its number in the log, and the names behind its indices.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// 1, 2, 3, … in the order of the log.
+    pub number: u64,
+    /// The net, which knows the lane's id; none without one.
+    pub net: Option<&'a Net>,
+    /// The roster, which knows the names of the types.
+    pub roster: &'a Roster,
+}
+
+/// Makes [`LoggedConflict`] and [`COLUMNS`] of the rows below: the meaning; which logs have the column; its name; its type,
+/// which names the unit; how to get the value from a [`Conflict`] and its [`Context`].
+macro_rules! columns {
+    (|$conflict:ident, $context:ident| $(
+        $(#[doc = $meaning:literal])+
+        [$presence:ident] $name:ident: $type:ty = $value:expr;
+    )+) => {
+        /// A conflict as a log has it: one field per column.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct LoggedConflict {
+            $( $(#[doc = $meaning])+ pub $name: $type, )+
+        }
+
+        /// The columns of `conflicts.csv`, in their order.
+        pub static COLUMNS: [Column; [$(stringify!($name)),+].len()] = [$(
+            Column {
+                name: stringify!($name),
+                meaning: concat!($($meaning),+),
+                presence: Presence::$presence,
+                column_type: <$type as Field>::TYPE,
+                rust_type: stringify!($type),
+                get: |conflict| conflict.$name.value(),
+            },
+        )+];
+
+        impl LoggedConflict {
+            /// The log's row of a conflict.
+            pub fn new($conflict: &Conflict, $context: Context) -> Self {
+                Self { $( $name: $value, )+ }
+            }
+
+            /// A conflict from its cells; `cell` gets the place of a column and returns what is there.
+            ///
+            /// # Errors
+            /// What `cell` returns, or which value does not fit its column.
+            pub fn from_cells<'a>(cell: impl Fn(usize) -> Result<Value<'a>, String>) -> Result<Self, String> {
+                let mut columns = COLUMNS.iter().enumerate();
+                Ok(Self { $( $name: next_field(&mut columns, &cell)?, )+ })
+            }
+        }
+    };
+}
+
+columns! { |conflict, context|
+    /// 1, 2, 3, … in the order of the file
+    [Required] id: u64 = context.number;
+    /// SUMO's id of the ego: the one with the longer distance to the conflict point
+    [Required] ego: String = conflict.ego.to_string();
+    /// SUMO's id of the foe
+    [Required] foe: String = conflict.foe.to_string();
+    /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
+    [Required] kind: Kind = conflict.kind;
+    /// `caution`: margin < 0; `serious`: TTC < 1.5 s or DRAC > 3.4 m/s²; `critical`: DRAC above the ego's braking
+    /// deceleration, or a collision; the worst of all steps
+    [Required] severity: Severity = conflict.severity;
+    /// first step with margin < 0
+    [Required] begin: Second = conflict.begin;
+    /// last step with margin < 0
+    [Required] end: Second = conflict.end;
+    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and the four
+    /// extremes `clearance`, `ttc`, `drac`, `pet`
+    [Required] time: Second = conflict.time;
+    /// the room that is left
+    [Required] gap: Metre = conflict.gap;
+    /// the minimal collision distance
+    [Required] mu: Metre = conflict.mu;
+    /// `gap` − `mu`
+    [Required] margin: Metre = conflict.margin;
+    /// smallest distance between the two rectangles
+    [Required] clearance: Metre = conflict.clearance;
+    /// smallest time to collision, if both keep their speed along their paths
+    [Required] ttc: Option<Second> = conflict.ttc;
+    /// largest deceleration that the ego needs to just avoid contact
+    [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
+    /// time between the first leaving and the second entering the conflict area, from what both really drove; side and
+    /// frontal conflicts only
+    [Required] pet: Option<Second> = conflict.pet;
+    /// speed change of the ego in a fully inelastic collision
+    [Required] delta_v: MetrePerSecond = conflict.delta_v;
+    /// speed of the ego
+    [Required] ego_speed: MetrePerSecond = conflict.ego_speed;
+    /// speed of the foe
+    [Required] foe_speed: MetrePerSecond = conflict.foe_speed;
+    /// between the headings at the conflict point, 0 to π
+    [Required] angle: Radian = conflict.angle;
+    /// the ego's front bumper at the conflict point
+    [Required] x: Metre = conflict.x;
+    /// the ego's front bumper at the conflict point
+    [Required] y: Metre = conflict.y;
+    /// the lane of the conflict point
+    [Required] lane: OptionalText = context.lane(conflict);
+    /// whether the rectangles overlapped in any step
+    [Required] collision: bool = conflict.collision;
+    /// SUMO's type of the ego
+    [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
+    /// SUMO's type of the foe; an obstacle's is `polygon:` and the polygon's type
+    [Optional] foe_type: OptionalText = context.type_name(conflict.foe_profile);
+    /// the ego's front bumper
+    [Snapshot] ego_x: Option<Metre> = Some(conflict.ego_snapshot.front.x);
+    /// the ego's front bumper
+    [Snapshot] ego_y: Option<Metre> = Some(conflict.ego_snapshot.front.y);
+    /// from the ego's rear to its front bumper, counter-clockwise from +x
+    [Snapshot] ego_heading: Option<Radian> = Some(conflict.ego_snapshot.heading);
+    /// length of the ego
+    [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
+    /// width of the ego
+    [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
+    /// where the ego's front bumper would go until it has braked to a stand, `x y x y …`, to the centimetre; empty for a
+    /// road user that stands
+    [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
+    /// the foe's front bumper; a corner of an obstacle
+    [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
+    /// the foe's front bumper; a corner of an obstacle
+    [Snapshot] foe_y: Option<Metre> = Some(conflict.foe_snapshot.front.y);
+    /// from the foe's rear to its front bumper, counter-clockwise from +x
+    [Snapshot] foe_heading: Option<Radian> = Some(conflict.foe_snapshot.heading);
+    /// length of the foe; 0 for an obstacle
+    [Snapshot] foe_length: Option<Metre> = Some(conflict.foe_snapshot.length);
+    /// width of the foe; 0 for an obstacle
+    [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
+    /// where the foe's front bumper would go, as in `ego_path`
+    [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
+}
+
+/// One column of the log.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: &'static str,
+    /// What its values are, for docs/log.md.
+    pub meaning: &'static str,
+    /// Which logs have it.
+    pub presence: Presence,
+    /// How its values are stored.
+    pub column_type: ColumnType,
+    /// The field's type, which names the unit.
+    rust_type: &'static str,
+    /// Its value in a conflict.
+    pub get: fn(&LoggedConflict) -> Value,
+}
+
+/// Which logs have a column, and when it is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// Every log: a file without it is not a log.
+    Required,
+    /// Not the logs of earlier versions; its value is missing there.
+    Optional,
+    /// The same; read only on request, as drawings need it and statistics do not.
+    Snapshot,
+}
+
+impl Column {
+    /// The column of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        COLUMNS.iter().find(|column| column.name == name)
+    }
+
+    /// The unit of its values; empty where they have none.
+    pub fn unit(&self) -> &'static str {
+        match self.rust_type.trim_start_matches("Option<").trim_end_matches('>') {
+            "Second" => "s",
+            "Metre" => "m",
+            "MetrePerSecond" => "m/s",
+            "MetrePerSecondSquared" => "m/s²",
+            "Radian" => "rad",
+            _ => "",
+        }
+    }
+
+    /// Whether a value may be missing: the type is an `Option` or [`OptionalText`].
+    pub fn is_optional(&self) -> bool {
+        self.rust_type.starts_with("Option")
+    }
+}
+
+/// The next field of a conflict whose fields are read in the order of the columns.
+fn next_field<'a, T: Field>(
+    columns: &mut impl Iterator<Item = (usize, &'static Column)>,
+    cell: &impl Fn(usize) -> Result<Value<'a>, String>,
+) -> Result<T, String> {
+    let (place, column) = columns.next().ok_or("a conflict has no more columns")?;
+    cell(place).and_then(T::from_value).map_err(|why| format!("{}: {why}", column.name))
+}
+
+impl Context<'_> {
+    fn lane(&self, conflict: &Conflict) -> String {
+        conflict.lane.zip(self.net).map(|(lane, net)| net.lane_id(lane).to_owned()).unwrap_or_default()
+    }
+
+    fn type_name(&self, profile: ProfileIndex) -> String {
+        self.roster.profile_at(profile).name.to_string()
+    }
+}
+
+/// The largest coordinate of a path, in m, that is written as 0.
+const HALF_A_CENTIMETRE: Metre = 0.005;
+
+/// The path of a snapshot as x y x y …, to the centimetre; without commas, so that its cell needs no quotes.
+fn path(snapshot: &Snapshot) -> String {
+    let mut text = String::new();
+    for value in snapshot.path.iter().flat_map(|point| [point.x, point.y]) {
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        // What rounds to 0 has no sign: it would be that of rounding, which differs between machines.
+        decimal::push_fixed(&mut text, if value.abs() < HALF_A_CENTIMETRE { 0.0 } else { value }, 2);
+    }
+    text
+}
+
+/// Without the snapshots.
+impl Serialize for LoggedConflict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for column in COLUMNS.iter().filter(|column| column.presence != Presence::Snapshot) {
+            map.serialize_entry(column.name, &(column.get)(self))?;
+        }
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::geometry::Point;
+    use crate::output::schema::*;
+
+    /// The variable with which the tests write what they otherwise compare.
+    const BLESS: &str = "BLESS_SCHEMA";
+
+    /// Compares a part of a file with what follows from the schema, or writes it.
+    fn follows(file: &str, begin: &str, end: &str, expected: &str) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (before, rest) = text.split_once(begin).unwrap();
+        let (part, after) = rest.split_at(rest.find(end).unwrap());
+        if std::env::var_os(BLESS).is_some() {
+            std::fs::write(&path, format!("{before}{begin}{expected}{after}")).unwrap();
+        } else {
+            assert!(part == expected, "{file} lags behind the schema: {BLESS}=1 cargo test --lib schema writes it");
+        }
+    }
+
+    #[test]
+    fn the_table_in_the_documentation_has_every_column() {
+        let row = |column: &Column| format!("| `{}` | {} |{} |", column.name, column.unit(), column.meaning);
+        let rows = COLUMNS.iter().map(row).collect::<Vec<_>>().join("\n");
+        follows("docs/log.md", "| column | unit | meaning |\n|---|---|---|\n", "\n\n", &rows);
+    }
+
+    #[test]
+    fn the_python_stub_has_every_column() {
+        let property = |column: &Column| {
+            let python = match column.column_type {
+                ColumnType::Count => "int",
+                ColumnType::Text => "str",
+                ColumnType::Number => "float",
+                ColumnType::Flag => "bool",
+            };
+            let or_none = if column.is_optional() { " | None" } else { "" };
+            format!("    @property\n    def {}(self) -> {python}{or_none}: ...", column.name)
+        };
+        let properties = COLUMNS.iter().map(property).collect::<Vec<_>>().join("\n");
+        follows("bridge/python/closecall/_closecall.pyi", "class Conflict:\n", "\n\n@", &properties);
+    }
+
+    #[test]
+    fn what_a_log_may_lack_may_be_missing() {
+        let may_lack = |column: &&Column| column.presence != Presence::Required;
+        assert!(COLUMNS.iter().filter(may_lack).all(Column::is_optional));
+    }
+
+    #[test]
+    fn every_number_has_a_unit() {
+        let is_number = |column: &&Column| column.column_type == ColumnType::Number;
+        assert!(COLUMNS.iter().filter(is_number).all(|column| !column.unit().is_empty()));
+    }
+
+    #[test]
+    fn a_path_writes_what_rounds_to_nothing_without_a_sign() {
+        let points = [(-0.0, -4e-16), (-0.0049, -0.0051)].map(|(x, y)| Point::new(x, y));
+        let snapshot =
+            Snapshot { front: points[0], heading: 0.0, length: 0.0, width: 0.0, path: std::sync::Arc::new(points) };
+        assert_eq!(path(&snapshot), "0.00 0.00 0.00 -0.01");
+    }
+}
