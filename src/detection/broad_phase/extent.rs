@@ -1,8 +1,10 @@
 //! Sums and maxima over one thread's share of the areas: how large they are, how far away, whether round.
 
-use super::strips::is_far;
 use crate::geometry::{Bounds, Vector};
 use crate::util::units::Metre;
+
+/// A box further from the origin than this, along x or y, has no strip, in m; nothing on earth is.
+pub(super) const FURTHEST: Metre = 3.3e7;
 
 /// Sums and maxima over a share of the areas.
 #[derive(Clone, Copy, Debug)]
@@ -46,4 +48,10 @@ impl Extent {
             moved: self.moved + other.moved,
         }
     }
+}
+
+/// Whether a side is too far from the origin for a strip.
+#[inline]
+pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
+    [low.x, low.y, high.x, high.y].iter().any(|side| side.abs() >= FURTHEST)
 }

@@ -3,7 +3,7 @@
 
 use std::iter::repeat_n;
 
-use super::extent::Extent;
+use super::extent::{Extent, FURTHEST, is_far};
 use super::place::insert;
 use super::{Search, Slot};
 use crate::geometry::{Bounds, Vector};
@@ -16,20 +16,12 @@ const LARGE: f64 = 2.5;
 const SHARE_OF_LARGE: usize = 1000;
 /// Lowest strip, in m.
 const LOWEST_STRIP: Metre = 1.0;
-/// A box further from the origin than this, along x or y, has no strip, in m; nothing on earth is.
-const FURTHEST: Metre = 3.3e7;
 
 /// Strips keep their height until they are more than this many times as high as needed.
 const SPARE_HEIGHT: f64 = 2.0;
 /// Few road users overtake within a step, so the order is nearly sorted: insertion sort is given up after this many
 /// moves per road user.
 const MOVES: usize = 32;
-
-/// Whether a side is too far from the origin for a strip.
-#[inline]
-pub(super) fn is_far(Bounds { low, high }: &Bounds) -> bool {
-    [low.x, low.y, high.x, high.y].iter().any(|side| side.abs() >= FURTHEST)
-}
 
 impl<S: Slot> Search<S> {
     /// Sorts the current areas.
