@@ -8,6 +8,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 
 use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
+use crate::detection::measures::headway::headway;
 use crate::events::{Conflict, Snapshot};
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -152,6 +153,8 @@ columns! { |conflict, context|
     [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
     /// where the foe's front bumper would go, as in `ego_path`
     [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
+    /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
+    [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
 }
 
 /// One column of the log.

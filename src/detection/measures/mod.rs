@@ -3,6 +3,7 @@
 
 pub mod drac;
 mod drac_straight;
+pub mod headway;
 pub mod ttc;
 
 use super::kind::Severity;
