@@ -10,13 +10,13 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 /// One road user in one step of a recording, in SUMO's own terms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RecordedRow {
-    /// The road user: a number that is unique while it is in the scene. [`Recording::id`] is SUMO's id.
+    /// The road user: a number that is unique while it is in the scene. [`Recording::id`](super::recording::Recording::id) is SUMO's id.
     pub user: u32,
     /// Whether it is a person.
     pub person: bool,
-    /// Its type: see [`Recording::type_name`].
+    /// Its type: see [`Recording::type_name`](super::recording::Recording::type_name).
     pub type_name: u32,
-    /// Its lane: see [`Recording::lane`].
+    /// Its lane: see [`Recording::lane`](super::recording::Recording::lane).
     pub lane: u32,
     /// Front-bumper centre, x in m.
     pub x: Metre,
