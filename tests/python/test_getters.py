@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import NETS, python
+from conftest import NETS, TIMEOUT, python
 
 CHECK = """
 import collections, json, sys
@@ -178,7 +178,7 @@ def under_valgrind(folder: Path, *words: object) -> str:
     # Python's own allocator would hide reads beyond the end of a block.
     environment = {**os.environ, "PYTHONMALLOC": "malloc"}
     command = [*valgrind, *map(str, words)]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, env=environment)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=2 * TIMEOUT, check=False, env=environment)
     assert done.returncode == 0, done.stderr
     found = [error for error in ET.parse(errors).getroot().findall("error") if is_ours(error)]
     assert [ET.tostring(error, encoding="unicode") for error in found] == []

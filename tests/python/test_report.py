@@ -110,7 +110,7 @@ def made_up(folder: Path, count: int, **changes: str) -> Path:
             time, x, y = chance.uniform(0, 3600), chance.uniform(0, 5000), chance.uniform(0, 3000)
             mu = chance.uniform(5, 50)
             gap = chance.uniform(0, mu)
-            row: dict[str, Any] = dict.fromkeys(names, f"{chance.uniform(0, 10):.6f}")
+            row: dict[str, Any] = {name: f"{chance.uniform(0, 10):.6f}" for name in names}
             row |= {"id": number + 1, "ego": f"vehicle_{number % 20000}", "foe": f"vehicle_{number % 19997}"}
             row |= {"kind": chance.choice(["rear_end", "rear_end", "frontal", "side"]), "collision": "false"}
             row |= {"severity": chance.choices(["caution", "serious", "critical"], [80, 18, 2])[0]}
