@@ -6,7 +6,7 @@ use std::iter::repeat_n;
 use super::extent::{Extent, FURTHEST, is_far};
 use super::place::insert;
 use super::{Search, Slot};
-use crate::geometry::{Bounds, Vector};
+use crate::geometry::Vector;
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 
