@@ -25,7 +25,18 @@ PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
 
 def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
     """The time of all parts but SUMO's, in ns per road user and step."""
-    words = ["run", config, "--end", end, "--out", out, "--threads", 1, "--explain", *(["--keep", keep] if keep else [])]
+    words = [
+        "run",
+        config,
+        "--end",
+        end,
+        "--out",
+        out,
+        "--threads",
+        1,
+        "--explain",
+        *(["--keep", keep] if keep else []),
+    ]
     command = [sys.executable, "-m", "closecall", *map(str, words), "--", "--no-warnings"]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     parts = dict(PART.findall(output.rsplit("time:", 1)[1].splitlines()[0]))

@@ -20,7 +20,7 @@ def tree(tmp_path: Path) -> Path:
 
 
 def check(tree: Path) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, ROOT / ".ci/imports.py", tree]
+    command = [sys.executable, str(ROOT / ".ci/imports.py"), str(tree)]
     return subprocess.run(command, capture_output=True, text=True)
 
 
