@@ -45,7 +45,7 @@ pub fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre 
 /// error is below 1e-12 as long as no intermediate value leaves the range of normal f64.
 ///
 /// ```
-/// use closecall::braking::{Brakes, Braking, MuModel, mu};
+/// use closecall::{Brakes, Braking, MuModel, mu};
 /// let strong = Brakes { response: 1.0, build_up: 0.0, deceleration: 8.0 };
 /// let weak = Brakes { deceleration: 4.0, ..strong };
 /// let (ego, foe) = (Braking { speed: 30.0, brakes: &strong }, Braking { speed: 25.0, brakes: &weak });

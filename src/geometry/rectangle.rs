@@ -20,12 +20,6 @@ pub struct Rectangle {
 
 impl Rectangle {
     /// A rectangle around a centre.
-    ///
-    /// ```
-    /// use closecall::geometry::{Point, rectangle::Rectangle};
-    /// let car = Rectangle::new(Point::new(2.5, 0.0), 0.0, 5.0, 1.8);
-    /// assert_eq!(car.corners()[0], Point::new(5.0, 0.9));
-    /// ```
     pub fn new(centre: Point, heading: Radian, length: Metre, width: Metre) -> Self {
         Self { centre, axis: direction(heading), half_length: length / 2.0, half_width: width / 2.0 }
     }
@@ -125,6 +119,12 @@ fn reach(rectangle: &Rectangle, direction: &Vector) -> Metre {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_corner_is_the_front_left_one() {
+        let car = Rectangle::new(Point::new(2.5, 0.0), 0.0, 5.0, 1.8);
+        assert_eq!(car.corners()[0], Point::new(5.0, 0.9));
+    }
 
     #[test]
     fn the_directions_along_the_axes_are_exact_no_others_are() {

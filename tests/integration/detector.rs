@@ -203,8 +203,8 @@ fn a_kind_without_pairs_is_reported_as_left_out() {
         let altogether = detector.left_out().into_iter().filter(|entry| entry.times.is_none());
         altogether.map(|entry| entry.to_string()).collect::<Vec<_>>()
     };
-    let frontal = "frontal: left out (no opposing ways within reach)";
-    let side = "side: left out (no crossing or bending ways within reach)";
+    let frontal = "frontal tests skipped altogether (no opposing paths within reach)";
+    let side = "side tests skipped altogether (no crossing or bending paths within reach)";
     let (ahead, towards_it, across) = ((30.0, 0.0, 0.0, 10.0), (60.0, 0.0, WEST, 10.0), (40.0, -20.0, NORTH, 15.0));
     assert_eq!(left_out(&options(), ahead), [frontal, side]);
     assert_eq!(left_out(&options(), towards_it), [side]);

@@ -18,12 +18,6 @@ const DEEPEST: usize = 16;
 ///
 /// # Errors
 /// [`Error::File`] where a folder is missing or cannot be read; [`Error::Content`] where it holds no log.
-///
-/// # Examples
-/// ```no_run
-/// let logs = closecall::analysis::logged::log_folders(&["closecall-out".into()])?;
-/// # Ok::<(), closecall::Error>(())
-/// ```
 pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut found = Vec::new();
     for folder in named {

@@ -41,13 +41,6 @@ pub struct Rate {
 }
 
 /// The rate of `counts` per `traffic`, one entry of each per run; none without traffic.
-///
-/// # Examples
-/// ```
-/// use closecall::analysis::statistics::rate;
-/// let found = rate(&[4.0, 6.0, 5.0], &[2.0, 2.0, 2.0]).map(|rate| rate.value);
-/// assert_eq!(found, Some(2.5));
-/// ```
 pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
     let count = counts.iter().sum::<f64>();
     let total = traffic.iter().sum::<f64>();
@@ -140,6 +133,12 @@ mod tests {
 
     fn near(found: f64, wanted: f64) {
         assert!((found - wanted).abs() < 1e-4 * wanted.abs().max(1.0), "{found}, not {wanted}");
+    }
+
+    #[test]
+    fn a_rate_is_counts_over_traffic() {
+        let found = rate(&[4.0, 6.0, 5.0], &[2.0, 2.0, 2.0]).map(|rate| rate.value);
+        assert_eq!(found, Some(2.5));
     }
 
     #[test]

@@ -20,11 +20,6 @@ const SEARCH_STEPS: u32 = 14;
 /// DRAC in m/s² towards a foe on the ego's own line that keeps its speed, be it a leader or an oncoming vehicle: the
 /// deceleration that brings the relative speed to 0 within the room between both, closing² / (2 room), where
 /// room = closing · TTC. None if both touch now.
-///
-/// ```
-/// use closecall::detection::measures::drac::drac_in_line;
-/// assert_eq!(drac_in_line(10.0, 2.5), Some(2.0));
-/// ```
 pub fn drac_in_line(closing: MetrePerSecond, ttc: Second) -> Option<MetrePerSecondSquared> {
     (closing > 0.0 && ttc > 0.0).then(|| closing / (2.0 * ttc)).filter(|drac| drac.is_finite())
 }
@@ -139,6 +134,11 @@ mod tests {
             let distance = (ego.speed - deceleration * brakes / 2.0) * brakes + further;
             touches(&ego.at(distance.max(0.0) / ego.speed), &foe.at(time))
         })
+    }
+
+    #[test]
+    fn in_line_half_the_closing_speed_over_ttc_suffices() {
+        assert_eq!(drac_in_line(10.0, 2.5), Some(2.0));
     }
 
     #[test]

@@ -31,12 +31,6 @@ pub fn severity(
 
 /// ΔV in m/s: the change of the ego's velocity in a fully inelastic collision of both masses, at the current speeds and
 /// the angle α at the conflict point.
-///
-/// ```
-/// use closecall::detection::measures::delta_v;
-/// assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), 5.0);
-/// assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), 15.0);
-/// ```
 pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram), angle: Radian) -> MetrePerSecond {
     let along = ego.0 - foe.0 * angle.cos();
     let across = foe.0 * angle.sin();
@@ -46,6 +40,12 @@ pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram),
 #[cfg(test)]
 mod tests {
     use crate::detection::measures::*;
+
+    #[test]
+    fn equal_masses_share_the_speed_difference() {
+        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), 5.0);
+        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), 15.0);
+    }
 
     #[test]
     fn a_wall_takes_all_of_the_speed() {
