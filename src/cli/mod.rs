@@ -80,7 +80,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
 /// The scenario at a path: a folder, or a SUMO configuration with the settings beside it.
 ///
 /// # Errors
-/// Those of [`Scenario::read`].
+/// Those of `Scenario::read`.
 pub fn scenario(path: &Path) -> Result<Scenario> {
     Scenario::at(path, &settings::known(&command()))
 }

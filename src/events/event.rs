@@ -16,7 +16,7 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 /// One conflict: a pair and a run of steps with margin < 0.
 ///
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes
-/// `clearance`, `ttc`, `drac` and `pet`. The columns of a log follow from it: [`crate::output::schema`].
+/// `clearance`, `ttc`, `drac` and `pet`. The columns of a log follow from it: `output::schema`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Conflict {
     /// SUMO's id of the ego.

@@ -5,7 +5,7 @@ use super::separating_axes::normals;
 use super::{Point, Vector, cross, exact};
 use crate::util::units::Metre;
 
-/// Whether two rectangles share a point; touching counts. Every decision is exact: see [`super::exact`].
+/// Whether two rectangles share a point; touching counts. Every decision is exact: see `geometry::exact`.
 pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
     exact::touches(a, b)
 }

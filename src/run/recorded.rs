@@ -38,7 +38,7 @@ impl RecordedRun {
     /// Opens the log in a folder and the other files; from here on the run writes to them.
     ///
     /// # Errors
-    /// [`crate::Error::File`] that names what cannot be written, and the errors of [`Outputs::create`].
+    /// [`crate::Error::File`] that names what cannot be written, and the errors of `Outputs::create`.
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let log = Log::create(folder, record.options.log_encounters)?;

@@ -37,7 +37,7 @@ impl Level {
     }
 }
 
-/// Differences of means that [`Level::Statistics`] ignores even if significant, such as those of another compiler's rounding.
+/// Differences of means that `Level::Statistics` ignores even if significant, such as those of another compiler's rounding.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Tolerance {
@@ -71,7 +71,7 @@ pub struct RegressSettings {
     pub sumo_options: Vec<String>,
     /// Differences to ignore.
     pub tolerance: Tolerance,
-    /// The chance that [`Level::Statistics`] reports a difference although nothing changed.
+    /// The chance that `Level::Statistics` reports a difference although nothing changed.
     pub false_alarm: f64,
 }
 
