@@ -16,7 +16,8 @@ from conftest import begin, closecall, python, rows, wait_for_rows
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
     "ego_speed,foe_speed,angle,x,y,lane,collision,ego_type,foe_type,"
-    "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,headway"
+    "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
+    "headway"
 )
 ENCOUNTER_COLUMNS = "time,ego,foe,kind,gap,mu,margin,ttc,drac,severity"
 
