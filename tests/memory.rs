@@ -12,7 +12,7 @@ use std::path::Path;
 const HOUR: usize = 3600;
 
 #[test]
-fn a_day_of_traffic_takes_no_more_memory_than_an_hour() {
+fn a_day_takes_no_more_memory_than_an_hour() {
     let folder = tempfile::tempdir().unwrap();
     let mut day = day::Day::new(
         Path::new("sumo_nets/left_turn/left_turn.net.xml"),

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_in_long_steps_covers_hardly_more_than_in_short_ones() {
+    fn long_steps_through_a_turn_hardly_widen_the_corridor() {
         let crossing = |step: f64| {
             let mut course = DrivenPath::new(4.0, 2.0);
             let steps = (8.0 / step).round() as u32;

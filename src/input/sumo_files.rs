@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn a_late_fault_in_a_route_file_has_its_line_number() {
+    fn a_late_fault_in_a_route_file_names_its_line() {
         let message =
             with_file("bad.rou.xml", "<routes>\n<vehicle>\n</route>\n</routes>", check_xml).unwrap_err().to_string();
         assert!(message.contains("bad.rou.xml, line 3: "), "{message}");

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn signs_of_nothing_stay_and_halves_go_to_the_even_digit() {
+    fn zeros_keep_their_sign_and_halves_round_to_even() {
         assert_eq!(
             [fixed(-0.0, 2), fixed(-0.001, 2), fixed(0.125, 2), fixed(0.375, 2)],
             ["-0.00", "-0.00", "0.12", "0.38"]

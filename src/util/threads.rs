@@ -148,7 +148,7 @@ mod tests {
     use crate::util::threads::*;
 
     #[test]
-    fn there_are_as_many_threads_as_asked_for_and_never_none() {
+    fn the_number_of_threads_is_as_asked_at_least_one() {
         assert_eq!([0, 1, 2, 5].map(|threads| Team::new(threads).threads()), [1, 1, 2, 5]);
     }
 

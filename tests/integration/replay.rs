@@ -334,7 +334,7 @@ fn a_byte_order_mark_is_passed_over() {
 
 /// SUMO names the columns after the kind of the first road user, and gives vehicles a lane and persons an edge.
 #[test]
-fn shared_columns_tell_vehicles_and_persons_apart_by_lane_or_edge() {
+fn lane_or_edge_tells_vehicles_from_persons_in_shared_columns() {
     for kind in ["vehicle", "person"] {
         let names = ["id", "x", "y", "angle", "speed", "lane", "edge"].map(|name| format!("{kind}_{name}")).join(";");
         let text = format!("timestep_time;{names}\n0;car;1;2;90;3;a_0;\n0;walker;1;2;90;1;;a\n0;unknown;1;2;90;1;;\n");
@@ -347,7 +347,7 @@ fn shared_columns_tell_vehicles_and_persons_apart_by_lane_or_edge() {
 
 /// A vehicle and a person may have the same id in SUMO.
 #[test]
-fn a_vehicle_and_a_person_of_the_same_id_are_two() {
+fn a_vehicle_and_a_person_may_share_an_id() {
     let row = "id=\"a\" x=\"1\" y=\"2\" angle=\"0\" speed=\"1\"";
     let text = format!("<fcd-export><timestep time=\"0\"><vehicle {row}/><person {row}/></timestep></fcd-export>");
     let mut recording = Recording::parse(Path::new("fcd"), text).unwrap();
