@@ -316,7 +316,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
         ((tmp_path / "empty",), "there is no log in it: no conflicts.csv"),
         ((bad,), "line 2: gap: "),
         ((cut,), 'line 1: the column "mu" is missing'),
-        ((broken,), "run.json: it is no JSON"),
+        ((broken,), "run.json: it is not JSON"),
         ((log, "-o", "/proc/r.html"), "/proc/r.html: "),
         ((log, "--net", tmp_path / "gone.net.xml"), "gone.net.xml: "),
     ):
