@@ -24,6 +24,7 @@ impl Brakes {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
 pub enum MuModel {
     /// The room at the narrowest moment until both stand.
     #[default]

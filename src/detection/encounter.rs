@@ -44,6 +44,7 @@ pub struct Encounter {
 
 /// Measures of a pair in conflict, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Nearness {
     /// Smallest distance between the two rectangles now.
     pub clearance: Metre,

@@ -18,6 +18,7 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes
 /// `clearance`, `ttc`, `drac` and `pet`. The columns of a log follow from it: `output::schema`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Conflict {
     /// SUMO's id of the ego.
     pub ego: EcoString,

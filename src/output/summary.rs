@@ -12,6 +12,7 @@ use crate::util::units::{Metre, Second};
 
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Summary {
     /// First step, in s.
     pub begin: Second,
