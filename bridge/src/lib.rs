@@ -14,8 +14,8 @@ mod provenance;
 mod pull;
 mod run;
 mod session;
-mod spent;
 mod start;
+mod step_times;
 mod sweep;
 
 use pyo3::prelude::*;

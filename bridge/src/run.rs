@@ -17,8 +17,8 @@ use crate::error::{exception, message};
 use crate::interrupts::Interrupts;
 use crate::pull::{self, Source};
 use crate::session::Session;
-use crate::spent::Spent;
 use crate::start::{self, NetAhead};
+use crate::step_times::StepTimes;
 use crate::{provenance, sweep};
 
 /// The command `closecall`; returns its exit status.
@@ -112,7 +112,7 @@ fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult
 }
 
 /// Closes the log, or removes it if the scenario could not be used.
-fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spent: &Spent) -> Result<Summary> {
+fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spent: &StepTimes) -> Result<Summary> {
     let exposure = recorded.run.summary().exposure;
     let is_empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
     let unusable = match &ended {

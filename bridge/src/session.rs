@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use crate::error::message;
 use crate::paint::Painter;
 use crate::pull::Source;
-use crate::spent::{Part, Spent};
+use crate::step_times::{StepTimes, TimedPart};
 
 /// The least time for which sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);
@@ -22,7 +22,7 @@ const WORTH_A_THREAD: usize = 10;
 const MILLISECOND: f64 = 1e-3;
 
 /// The result of finishing a step: the time that its parts took.
-type Finished = Result<Spent>;
+type Finished = Result<StepTimes>;
 
 /// A run of a simulation that has been started.
 pub struct Session<'a, 'py> {
@@ -33,7 +33,7 @@ pub struct Session<'a, 'py> {
     step_length: f64,
     begin: f64,
     end: Option<f64>,
-    spent: Spent,
+    spent: StepTimes,
     /// Whether the last step is still to be finished.
     is_unfinished: bool,
     /// Finishes the last step beside SUMO's next one.
@@ -95,7 +95,7 @@ impl<'a, 'py> Session<'a, 'py> {
             source,
             painter: request.gui.then(|| Painter::new(sumo)),
             step_length: step_length.unwrap_or_default(),
-            spent: Spent::default(),
+            spent: StepTimes::default(),
             is_unfinished: false,
             helper: if has_second_processor(request.threads) { Helper::new(finish) } else { None },
         })
@@ -109,7 +109,7 @@ impl<'a, 'py> Session<'a, 'py> {
     }
 
     /// The time that each part of the steps took.
-    pub fn spent(&self) -> Spent {
+    pub fn spent(&self) -> StepTimes {
         self.spent
     }
 
@@ -141,7 +141,7 @@ impl<'a, 'py> Session<'a, 'py> {
         let mut step = || {
             simulation.py().check_signals()?;
             let stepped = simulation.step.call0().map(|_| ());
-            spent.add(Part::Sumo, &mut since);
+            spent.add(TimedPart::Sumo, &mut since);
             stepped
         };
         let (Some(helper), true) = (helper, self.is_unfinished) else {
@@ -160,10 +160,10 @@ impl<'a, 'py> Session<'a, 'py> {
         let time = self.source.time(py)?;
         *now = time + self.step_length;
         self.source.pull(py, run, time)?;
-        self.spent.add(Part::Pull, &mut since);
+        self.spent.add(TimedPart::Pull, &mut since);
         self.source.update_paths(py, run)?;
         self.is_unfinished = true;
-        self.spent.add(Part::Paths, &mut since);
+        self.spent.add(TimedPart::Paths, &mut since);
         let alone = self.helper.is_none() || run.frame.len() < WORTH_A_THREAD;
         if self.painter.is_some() || alone {
             self.finish_step(run)?;
@@ -172,7 +172,7 @@ impl<'a, 'py> Session<'a, 'py> {
         if let Some(painter) = &mut self.painter {
             painter.paint(py, run)?;
             py.detach(|| std::thread::sleep(SHOWN.saturating_sub(started.elapsed())));
-            self.spent.add(Part::Painting, &mut since);
+            self.spent.add(TimedPart::Painting, &mut since);
         }
         Ok(self.simulation.goes_on()?)
     }
@@ -201,9 +201,9 @@ impl<'a, 'py> Session<'a, 'py> {
 
 /// Both phases, events and log of a step.
 fn finish(run: &mut Run) -> Finished {
-    let mut spent = Spent::default();
+    let mut spent = StepTimes::default();
     let mut since = Instant::now();
-    run.finish_step(|part| spent.add(Part::Check(part), &mut since))?;
+    run.finish_step(|part| spent.add(TimedPart::Check(part), &mut since))?;
     Ok(spent)
 }
 

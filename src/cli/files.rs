@@ -6,8 +6,8 @@ use crate::options::Options;
 use crate::{Error, Result};
 
 /// The run's own files, which its other outputs must not overwrite. SUMO's files are known only once it has started.
-pub(super) fn kept(config: Option<PathBuf>, options: &Options, out: &Path) -> Vec<PathBuf> {
-    config.into_iter().chain(options.filter.clone()).chain(crate::output::log::files(out)).collect()
+pub(super) fn kept(config: Option<&Path>, options: &Options, out: &Path) -> Vec<PathBuf> {
+    config.map(Path::to_owned).into_iter().chain(options.filter.clone()).chain(crate::output::log::files(out)).collect()
 }
 
 /// A path that other processes can use: their working directories may differ.

@@ -3,6 +3,7 @@
 //! `closecall run` needs Python, which this crate does not know. The caller of [`main`] may pass in how to run a simulation
 //! ([`Sumo`]).
 
+mod check_args;
 mod ending;
 mod files;
 mod mu;

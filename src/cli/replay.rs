@@ -1,17 +1,15 @@
 //! `closecall replay`: the same checks on a recording; SUMO is not needed.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use clap::Args;
 
-use super::ending;
-use super::files::kept;
+use super::check_args::CheckArgs;
 use super::progress::Progress;
 use super::sumo::Sumo;
 use crate::input::replay::Replay;
 use crate::options::Options;
-use crate::output::formats::OutputFiles;
 use crate::output::input_hash::Input;
 use crate::output::record::{RunRecord, Versions};
 use crate::output::summary::Summary;
@@ -35,33 +33,17 @@ pub struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Folder for the log [default: closecall-out next to the recording].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// TOML file with options.
-    #[arg(long, value_name = "FILE")]
-    config: Option<PathBuf>,
     /// Threads that test the pairs of a step. More than one pays off with thousands of road users.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
-    /// List the tests that were skipped because they could not change the result, and why.
-    #[arg(long)]
-    explain: bool,
-    /// Print only errors.
-    #[arg(short, long)]
-    quiet: bool,
     #[command(flatten)]
-    outputs: OutputFiles,
-    #[command(flatten)]
-    pub(super) options: Options,
+    pub(super) check: CheckArgs,
 }
 
 /// Checks the recording and prints the summary.
 pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
-    let options = arguments.options.clone().checked()?;
-    let folder = arguments.recording.parent().unwrap_or(Path::new(""));
-    let out = arguments.out.clone().unwrap_or_else(|| folder.join("closecall-out"));
-    arguments.outputs.check(&kept(arguments.config.clone(), &options, &out))?;
+    let out = arguments.check.log_folder(&arguments.recording);
+    let options = arguments.check.checked(&out)?;
     let net = Arc::new(Net::read(&arguments.net)?);
     let mut replay = Replay::open(&arguments.recording, &arguments.route_files, &net, &options)?;
     let mut run = Run::new(&options, Some(net))?;
@@ -73,15 +55,15 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
-    let mut recorded = RecordedRun::open(run, record, &out, &arguments.outputs)?;
-    let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.quiet);
+    let mut recorded = RecordedRun::open(run, record, &out, &arguments.check.outputs)?;
+    let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
     let summary = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
         remarks: replay.remark().into_iter().collect(),
         ..Ending::default()
     })?;
-    if !arguments.quiet && matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        ending::print(&summary, &out, arguments.explain)?;
+    if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
+        arguments.check.print(&summary, &out)?;
     }
     ended
 }

@@ -1,14 +1,12 @@
 //! `closecall run`: checks the arguments and hands them to the bridge, which runs SUMO.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 
-use super::ending;
-use super::files::kept;
+use super::check_args::CheckArgs;
 use super::sumo::{RunRequest, Sumo, no_sumo};
-use crate::options::{Options, not_negative, positive};
-use crate::output::formats::OutputFiles;
+use crate::options::{not_negative, positive};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -24,9 +22,6 @@ pub struct RunArgs {
     /// Show the run in sumo-gui and paint the conflicts.
     #[arg(long)]
     gui: bool,
-    /// Folder for the log [default: closecall-out next to the scenario].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
     /// Simulated time at which the run begins, in s.
     #[arg(short = 'b', long, value_name = "S", value_parser = not_negative)]
     begin: Option<Second>,
@@ -39,23 +34,12 @@ pub struct RunArgs {
     /// Length of a simulation step, in s.
     #[arg(long, value_name = "S", value_parser = positive)]
     step_length: Option<Second>,
-    /// TOML file with options.
-    #[arg(long, value_name = "FILE")]
-    config: Option<PathBuf>,
     /// Threads, SUMO's own included. With 2, closecall works while SUMO computes its next step; use 1 when running many
     /// simulations at once.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: u8,
-    /// List the tests that were skipped because they could not change the result, and the time each part took.
-    #[arg(long)]
-    explain: bool,
-    /// Print only errors.
-    #[arg(short, long)]
-    quiet: bool,
     #[command(flatten)]
-    outputs: OutputFiles,
-    #[command(flatten)]
-    pub(super) options: Options,
+    pub(super) check: CheckArgs,
     /// Options passed on to SUMO.
     #[arg(last = true, value_name = "SUMO OPTIONS")]
     sumo_options: Vec<String>,
@@ -64,27 +48,21 @@ pub struct RunArgs {
 /// Runs the scenario and prints its summary.
 pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let Some(sumo) = sumo else { return no_sumo() };
-    let explain = arguments.explain;
-    let request = request(arguments)?;
+    let request = request(&arguments)?;
     let summary = (sumo.simulate)(&request)?;
-    if !request.quiet {
-        ending::print(&summary, &request.out, explain)?;
-    }
-    Ok(())
+    arguments.check.print(&summary, &request.out)
 }
 
 /// The request for the bridge, with everything checked that can be before SUMO starts.
-pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
-    let scenario = arguments.configuration_file.or(arguments.scenario).unwrap_or_default();
+pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
+    let scenario = arguments.configuration_file.as_ref().or(arguments.scenario.as_ref()).cloned().unwrap_or_default();
     // Opened here so that an error carries the operating system's own message.
     std::fs::File::open(&scenario).map_err(|source| Error::file(&scenario, source))?;
     if scenario.is_dir() {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
     }
-    let folder = scenario.parent().unwrap_or(Path::new(""));
-    let out = arguments.out.unwrap_or_else(|| folder.join("closecall-out"));
-    let options = arguments.options.checked()?;
-    arguments.outputs.check(&kept(arguments.config, &options, &out))?;
+    let out = arguments.check.log_folder(&scenario);
+    let options = arguments.check.checked(&out)?;
     let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];
     let times = [("--begin", arguments.begin), ("--end", arguments.end), ("--step-length", arguments.step_length)];
     for (option, time) in times {
@@ -95,14 +73,14 @@ pub(super) fn request(arguments: RunArgs) -> Result<RunRequest> {
     if let Some(seed) = arguments.seed {
         sumo_words.extend(["--seed".to_owned(), seed.to_string()]);
     }
-    sumo_words.extend(arguments.sumo_options);
+    sumo_words.extend_from_slice(&arguments.sumo_options);
     Ok(RunRequest {
         scenario,
         gui: arguments.gui,
         out,
         threads: arguments.threads,
-        quiet: arguments.quiet,
-        outputs: arguments.outputs,
+        quiet: arguments.check.quiet,
+        outputs: arguments.check.outputs.clone(),
         options,
         sumo_words,
     })

@@ -233,7 +233,7 @@ fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary], parse_run: &ParseRun
     let variants = varied.iter().map(|vary| vary.values.len()).product::<usize>().min(plan.tasks.len() / seeds.0.len());
     for task in &plan.tasks[..variants] {
         let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
-        request(parse_run(words.map(OsString::from).collect())?)?;
+        request(&parse_run(words.map(OsString::from).collect())?)?;
     }
     Ok(())
 }

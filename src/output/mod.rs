@@ -1,5 +1,6 @@
 //! What a run writes: its log, its record, and files for other tools.
 
+pub mod badness;
 pub mod formats;
 pub mod input_hash;
 pub mod log;

@@ -5,20 +5,21 @@ use std::fmt;
 use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
+use super::badness::Badness;
 use crate::detection::detector::{LeftOut, Work};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;
-use crate::util::units::{Metre, Second};
+use crate::util::units::Second;
 
 /// What a run found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Summary {
     /// First step, in s.
     pub begin: Second,
     /// Last step, in s.
     pub end: Second,
-    /// Steps that were checked.
+    /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,
     /// Conflicts by kind and severity.
     pub conflicts: Vec<Count>,
@@ -26,7 +27,8 @@ pub struct Summary {
     pub collisions: u64,
     /// The amount of traffic.
     pub exposure: Exposure,
-    /// What the scene did not need.
+    /// What the scene did not need; not read back.
+    #[serde(skip_deserializing)]
     pub left_out: Vec<LeftOut>,
     /// The conflict to look at first; not written to `run.json`.
     #[serde(skip)]
@@ -83,8 +85,7 @@ pub struct WorstConflict {
     pub collision: bool,
     /// The step with the smallest margin, in s.
     pub time: Second,
-    ttc: Second,
-    margin: Metre,
+    badness: Badness,
 }
 
 impl WorstConflict {
@@ -97,19 +98,8 @@ impl WorstConflict {
             severity: conflict.severity,
             collision: conflict.collision,
             time: conflict.time,
-            ttc: conflict.ttc.unwrap_or(Second::INFINITY),
-            margin: conflict.margin,
+            badness: conflict.into(),
         }
-    }
-
-    /// Collisions are worst, then the severity decides, then the TTC, then the margin: the order of `closecall stats`.
-    fn is_milder_than(&self, conflict: &Conflict) -> bool {
-        let ttc = conflict.ttc.unwrap_or(Second::INFINITY);
-        (self.collision, self.severity)
-            .cmp(&(conflict.collision, conflict.severity))
-            .then_with(|| ttc.total_cmp(&self.ttc))
-            .then_with(|| conflict.margin.total_cmp(&self.margin))
-            .is_lt()
     }
 }
 
@@ -181,7 +171,7 @@ impl Summary {
                 self.conflicts.sort_by_key(|count| (count.kind, count.severity));
             }
         }
-        if self.worst.as_ref().is_none_or(|worst| worst.is_milder_than(conflict)) {
+        if self.worst.as_ref().is_none_or(|worst| worst.badness < conflict.into()) {
             self.worst = Some(WorstConflict::of(conflict, self.count(None, None)));
         }
     }

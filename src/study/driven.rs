@@ -104,7 +104,7 @@ impl DrivenTraces {
             let truth = match (&driven[a], &driven[b]) {
                 (Some(a_poses), Some(b_poses)) => {
                     let path =
-                        |row: usize, poses| DrivenPath::of(frame, roster, row, stops[row], options.epsilon, poses);
+                        |row: usize, poses| DrivenUser::of(frame, roster, row, stops[row], options.epsilon, poses);
                     judge(&path(a, a_poses), &path(b, b_poses), options)
                 }
                 _ => Truth::Unknown,
@@ -147,7 +147,7 @@ impl DrivenTraces {
 }
 
 /// A road user on the path that it drove.
-struct DrivenPath<'a> {
+struct DrivenUser<'a> {
     rectangle: Rectangle,
     poses: &'a [Pose],
     cover: SweptBounds,
@@ -159,7 +159,7 @@ struct DrivenPath<'a> {
     all: &'a [Pose],
 }
 
-impl<'a> DrivenPath<'a> {
+impl<'a> DrivenUser<'a> {
     fn of(frame: &Frame, roster: &'a Roster, row: usize, stop: Metre, epsilon: Metre, all: &'a [Pose]) -> Self {
         let Row { user, state: State { x, y, heading, speed, .. } } = frame.row(row as u32);
         let profile = roster.profile_of(user);
@@ -180,7 +180,7 @@ impl<'a> DrivenPath<'a> {
     }
 }
 
-fn judge(a: &DrivenPath, b: &DrivenPath, options: &Options) -> Truth {
+fn judge(a: &DrivenUser, b: &DrivenUser, options: &Options) -> Truth {
     let first = a.participant();
     let second = b.participant();
     if side::touch_now(&first, &second) {
@@ -202,7 +202,7 @@ fn judge(a: &DrivenPath, b: &DrivenPath, options: &Options) -> Truth {
 }
 
 /// The foe's distance until it has left the conflict area; 0 for a leader, which is already there.
-fn distance_to_leave(foe: &DrivenPath, point: &ConflictPoint) -> Metre {
+fn distance_to_leave(foe: &DrivenUser, point: &ConflictPoint) -> Metre {
     if point.foe_distance <= 0.0 {
         0.0
     } else {

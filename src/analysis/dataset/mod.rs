@@ -1,8 +1,8 @@
 //! The conflicts of several logs, and their net: what a report or a picture is made of.
 
+pub(crate) mod kept;
 mod logs;
 pub(crate) mod nets;
-pub(crate) mod worst;
 
 use std::path::{Path, PathBuf};
 
@@ -14,8 +14,8 @@ use crate::options::Options;
 use crate::output::schema::{Column, Value};
 use crate::traffic::net::Net;
 use crate::util::units::Second;
+use kept::{KeptConflicts, RunConflict};
 use nets::Ground;
-use worst::{RunConflict, WorstConflicts};
 
 /// The conflicts of several logs; of more than 300,000, the worst.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub struct Conflicts {
 /// [`crate::Error::Line`] where a row of `conflicts.csv` is not as docs/log.md describes it.
 pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
     let logs = log_folders(folders)?;
-    let mut worst = WorstConflicts::default();
+    let mut worst = KeptConflicts::default();
     for (run, log) in (0..).zip(&logs) {
         for conflict in ConflictReader::open(log)?.with_snapshots() {
             worst.push(RunConflict { run, conflict: conflict? });

@@ -8,7 +8,7 @@ use super::folders::PARQUET;
 use super::parquet::Packed;
 use crate::output::input_hash::Input;
 use crate::output::log::RUN;
-use crate::output::summary::{Count, Exposure};
+use crate::output::summary::Summary;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -32,7 +32,7 @@ pub struct LoggedRun {
     /// Whether the run reached its end.
     pub complete: bool,
     /// What it found.
-    pub summary: LoggedSummary,
+    pub summary: Summary,
 }
 
 /// Versions of what took part in a run.
@@ -42,23 +42,6 @@ pub struct LoggedVersions {
     pub closecall: String,
     /// SUMO's; none where nothing was simulated.
     pub sumo: Option<String>,
-}
-
-/// How long a run was, its counts, and how much traffic it had.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-pub struct LoggedSummary {
-    /// First step, in s.
-    pub begin: Second,
-    /// Last step, in s.
-    pub end: Second,
-    /// Steps that were checked; 0 if the run was killed or still goes on.
-    pub steps: u64,
-    /// Conflicts by kind and severity.
-    pub conflicts: Vec<Count>,
-    /// Conflicts in which the two rectangles overlapped.
-    pub collisions: u64,
-    /// The amount of traffic.
-    pub exposure: Exposure,
 }
 
 /// The text of a log folder's `run.json`, and the file that holds it: `run.json` itself or `conflicts.parquet`.

@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::roads;
 use crate::analysis::dataset::Conflicts;
-use crate::analysis::dataset::worst::RunConflict;
+use crate::analysis::dataset::kept::RunConflict;
 use crate::detection::kind::{Kind, Severity};
 use crate::options::Options;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};

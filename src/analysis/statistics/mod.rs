@@ -9,6 +9,7 @@ mod compare;
 mod extremes;
 mod gpd;
 mod group;
+mod hot_spots;
 pub(crate) mod permutation;
 mod quantiles;
 mod rate;
@@ -21,15 +22,17 @@ use serde::Serialize;
 
 use super::logged::LoggedRun;
 use crate::{Error, Result};
+use hot_spots::hot_spots;
 
-pub use collect::{Collection, LeftOutLog, MEASURES, Spot};
+pub use collect::{Collection, LeftOutLog, MEASURES};
 pub use compare::{Comparison, Significance, compare};
 pub use extremes::{Crashes, Extrapolation};
 pub use group::By;
+pub use hot_spots::HotSpot;
 pub use permutation::Test;
 pub use quantiles::{Quantiles, quantile};
 pub use rate::{IntervalMethod, Rate, Ratio, rate};
-pub use worst::WorstConflict;
+pub use worst::RankedConflict;
 
 /// The statistics that are asked for.
 #[derive(Clone, Debug)]
@@ -62,7 +65,7 @@ pub struct Statistics {
     /// Junctions with the most conflicts.
     pub junctions: Vec<HotSpot>,
     /// The worst conflicts, the worst first.
-    pub worst: Vec<WorstConflict>,
+    pub worst: Vec<RankedConflict>,
     /// Crash frequencies by extreme value theory.
     pub extremes: Vec<Extrapolation>,
     /// The comparison with the other set, if there is one.
@@ -115,23 +118,6 @@ pub struct GroupStatistics {
     pub margin: Quantiles,
     /// Speed change in a collision, in m/s.
     pub delta_v: Quantiles,
-}
-
-/// An edge or junction with conflicts.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct HotSpot {
-    /// SUMO's id of the edge or junction.
-    pub id: String,
-    /// The number of conflicts.
-    pub count: u64,
-    /// The number of serious ones.
-    pub serious: u64,
-    /// The number of critical ones.
-    pub critical: u64,
-    /// Per simulated hour.
-    pub per_hour: Option<Rate>,
-    /// Per 1,000 vehicles of the run.
-    pub per_1000_vehicles: Option<Rate>,
 }
 
 impl Statistics {
@@ -226,23 +212,4 @@ fn group_statistics(
     let margin = of("margin");
     let delta_v = of("delta_v");
     GroupStatistics { group, count, collisions, rates, ttc, pet, margin, delta_v }
-}
-
-fn hot_spots(set: &Collection, spots: &rustc_hash::FxHashMap<String, Spot>, wanted: usize) -> Vec<HotSpot> {
-    let mut spots = spots.iter().map(|(id, spot)| (spot.counts.sum(), id, spot)).collect::<Vec<_>>();
-    spots.sort_by(|a, b| (b.0, a.1).cmp(&(a.0, b.1)));
-    spots.truncate(wanted);
-    let statistics = |(count, id, spot): (u64, &String, &Spot)| {
-        let rates = rates(&spot.counts.per_run(set.runs.len()), &set.runs);
-        let [_, serious, critical] = spot.severities;
-        HotSpot {
-            id: id.clone(),
-            count,
-            serious,
-            critical,
-            per_hour: rates.per_hour,
-            per_1000_vehicles: rates.per_1000_vehicles,
-        }
-    };
-    spots.into_iter().map(statistics).collect()
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::analysis::logged::{LoggedConflict, LoggedRun};
+use crate::output::badness::Badness;
 use crate::util::units::{Metre, Second};
 
 /// sumo-gui halts this long before a conflict, and the run ends this long after it, in s.
@@ -18,7 +19,7 @@ const ZOOM: f64 = 1000.0;
 
 /// One of the worst conflicts.
 #[derive(Clone, Debug, Serialize)]
-pub struct WorstConflict {
+pub struct RankedConflict {
     /// Its log folder.
     pub folder: Arc<Path>,
     /// The seed of its run.
@@ -34,22 +35,19 @@ pub struct WorstConflict {
     run: usize,
 }
 
-impl WorstConflict {
-    /// Mildest first: by collision, severity, TTC and margin; of equal ones, the last logged first.
+impl RankedConflict {
+    /// Mildest first; of equal ones, the last logged first.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
-        let ttc = |worst: &Self| worst.conflict.ttc.unwrap_or(f64::INFINITY);
-        let rank = |worst: &Self| (worst.conflict.collision, worst.conflict.severity);
-        rank(self)
-            .cmp(&rank(other))
-            .then_with(|| ttc(other).total_cmp(&ttc(self)))
-            .then_with(|| other.conflict.margin.total_cmp(&self.conflict.margin))
+        let badness = |ranked: &Self| Badness::from(&ranked.conflict);
+        badness(self)
+            .cmp(&badness(other))
             .then_with(|| (other.run, other.conflict.id).cmp(&(self.run, self.conflict.id)))
     }
 }
 
 /// Reverses the order of a heap, so that the mildest conflict is on top and goes first.
 #[derive(Debug)]
-struct MildestFirst(WorstConflict);
+struct MildestFirst(RankedConflict);
 
 impl Ord for MildestFirst {
     fn cmp(&self, other: &Self) -> std::cmp::Ordering {
@@ -86,7 +84,7 @@ impl WorstOf {
         if self.wanted == 0 || (self.kept.len() == self.wanted && self.is_milder(run, conflict)) {
             return;
         }
-        let worst = WorstConflict {
+        let worst = RankedConflict {
             folder: folder.clone(),
             seed: None,
             edge: conflict.edge().to_owned(),
@@ -103,17 +101,12 @@ impl WorstOf {
     /// Whether this conflict is certainly not among the worst. True for nearly all, which are then not copied.
     fn is_milder(&self, run: usize, conflict: &LoggedConflict) -> bool {
         let Some(MildestFirst(mildest)) = self.kept.peek() else { return false };
-        let known = &mildest.conflict;
-        let now = (conflict.collision, conflict.severity);
-        let then = (known.collision, known.severity);
-        now < then
-            || (now == then
-                && conflict.ttc.unwrap_or(f64::INFINITY) > known.ttc.unwrap_or(f64::INFINITY)
-                && run >= mildest.run)
+        let (badness, least) = (Badness::from(conflict), Badness::from(&mildest.conflict));
+        badness < least || (badness == least && run >= mildest.run)
     }
 
     /// The worst first.
-    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<WorstConflict> {
+    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<RankedConflict> {
         let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
         for found in &mut worst {
             let Some(run) = runs.get(found.run) else { continue };

@@ -2,8 +2,8 @@
 
 use super::cells::{Cell, Table};
 use crate::analysis::statistics::{
-    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, Rate, Significance, Statistics,
-    Test, Traffic, WorstConflict,
+    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Significance,
+    Statistics, Test, Traffic,
 };
 
 /// A measure's name in the table, and its quantiles.
@@ -130,8 +130,8 @@ fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     }
 }
 
-fn worst(worst: &[WorstConflict]) -> Table {
-    let row = |(rank, found): (usize, &WorstConflict)| {
+fn worst(worst: &[RankedConflict]) -> Table {
+    let row = |(rank, found): (usize, &RankedConflict)| {
         let conflict = &found.conflict;
         vec![
             Cell::Count(rank as u64 + 1),

@@ -6,7 +6,7 @@ use closecall::internals::run::StepPart;
 
 /// The parts of a step, in order. Those from the broad phase on may run beside SUMO's next step.
 #[derive(Clone, Copy)]
-pub enum Part {
+pub enum TimedPart {
     Sumo,
     Pull,
     Paths,
@@ -16,7 +16,7 @@ pub enum Part {
 
 const NAMES: [&str; 8] = ["SUMO", "pull", "paths", "painting", "broad phase", "narrow phase", "events", "log"];
 
-impl Part {
+impl TimedPart {
     fn index(self) -> usize {
         match self {
             Self::Sumo => 0,
@@ -33,11 +33,11 @@ impl Part {
 
 /// The time that each part took.
 #[derive(Clone, Copy, Default)]
-pub struct Spent([Duration; NAMES.len()]);
+pub struct StepTimes([Duration; NAMES.len()]);
 
-impl Spent {
+impl StepTimes {
     /// Adds the time since `since` to a part, and sets `since` to now.
-    pub fn add(&mut self, part: Part, since: &mut Instant) {
+    pub fn add(&mut self, part: TimedPart, since: &mut Instant) {
         let now = Instant::now();
         self.0[part.index()] += now - *since;
         *since = now;

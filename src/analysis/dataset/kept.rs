@@ -2,6 +2,7 @@
 
 use std::cmp::Ordering;
 
+use crate::output::badness::Badness;
 use crate::output::schema::LoggedConflict;
 
 /// The most conflicts that are kept.
@@ -16,24 +17,20 @@ pub struct RunConflict {
     pub conflict: LoggedConflict,
 }
 
-/// Worst first: by severity, collision, TTC, margin; equal ones in the order of the logs.
-pub fn by_badness(a: &RunConflict, b: &RunConflict) -> Ordering {
-    let ttc = |kept: &RunConflict| kept.conflict.ttc.unwrap_or(f64::INFINITY);
-    (b.conflict.severity, b.conflict.collision)
-        .cmp(&(a.conflict.severity, a.conflict.collision))
-        .then_with(|| ttc(a).total_cmp(&ttc(b)))
-        .then_with(|| a.conflict.margin.total_cmp(&b.conflict.margin))
-        .then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
+/// Worst first; equal ones in the order of the logs.
+fn worst_first(a: &RunConflict, b: &RunConflict) -> Ordering {
+    let badness = |kept: &RunConflict| Badness::from(&kept.conflict);
+    badness(b).cmp(&badness(a)).then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
 }
 
 /// The [`MOST`] worst conflicts: memory stays bounded however many there are.
 #[derive(Debug, Default)]
-pub struct WorstConflicts {
+pub struct KeptConflicts {
     kept: Vec<RunConflict>,
     seen: u64,
 }
 
-impl WorstConflicts {
+impl KeptConflicts {
     /// Adds a conflict.
     pub fn push(&mut self, conflict: RunConflict) {
         self.seen += 1;
@@ -55,7 +52,7 @@ impl WorstConflicts {
     }
 
     fn prune(&mut self) {
-        self.kept.sort_unstable_by(by_badness);
+        self.kept.sort_unstable_by(worst_first);
         self.kept.truncate(MOST);
     }
 }

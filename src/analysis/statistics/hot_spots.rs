@@ -1,0 +1,45 @@
+//! Hot spots: the edges and junctions with the most conflicts.
+
+use rustc_hash::FxHashMap;
+use serde::Serialize;
+
+use super::collect::{Collection, Spot};
+use super::rate::Rate;
+use super::rates;
+
+/// An edge or junction with conflicts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HotSpot {
+    /// SUMO's id of the edge or junction.
+    pub id: String,
+    /// The number of conflicts.
+    pub count: u64,
+    /// The number of serious ones.
+    pub serious: u64,
+    /// The number of critical ones.
+    pub critical: u64,
+    /// Per simulated hour.
+    pub per_hour: Option<Rate>,
+    /// Per 1,000 vehicles of the run.
+    pub per_1000_vehicles: Option<Rate>,
+}
+
+/// The `wanted` spots with the most conflicts, the most first; equal ones by id.
+pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wanted: usize) -> Vec<HotSpot> {
+    let mut spots = spots.iter().map(|(id, spot)| (spot.counts.sum(), id, spot)).collect::<Vec<_>>();
+    spots.sort_by(|a, b| (b.0, a.1).cmp(&(a.0, b.1)));
+    spots.truncate(wanted);
+    let statistics = |(count, id, spot): (u64, &String, &Spot)| {
+        let rates = rates(&spot.counts.per_run(set.runs.len()), &set.runs);
+        let [_, serious, critical] = spot.severities;
+        HotSpot {
+            id: id.clone(),
+            count,
+            serious,
+            critical,
+            per_hour: rates.per_hour,
+            per_1000_vehicles: rates.per_1000_vehicles,
+        }
+    };
+    spots.into_iter().map(statistics).collect()
+}

@@ -1,0 +1,56 @@
+//! What `closecall run` and `closecall replay` share: the options, the log's folder, and what is printed at the end.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::ending;
+use super::files::kept;
+use crate::Result;
+use crate::options::Options;
+use crate::output::formats::OutputFiles;
+use crate::output::summary::Summary;
+
+/// How to check a scenario or a recording, and what to write.
+#[derive(Args)]
+pub(super) struct CheckArgs {
+    /// Folder for the log [default: closecall-out next to the scenario or recording].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// TOML file with options.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// List the tests that were skipped because they could not change the result, and the time each part took.
+    #[arg(long)]
+    explain: bool,
+    /// Print only errors.
+    #[arg(short, long)]
+    pub quiet: bool,
+    #[command(flatten)]
+    pub outputs: OutputFiles,
+    #[command(flatten)]
+    pub options: Options,
+}
+
+impl CheckArgs {
+    /// The folder for the log of this scenario or recording.
+    pub fn log_folder(&self, input: &Path) -> PathBuf {
+        let beside = || input.parent().unwrap_or(Path::new("")).join("closecall-out");
+        self.out.clone().unwrap_or_else(beside)
+    }
+
+    /// The options.
+    ///
+    /// # Errors
+    /// Where a value is out of range, or one file would be written over another.
+    pub fn checked(&self, log: &Path) -> Result<Options> {
+        let options = self.options.clone().checked()?;
+        self.outputs.check(&kept(self.config.as_deref(), &options, log))?;
+        Ok(options)
+    }
+
+    /// Prints what was found, unless only errors are wanted.
+    pub fn print(&self, summary: &Summary, log: &Path) -> Result<()> {
+        if self.quiet { Ok(()) } else { ending::print(summary, log, self.explain) }
+    }
+}
