@@ -36,7 +36,9 @@ pub struct Encounter {
     pub y: Metre,
     /// Lane of the conflict point, on the ego's path; none without a net.
     pub lane: Option<LaneIndex>,
-    /// Whether the rectangles overlap now.
+    /// How deep the rectangles overlap now: the shortest displacement that parts them; 0 where they do not overlap.
+    pub overlap: Metre,
+    /// Whether they overlap by more than the contact tolerance.
     pub collision: bool,
     /// Measures of a pair in conflict; none if margin ≥ 0.
     pub nearness: Option<Nearness>,
@@ -57,8 +59,8 @@ pub struct Nearness {
 }
 
 impl Encounter {
-    /// Whether the gap is smaller than μ.
+    /// Whether the gap is smaller than μ, or there is none left.
     pub fn in_conflict(&self) -> bool {
-        self.margin < 0.0
+        self.margin < 0.0 || self.collision
     }
 }

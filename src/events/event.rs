@@ -69,8 +69,11 @@ pub struct Conflict {
     /// The lane of the conflict point.
     #[serde(skip)]
     pub lane: Option<LaneIndex>,
-    /// Whether the rectangles overlapped in any step.
+    /// Whether the rectangles overlapped by more than the contact tolerance in any step.
     pub collision: bool,
+    /// Deepest overlap of the rectangles over the event: the shortest displacement that parts them, in m; 0 where they never
+    /// overlapped.
+    pub overlap: Metre,
     /// Where the ego was and would go.
     #[serde(skip)]
     pub ego_snapshot: Snapshot,
@@ -85,7 +88,8 @@ pub struct Conflict {
 impl Conflict {
     /// The event so far, of two road users that are still in the roster, and its PET.
     pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
-        let Extremes { begin, end, severity, collision, clearance, ttc, drac, ref found, ref worst } = *extremes;
+        let Extremes { begin, end, severity, collision, overlap, clearance, ttc, drac, ref found, ref worst } =
+            *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
         let foe_type = roster.profile_of(foe);
@@ -117,6 +121,7 @@ impl Conflict {
             y,
             lane,
             collision,
+            overlap,
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],

@@ -28,6 +28,7 @@ pub(super) struct Extremes {
     pub end: Second,
     pub severity: Severity,
     pub collision: bool,
+    pub overlap: Metre,
     pub clearance: Metre,
     pub ttc: Option<Second>,
     pub drac: Option<MetrePerSecondSquared>,
@@ -100,6 +101,7 @@ impl Extremes {
             end: seen.frame.time,
             severity: seen.severity(),
             collision: seen.found.collision,
+            overlap: seen.found.overlap,
             clearance: seen.clearance(),
             ttc: seen.ttc(),
             drac: seen.drac(),
@@ -118,6 +120,7 @@ impl Extremes {
         self.severity = self.severity.max(seen.severity());
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;
+        self.overlap = self.overlap.max(seen.found.overlap);
         let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
         for (found, taken) in self.found.iter_mut().zip(taken) {
             if taken {

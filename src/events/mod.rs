@@ -262,6 +262,7 @@ mod tests {
                 x: 0.0,
                 y: 0.0,
                 lane: None,
+                overlap: 0.0,
                 collision: false,
                 nearness: None,
             };

@@ -34,6 +34,13 @@ pub fn room(a: &Rectangle, b: &Rectangle) -> Metre {
     from(a, b).min(from(b, a)).sqrt()
 }
 
+/// How deep two rectangles overlap in m: the shortest displacement that parts them; 0 where they do not overlap.
+pub fn overlap(a: &Rectangle, b: &Rectangle) -> Metre {
+    let between = b.centre - a.centre;
+    let depths = normals(a, b).map(|(normal, reach)| reach - between.dot(&normal).abs());
+    depths.into_iter().fold(f64::INFINITY, f64::min).max(0.0)
+}
+
 /// The square of the distance of a point from a rectangle, in m².
 fn distance_squared(rectangle: &Rectangle, point: Point) -> f64 {
     let between = point - rectangle.centre;
@@ -72,7 +79,28 @@ mod tests {
         assert!((distance(&a, &b) - 5.0).abs() < 1e-12);
     }
 
+    #[test]
+    fn the_overlap_is_the_shortest_way_apart() {
+        let a = Rectangle::new(Point::origin(), 0.0, 4.0, 2.0);
+        for (x, y, depth) in [(3.0, 0.0, 1.0), (3.0, 1.75, 0.25), (4.0, 0.0, 0.0), (9.0, 0.0, 0.0)] {
+            assert_eq!(overlap(&a, &Rectangle::new(Point::new(x, y), 0.0, 4.0, 2.0)), depth);
+        }
+    }
+
     proptest! {
+        #[test]
+        fn two_apart_by_their_overlap_just_touch(
+            x in -4.0..4.0, y in -4.0..4.0, heading in -4.0..4.0, turn in -4.0..4.0, length in 1.0..20.0,
+        ) {
+            let a = Rectangle::new(Point::new(1e4, -2e3), heading, 5.0, 1.8);
+            let b = Rectangle::new(Point::new(1e4 + x, -2e3 + y), heading + turn, length, 2.5);
+            let depth = overlap(&a, &b);
+            prop_assume!(depth > 0.0);
+            let moved = |by: f64, direction: f64| Rectangle { centre: b.centre + super::super::rectangle::direction(direction) * by, ..b };
+            let apart = |by: f64| (0..720).any(|step| !touches(&a, &moved(by, f64::from(step) * std::f64::consts::PI / 360.0)));
+            prop_assert!(!apart(depth * 0.99) && apart(depth * 1.001 + 1e-9), "{depth}");
+        }
+
         #[test]
         fn the_distance_is_parrys(
             x in -20.0..20.0, y in -20.0..20.0, heading in -4.0..4.0, turn in -4.0..4.0, length in 0.1..20.0,

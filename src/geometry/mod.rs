@@ -41,6 +41,11 @@ impl Bounds {
     /// Bounds that hold the whole plane.
     pub const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
 
+    /// Whether nothing is within these bounds.
+    pub fn is_empty(&self) -> bool {
+        self.low.x > self.high.x
+    }
+
     /// Extent along x and y.
     pub fn size(&self) -> Vector {
         self.high - self.low

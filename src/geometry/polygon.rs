@@ -23,6 +23,13 @@ impl Polygon {
     fn new(corners: &[Point]) -> Option<Self> {
         ConvexOutline::try_from(corners).ok().map(Self::from)
     }
+
+    /// The same polygon for parry2d.
+    fn shape(&self) -> Option<ConvexPolygon> {
+        ConvexPolygon::from_convex_polyline(
+            self.outline.corners().iter().map(|&corner| parry::vector(corner)).collect(),
+        )
+    }
 }
 
 impl From<ConvexOutline> for Polygon {
@@ -60,15 +67,18 @@ pub fn convex_parts(outline: &[Point]) -> Vec<Polygon> {
 /// The smallest distance between a polygon in convex parts and a rectangle, in m; 0 where they touch or overlap.
 pub fn distance(parts: &[Polygon], rectangle: &Rectangle) -> Metre {
     let (pose, cuboid) = parry::cuboid(rectangle);
-    parts
-        .iter()
-        .filter_map(|part| {
-            let corners = part.outline.corners().iter().map(|&corner| parry::vector(corner)).collect();
-            let shape = ConvexPolygon::from_convex_polyline(corners)?;
-            query::distance(&Pose::IDENTITY, &shape, &pose, &cuboid).ok()
-        })
-        .map(|found| found.distance)
-        .fold(f64::INFINITY, f64::min)
+    let found = parts.iter().filter_map(|part| query::distance(&Pose::IDENTITY, &part.shape()?, &pose, &cuboid).ok());
+    found.map(|found| found.distance).fold(f64::INFINITY, f64::min)
+}
+
+/// How deep a rectangle overlaps a polygon in convex parts, in m; 0 where it does not.
+pub fn overlap(parts: &[Polygon], rectangle: &Rectangle) -> Metre {
+    let (pose, cuboid) = parry::cuboid(rectangle);
+    let depth = |part: &Polygon| {
+        let contact = query::contact(&Pose::IDENTITY, &part.shape()?, &pose, &cuboid, 0.0).ok()??;
+        Some(-contact.dist)
+    };
+    parts.iter().filter_map(depth).fold(0.0, f64::max)
 }
 
 /// Cuts a convex polygon into pieces of up to eight corners that all share the first corner.
@@ -118,6 +128,14 @@ mod tests {
             .map(|a| Point::new(a.cos(), a.sin()))
             .collect();
         assert!((area(&convex_parts(&corners)) - 20.0 * (std::f64::consts::TAU / 40.0).sin()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_overlap_with_a_wall_is_how_far_the_front_is_in_it() {
+        let wall = convex_parts(&[(10.0, -5.0), (12.0, -5.0), (12.0, 5.0), (10.0, 5.0)].map(|(x, y)| Point::new(x, y)));
+        let car = |front: f64| Rectangle::behind(Point::new(front, 0.0), crate::geometry::Vector::x(), 5.0, 1.8);
+        assert!((overlap(&wall, &car(10.3)) - 0.3).abs() < 1e-6);
+        assert_eq!(overlap(&wall, &car(9.9)), 0.0);
     }
 
     #[test]

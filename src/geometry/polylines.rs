@@ -1,4 +1,7 @@
 //! Polylines, all in one table: their points, and the distance of each from the beginning of its line.
+//!
+//! A line may be stretched: its distances are then not those of the plane. SUMO drives along a lane in metres of the
+//! lane's attribute `length`, which may differ from the length of the lane's shape.
 
 use super::{Point, Vector};
 use crate::util::units::Metre;
@@ -15,17 +18,33 @@ pub struct Vertex {
     pub distance: Metre,
 }
 
+/// Metres along a line per metre of the plane that differ from 1 by less than this are 1: lengths are rounded.
+const TO_SCALE: f64 = 1e-3;
+
 /// Lines, numbered from 0, each with its vertices one after the other.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Lines {
     vertices: Vec<Vertex>,
     /// First vertex of each line, then the end of the last line.
     begins: Vec<u32>,
+    /// Metres along the line per metre of the plane, for the points that follow.
+    stretch: f64,
+    /// The most so far, and at least 1.
+    most_stretch: f64,
+    /// Whether any line is stretched.
+    is_stretched: bool,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        Self::NONE.clone()
+    }
 }
 
 impl Lines {
     /// No lines.
-    pub const NONE: &'static Self = &Self { vertices: Vec::new(), begins: Vec::new() };
+    pub const NONE: &'static Self =
+        &Self { vertices: Vec::new(), begins: Vec::new(), stretch: 1.0, most_stretch: 1.0, is_stretched: false };
 
     /// One line through these points.
     pub fn through(points: impl IntoIterator<Item = Point>) -> Self {
@@ -44,6 +63,23 @@ impl Lines {
         self.begins.push(end);
     }
 
+    /// Sets how many metres along the line a metre of the plane is, for the points that follow.
+    pub(crate) fn set_stretch(&mut self, stretch: f64) {
+        self.stretch = stretch;
+        self.most_stretch = self.most_stretch.max(stretch);
+        self.is_stretched |= stretch != 1.0;
+    }
+
+    /// Whether any of the lines is stretched.
+    pub(crate) fn is_stretched(&self) -> bool {
+        self.is_stretched
+    }
+
+    /// The most metres along a line that a metre of the plane is; at least 1.
+    pub(crate) fn most_stretch(&self) -> f64 {
+        self.most_stretch
+    }
+
     /// Appends a point to the last line, unless it lies within a millimetre of the point before.
     pub fn push(&mut self, point: Point) {
         let [.., begin, end] = &mut self.begins[..] else { return };
@@ -53,7 +89,7 @@ impl Lines {
                 if step < ON_THE_LINE {
                     return;
                 }
-                last.distance + step
+                last.distance + step * self.stretch
             }
             None => 0.0,
         };
@@ -125,6 +161,7 @@ impl Lines {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Segment {
     pub start: Point,
+    /// Along the line, for each metre of it.
     pub direction: Vector,
     /// Distance of its start from the line's beginning.
     pub begins_at: Metre,
@@ -142,15 +179,51 @@ impl Segment {
 
     /// Distance of a front bumper from the line's beginning, if it is on this segment.
     pub fn distance_of(&self, front: Point) -> Option<Metre> {
-        let along = (front - self.start).dot(&self.direction);
+        let along = (front - self.start).dot(&self.direction) / self.scale_squared();
         let aside = (front - (self.start + self.direction * along)).norm_squared();
         let is_on =
             along <= self.ends_at - self.begins_at && along >= -ON_THE_LINE && aside <= ON_THE_LINE * ON_THE_LINE;
         is_on.then_some(self.begins_at + along.max(0.0))
     }
 
+    /// Metres of the plane per metre of the line; exactly 1 where they are the same up to rounding.
+    pub fn scale(&self) -> f64 {
+        scale(&self.direction)
+    }
+
+    /// Whether a metre of the line is one of the plane.
+    pub fn is_to_scale(&self) -> bool {
+        self.scale_squared() == 1.0
+    }
+
+    fn scale_squared(&self) -> f64 {
+        scale_squared(&self.direction)
+    }
+
     /// The point at a distance from the line's beginning; beyond the segment's ends, straight on.
     pub fn at(&self, distance: Metre) -> Point {
         self.start + self.direction * (distance - self.begins_at)
     }
+}
+
+/// The length of a segment's direction; exactly 1 where it is 1 up to rounding.
+pub(crate) fn scale(direction: &Vector) -> f64 {
+    scale_squared(direction).sqrt()
+}
+
+/// The square of [`scale`].
+fn scale_squared(direction: &Vector) -> f64 {
+    let squared = direction.norm_squared();
+    if (squared - 1.0).abs() < TO_SCALE { 1.0 } else { squared }
+}
+
+/// How many metres along a line of this length a metre of its shape is: 1 unless the two differ by more than a hundredth
+/// and by more than lengths are rounded.
+pub(crate) fn stretch(length: Metre, drawn: Metre) -> f64 {
+    /// The least difference in m.
+    const ROUNDED: Metre = 0.1;
+    /// The least relative difference.
+    const DIFFERS: f64 = 0.01;
+    let differs = (length - drawn).abs() > ROUNDED.max(DIFFERS * drawn);
+    if differs && drawn > 0.0 && length > 0.0 { length / drawn } else { 1.0 }
 }

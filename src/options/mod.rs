@@ -79,6 +79,9 @@ const PNEUMATIC_DELAY: Second = 0.35;
 pub const BUILD_UP: Second = 0.1;
 /// Default of the reserve ε of μ, in m (eq. 21).
 pub const EPSILON: Metre = 0.5;
+/// Default overlap up to which two road users touch but do not collide, in m: SUMO draws lanes up to this much too near
+/// each other (docs/model.md has the figures).
+const CONTACT_TOLERANCE: Metre = 0.25;
 /// Default bound of rear-end conflicts: 30°, in rad.
 const REAR_END_BELOW: Radian = FRAC_PI_6;
 /// Default bound of frontal conflicts: 150°, in rad.
@@ -121,6 +124,9 @@ pub struct Options {
     /// Reserve ε of μ, in m (eq. 21).
     #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = EPSILON, value_parser = not_negative))]
     pub epsilon: Metre,
+    /// Two road users that overlap by up to this touch but do not collide, in m.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = CONTACT_TOLERANCE, value_parser = not_negative))]
+    pub contact_tolerance: Metre,
     /// A conflict is rear-end if the angle at the conflict point is below this, in rad (default 30°).
     #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = REAR_END_BELOW, value_parser = angle))]
     pub rear_end_below: Radian,
@@ -166,6 +172,7 @@ impl Default for Options {
             pneumatic_delay: PNEUMATIC_DELAY,
             build_up: BUILD_UP,
             epsilon: EPSILON,
+            contact_tolerance: CONTACT_TOLERANCE,
             rear_end_below: REAR_END_BELOW,
             frontal_above: FRONTAL_ABOVE,
             serious_ttc: SERIOUS_TTC,

@@ -122,7 +122,7 @@ columns! { |conflict, context|
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
     [Required] lane: OptionalText = context.lane(conflict);
-    /// whether the rectangles overlapped in any step
+    /// whether the rectangles overlapped by more than the contact tolerance in any step
     [Required] collision: bool = conflict.collision;
     /// SUMO's type of the ego
     [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
@@ -155,6 +155,9 @@ columns! { |conflict, context|
     [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
     /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
     [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
+    /// deepest overlap of the two rectangles in any step: the shortest displacement that parts them; 0 if they never
+    /// overlapped
+    [Optional] overlap: Option<Metre> = Some(conflict.overlap);
 }
 
 /// One column of the log.

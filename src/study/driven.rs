@@ -164,7 +164,8 @@ impl<'a> DrivenUser<'a> {
         let Row { user, state: State { x, y, heading, speed, .. } } = frame.row(row as u32);
         let profile = roster.profile_of(user);
         let rectangle = Rectangle::behind(Point::new(x, y), direction(heading), profile.length, profile.width);
-        let end = all.partition_point(|pose| pose.distance <= stop + epsilon);
+        let reach = if speed > 0.0 { stop + epsilon } else { 0.0 };
+        let end = all.partition_point(|pose| pose.distance <= reach);
         let poses = &all[..end.max(1)];
         let length = profile.length;
         let width = profile.width;
@@ -176,7 +177,19 @@ impl<'a> DrivenUser<'a> {
     fn participant(&self) -> Participant<'_> {
         let Self { rectangle, poses, ref cover, ref covers, speed, brakes, stop, .. } = *self;
         let reach = poses.last().map_or(0.0, |pose| pose.distance);
-        Participant { rectangle, shape: &[], poses, straight: false, reach, cover, covers, speed, brakes, stop }
+        Participant {
+            rectangle,
+            setback: 0.0,
+            shape: &[],
+            poses,
+            straight: false,
+            reach,
+            cover,
+            covers,
+            speed,
+            brakes,
+            stop,
+        }
     }
 }
 
@@ -184,7 +197,8 @@ fn judge(a: &DrivenUser, b: &DrivenUser, options: &Options) -> Truth {
     let first = a.participant();
     let second = b.participant();
     if side::touch_now(&first, &second) {
-        return Truth::Conflict(0.0);
+        let collide = side::overlap_now(&first, &second) > options.contact_tolerance;
+        return if collide { Truth::Conflict(0.0) } else { Truth::Unknown };
     }
     let Some(approach) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
     let [ego, foe] = approach.ego.then_foe([a, b]);

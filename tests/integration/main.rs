@@ -3,8 +3,11 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
 mod bisection;
+mod contact;
 mod detector;
+mod lane_lengths;
 mod lanes;
+mod levels;
 mod path;
 mod replay;
 #[path = "../common/street.rs"]

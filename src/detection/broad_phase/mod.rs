@@ -12,7 +12,6 @@
 
 mod area;
 mod extent;
-mod pair_buffer;
 mod place;
 mod slot;
 mod strips;
@@ -24,7 +23,6 @@ use crate::geometry::{Bounds, Vector};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
 use extent::Extent;
-use pair_buffer::PairBuffer;
 use place::{StripEntry, length};
 
 pub use area::{Area, Circle};
@@ -152,7 +150,6 @@ impl<S: Slot> Search<S> {
     pub fn sweep(&self, from: Range<usize>, mut found: impl FnMut(u32, u32)) {
         let (in_strips, large) = self.places.split_at(self.in_strips);
         let laid = |place: &StripEntry| &self.boxes[place.slot as usize];
-        let mut near = PairBuffer::new(&self.boxes);
         let mut start = from.start;
         while start < from.end.min(in_strips.len()) {
             let strip = in_strips[start].strip;
@@ -162,15 +159,18 @@ impl<S: Slot> Search<S> {
             let mut behind = above.partition_point(|b| b.begin < reaches(&own[start]));
             for place in start..own.len().min(from.end) {
                 let a = &own[place];
-                let end = laid(a).high.x;
-                near.push(a, own[place + 1..].iter().take_while(|b| b.begin <= end), &mut found);
+                let bounds = laid(a);
+                let meets = |b: &&StripEntry| bounds.meet(laid(b));
+                let reached = |b: &&StripEntry| b.begin <= bounds.high.x;
+                let ahead = own[place + 1..].iter().take_while(reached);
+                ahead.filter(meets).for_each(|b| found(a.slot, b.slot));
                 let begin = reaches(a);
                 behind += above[behind..].iter().take_while(|b| b.begin < begin).count();
-                near.push(a, above[behind..].iter().take_while(|b| b.begin <= end), &mut found);
+                let beside = above[behind..].iter().take_while(reached);
+                beside.filter(meets).for_each(|b| found(a.slot, b.slot));
             }
             start = own.len();
         }
-        near.flush(&mut found);
         for place in from.start.max(in_strips.len())..from.end {
             let a = &large[place - in_strips.len()];
             let meets = |b: &&StripEntry| laid(a).meet(laid(b));

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Detector;
-use super::reach::{PathSource, Paths, Reach, StepView, Turning, lines_of};
+use super::reach::{Motion, PathSource, Paths, Reach, StepView, Turning, lines_of};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::{arc, turn};
 use crate::geometry::Point;
@@ -29,8 +29,13 @@ impl Detector {
         self.on_lanes.resize(frame.len(), false);
         if self.turns() == PathSource::Lanes {
             for (row, Row { user, state }) in frame.rows().enumerate() {
-                if state.moves() && roster.profile_of(user).category == Category::Vehicle {
+                if roster.profile_of(user).category != Category::Vehicle {
+                    continue;
+                }
+                if state.moves() {
                     self.keep_on_path(row, user, state.front());
+                } else {
+                    self.stop_on_path(row, user, state.front());
                 }
             }
         }
@@ -62,7 +67,7 @@ impl Detector {
     fn update_areas(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths };
+        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, moved: &self.moved, paths };
         let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
         let this_step = (roster.changes(), frame.len());
         let are_same = std::mem::replace(&mut self.last_step, this_step) == this_step;
@@ -77,6 +82,8 @@ impl Detector {
                 reach.area_of(user, &seen.row.state)
             },
         );
+        self.moved.resize(self.paths.len(), false);
+        self.search.slots().iter().for_each(|user| self.moved[user.index.0 as usize] = user.motion == Motion::Moves);
     }
 
     /// Updates the curvature of the paths, where they are arcs.
@@ -125,6 +132,19 @@ impl Detector {
         if self.shortcuts.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
         } else {
+            self.unplaced.push(row as u32);
+        }
+    }
+
+    /// Follows the path of a vehicle that has stopped, and removes it if the vehicle stopped elsewhere. Where lanes are
+    /// longer or shorter than drawn, the lane of a vehicle without a path is needed, as its drawn length depends on it.
+    fn stop_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
+        let of_net = lines_of(self.net.as_deref());
+        let path = &mut self.paths[user.0 as usize];
+        if !path.track.is_empty() && !path.track.is_at(path.lines(of_net), front) && !path.follow(of_net, front) {
+            path.clear();
+        }
+        if path.track.is_empty() && of_net.is_stretched() {
             self.unplaced.push(row as u32);
         }
     }

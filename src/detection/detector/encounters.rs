@@ -2,9 +2,10 @@
 
 use std::hint::black_box;
 
+use super::LEVEL;
 use super::occupancy::OccupancyCache;
 use super::reach;
-use super::reach::User;
+use super::reach::{Motion, User};
 use super::step::StepInputs;
 use super::work::Work;
 use super::worker::{Findings, Met, Worker};
@@ -18,9 +19,6 @@ use crate::options::Mode;
 use crate::traffic::frame::State;
 use crate::traffic::profile::Category;
 use crate::util::units::{Metre, Radian};
-
-/// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
-const LEVEL: Metre = 2.5;
 
 /// Pairs prefetched before the first of them is tested, so that their cache misses overlap. Without it the narrow phase
 /// takes nearly twice as long in a jam of 10⁵ road users.
@@ -49,12 +47,39 @@ struct How {
     /// cos α.
     sigma: f64,
     gap: Metre,
-    collision: bool,
+    overlap: Overlap,
 }
 
-/// Whether two road users can be a pair at all.
-fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], work: &mut Work) -> bool {
-    if !a_state.moves() && !b_state.moves() {
+/// How deep a pair overlaps now, and whether that is a collision. Up to the contact tolerance it is a graze: both are then
+/// taken to be smaller, so that only what brings them deeper into each other counts.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Overlap {
+    depth: Metre,
+    collision: bool,
+    /// How much smaller both are taken to be on every side.
+    shrinks: Metre,
+}
+
+/// What is known of a pair that has to be swept.
+#[derive(Clone, Copy)]
+pub(super) struct Unsettled {
+    /// Whether both drive in line.
+    in_line: bool,
+    overlap: Overlap,
+}
+
+impl Unsettled {
+    /// The two as they are swept.
+    pub(super) fn shrunk<'a>(&self, pair: [Participant<'a>; 2]) -> [Participant<'a>; 2] {
+        if self.overlap.shrinks > 0.0 { pair.map(|of| of.shrunk(self.overlap.shrinks)) } else { pair }
+    }
+}
+
+/// Whether two road users can be a pair at all. Two that stand are one only in the step in which one of them stops: what
+/// it ran into on its last metre is a collision.
+fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
+    let has_stopped = [a, b].into_iter().any(|user| user.motion == Motion::HasStopped) && mode == Mode::Closecall;
+    if !a_state.moves() && !b_state.moves() && !has_stopped {
         work.both_stand += 1;
         return false;
     }
@@ -77,7 +102,7 @@ impl StepInputs<'_> {
             self.fetch(block);
             for &(a, b) in block {
                 let users = [a, b].map(|slot| self.user(slot));
-                if !is_pair(users.map(|user| (user, self.state(user))), work) {
+                if !is_pair(users.map(|user| (user, self.state(user))), self.options.mode, work) {
                     continue;
                 }
                 let slots = if users[0].row < users[1].row { [a, b] } else { [b, a] };
@@ -126,24 +151,26 @@ impl StepInputs<'_> {
         }
         // An obstacle is never the ego.
         let slots = if self.is_obstacle(a) { [b, a] } else { slots };
-        let (first, second) = (occupancy.mover(self, slots[0]), occupancy.mover(self, slots[1]));
-        let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
+        let pair = slots.map(|slot| occupancy.mover(self, slot));
+        let Some(unsettled) = self.settle(work, slots, &pair, found) else { return };
         if both_ahead && self.are_apart(occupancy, work, slots) {
             return;
         }
-        let (first, second) = (occupancy.covered(self, slots[0]), occupancy.covered(self, slots[1]));
-        self.sweep(work, slots, [&first, &second], in_line, found);
+        let pair = unsettled.shrunk(slots.map(|slot| occupancy.covered(self, slot)));
+        self.sweep(work, slots, &pair, unsettled, found);
     }
 
-    /// Settles a pair that touches now or drives in line. For any other pair, returns whether it drives in line.
+    /// Settles a pair that collides now or drives in line. Returns what is known of any other pair.
     pub(super) fn settle(
         &self,
         work: &mut Work,
         slots: [u32; 2],
-        [first, second]: [&Participant; 2],
+        pair: &[Participant; 2],
         found: &mut Findings,
-    ) -> Option<bool> {
-        if side::touch_now(first, second) {
+    ) -> Option<Unsettled> {
+        let overlap = self.overlap(pair);
+        if overlap.collision {
+            let [first, second] = [&pair[0], &pair[1]];
             let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
             let roles = Roles::new(ego, slots, [first, second]);
             let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
@@ -154,38 +181,54 @@ impl StepInputs<'_> {
                 foe_axis,
                 foe_leads: true,
             };
-            self.met(work, found, &roles, &conflict_point, true);
+            self.met(work, found, &roles, &conflict_point, overlap);
             return None;
         }
-        let in_line = narrow_phase::drive_in_line(first, second);
-        if !in_line || !self.shortcuts.in_line {
-            return Some(in_line);
+        let unsettled = Unsettled { in_line: narrow_phase::drive_in_line(&pair[0], &pair[1]), overlap };
+        if !unsettled.in_line || !self.shortcuts.in_line {
+            return Some(unsettled);
         }
+        let [first, second] = &unsettled.shrunk(*pair);
         work.in_line += 1;
         work.frontal += u64::from(narrow_phase::drive_opposed(first, second));
         let approach = narrow_phase::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
         if let Some(approach) = approach {
             let roles = Roles::new(approach.ego, slots, [first, second]);
-            self.met(work, found, &roles, &approach.conflict_point, false);
+            self.met(work, found, &roles, &approach.conflict_point, overlap);
         }
         None
     }
 
-    /// Finds where two covered paths meet.
+    /// How deep a pair overlaps now.
+    fn overlap(&self, [first, second]: &[Participant; 2]) -> Overlap {
+        if !side::touch_now(first, second) {
+            return Overlap::default();
+        }
+        let depth = side::overlap_now(first, second);
+        let tolerance = self.options.contact_tolerance;
+        // Both shrink by half of it, which parts them; an obstacle does not shrink.
+        let shrinks = if second.shape.is_empty() { tolerance / 2.0 } else { tolerance };
+        Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks }
+    }
+
+    /// Finds where two covered paths meet. If both drive in line, one dimension decides even so: it is exact to rounding, the
+    /// sweep to its tolerance.
     pub(super) fn sweep(
         &self,
         work: &mut Work,
         slots: [u32; 2],
-        [first, second]: [&Participant; 2],
-        in_line: bool,
+        [first, second]: &[Participant; 2],
+        Unsettled { in_line, overlap }: Unsettled,
         found: &mut Findings,
     ) {
         work.swept += 1;
-        let halves = &mut found.scratch.halves;
-        let approach = side::meet(halves, first, second, in_line, &|| self.has_smaller_id(slots));
+        let has_smaller_id = || self.has_smaller_id(slots);
+        let swept = side::meet(&mut found.scratch.halves, first, second, &has_smaller_id);
+        let approach =
+            if in_line { narrow_phase::meet_in_one_dimension(first, second, &has_smaller_id) } else { swept };
         if let Some(approach) = approach {
             let roles = Roles::new(approach.ego, slots, [first, second]);
-            self.met(work, found, &roles, &approach.conflict_point, false);
+            self.met(work, found, &roles, &approach.conflict_point, overlap);
         }
     }
 
@@ -257,34 +300,45 @@ impl StepInputs<'_> {
         if between - foe.rectangle.half_length > radius || !measured.distance.is_finite() {
             return;
         }
-        let collision = contact::touches(&ego.rectangle, &foe.rectangle);
+        let depth = contact::overlap(&ego.rectangle, &foe.rectangle);
+        let overlap = Overlap { depth, collision: contact::touches(&ego.rectangle, &foe.rectangle), shrinks: 0.0 };
         let conflict_point = measured.approach.conflict_point;
         let angle = conflict_point.angle();
-        let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, collision };
-        self.add(found, &roles, &conflict_point, how);
+        let how = How { kind: measured.kind, angle, sigma: angle.cos(), gap: measured.distance, overlap };
+        self.add(work, found, &roles, &conflict_point, how);
     }
 
-    fn met(&self, work: &mut Work, found: &mut Findings, roles: &Roles, meeting: &ConflictPoint, collision: bool) {
+    fn met(&self, work: &mut Work, found: &mut Findings, roles: &Roles, meeting: &ConflictPoint, overlap: Overlap) {
         let angle = meeting.angle();
         let sigma = narrow_phase::sigma(angle);
-        let gap = if collision { 0.0 } else { narrow_phase::gap(meeting.ego_distance, meeting.foe_distance, sigma) };
-        let how = How { kind: Kind::at(angle, self.options.kind_bounds()), angle, sigma, gap, collision };
+        let gap = narrow_phase::gap(meeting.ego_distance, meeting.foe_distance, sigma);
+        let gap = if overlap.collision { 0.0 } else { gap };
+        let how = How { kind: Kind::at(angle, self.options.kind_bounds()), angle, sigma, gap, overlap };
         match how.kind {
             Kind::Frontal => work.frontal += 1,
             Kind::Side => work.side += 1,
             Kind::RearEnd => {}
         }
-        self.add(found, roles, meeting, how);
+        self.add(work, found, roles, meeting, how);
     }
 
     /// Adds a pair that would meet and measures it. Where a path has to be extended for that, it is measured later.
-    fn add(&self, found: &mut Findings, roles: &Roles, meeting: &ConflictPoint, how: How) {
-        let How { kind, angle, sigma, gap, collision } = how;
+    fn add(&self, work: &mut Work, found: &mut Findings, roles: &Roles, meeting: &ConflictPoint, how: How) {
+        let How { kind, angle, sigma, gap, overlap } = how;
+        let Overlap { depth, collision, shrinks } = overlap;
         let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
         let margin = gap - mu;
         // The gap is not known yet where the foe first has to arrive and leave.
         let leaves = !meeting.foe_leads && meeting.foe_axis.is_some() && sigma > 0.0;
-        if self.conflicts_only && margin >= 0.0 && !(leaves && self.may_leave_late(roles, meeting, sigma, mu)) {
+        if self.conflicts_only
+            && margin >= 0.0
+            && !collision
+            && !(leaves && self.may_leave_late(roles, meeting, sigma, mu))
+        {
+            return;
+        }
+        if self.are_on_two_levels(roles.slots, meeting, kind) {
+            work.other_level += 1;
             return;
         }
         let at = meeting.front();
@@ -304,6 +358,7 @@ impl StepInputs<'_> {
             x: at.x,
             y: at.y,
             lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_distance) } else { None },
+            overlap: depth,
             collision,
             nearness: None,
         };
@@ -311,7 +366,7 @@ impl StepInputs<'_> {
         let Findings { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || encounter.in_conflict() {
-            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves };
+            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks };
             if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
                 self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
                 if self.conflicts_only && !encounter.in_conflict() {

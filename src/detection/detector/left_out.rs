@@ -55,7 +55,7 @@ pub(super) fn left_out(work: &Work, shortcuts: Shortcuts) -> Vec<LeftOut> {
     let counted = [
         ("pair tests", "too far apart to meet before both stand", work.areas_apart),
         ("pair tests", "both stand", work.both_stand),
-        ("pair tests", "more than 2.5 m apart in height", work.other_level),
+        ("pair tests", "on different levels", work.other_level),
         ("pair tests", "both are persons", work.both_persons),
         ("narrow-phase tests", "the boxes around the two paths do not meet", work.paths_apart),
         ("sweeps", "both drive straight ahead in parallel, so one dimension is enough", work.in_line),

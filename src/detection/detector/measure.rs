@@ -24,7 +24,7 @@ impl StepInputs<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let (ego, foe) = (self.mover(met.slots[0]), self.mover(met.slots[1]));
+            let [ego, foe] = met.slots.map(|slot| self.mover(slot).shrunk(met.shrinks));
             self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
@@ -46,11 +46,11 @@ impl StepInputs<'_> {
     /// A distance along the path at which the foe has surely left the conflict point.
     pub(super) fn furthest_way_out(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
         let profile = self.profile(foe);
+        let rectangle = &meeting.ego_rectangle;
         // The foe has left when its rear has passed the ego's whole rectangle, however that is turned.
         meeting.foe_distance
             + profile.length
-            + 2.0 * (meeting.ego_rectangle.half_length + meeting.ego_rectangle.half_width)
-            + profile.width
+            + (2.0 * (rectangle.half_length + rectangle.half_width) + profile.width) / self.paths.scale(foe.index)
     }
 
     /// The foe's distance until it has left the ego's conflict point.
@@ -63,7 +63,7 @@ impl StepInputs<'_> {
 
     fn nearness(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Nearness {
         let [ego, foe] = pair;
-        let clearance = if encounter.collision {
+        let clearance = if encounter.overlap > 0.0 || encounter.collision {
             0.0
         } else if foe.shape.is_empty() {
             contact::room(&ego.rectangle, &foe.rectangle)
@@ -71,7 +71,7 @@ impl StepInputs<'_> {
             polygon::distance(foe.shape, &ego.rectangle)
         };
         let (ttc, drac) =
-            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, met, encounter) };
+            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, pair, met, encounter) };
         let severity = measures::severity(
             ttc,
             drac,
@@ -86,6 +86,7 @@ impl StepInputs<'_> {
     fn ttc_and_drac(
         &self,
         scratch: &mut Scratch,
+        pair: [&Participant; 2],
         met: &Met,
         encounter: &Encounter,
     ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
@@ -93,12 +94,11 @@ impl StepInputs<'_> {
         for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
             poses.clear();
             self.course(user, &[self.state(user).speed * ttc::HORIZON], true, poses);
+            poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
         }
-        let course = |user: &User, poses| {
-            let profile = self.profile(user);
-            SteadyMotion { poses, speed: self.state(user).speed, length: profile.length, width: profile.width }
-        };
-        let (ego, foe) = (course(users[0], &scratch.courses[0][..]), course(users[1], &scratch.courses[1][..]));
+        let course =
+            |of: &Participant, poses| SteadyMotion { poses, speed: of.speed, length: of.length(), width: of.width() };
+        let (ego, foe) = (course(pair[0], &scratch.courses[0][..]), course(pair[1], &scratch.courses[1][..]));
         let is_obstacle = self.is_obstacle(met.slots[1]);
         let ttc = if is_obstacle {
             ttc::time_to_fixed(&mut scratch.halves, &ego, self.roster.shape(encounter.foe))

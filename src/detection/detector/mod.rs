@@ -8,6 +8,7 @@
 mod candidates;
 mod encounters;
 mod left_out;
+mod level;
 mod measure;
 mod occupancy;
 mod reach;
@@ -24,7 +25,6 @@ use std::sync::Arc;
 use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
-use crate::braking::stopping_distance;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::options::Options;
@@ -39,6 +39,9 @@ use row_order::RowOrder;
 use shortcuts::Shortcuts;
 use step::StepInputs;
 use worker::Worker;
+
+/// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
+const LEVEL: Metre = 2.5;
 
 pub use left_out::LeftOut;
 pub use work::Work;
@@ -58,6 +61,8 @@ pub struct Detector {
     turnings: Vec<Turning>,
     /// By row of the frame, whether the road user is on its path along lanes.
     on_lanes: Vec<bool>,
+    /// By [`UserIndex`], whether the road user moved in the last step that it was in.
+    moved: Vec<bool>,
     /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
     /// The roster's changes until the last step, and the number of road users in that step.
@@ -84,6 +89,7 @@ impl Detector {
             paths: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
+            moved: Vec::new(),
             search: Search::default(),
             last_step: (0, 0),
             order: RowOrder::default(),
@@ -161,6 +167,9 @@ impl Detector {
     pub fn forget(&mut self, user: UserIndex) {
         if let Some(path) = self.paths.get_mut(user.0 as usize) {
             path.clear();
+        }
+        if let Some(moved) = self.moved.get_mut(user.0 as usize) {
+            *moved = false;
         }
         if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
             *turning = Turning::default();
@@ -255,7 +264,7 @@ impl Detector {
         for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
             if *on_lanes {
                 let profile = roster.profile_of(user);
-                let way = stopping_distance(state.speed, &profile.brakes) + self.options.epsilon;
+                let way = reach::reach(&state, profile, self.options.epsilon);
                 self.paths[user.0 as usize].extend(net, profile.chord, way);
             }
         }
@@ -270,7 +279,15 @@ impl Detector {
 
     fn sight<'a>(&'a self, frame: &'a Frame, roster: &'a Roster) -> StepView<'a> {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
-        StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, paths: self.all_paths() }
+        StepView {
+            frame,
+            roster,
+            turns,
+            epsilon,
+            on_lanes: &self.on_lanes,
+            moved: &self.moved,
+            paths: self.all_paths(),
+        }
     }
 
     fn all_paths(&self) -> Paths<'_> {
@@ -284,6 +301,7 @@ impl Detector {
             conflicts_only: self.conflicts_only,
             frame,
             roster,
+            flat_net: self.net.as_deref().filter(|net| net.rise() < LEVEL),
             paths: self.all_paths(),
             turnings: &self.turnings,
             reach: Reach::new(frame, roster, &self.options, self.shortcuts, self.all_paths()),
@@ -295,8 +313,8 @@ impl Detector {
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
         let user = sight.user(row, &sight.see(row), &User::default());
-        let stop = self.scene(frame, roster).stop(&user);
-        self.scene(frame, roster).course(&user, &[stop, stop + self.options.epsilon], false, &mut poses);
+        let scene = self.scene(frame, roster);
+        scene.course(&user, &[scene.stop(&user), scene.reach_of(&user)], false, &mut poses);
         poses.iter().map(|pose| pose.front).collect()
     }
 }

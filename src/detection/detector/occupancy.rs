@@ -66,11 +66,11 @@ impl OccupancyCache {
         let user = scene.user(slot);
         let all = &mut self.poses;
         let (profile, start) = (scene.profile(user), all.len());
-        let stop = scene.stop(user);
-        scene.course(user, &[stop, stop + scene.options.epsilon], false, all);
+        scene.course(user, &[scene.stop(user), scene.reach_of(user)], false, all);
         let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
-        let straight = poses.iter().all(|pose| pose.axis == axis);
+        let length = scene.drawn_length(user);
+        let straight = scene.paths.is_to_scale(poses) && poses.iter().all(|pose| pose.axis == axis);
         let bounds = if !scene.shortcuts.paths_apart {
             Bounds::EVERYTHING
         } else if user.ahead {
@@ -79,7 +79,7 @@ impl OccupancyCache {
             let mut bounds = Bounds::EMPTY;
             // The boxes of the first and last pose of a straight path hold all between them.
             for pose in poses.iter().step_by(if straight { (poses.len() - 1).max(1) } else { 1 }) {
-                bounds.join(&Rectangle::behind(pose.front, pose.axis, profile.length, profile.width).bounds());
+                bounds.join(&Rectangle::behind(pose.front, pose.axis, length, profile.width).bounds());
             }
             bounds.grown(TOLERANCE)
         };
@@ -96,15 +96,16 @@ impl OccupancyCache {
             return;
         }
         built.covers = Some(covers.len() as u32);
-        let profile = scene.profile(scene.user(slot));
+        let user = scene.user(slot);
+        let (length, width) = (scene.drawn_length(user), scene.profile(user).width);
         let poses = &poses[built.poses.0 as usize..built.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.shortcuts.paths_apart {
-            true => SweptBounds::of(poses, profile.length, profile.width).unwrap_or_else(|| built.bounds.into()),
+            true => SweptBounds::of(poses, length, width).unwrap_or_else(|| built.bounds.into()),
             false => SweptBounds::EVERYWHERE,
         };
         let whole = match poses {
             [first, .., last] if built.straight && poses.len() <= MOST_STRAIGHT && scene.shortcuts.paths_apart => {
-                SweptBounds::straight(first, last, profile.length, profile.width, built.bounds)
+                SweptBounds::straight(first, last, length, width, built.bounds)
             }
             _ => of(poses),
         };
@@ -161,11 +162,12 @@ impl<'a> StepInputs<'a> {
         let (profile, state) = (self.roster.profile_at(user.profile), self.state(user));
         let stop = self.stop(user);
         let mut mover = Participant {
-            rectangle: Rectangle::behind(state.front(), user.axis, profile.length, profile.width),
+            rectangle: Rectangle::behind(state.front(), user.axis, self.drawn_length(user), profile.width),
+            setback: 0.0,
             shape: &[],
             poses: &[],
             straight: true,
-            reach: stop + self.options.epsilon,
+            reach: self.reach_of(user),
             cover: &SweptBounds::NOWHERE,
             covers: &[],
             speed: state.speed,

@@ -3,6 +3,7 @@
 use super::shortcuts::Shortcuts;
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::detection::broad_phase::{Area, Circle, Slot};
+use crate::detection::path::Pose;
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::track::Track;
 use crate::geometry::polylines::Lines;
@@ -23,6 +24,17 @@ pub(super) struct Turning {
     pub curvature: f64,
 }
 
+/// Whether a road user moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Motion {
+    /// It has a speed.
+    Moves,
+    /// It stands, and moved in the step before.
+    HasStopped,
+    /// It stands, and stood in the step before or has just entered the scene.
+    Rests,
+}
+
 /// A road user in the current step, besides its row of the frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct User {
@@ -34,6 +46,7 @@ pub(super) struct User {
     pub index: UserIndex,
     pub profile: ProfileIndex,
     pub category: Category,
+    pub motion: Motion,
     /// Whether it goes straight on until it stands: without lanes or an arc, or on a lane that leads straight on.
     pub ahead: bool,
     pub on_lanes: bool,
@@ -59,10 +72,33 @@ impl<'a> Paths<'a> {
         Self { paths, of_net: lines_of(net) }
     }
 
+    /// A road user's path, if it ever had one.
+    pub(super) fn of(&self, user: UserIndex) -> Option<&'a LanePath> {
+        self.paths.get(user.0 as usize)
+    }
+
     /// A road user's track, and the lines that it is on.
     pub(super) fn track(&self, user: UserIndex) -> (&'a Track, &'a Lines) {
         let path = &self.paths[user.0 as usize];
         (&path.track, path.lines(self.of_net))
+    }
+
+    /// Whether distances along these poses, if they lie on a straight line, are those of the plane.
+    pub(super) fn is_to_scale(&self, poses: &[Pose]) -> bool {
+        match poses {
+            [first, .., last] if self.of_net.is_stretched() => {
+                ((last.front - first.front).norm() - last.distance).abs() <= TOLERANCE
+            }
+            _ => true,
+        }
+    }
+
+    /// Metres of the plane per metre of the lane that a road user is on: SUMO draws it as much shorter or longer.
+    pub(super) fn scale(&self, user: UserIndex) -> f64 {
+        match self.of(user) {
+            Some(path) if self.of_net.is_stretched() => path.track.scale(path.lines(self.of_net)),
+            _ => 1.0,
+        }
     }
 
     /// The lane at a distance ahead of a road user.
@@ -83,6 +119,8 @@ pub(super) struct StepView<'a> {
     pub turns: PathSource,
     pub epsilon: Metre,
     pub on_lanes: &'a [bool],
+    /// By [`UserIndex`], whether the road user moved in the last step that it was in.
+    pub moved: &'a [bool],
     pub paths: Paths<'a>,
 }
 
@@ -112,7 +150,7 @@ impl StepView<'_> {
         let on_lanes = self.turns == PathSource::Lanes && self.on_lanes[row as usize];
         let goes_straight = || {
             let (track, lines) = self.paths.track(index);
-            track.goes_straight(lines, &axis, profile.chord, stop(state, profile) + self.epsilon)
+            track.goes_straight(lines, &axis, profile.chord, reach(state, profile, self.epsilon))
         };
         User {
             heading: state.heading,
@@ -121,6 +159,11 @@ impl StepView<'_> {
             index,
             profile: type_index,
             category: profile.category,
+            motion: match moves {
+                true => Motion::Moves,
+                false if self.moved.get(index.0 as usize) == Some(&true) => Motion::HasStopped,
+                false => Motion::Rests,
+            },
             ahead: match self.turns {
                 PathSource::Straight => true,
                 PathSource::Arcs => profile.category == Category::Obstacle,
@@ -142,6 +185,7 @@ impl Default for User {
             index: UserIndex(0),
             profile: ProfileIndex(0),
             category: Category::Obstacle,
+            motion: Motion::Rests,
             ahead: true,
             on_lanes: false,
         }
@@ -166,6 +210,13 @@ impl Slot for User {
 #[inline(always)]
 pub(super) fn stop(state: &State, profile: &Profile) -> Metre {
     if state.moves() { stopping_distance(state.speed, &profile.brakes) } else { 0.0 }
+}
+
+/// The distance until a road user of this type stands, and ε further. ε is a reserve for braking: one that stands already
+/// reaches no further than its own rectangle.
+#[inline(always)]
+pub(super) fn reach(state: &State, profile: &Profile, epsilon: Metre) -> Metre {
+    if state.moves() { stopping_distance(state.speed, &profile.brakes) + epsilon } else { 0.0 }
 }
 
 /// How far road users reach until they stand.
@@ -207,23 +258,26 @@ impl<'a> Reach<'a> {
     #[inline(always)]
     pub(super) fn area_of(&self, user: &User, state: &State) -> Area {
         let (profile, front) = (self.roster.profile_at(user.profile), state.front());
-        let stop =
-            if self.on_paper { stopping_distance_paper(state.speed, &profile.brakes) } else { stop(state, profile) };
-        let reach = stop + self.epsilon;
+        let reach = if self.on_paper {
+            stopping_distance_paper(state.speed, &profile.brakes) + self.epsilon
+        } else {
+            reach(state, profile, self.epsilon)
+        };
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;
             self.roster.shape(user.index).iter().for_each(|part| bounds.join(&part.bounds));
             return bounds.into();
         }
+        let drawn_length = profile.length * self.paths.scale(user.index);
         if user.ahead && self.has_boxes {
-            let (front, length) = (front + user.axis * reach, profile.length + reach);
+            let (front, length) = (front + user.axis * reach, drawn_length + reach);
             let beside = if user.on_lanes { Track::beside_heading(length) } else { 0.0 };
             let bounds = Rectangle::behind(front, user.axis, length, profile.width).bounds();
             return bounds.grown(TOLERANCE + beside).into();
         }
         if user.on_lanes && self.has_boxes {
             // Its front is on the line ahead; no part of it is further from there than this.
-            let behind = profile.length + profile.width / 2.0;
+            let behind = drawn_length + profile.width / 2.0;
             let (track, lines) = self.paths.track(user.index);
             return track.bounds_ahead(lines, reach).grown(TOLERANCE + behind).into();
         }
@@ -232,8 +286,8 @@ impl<'a> Reach<'a> {
             let behind = profile.length.hypot(profile.width / 2.0);
             return Circle { x: front.x, y: front.y, radius: reach + behind + TOLERANCE }.into();
         }
-        let centre = front - user.axis * (profile.length / 2.0);
-        let diagonal = (profile.length * profile.length + profile.width * profile.width).sqrt();
+        let centre = front - user.axis * (drawn_length / 2.0);
+        let diagonal = (drawn_length * drawn_length + profile.width * profile.width).sqrt();
         Circle { x: centre.x, y: centre.y, radius: reach + diagonal / 2.0 }.into()
     }
 }

@@ -5,6 +5,7 @@ use super::reach::{Paths, Reach, Turning, User};
 use super::shortcuts::Shortcuts;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, State};
+use crate::traffic::net::Net;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::Roster;
 use crate::util::units::Metre;
@@ -17,6 +18,8 @@ pub(super) struct StepInputs<'a> {
     pub conflicts_only: bool,
     pub frame: &'a Frame,
     pub roster: &'a Roster,
+    /// The net, if it has no heights that tell a bridge from what it crosses.
+    pub flat_net: Option<&'a Net>,
     pub paths: Paths<'a>,
     pub turnings: &'a [Turning],
     pub reach: Reach<'a>,
@@ -36,6 +39,17 @@ impl StepInputs<'_> {
     #[inline(always)]
     pub fn stop(&self, user: &User) -> Metre {
         reach::stop(self.state(user), self.profile(user))
+    }
+
+    /// The distance until a road user stands, and ε further; 0 if it stands.
+    #[inline(always)]
+    pub fn reach_of(&self, user: &User) -> Metre {
+        reach::reach(self.state(user), self.profile(user), self.options.epsilon)
+    }
+
+    /// Its length as SUMO draws it.
+    pub fn drawn_length(&self, user: &User) -> Metre {
+        self.profile(user).length * self.paths.scale(user.index)
     }
 
     pub fn is_obstacle(&self, slot: u32) -> bool {

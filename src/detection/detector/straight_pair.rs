@@ -48,8 +48,9 @@ impl StepInputs<'_> {
 
     /// Finds where they would meet.
     pub(super) fn meet_straight(&self, work: &mut Work, slots: [u32; 2], found: &mut Findings) {
-        let (mut first, mut second) = (self.mover(slots[0]), self.mover(slots[1]));
-        let Some(in_line) = self.settle(work, slots, [&first, &second], found) else { return };
+        let pair = slots.map(|slot| self.mover(slot));
+        let Some(unsettled) = self.settle(work, slots, &pair, found) else { return };
+        let [mut first, mut second] = unsettled.shrunk(pair);
         let covered = |mover: &Participant| mover.rectangle.swept(&(mover.rectangle.axis * mover.reach), TOLERANCE);
         if !plainly_touches(&covered(&first), &covered(&second)) {
             work.paths_apart += 1;
@@ -62,6 +63,6 @@ impl StepInputs<'_> {
         let (of_first, of_second) = (straight_poses(slots[0], &first), straight_poses(slots[1], &second));
         first.poses = of_first.poses();
         second.poses = of_second.poses();
-        self.sweep(work, slots, [&first, &second], in_line, found);
+        self.sweep(work, slots, &[first, second], unsettled, found);
     }
 }

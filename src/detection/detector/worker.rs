@@ -6,6 +6,7 @@ use crate::detection::encounter::Encounter;
 use crate::detection::narrow_phase::ConflictPoint;
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
+use crate::util::units::Metre;
 
 /// One thread's state, and what it finds among its pairs.
 #[derive(Default)]
@@ -47,6 +48,8 @@ pub(super) struct Met {
     pub sigma: f64,
     /// Whether the gap depends on when the foe has left the conflict point.
     pub leaves: bool,
+    /// How much smaller both are taken to be on every side, in m, because they graze.
+    pub shrinks: Metre,
 }
 
 impl Findings {

@@ -32,7 +32,7 @@ pub fn meet(a: &Participant, b: &Participant, a_has_smaller_id: &impl Fn() -> bo
     if drive_in_line(a, b) {
         meet_in_one_dimension(a, b, a_has_smaller_id)
     } else {
-        side::meet(&mut Bisection::default(), a, b, false, a_has_smaller_id)
+        side::meet(&mut Bisection::default(), a, b, a_has_smaller_id)
     }
 }
 

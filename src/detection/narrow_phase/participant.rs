@@ -5,6 +5,7 @@ use crate::braking::{Brakes, Braking};
 use crate::detection::path::Pose;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
+use crate::geometry::sweep::Movement;
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// One road user of a pair.
@@ -12,6 +13,8 @@ use crate::util::units::{Metre, MetrePerSecond};
 pub struct Participant<'a> {
     /// Its current rectangle.
     pub rectangle: Rectangle,
+    /// How far the rectangle's front is behind the front bumper in m; 0 unless it is [`Self::shrunk`].
+    pub setback: Metre,
     /// The convex parts of an obstacle; empty for other road users.
     pub shape: &'a [Polygon],
     /// Poses from now until it stands and ε further; may be empty for a pair in line.
@@ -41,6 +44,22 @@ impl Participant<'_> {
     /// Width in m.
     pub fn width(&self) -> Metre {
         2.0 * self.rectangle.half_width
+    }
+
+    /// The same road user, smaller by `by` m on every side.
+    pub fn shrunk(&self, by: Metre) -> Self {
+        let Rectangle { half_length, half_width, .. } = self.rectangle;
+        let by = by.min(half_length).min(half_width);
+        let rectangle = Rectangle { half_length: half_length - by, half_width: half_width - by, ..self.rectangle };
+        Self { rectangle, setback: self.setback + by, ..*self }
+    }
+
+    /// Its movement from one pose to the next.
+    pub fn movement(&self, from: &Pose, to: &Pose) -> Movement {
+        let mut movement = from.movement_to(to, self.length(), self.width());
+        movement.from -= from.axis * self.setback;
+        movement.to -= to.axis * self.setback;
+        movement
     }
 
     /// Its part in μ.

@@ -10,7 +10,7 @@ use crate::geometry::convex::ConvexOutline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::{Contact, translation};
 use crate::geometry::sweep::{Movement, TOLERANCE};
-use crate::geometry::{Vector, exact};
+use crate::geometry::{Vector, contact, exact, polygon};
 use crate::util::units::Metre;
 
 /// How far apart two rectangles may be where the sweep of both finds contact, in m.
@@ -23,7 +23,6 @@ pub fn meet(
     bisection: &mut Bisection,
     a: &Participant,
     b: &Participant,
-    in_line: bool,
     a_has_smaller_id: &impl Fn() -> bool,
 ) -> Option<Approach> {
     bisection.clear();
@@ -37,7 +36,7 @@ pub fn meet(
     let [of_a, of_b] = numbers;
     let a_touches = touch([of_a, of_b], a, b);
     let b_touches = touch([of_b, of_a], b, a);
-    let (roles, Touch { ego_distance, rectangle }) = match (a_touches, b_touches) {
+    let (roles, Touch { ego_distance, ego_rectangle }) = match (a_touches, b_touches) {
         (Some(a), Some(b)) => {
             let b_is_ego = b.ego_distance > a.ego_distance || (b.ego_distance == a.ego_distance && !a_has_smaller_id());
             if b_is_ego { (Ego::Second, b) } else { (Ego::First, a) }
@@ -45,22 +44,15 @@ pub fn meet(
         (Some(a), None) => (Ego::First, a),
         (None, b) => (Ego::Second, b?),
     };
-    let [ego, foe] = roles.then_foe([a, b]);
+    let [_, foe] = roles.then_foe([a, b]);
     let [_, of_foe] = roles.then_foe(numbers);
-    // In line, the distance is measured along the heading: recorded positions are rounded to centimetres, so the poses
-    // may lie beside it.
-    let in_front = Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_distance, ..ego.rectangle };
-    let ego_rectangle = if in_line { in_front } else { rectangle };
-    let (foe_distance, foe_axis, foe_leads) = if !foe.shape.is_empty() {
-        (0.0, None, false)
-    } else if in_line && ego_rectangle.axis.dot(&foe.rectangle.axis) > 0.0 {
-        (0.0, Some(foe.rectangle.axis), true)
+    let (foe_distance, foe_axis) = if foe.shape.is_empty() {
+        let (foe_distance, foe_axis) = arrival(bisection, of_foe, foe, &ego_rectangle);
+        (foe_distance, Some(foe_axis))
     } else {
-        let inexact = if in_line { 0.0 } else { INEXACT };
-        let (foe_distance, foe_axis) = arrival(bisection, of_foe, foe, &ego_rectangle, inexact);
-        (foe_distance, Some(foe_axis), false)
+        (0.0, None)
     };
-    let conflict_point = ConflictPoint { ego_distance, foe_distance, ego_rectangle, foe_axis, foe_leads };
+    let conflict_point = ConflictPoint { ego_distance, foe_distance, ego_rectangle, foe_axis, foe_leads: false };
     Some(Approach { ego: roles, conflict_point })
 }
 
@@ -68,7 +60,7 @@ pub fn meet(
 struct Touch {
     ego_distance: Metre,
     /// The ego's rectangle there.
-    rectangle: Rectangle,
+    ego_rectangle: Rectangle,
 }
 
 /// How many numbers the movements of a road user take; the last one stands for a road user that does not move.
@@ -85,7 +77,7 @@ fn one_rectangle(foe: &Participant) -> Option<Rectangle> {
         return stands(foe).covered();
     }
     match foe.poses {
-        [now, next, ..] if next.distance >= foe.stop => now.movement_to(next, foe.length(), foe.width()).covered(),
+        [now, next, ..] if next.distance >= foe.stop => foe.movement(now, next).covered(),
         _ => None,
     }
 }
@@ -93,10 +85,10 @@ fn one_rectangle(foe: &Participant) -> Option<Rectangle> {
 /// Where an ego that drives straight on first touches such a rectangle.
 fn first_slide(ego: &Participant, covered: &Rectangle) -> Option<Touch> {
     ego.poses.windows(2).find_map(|pair| {
-        let movement = pair[0].movement_to(&pair[1], ego.length(), ego.width());
+        let movement = ego.movement(&pair[0], &pair[1]);
         let enter = movement.slide_to(covered)?.enter;
         let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-        Some(Touch { ego_distance, rectangle: movement.rectangle(enter) })
+        Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter) })
     })
 }
 
@@ -113,7 +105,7 @@ fn first_touch(
             continue;
         }
         let cover = cover.unwrap_or(ego.cover);
-        let movement = pair[0].movement_to(&pair[1], ego.length(), ego.width());
+        let movement = ego.movement(&pair[0], &pair[1]);
         let mut enter = Contact::Entry.none();
         for shape in foe.shape.iter().filter(|shape| shape.bounds.meet(&cover.bounds)) {
             let part = bisection.numbered(of_ego + index, || movement);
@@ -126,7 +118,7 @@ fn first_touch(
         }
         if enter <= 1.0 {
             let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-            return Some(Touch { ego_distance, rectangle: movement.rectangle(enter) });
+            return Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter) });
         }
     }
     None
@@ -150,15 +142,9 @@ fn stands(of: &Participant) -> Movement {
 
 /// The foe's distance to the ego's rectangle at the conflict point, and its axis there.
 ///
-/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by `inexact`.
-fn arrival(
-    bisection: &mut Bisection,
-    first_number: usize,
-    foe: &Participant,
-    ego: &Rectangle,
-    inexact: Metre,
-) -> (Metre, Vector) {
-    let ego = grown(ego, inexact);
+/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by [`INEXACT`].
+fn arrival(bisection: &mut Bisection, first_number: usize, foe: &Participant, ego: &Rectangle) -> (Metre, Vector) {
+    let ego = grown(ego, INEXACT);
     for (index, (pair, movement)) in foe.poses.windows(2).zip(movements(foe)).enumerate() {
         if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
             let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
@@ -189,7 +175,7 @@ pub fn departure(
         if next.distance < arrival {
             continue;
         }
-        let movement = pose.movement_to(&next, foe.length(), foe.width());
+        let movement = foe.movement(&pose, &next);
         let Some(leave) = bisection.meet_rectangle((index, &movement), &ego, Contact::Exit) else {
             if pose.distance > arrival {
                 return left;
@@ -209,7 +195,16 @@ fn grown(rectangle: &Rectangle, by: Metre) -> Rectangle {
 }
 
 fn movements<'a>(of: &'a Participant) -> impl Iterator<Item = Movement> + 'a {
-    of.poses.windows(2).map(|pair| pair[0].movement_to(&pair[1], of.length(), of.width()))
+    of.poses.windows(2).map(|pair| of.movement(&pair[0], &pair[1]))
+}
+
+/// How deep two road users, the second of which may be an obstacle, overlap now.
+pub fn overlap_now(a: &Participant, b: &Participant) -> Metre {
+    if b.shape.is_empty() {
+        contact::overlap(&a.rectangle, &b.rectangle)
+    } else {
+        polygon::overlap(b.shape, &a.rectangle)
+    }
 }
 
 /// Whether two road users, the second of which may be an obstacle, touch or overlap now.
@@ -238,6 +233,7 @@ mod tests {
         let (stop, reach) = (poses[poses.len() - 2].distance, poses[poses.len() - 1].distance);
         Participant {
             rectangle,
+            setback: 0.0,
             shape: &[],
             poses,
             straight: false,
@@ -270,7 +266,7 @@ mod tests {
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
             let mut bisection = Bisection::default();
-            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, ego, foe, false, &|| true);
+            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, ego, foe, &|| true);
             let slow = meet(&participant(&ego, &all, &SweptBounds::EVERYWHERE), &participant(&foe, &all, &SweptBounds::EVERYWHERE));
             let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
             let (ego, foe) = (participant(&ego, &ego_parts, &ego_whole), participant(&foe, &foe_parts, &foe_whole));

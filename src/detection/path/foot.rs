@@ -1,6 +1,6 @@
 //! The point of a lane's centre line nearest to a front bumper.
 
-use crate::geometry::polylines::Vertex;
+use crate::geometry::polylines::{Vertex, scale};
 use crate::geometry::{Point, Vector, cross};
 use crate::util::units::Metre;
 
@@ -13,6 +13,7 @@ pub(super) struct Foot {
     pub segment: usize,
     /// Distance from the lane's beginning.
     pub distance: Metre,
+    /// Along the lane, for each metre of it.
     pub direction: Vector,
     /// Offset of the front bumper, positive to the left.
     pub aside: Metre,
@@ -40,11 +41,12 @@ impl Foot {
                 continue;
             }
             let direction = (end.point - start.point) / length;
-            let along = (front - start.point).dot(&direction).clamp(0.0, length);
+            let scale = scale(&direction);
+            let along = ((front - start.point).dot(&direction) / (scale * scale)).clamp(0.0, length);
             let point = start.point + direction * along;
             let squared = (front - point).norm_squared();
             if best.as_ref().is_none_or(|(least, _)| squared < *least) {
-                let aside = cross(&direction, &(front - point));
+                let aside = cross(&direction, &(front - point)) / scale;
                 best = Some((squared, Self { point, segment, distance: start.distance + along, direction, aside }));
             }
         }

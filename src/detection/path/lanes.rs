@@ -117,8 +117,9 @@ impl LanePath {
                 behind.reverse();
                 std::mem::swap(&mut behind, &mut ahead);
             }
+            let on_lane = (placement.lane, net.stretch(placement.lane));
             let before = before.iter().rev().flat_map(|lane| points(net.lines.line(lane.0)));
-            let own = OwnLine::build(&mut self.track, before.chain(behind), foot.point, ahead, placement.lane, beside);
+            let own = OwnLine::build(&mut self.track, before.chain(behind), foot.point, ahead, on_lane, beside);
             self.own = Some(Box::new(own));
         }
         self.edge = (!against).then_some(0);
@@ -150,6 +151,34 @@ impl LanePath {
         let track = Some(&self.track).filter(|track| !track.is_empty())?;
         let (vertex, line) = track.vertex_ahead(self.lines(of_net), distance);
         self.own.as_ref().map_or(Some(LaneIndex(line)), |own| own.lane_at(vertex))
+    }
+
+    /// The lanes between two distances ahead of the front bumper; those behind it have negative distances.
+    pub fn lanes_between(&self, of_net: &Lines, from: Metre, to: Metre) -> SmallVec<[LaneIndex; 4]> {
+        let mut found = SmallVec::new();
+        let mut begin = -self.track.front();
+        let mut add = |lane: LaneIndex, begin: Metre, end: Metre| {
+            if begin <= to && end >= from {
+                found.push(lane);
+            }
+        };
+        match &self.own {
+            Some(own) => own.lanes().for_each(|(lane, [first, last])| add(lane, begin + first, begin + last)),
+            None => {
+                begin -= self.track.passed(of_net);
+                for line in self.track.lines.iter() {
+                    let end = begin + of_net.length(*line);
+                    add(LaneIndex(*line), begin, end);
+                    begin = end;
+                }
+            }
+        }
+        found
+    }
+
+    /// How far beside the lanes' centre line it runs, in m; positive to the left.
+    pub fn aside(&self) -> Metre {
+        self.own.as_ref().map_or(0.0, |own| own.aside())
     }
 
     fn append(&mut self, net: &Net, lane: LaneIndex) {
@@ -211,7 +240,7 @@ fn offset(net: &Net, start: &PathStart, placement: &Placement, foot: &Foot, agai
     } else {
         width.copysign(speed)
     };
-    Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed }
+    Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed / net.stretch(placement.lane) }
 }
 
 /// Whether the edge has another lane on that side.

@@ -41,6 +41,11 @@ impl OffsetLine {
         is_aside.then_some(Self { offset, before: None, last: None, distance: f64::NEG_INFINITY })
     }
 
+    /// The offset where the line was begun.
+    pub fn aside(&self) -> Metre {
+        self.offset.now
+    }
+
     /// Adds the next point of the centre line behind the front bumper.
     pub fn push_behind(&mut self, line: &mut Lines, point: Point) {
         self.push(line, point, f64::NEG_INFINITY);

@@ -30,10 +30,11 @@ impl OwnLine {
         behind: impl Iterator<Item = Point>,
         foot: Point,
         ahead: Vec<Point>,
-        lane: LaneIndex,
+        (lane, stretch): (LaneIndex, f64),
         beside: Option<OffsetLine>,
     ) -> Self {
         let mut own = Self { lines: Lines::through([]), lanes: Vec::new(), beside };
+        own.lines.set_stretch(stretch);
         let lines = &mut own.lines;
         match &mut own.beside {
             Some(beside) => {
@@ -42,7 +43,7 @@ impl OwnLine {
             }
             None => behind.chain([foot]).for_each(|point| lines.push(point)),
         }
-        own.begin_lane(lane);
+        own.begin_lane(lane, stretch);
         let front = own.lines.length(LINE);
         own.push_ahead(ahead.into_iter());
         track.clear();
@@ -57,7 +58,7 @@ impl OwnLine {
         let mut own = Self { lines: Lines::through([]), ..Self::default() };
         let mut front = track.front();
         for (place, line) in (0..).zip(&track.lines) {
-            own.begin_lane(LaneIndex(*line));
+            own.begin_lane(LaneIndex(*line), net.stretch(LaneIndex(*line)));
             own.push_ahead(net.lines.line(*line).iter().map(|vertex| vertex.point));
             front += if place < track.at { net.lines.length(*line) } else { 0.0 };
         }
@@ -69,7 +70,7 @@ impl OwnLine {
     pub fn append(&mut self, net: &Net, track: &mut Track, lane: LaneIndex) {
         let line = net.lines.line(lane.0);
         self.lines.reserve(line.len());
-        self.begin_lane(lane);
+        self.begin_lane(lane, net.stretch(lane));
         self.push_ahead(line.iter().map(|vertex| vertex.point));
         track.begin(&self.lines, LINE, track.front());
     }
@@ -101,17 +102,31 @@ impl OwnLine {
         self.lanes.last().map(|(_, lane)| *lane)
     }
 
+    /// The lanes, each with the distances at which it begins and ends.
+    pub fn lanes(&self) -> impl Iterator<Item = (LaneIndex, [Metre; 2])> {
+        let vertices = self.lines.line(LINE);
+        let at = |vertex: u32| vertices.get(vertex as usize).map_or(0.0, |vertex| vertex.distance);
+        let ends = self.lanes.iter().skip(1).map(|(first, _)| *first).chain([vertices.len().saturating_sub(1) as u32]);
+        self.lanes.iter().zip(ends).map(move |((first, lane), end)| (*lane, [at(*first), at(end)]))
+    }
+
+    /// How far beside the centre line the front bumper was when the line was begun, positive to the left.
+    pub fn aside(&self) -> Metre {
+        self.beside.as_ref().map_or(0.0, OffsetLine::aside)
+    }
+
     /// The lane at a vertex.
     pub fn lane_at(&self, vertex: u32) -> Option<LaneIndex> {
         let index = self.lanes.partition_point(|(first, _)| *first <= vertex).saturating_sub(1);
         self.lanes.get(index).map(|(_, lane)| *lane)
     }
 
-    /// Records that the line continues on this lane.
-    fn begin_lane(&mut self, lane: LaneIndex) {
+    /// Records that the line continues on this lane, a metre of whose shape is `stretch` metres of SUMO's.
+    fn begin_lane(&mut self, lane: LaneIndex, stretch: f64) {
         if let Some(beside) = &self.beside {
             beside.flush(&mut self.lines);
         }
+        self.lines.set_stretch(stretch);
         self.lanes.push((self.lines.len().saturating_sub(1) as u32, lane));
     }
 

@@ -8,6 +8,8 @@ use crate::util::units::{Metre, Radian};
 
 /// A heading that differs from the chord by less than this counts as the chord, in rad.
 const SAME_HEADING: Radian = 1e-6;
+/// Relative difference between a movement and the distance along a stretched line.
+const STRETCHED: f64 = 1e-3;
 /// Directions that differ by less than this are equal: poses between them add nothing.
 const SAME_DIRECTION: f64 = 1e-10;
 
@@ -19,6 +21,7 @@ impl Track {
         self.front - length >= under.begins_at
             && self.front + distance <= under.ends_at
             && turns_less(&under.direction, axis, SAME_HEADING)
+            && under.is_to_scale()
     }
 
     /// Bound on how far a straight path of this length deviates from the heading: by the distance from the line now and
@@ -100,13 +103,15 @@ fn axis_of_last(poses: &[Pose], otherwise: Vector) -> Vector {
 }
 
 /// Adds a pose. It replaces the last one if that lies on the straight line between its neighbours and is not at an
-/// asked distance.
+/// asked distance. Where a metre of the line is not one of the plane, that may change at any vertex, so all poses stay.
 fn push_merged(poses: &mut Vec<Pose>, start: usize, pose: Pose, asked: &[Metre]) {
     if let [.., before, last] = &poses[start..]
         && last.axis == before.axis
         && (pose.axis - last.axis).norm() < SAME_DIRECTION
         && !asked.contains(&last.distance)
-        && (pose.front - before.front).norm() > (pose.distance - before.distance) * (1.0 - SAME_DIRECTION)
+        && let moved = (pose.front - before.front).norm()
+        && moved > (pose.distance - before.distance) * (1.0 - SAME_DIRECTION)
+        && moved < (pose.distance - before.distance) * (1.0 + STRETCHED)
     {
         let index = poses.len() - 1;
         poses[index] = Pose { axis: before.axis, ..pose };

@@ -96,7 +96,7 @@ impl Track {
             return goes_on;
         }
         let moved = (front - under.at(self.front)).norm();
-        let furthest = self.front + LONGEST_DETOUR * moved + ON_THE_LINE;
+        let furthest = self.front + LONGEST_DETOUR * moved * lines.most_stretch() + ON_THE_LINE;
         let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
             cursor.enter_next();
@@ -111,6 +111,11 @@ impl Track {
             }
         }
         false
+    }
+
+    /// Metres of the plane per metre of the line that the front bumper is on.
+    pub fn scale(&self, lines: &Lines) -> f64 {
+        if self.is_empty() { 1.0 } else { lines.segment(self.vertex).scale() }
     }
 
     /// The box around the lines from the front bumper to a distance ahead of it, or to their end.
@@ -151,7 +156,17 @@ impl Track {
 
     /// Total length of its lines.
     pub(super) fn length(&self, lines: &Lines) -> Metre {
-        self.end + self.lines[..self.at].iter().map(|line| lines.length(*line)).sum::<Metre>()
+        self.end + self.passed(lines)
+    }
+
+    /// Length of the lines before the one that the front bumper is on.
+    pub(super) fn passed(&self, lines: &Lines) -> Metre {
+        self.lines[..self.at].iter().map(|line| lines.length(*line)).sum()
+    }
+
+    /// Whether the front bumper was here when the track was last followed.
+    pub fn is_at(&self, lines: &Lines, front: Point) -> bool {
+        !self.is_empty() && (lines.segment(self.vertex).at(self.front) - front).norm() <= ON_THE_LINE
     }
 
     /// A cursor at the front bumper.

@@ -15,6 +15,10 @@ pub struct LaneIndex(pub u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct EdgeIndex(pub u32);
 
+/// The index of a junction among those that edges begin or end at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct JunctionIndex(pub u32);
+
 /// The purpose of an edge (SUMO's attribute `function`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EdgeFunction {
@@ -41,6 +45,8 @@ pub struct Edge {
     pub lanes: Vec<LaneIndex>,
     /// The junction that it belongs to (internal edges, crossings, walking areas) or leads to.
     pub junction: String,
+    /// The junctions at which it begins and ends; the same one for an edge within a junction.
+    pub ends: [JunctionIndex; 2],
 }
 
 /// A link from a lane to another.

@@ -3,9 +3,10 @@
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeIndex, Junction, Lane, LaneIndex};
+use super::elements::{Edge, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex};
 use super::finder::Finder;
-use crate::geometry::polylines::Lines;
+use crate::geometry::Bounds;
+use crate::geometry::polylines::{Lines, stretch};
 use crate::util::units::Metre;
 
 /// A road network.
@@ -17,11 +18,15 @@ pub struct Net {
     pub edges: Vec<Edge>,
     /// All junctions.
     pub junctions: Vec<Junction>,
-    /// The lanes' centre lines, by lane.
+    /// The lanes' centre lines, by lane; their distances are SUMO's where a lane is longer or shorter than it is drawn.
     pub lines: Lines,
     pub(super) lane_ids: FxHashMap<String, LaneIndex>,
     pub(super) edge_ids: FxHashMap<String, EdgeIndex>,
     pub(super) finder: Finder,
+    /// By [`JunctionIndex`], the box around its outline; empty where the net has none.
+    pub(super) junction_bounds: Vec<Bounds>,
+    /// The lowest and the highest point of all lanes, in m.
+    pub(super) heights: [Metre; 2],
 }
 
 impl Net {
@@ -38,6 +43,24 @@ impl Net {
     /// The lane with the centre line nearest to a place; none if that is more than 10 m away.
     pub fn lane_at(&self, place: Point2<Metre>) -> Option<LaneIndex> {
         self.finder.lane_at(&self.lanes, place)
+    }
+
+    /// How many metres of SUMO's a metre of a lane's shape is; 1 for a lane that is as long as it is drawn.
+    pub fn stretch(&self, lane: LaneIndex) -> f64 {
+        let line = self.lines.line(lane.0);
+        let drawn = line.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum();
+        if self.lines.is_stretched() { stretch(self.lines.length(lane.0), drawn) } else { 1.0 }
+    }
+
+    /// The height of its highest point above its lowest; 0 for a net without heights, as most imported ones are.
+    pub fn rise(&self) -> Metre {
+        (self.heights[1] - self.heights[0]).max(0.0)
+    }
+
+    /// Whether a place is within a distance of a junction; true where the net has no outline of it.
+    pub fn is_near(&self, junction: JunctionIndex, place: Point2<Metre>, distance: Metre) -> bool {
+        let bounds = &self.junction_bounds[junction.0 as usize];
+        bounds.is_empty() || bounds.grown(distance).meet(&Bounds { low: place, high: place })
     }
 
     /// The id of a lane.

@@ -8,11 +8,13 @@ use quick_xml::Reader;
 use quick_xml::escape::unescape;
 use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
+use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, LANE_WIDTH, Lane, LaneIndex, Link};
+use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, LANE_WIDTH, Lane, LaneIndex, Link};
 use super::finder::Finder;
 use super::network::Net;
-use crate::geometry::Point;
+use crate::geometry::polylines::stretch;
+use crate::geometry::{Bounds, Point};
 use crate::util::input_file::{LineCounter, open, xml_message};
 use crate::{Error, Result};
 
@@ -40,7 +42,9 @@ impl Net {
 
 /// Reads a net; `path` names it in errors.
 fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
-    NetReader { path, line: 1, net: Net::default(), connections: Vec::new() }.read(source)
+    let heights = [f64::INFINITY, f64::NEG_INFINITY];
+    let net = Net { heights, ..Net::default() };
+    NetReader { path, line: 1, net, connections: Vec::new(), junctions: FxHashMap::default() }.read(source)
 }
 
 struct NetReader<'a> {
@@ -48,6 +52,8 @@ struct NetReader<'a> {
     line: u64,
     net: Net,
     connections: Vec<Connection>,
+    /// The junctions at which edges begin or end.
+    junctions: FxHashMap<String, JunctionIndex>,
 }
 
 /// A `<connection>`, whose lanes may follow later in the file.
@@ -107,11 +113,24 @@ impl NetReader<'_> {
             Some("connector") => EdgeFunction::Connector,
             _ => EdgeFunction::Normal,
         };
-        let junction = attributes.get("to").unwrap_or_else(|| junction_of_internal(id)).to_owned();
+        let within = junction_of_internal(id);
+        let ends = ["from", "to"].map(|end| self.junction_index(attributes.get(end).unwrap_or(within)));
+        let junction = attributes.get("to").unwrap_or(within).to_owned();
         let index = EdgeIndex(self.net.edges.len() as u32);
         self.net.edge_ids.insert(id.to_owned(), index);
-        self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction });
+        self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction, ends });
         Ok(())
+    }
+
+    fn junction_index(&mut self, id: &str) -> JunctionIndex {
+        match self.junctions.get(id) {
+            Some(known) => *known,
+            None => {
+                let index = JunctionIndex(self.junctions.len() as u32);
+                self.junctions.insert(id.to_owned(), index);
+                index
+            }
+        }
     }
 
     fn lane(&mut self, attributes: &ElementAttributes) -> Result<()> {
@@ -119,7 +138,7 @@ impl NetReader<'_> {
         let Some(edge) = self.net.edges.len().checked_sub(1) else {
             return Err(self.wrong(format!("lane \"{id}\" is not inside an edge")));
         };
-        let shape = self.shape(id, self.required(attributes, "shape")?)?;
+        let shape = self.shape(id, self.required(attributes, "shape")?, true)?;
         if shape.len() < 2 {
             let points = shape.len();
             return Err(self.wrong(format!("lane \"{id}\" has {points} shape point(s); at least two are needed")));
@@ -138,6 +157,8 @@ impl NetReader<'_> {
         edge_lanes.push(index);
         self.net.lane_ids.insert(id.to_owned(), index);
         self.net.lines.begin();
+        let drawn = shape.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
+        self.net.lines.set_stretch(stretch(length, drawn));
         shape.iter().for_each(|point| self.net.lines.push(*point));
         let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
@@ -149,7 +170,7 @@ impl NetReader<'_> {
     fn junction(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let id = self.required(attributes, "id")?;
         let shape = match attributes.get("shape") {
-            Some(shape) => self.shape(id, shape)?,
+            Some(shape) => self.shape(id, shape, false)?,
             None => Vec::new(),
         };
         self.net.junctions.push(Junction { id: id.to_owned(), shape });
@@ -190,6 +211,13 @@ impl NetReader<'_> {
                 from_lanes.push(from);
             }
         }
+        self.net.junction_bounds = vec![Bounds::EMPTY; self.junctions.len()];
+        for junction in &self.net.junctions {
+            if let Some(index) = self.junctions.get(&junction.id) {
+                let bounds = &mut self.net.junction_bounds[index.0 as usize];
+                junction.shape.iter().for_each(|point| bounds.include(*point));
+            }
+        }
         self.net.lines.shrink();
         self.net.finder = Finder::new(&self.net.lanes);
         Ok(self.net)
@@ -204,8 +232,8 @@ impl NetReader<'_> {
     }
 
     /// The points of a shape. Repeated points are dropped, since they have no direction, unless fewer than two would be
-    /// left.
-    fn shape(&self, id: &str, text: &str) -> Result<Vec<Point>> {
+    /// left. The heights of a lane's are those of the net.
+    fn shape(&mut self, id: &str, text: &str, is_lane: bool) -> Result<Vec<Point>> {
         let mut points: Vec<Point> = Vec::new();
         for triple in text.split_ascii_whitespace() {
             let mut values = triple.split(',').map(|value| value.parse::<f64>().ok());
@@ -216,6 +244,10 @@ impl NetReader<'_> {
             let z = z.flatten().unwrap_or(0.0);
             if !(x.abs() < FURTHEST && y.abs() < FURTHEST && z.abs() < FURTHEST) {
                 return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is out of range")));
+            }
+            if is_lane {
+                let [low, high] = self.net.heights;
+                self.net.heights = [low.min(z), high.max(z)];
             }
             let point = Point::new(x, y);
             if points.len() != 1 && points.last() == Some(&point) {

@@ -1,0 +1,84 @@
+//! Lanes that are longer or shorter than they are drawn: gap, μ and TTC are in SUMO's metres along the lane.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::{Detector, Encounter, Frame, Net, Options, Placement, Profile, Roster, State, SumoType};
+
+/// Two lanes of 100 m as drawn, one after the other, with these lengths for SUMO.
+fn net(lengths: [f64; 2]) -> Arc<Net> {
+    let [first, second] = lengths;
+    let text = format!(
+        r#"<net>
+            <edge id="a" from="w" to="m"><lane id="a_0" index="0" length="{first}" shape="0,0 60,0 100,0"/></edge>
+            <edge id="b" from="m" to="e"><lane id="b_0" index="0" length="{second}" shape="100,0 200,0"/></edge>
+            <connection from="a" to="b" fromLane="0" toLane="0" dir="s" state="M"/>
+        </net>"#
+    );
+    Arc::new(Net::parse(Path::new("stretched.net.xml"), text).unwrap())
+}
+
+/// The encounter of two cars of 5 m at these distances along both lanes, in SUMO's metres, with these speeds.
+fn encounter(lengths: [f64; 2], cars: [(f64, f64); 2]) -> Option<Encounter> {
+    let net = net(lengths);
+    let mut roster = Roster::default();
+    let profile = roster.profile(Profile::vehicle(&SumoType::car("car"), &Options::default())).unwrap();
+    let mut frame = Frame::default();
+    frame.begin(0.0);
+    let mut placements = Vec::new();
+    for (id, (position, speed)) in ["follower", "leader"].into_iter().zip(cars) {
+        let [first, second] = lengths;
+        let (lane, position, x) = match position {
+            on_first if on_first <= first => ("a_0", on_first, on_first / first * 100.0),
+            on_second => ("b_0", on_second - first, 100.0 + (on_second - first) / second * 100.0),
+        };
+        frame.push(roster.enter(id, profile), State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
+        placements.push(Placement {
+            lane: net.lane(lane).unwrap(),
+            position,
+            route: Some(["a", "b"].iter().map(|edge| net.edge(edge).unwrap()).collect()),
+            route_position: usize::from(lane == "b_0"),
+            lateral_speed: 0.0,
+        });
+    }
+    let mut detector = Detector::new(&Options::default(), Some(net));
+    for row in detector.track_paths(&frame, &roster).to_vec() {
+        detector.set_placement(&frame, &roster, row, &placements[row as usize]);
+    }
+    detector.broad_phase(&frame, &roster);
+    detector.narrow_phase(&frame, &roster).next().copied()
+}
+
+/// Checks that a follower at 20 m/s, 35 m behind a leader at `speed`, has the gap and the TTC that it has on the lane.
+fn is_as_on_the_lane(lengths: [f64; 2], position: f64, speed: f64) {
+    let found = encounter(lengths, [(position, 20.0), (position + 40.0, speed)]).unwrap();
+    let plain = encounter([400.0, 400.0], [(100.0, 20.0), (140.0, speed)]);
+    let as_drawn = encounter([100.0, 100.0], [(20.0, 20.0), (60.0, speed)]).unwrap();
+    let near = |found: f64, right: f64| (found - right).abs() < 0.1;
+    assert!(near(found.gap, 35.0) && near(found.mu, as_drawn.mu), "{lengths:?} at {position}: {found:?}");
+    let ttc = found.nearness.unwrap().ttc.unwrap();
+    assert!(near(ttc, 35.0 / (20.0 - speed)), "{lengths:?} at {position}: TTC {ttc}, {plain:?}");
+}
+
+#[test]
+fn gap_and_ttc_are_those_along_the_lane() {
+    for lengths in [[200.0, 200.0], [300.0, 300.0], [100.0, 100.0]] {
+        is_as_on_the_lane(lengths, 30.0, 10.0);
+        is_as_on_the_lane(lengths, 30.0, 0.0);
+    }
+}
+
+#[test]
+fn lengths_are_converted_where_lanes_join() {
+    for lengths in [[200.0, 100.0], [100.0, 200.0], [60.0, 150.0]] {
+        // The follower is on the first lane, the leader on the second.
+        is_as_on_the_lane(lengths, lengths[0] - 20.0, 10.0);
+    }
+}
+
+#[test]
+fn two_that_stand_apart_on_the_lane_do_not_touch() {
+    // 2.5 m are left; as drawn, with their full lengths, the two would overlap by 1.25 m.
+    let found = encounter([400.0, 400.0], [(100.0, 0.1), (107.5, 0.0)]);
+    assert!(found.is_none_or(|found| !found.collision && found.overlap == 0.0), "{found:?}");
+}
