@@ -253,7 +253,7 @@ fn any_number_of_threads_finds_the_same() {
 /// Encounters among some of the cars, given as (x, y, heading, speed), after one step of turning; by their numbers.
 fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Roster) -> Vec<Encounter> {
     let mut detector = Detector::new(&Options { path: PathModel::Arc, ..options() }, None);
-    turned_by(0.01, &mut detector, cars, numbers, roster)
+    turned_by(0.05, &mut detector, cars, numbers, roster)
 }
 
 /// [`encounters_of`] by this detector, after a turn by this angle.

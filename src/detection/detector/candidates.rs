@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::Detector;
-use super::reach::{Motion, PathSource, Paths, Reach, StepView, Turning, lines_of};
+use super::reach::{Motion, PathSource, Paths, Reach, StepView, lines_of};
 use crate::detection::path::lanes::LanePath;
-use crate::detection::path::{arc, turn};
+use crate::detection::path::turning::Turning;
 use crate::geometry::Point;
 use crate::options::{Mode, PathModel};
 use crate::traffic::frame::{Frame, Row};
@@ -90,11 +90,7 @@ impl Detector {
     fn turn(&mut self, frame: &Frame) {
         for user in self.search.slots() {
             let front = frame.state(user.row).front();
-            let turning = &mut self.turnings[user.index.0 as usize];
-            if let Some((last, last_axis)) = turning.last {
-                turning.curvature = arc::curvature(turn(&last_axis, &user.axis), (front - last).norm());
-            }
-            turning.last = Some((front, user.axis));
+            self.turnings[user.index.0 as usize].see(frame.time, front, user.axis);
         }
     }
 

@@ -25,6 +25,7 @@ use std::sync::Arc;
 use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
+use super::path::turning::Turning;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::options::Options;
@@ -34,7 +35,7 @@ use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
 use crate::util::units::Metre;
-use reach::{Paths, Reach, StepView, Turning, User};
+use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
 use shortcuts::Shortcuts;
 use step::StepInputs;
@@ -172,7 +173,7 @@ impl Detector {
             *moved = false;
         }
         if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
-            *turning = Turning::default();
+            turning.clear();
         }
     }
 

@@ -9,20 +9,13 @@ use crate::detection::path::track::Track;
 use crate::geometry::polylines::Lines;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{Bounds, Point, Vector};
+use crate::geometry::{Bounds, Vector};
 use crate::options::{Mode, Options, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, Radian};
-
-/// The curvature of a road user's arc, from its last two steps.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Turning {
-    pub last: Option<(Point, Vector)>,
-    pub curvature: f64,
-}
 
 /// Whether a road user moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,8 +1,9 @@
 //! What the narrow phase reads of the current step.
 
 use super::reach;
-use super::reach::{Paths, Reach, Turning, User};
+use super::reach::{Paths, Reach, User};
 use super::shortcuts::Shortcuts;
+use crate::detection::path::turning::Turning;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::Net;

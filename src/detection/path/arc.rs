@@ -39,19 +39,6 @@ pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, distance
     }
 }
 
-/// The curvature, in 1/m, of the circle through two states `between` apart, with a turn in rad from one to the other; 0
-/// if they are too close to tell. `between` is the chord of the circle, 2 · radius · sin(turn/2).
-pub fn curvature(turn: f64, between: Metre) -> f64 {
-    /// Over a shorter distance, rounding dominates the curvature, in m.
-    const SHORTEST: Metre = 0.05;
-    /// The radius of SUMO's tightest hairpins, in m; a smaller one means that the vehicle was moved.
-    const SMALLEST_RADIUS: Metre = 2.0;
-    if between < SHORTEST {
-        return 0.0;
-    }
-    (2.0 * (turn / 2.0).sin() / between).clamp(-1.0 / SMALLEST_RADIUS, 1.0 / SMALLEST_RADIUS)
-}
-
 #[cfg(test)]
 mod tests {
     use crate::detection::path::arc::*;
@@ -64,17 +51,6 @@ mod tests {
         let end = found.last().unwrap();
         assert!((end.front - Point::new(10.0, 10.0)).norm() < 1e-12);
         assert!((end.axis - Vector::new(0.0, 1.0)).norm() < 1e-12);
-    }
-
-    #[test]
-    fn two_states_on_a_circle_have_its_curvature() {
-        let (start, radius) = (Point::origin(), 10.0_f64);
-        for angle in [-3.0, -0.8, -0.1, 0.1, 0.8, 3.0] {
-            let left = Vector::new(0.0, radius.copysign(angle));
-            let end = start + left - rotated(&left, angle);
-            let found = curvature(angle, (end - start).norm());
-            assert!((found * radius.copysign(angle) - 1.0).abs() < 1e-14, "{found}");
-        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The expected path of a road user while it brakes, as poses.
 //!
-//! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] and [`arc`] need
-//! only the state; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows
+//! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] needs only the state,
+//! [`arc`] the [`turning`] too; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows
 //! it; `poses` has the poses along a track.
 
 pub mod arc;
@@ -14,6 +14,7 @@ mod poses;
 mod route;
 pub mod straight;
 pub mod track;
+pub mod turning;
 
 use crate::geometry::sweep::Movement;
 use crate::geometry::{Point, Vector};
