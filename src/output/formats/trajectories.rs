@@ -3,6 +3,12 @@
 //! FORMAT, DIMENSIONS, then for each step TIMESTEP and a VEHICLE record per vehicle, little-endian, in metres. Each
 //! vehicle has its own length and width, and its acceleration is that between its last two steps. Its rear is behind its
 //! front along its heading. Persons are omitted because SSAM does not know them.
+//!
+//! All numbers are f32, which have 24 bits: a UTM northing would be rounded to half a metre. The format has no origin:
+//! the bounds in DIMENSIONS are in the coordinates of the vehicles, and SSAM ignores vehicles outside (`ValidateVehicle`
+//! and `ZoneGrid` of its source). So bounds and vehicles are both given relative to a round origin near the net's low
+//! corner, and times relative to midnight before the first step. Up to 262 km and 36 hours from there they are right to
+//! 8 mm and 4 ms.
 
 use std::path::Path;
 
@@ -10,13 +16,13 @@ use rustc_hash::FxHashMap;
 
 use super::file::OutputFile;
 use crate::Result;
-use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
+use crate::geometry::{Bounds, Point, Vector};
 use crate::traffic::frame::{Frame, Row};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// The first byte of each record.
 const FORMAT: u8 = 0;
@@ -28,6 +34,11 @@ const VERSION: f32 = 3.0;
 /// `DIMENSIONS` in metres, one per unit.
 const METRIC: u8 = 1;
 const SCALE: f32 = 1.0;
+/// The origin is a multiple of this, in m: most nets keep SUMO's coordinates, others lose leading digits only.
+const ROUND: Metre = 10_000.0;
+/// A vehicle's middle is at most this far outside the lanes' bounds, in m.
+const MARGIN: Metre = 20.0;
+const DAY: Second = 86_400.0;
 /// The link of a vehicle that is not on a lane.
 const NO_LINK: i32 = -1;
 
@@ -35,6 +46,9 @@ const NO_LINK: i32 = -1;
 #[derive(Debug)]
 pub struct Trajectories {
     pub(super) file: OutputFile,
+    origin: Vector,
+    /// Midnight before the first step; none before it.
+    midnight: Option<Second>,
     /// By the roster's index.
     vehicles: Vec<Option<PreviousStep>>,
     next_number: i32,
@@ -59,15 +73,24 @@ impl Trajectories {
         file.write(&VERSION.to_le_bytes())?;
         // The flag that records have heights.
         file.write(&[1])?;
-        let points = || net.lanes.iter().flat_map(|lane| &lane.shape);
-        let (left, low) = points().fold((0.0, 0.0), |(x, y), point| (point.x.min(x), point.y.min(y)));
-        let (right, high) = points().fold((0.0, 0.0), |(x, y), point| (point.x.max(x), point.y.max(y)));
+        let mut bounds = Bounds::EMPTY;
+        net.lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
+        let origin = bounds.low.coords.map(|low| (low / ROUND).round() * ROUND);
+        let (low, high) = (bounds.low - origin, bounds.high - origin);
         file.write(&[DIMENSIONS, METRIC])?;
         file.write(&SCALE.to_le_bytes())?;
-        for bound in [f64::floor(left), f64::floor(low), f64::ceil(right), f64::ceil(high)] {
-            file.write(&(bound as i32).to_le_bytes())?;
+        for bound in [low.x - MARGIN, low.y - MARGIN, high.x + MARGIN, high.y + MARGIN] {
+            file.write(&(bound.round() as i32).to_le_bytes())?;
         }
-        Ok(Self { file, vehicles: Vec::new(), next_number: 0, placed: FxHashMap::default(), record: Vec::new() })
+        Ok(Self {
+            file,
+            origin,
+            midnight: None,
+            vehicles: Vec::new(),
+            next_number: 0,
+            placed: FxHashMap::default(),
+            record: Vec::new(),
+        })
     }
 
     /// Notes on which lane the vehicle of a row is. A vehicle without a note gets the nearest lane.
@@ -86,7 +109,8 @@ impl Trajectories {
     pub fn write_step(&mut self, frame: &Frame, roster: &Roster, net: &Net) -> Result<()> {
         self.record.clear();
         self.record.push(TIMESTEP);
-        self.record.extend((frame.time as f32).to_le_bytes());
+        let midnight = *self.midnight.get_or_insert((frame.time / DAY).floor() * DAY);
+        self.record.extend(((frame.time - midnight) as f32).to_le_bytes());
         self.vehicles.resize_with(roster.len(), || None);
         for (row, Row { user, state }) in (0..).zip(frame.rows()) {
             let profile = roster.profile_of(user);
@@ -105,6 +129,7 @@ impl Trajectories {
             let lane =
                 self.placed.get(&row).copied().or_else(|| net.lane_at(front)).map(|lane| &net.lanes[lane.0 as usize]);
             let link = lane.map_or(NO_LINK, |lane| lane.edge.0 as i32);
+            let (front, rear) = (front - self.origin, rear - self.origin);
             self.record.push(VEHICLE);
             self.record.extend(number.to_le_bytes());
             self.record.extend(link.to_le_bytes());
@@ -121,5 +146,53 @@ impl Trajectories {
     /// Completes the file.
     pub fn finish(&mut self) -> Result<()> {
         self.file.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Options;
+    use crate::traffic::frame::State;
+    use crate::traffic::profile::Profile;
+    use crate::traffic::sumo_type::SumoType;
+
+    /// The bounds, the time and the front of the only vehicle in the only step, of a net with a lane between two places.
+    fn written([from, to]: [(f64, f64); 2], time: Second, at: (f64, f64)) -> ([i32; 4], f32, (f32, f32)) {
+        let shape = format!("{},{} {},{}", from.0, from.1, to.0, to.1);
+        let text = format!(r#"<net><edge id="e"><lane id="e_0" length="300" shape="{shape}"/></edge></net>"#);
+        let net = Net::parse(Path::new("e.net.xml"), text).unwrap();
+        let mut roster = Roster::default();
+        let profile = roster.profile(Profile::vehicle(&SumoType::car("car"), &Options::default())).unwrap();
+        let user = roster.enter("a", profile);
+        let mut frame = Frame::default();
+        frame.begin(time);
+        frame.push(user, State { x: at.0, y: at.1, z: 0.0, heading: 0.0, speed: 9.0 });
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("e.trj");
+        let mut file = Trajectories::create(&path, &net).unwrap();
+        file.write_step(&frame, &roster, &net).unwrap();
+        file.finish().unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let word = |at: usize| [bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]];
+        let float = |at| f32::from_le_bytes(word(at));
+        // FORMAT has 7 bytes, DIMENSIONS 22, TIMESTEP 5; the front follows 10 bytes of VEHICLE.
+        ([13, 17, 21, 25].map(|at| i32::from_le_bytes(word(at))), float(30), (float(44), float(48)))
+    }
+
+    #[test]
+    fn places_of_a_utm_net_and_clock_times_keep_their_digits() {
+        let (east, north) = (567_690.0, 5_431_900.0);
+        let (bounds, time, front) =
+            written([(east, north), (east + 400.0, north + 300.0)], 1_700_000_000.25, (east + 0.01, north + 0.02));
+        assert_eq!(bounds, [-2330, 1880, -1890, 2220]);
+        assert!((time - 80_000.25).abs() < 5e-3, "{time}");
+        assert!((front.0 + 2309.99).abs() < 5e-3 && (front.1 - 1900.02).abs() < 5e-3, "{front:?}");
+    }
+
+    #[test]
+    fn places_near_the_zero_point_are_those_of_sumo() {
+        let (bounds, time, front) = written([(-300.0, 0.0), (4000.0, 0.0)], 25_200.5, (12.5, 0.0));
+        assert_eq!((bounds, time, front), ([-320, -20, 4020, 20], 25_200.5, (12.5, 0.0)));
     }
 }
