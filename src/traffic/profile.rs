@@ -123,7 +123,7 @@ impl Profile {
             length,
             chord: chord(&sumo.shape, length),
             width: set.width.unwrap_or(sumo.width),
-            mass: set.mass.unwrap_or(sumo.mass),
+            mass: set.mass.unwrap_or_else(|| sumo.mass_on_the_road()),
             brakes: Brakes {
                 response: set.response_time.unwrap_or(options.response_time) + delay,
                 build_up: set.build_up.unwrap_or(options.build_up),
@@ -174,5 +174,18 @@ mod tests {
         assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
         // Both the type's id and the vehicle's may contain an @.
         assert_eq!(["car@wide@a", "car@wide@b@1", "car@c@1"].map(width), [2.5, 2.5, 1.5]);
+    }
+
+    #[test]
+    fn a_ridden_vehicle_of_default_mass_weighs_its_rider_too() {
+        let mut options = Options::default();
+        options.types.insert("light".to_owned(), TypeOptions { mass: Some(12.0), ..TypeOptions::default() });
+        let mass = |sumo: SumoType| Profile::vehicle(&sumo, &options).mass;
+        let of_class = |class| mass(SumoType::of_class("any", class));
+        assert_eq!(["bicycle", "scooter", "moped", "motorcycle"].map(of_class), [85.0, 85.0, 155.0, 275.0]);
+        assert_eq!(["passenger", "wheelchair", "bus", "tram"].map(of_class), [1500.0, 90.0, 12000.0, 37900.0]);
+        // Masses that a type or the user sets are taken as they are.
+        assert_eq!(mass(SumoType { mass: 95.0, ..SumoType::of_class("any", "bicycle") }), 95.0);
+        assert_eq!(mass(SumoType::of_class("light", "bicycle")), 12.0);
     }
 }

@@ -41,11 +41,23 @@ impl SumoType {
         }
     }
 
+    /// Mass in kg on the road. SUMO's default for a class that is ridden is the vehicle's alone; a rider is added.
+    pub fn mass_on_the_road(&self) -> Kilogram {
+        let is_default =
+            CLASSES.iter().any(|(class, _, _, mass, ..)| *class == self.vehicle_class && *mass == self.mass);
+        if is_default && RIDDEN.contains(&self.vehicle_class.as_str()) { self.mass + RIDER } else { self.mass }
+    }
+
     /// A passenger car.
     pub fn car(name: &str) -> Self {
         Self::of_class(name, CLASSES[0].0)
     }
 }
+
+/// Classes whose vehicles are ridden.
+const RIDDEN: [&str; 4] = ["bicycle", "scooter", "moped", "motorcycle"];
+/// The mass of a rider in kg, by Regulation (EU) No 168/2013, article 5 (2).
+const RIDER: Kilogram = 75.0;
 
 /// SUMO 1.28's defaults by vehicle class: length and width in m, mass in kg, `emergencyDecel` and
 /// `decel` in m/s². Other classes have those of the first.
