@@ -89,7 +89,7 @@ pub use output::summary::Summary;
 pub use run::Run;
 pub use run::recorded::{Ending, RecordedRun};
 pub use traffic::frame::{Frame, State};
-pub use traffic::net::{EdgeIndex, LaneIndex, Net};
+pub use traffic::net::{EdgeIndex, LaneIndex, Net, Overlap, Overlaps};
 pub use traffic::placement::Placement;
 pub use traffic::profile::{Category, Profile};
 pub use traffic::roster::{ProfileIndex, Roster, UserIndex};

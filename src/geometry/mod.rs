@@ -63,6 +63,11 @@ impl Bounds {
         self.high = self.high.sup(&other.high);
     }
 
+    /// Whether it holds a point.
+    pub fn holds(&self, point: Point) -> bool {
+        self.meet(&Self { low: point, high: point })
+    }
+
     /// Whether the two share a point.
     pub fn meet(&self, other: &Self) -> bool {
         // All four without a branch: which of them fails is unpredictable.

@@ -2,6 +2,7 @@
 
 use nalgebra::Point2;
 
+use crate::geometry::Bounds;
 use crate::util::units::Metre;
 
 /// SUMO's default width of a lane in m.
@@ -71,12 +72,23 @@ pub struct Lane {
     pub length: Metre,
     /// Width in m.
     pub width: Metre,
+    /// Whether vehicles use it: no sidewalk, and not closed to all.
+    pub has_vehicles: bool,
     /// The centre line, at least two points.
     pub shape: Vec<Point2<Metre>>,
     /// Its links. A junction lane in two parts leads to its second part (`via`), then to the edge.
     pub links: Vec<Link>,
     /// The lanes that lead here directly (for a lane behind a junction: the junction lanes).
     pub from: Vec<LaneIndex>,
+}
+
+impl Lane {
+    /// The bounds of its centre line.
+    pub(super) fn bounds(&self) -> Bounds {
+        let mut bounds = Bounds::EMPTY;
+        self.shape.iter().for_each(|point| bounds.include(*point));
+        bounds
+    }
 }
 
 /// One junction.
@@ -86,4 +98,19 @@ pub struct Junction {
     pub id: String,
     /// Its outline.
     pub shape: Vec<Point2<Metre>>,
+    /// By link through it: the last of the link's junction lanes.
+    pub(super) link_lanes: Vec<Option<LaneIndex>>,
+    /// By link through it: SUMO's attribute `foes`, a digit for each link, the first link last.
+    pub(super) foes: Vec<Box<str>>,
+}
+
+impl Junction {
+    /// Whether two links cross or merge, so that one of them yields.
+    pub(super) fn are_foes(&self, one: u32, other: u32) -> bool {
+        let is_foe = |of: u32, link: u32| {
+            let digits = self.foes.get(of as usize).map_or(&[][..], |foes| foes.as_bytes());
+            digits.iter().rev().nth(link as usize) == Some(&b'1')
+        };
+        is_foe(one, other) || is_foe(other, one)
+    }
 }

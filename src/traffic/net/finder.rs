@@ -20,25 +20,26 @@ pub(super) struct Finder {
 
 impl Finder {
     pub(super) fn new(lanes: &[Lane]) -> Self {
-        let around = |lane: &Lane| {
-            let mut bounds = Bounds::EMPTY;
-            lane.shape.iter().for_each(|point| bounds.include(*point));
-            aabb(&bounds)
-        };
-        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &lanes.iter().map(around).collect::<Vec<_>>()) }
+        let boxes = lanes.iter().map(|lane| aabb(&lane.bounds())).collect::<Vec<_>>();
+        Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
+    }
+
+    /// The lanes whose bounds meet these.
+    pub(super) fn lanes_in<'a>(&'a self, bounds: &'a Aabb) -> impl Iterator<Item = LaneIndex> + 'a {
+        self.tree.intersect_aabb(bounds).map(LaneIndex)
     }
 
     /// The lane with the nearest centre line; if equal, the first of the net.
     pub(super) fn lane_at(&self, lanes: &[Lane], place: Point) -> Option<LaneIndex> {
         let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
-        let near =
-            self.tree.intersect_aabb(&window).map(|leaf| (distance(&lanes[leaf as usize], place), LaneIndex(leaf)));
+        let near = self.lanes_in(&window).map(|lane| (distance(&lanes[lane.0 as usize], place), lane));
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         nearest.filter(|(distance, _)| *distance <= REACH).map(|(_, lane)| lane)
     }
 }
 
-fn aabb(bounds: &Bounds) -> Aabb {
+/// Bounds as the finder takes them.
+pub(super) fn aabb(bounds: &Bounds) -> Aabb {
     Aabb::new(parry::vector(bounds.low), parry::vector(bounds.high))
 }
 

@@ -1,15 +1,19 @@
 //! A SUMO net (`*.net.xml`, also gzipped).
 //!
-//! It holds only what paths, obstacles and the log need: lane shapes, links and junctions.
+//! It holds only what paths, obstacles and the log need: lane shapes, links and junctions. `overlaps` and `quality` find
+//! where it is not drawn as it is driven.
 
 mod elements;
 pub mod filter;
 mod finder;
 mod network;
+mod overlaps;
+mod quality;
 mod reader;
 
 pub use elements::{EdgeFunction, EdgeIndex, Lane, LaneIndex, Link};
 pub use network::Net;
+pub use overlaps::{Overlap, Overlaps};
 
 #[cfg(test)]
 mod tests {

@@ -44,7 +44,8 @@ impl Net {
 fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
     let heights = [f64::INFINITY, f64::NEG_INFINITY];
     let net = Net { heights, ..Net::default() };
-    NetReader { path, line: 1, net, connections: Vec::new(), junctions: FxHashMap::default() }.read(source)
+    NetReader { path, line: 1, net, connections: Vec::new(), junctions: FxHashMap::default(), link_lanes: Vec::new() }
+        .read(source)
 }
 
 struct NetReader<'a> {
@@ -54,6 +55,8 @@ struct NetReader<'a> {
     connections: Vec<Connection>,
     /// The junctions at which edges begin or end.
     junctions: FxHashMap<String, JunctionIndex>,
+    /// By junction, the ids of its links' lanes.
+    link_lanes: Vec<String>,
 }
 
 /// A `<connection>`, whose lanes may follow later in the file.
@@ -99,6 +102,7 @@ impl NetReader<'_> {
             "edge" => self.edge(&self.attributes(tag)?),
             "lane" => self.lane(&self.attributes(tag)?),
             "junction" => self.junction(&self.attributes(tag)?),
+            "request" => self.request(&self.attributes(tag)?),
             "connection" => self.connection(&self.attributes(tag)?),
             _ => Ok(()),
         }
@@ -151,6 +155,7 @@ impl NetReader<'_> {
         if !(width.is_finite() && width >= 0.0) {
             return Err(self.wrong(format!("lane \"{id}\": its width must be 0 m or more")));
         }
+        let has_vehicles = attributes.get("allow") != Some("pedestrian") && attributes.get("disallow") != Some("all");
         let index = LaneIndex(self.net.lanes.len() as u32);
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;
@@ -163,7 +168,7 @@ impl NetReader<'_> {
         let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
         let id = id.to_owned();
-        self.net.lanes.push(Lane { id, edge, index: place, length, width, shape, links, from });
+        self.net.lanes.push(Lane { id, edge, index: place, length, width, has_vehicles, shape, links, from });
         Ok(())
     }
 
@@ -173,7 +178,18 @@ impl NetReader<'_> {
             Some(shape) => self.shape(id, shape, false)?,
             None => Vec::new(),
         };
-        self.net.junctions.push(Junction { id: id.to_owned(), shape });
+        self.net.junctions.push(Junction { id: id.to_owned(), shape, link_lanes: Vec::new(), foes: Vec::new() });
+        self.link_lanes.push(attributes.get("intLanes").unwrap_or_default().to_owned());
+        Ok(())
+    }
+
+    /// A link through the junction read last; SUMO writes them in order.
+    fn request(&mut self, attributes: &ElementAttributes) -> Result<()> {
+        let foes = self.required(attributes, "foes")?.into();
+        let Some(junction) = self.net.junctions.last_mut() else {
+            return Err(self.wrong("a request is not inside a junction"));
+        };
+        junction.foes.push(foes);
         Ok(())
     }
 
@@ -216,6 +232,12 @@ impl NetReader<'_> {
             if let Some(index) = self.junctions.get(&junction.id) {
                 let bounds = &mut self.net.junction_bounds[index.0 as usize];
                 junction.shape.iter().for_each(|point| bounds.include(*point));
+            }
+        }
+        for (junction, ids) in self.net.junctions.iter_mut().zip(&self.link_lanes) {
+            if !junction.foes.is_empty() {
+                junction.link_lanes =
+                    ids.split_ascii_whitespace().map(|id| self.net.lane_ids.get(id).copied()).collect();
             }
         }
         self.net.lines.shrink();

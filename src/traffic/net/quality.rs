@@ -1,0 +1,112 @@
+//! Where a net is not drawn as it is driven, in a line for the start of a run.
+
+use super::elements::{EdgeFunction, LaneIndex};
+use super::network::Net;
+use super::overlaps::{Overlap, Overlaps};
+use crate::util::units::Metre;
+
+/// The largest difference of a lane's length from its shape's that goes without saying, as a part of the longer.
+const LENGTHS_DIFFER: f64 = 0.05;
+/// A smaller difference goes without saying, in m; SUMO's junction lanes are this long even if drawn as a point.
+const SHORTEST: Metre = 0.1;
+/// The number of places that a remark names.
+const NAMED: usize = 3;
+
+impl Net {
+    /// Where it is not drawn as it is driven: a line for each way in which it is not.
+    pub fn remarks(&self, overlaps: &Overlaps) -> Vec<String> {
+        lengths(self).into_iter().chain(overlapping(self, overlaps)).collect()
+    }
+}
+
+/// How many lanes are longer or shorter than their shape by more than 5 % (and 10 cm), and the worst of them; none where
+/// none is.
+///
+/// SUMO's drivers see distances along the lanes, rectangles stand where lanes are drawn. Such lengths come from curves with
+/// several lanes, which all have their edge's length, from map matching and from edited nets.
+fn lengths(net: &Net) -> Option<String> {
+    let is_driven = |lane: &LaneIndex| {
+        let edge = net.lanes[lane.0 as usize].edge;
+        matches!(net.edges[edge.0 as usize].function, EdgeFunction::Normal | EdgeFunction::Internal)
+    };
+    let lanes = (0..net.lanes.len() as u32).map(LaneIndex).filter(is_driven);
+    let (mut all, mut differ) = (0_u32, 0_u32);
+    let mut worst = (0.0, LaneIndex(0));
+    for lane in lanes {
+        all += 1;
+        let (length, drawn) = (net.lanes[lane.0 as usize].length, net.lines.length(lane.0));
+        let difference = (length - drawn).abs();
+        if difference > SHORTEST && difference > LENGTHS_DIFFER * length.max(drawn) {
+            differ += 1;
+            if difference > worst.0 {
+                worst = (difference, lane);
+            }
+        }
+    }
+    let are = if differ == 1 { "is" } else { "are" };
+    let lane = &net.lanes[worst.1.0 as usize];
+    let (id, length, drawn) = (&lane.id, lane.length, net.lines.length(worst.1.0));
+    (differ > 0).then(|| {
+        format!(
+            "{differ} of {all} lanes {are} longer or shorter than drawn by more than 5 %; the worst is {id}: {length:.1} m, drawn \
+             {drawn:.1} m"
+        )
+    })
+}
+
+/// How many pairs of lanes overlap as drawn, and the worst of them; none where none does.
+fn overlapping(net: &Net, overlaps: &Overlaps) -> Option<String> {
+    let places = overlaps.places();
+    let name = |place: &Overlap| {
+        let (one, other) = place.lanes;
+        format!("{} and {} by {:.2} m", net.lane_id(one), net.lane_id(other), place.depth)
+    };
+    let count = places.len();
+    let named = places.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
+    let more = if count > NAMED { ", …" } else { "" };
+    match count {
+        0 => None,
+        1 => Some(format!("2 lanes overlap as drawn: {named}")),
+        _ => Some(format!("{count} pairs of lanes overlap as drawn, the worst first: {named}{more}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    fn net(lengths: &[(Metre, Metre)]) -> Net {
+        let lane = |number: usize, (length, drawn): &(Metre, Metre)| {
+            let y = number as f64 * 1.5;
+            format!(
+                r#"<edge id="e{number}"><lane id="e{number}_0" length="{length}" shape="0,{y} {drawn},{y}"/></edge>"#
+            )
+        };
+        let edges = lengths.iter().enumerate().map(|(number, pair)| lane(number, pair)).collect::<String>();
+        Net::parse(Path::new("e.net.xml"), format!("<net>{edges}</net>")).unwrap()
+    }
+
+    #[test]
+    fn lengths_that_differ_from_the_shape_are_counted_and_the_worst_named() {
+        let pairs = [(100.0, 104.0), (44.9, 20.9), (10.0, 12.0), (0.1, 0.02)];
+        let said =
+            "2 of 4 lanes are longer or shorter than drawn by more than 5 %; the worst is e1_0: 44.9 m, drawn 20.9 m";
+        assert_eq!(lengths(&net(&pairs)).as_deref(), Some(said));
+        assert_eq!(lengths(&net(&[(100.0, 104.0), (0.1, 0.02)])), None);
+    }
+
+    #[test]
+    fn places_that_overlap_are_counted_and_the_worst_named() {
+        let remark = |count| {
+            let net = net(&vec![(10.0, 10.0); count]);
+            overlapping(&net, &net.overlaps())
+        };
+        assert_eq!(remark(1), None);
+        let one = "e0_0 and e1_0 by 0.30 m";
+        assert_eq!(remark(2), Some(format!("2 lanes overlap as drawn: {one}")));
+        let many = format!("5 pairs of lanes overlap as drawn, the worst first: {one}, e1_0 and e2_0 by 0.30 m");
+        assert!(remark(6).is_some_and(|said| said.starts_with(&many) && said.ends_with(", …")));
+    }
+}
