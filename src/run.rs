@@ -28,6 +28,9 @@ use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
+/// Steps longer than this are worth a remark, in s: a vehicle at 50 km/h moves by more than its own length.
+const LONG_STEP: Second = 0.5;
+
 /// One run.
 pub struct Run {
     /// The road users in the scene.
@@ -84,6 +87,18 @@ impl Run {
             type_settings: type_settings(options),
             summary: Summary::default(),
         })
+    }
+
+    /// What the user should know before the run: how the net is drawn, and whether steps of this length are too long.
+    pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<String> {
+        let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps()));
+        let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
+            format!(
+                "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
+                 step length; 0.1 s is better (SUMO's --step-length)"
+            )
+        });
+        net.chain(steps).collect()
     }
 
     /// Writes the conflicts to a log too.

@@ -88,6 +88,9 @@ fn attach(
         let message = "SUMO's option random is on, so that a seed has no effect: remove one of the two";
         return Err(Error::content(&request.scenario, message));
     }
+    if !request.quiet {
+        run.opening_remarks(record.step_length).iter().for_each(|remark| eprintln!("closecall: {remark}"));
+    }
     let mut session = Session::new(sumo, request, source, record.step_length).map_err(refused)?;
     interrupts.report();
     let recorded = RecordedRun::open(run, record, &request.out, &request.outputs)?;

@@ -51,6 +51,9 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.set_fixed_routes(true);
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();
+    if !arguments.check.quiet {
+        run.opening_remarks(Some(replay.step_length())).iter().for_each(|remark| eprintln!("closecall: {remark}"));
+    }
     let record = record(&arguments, options)?;
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;

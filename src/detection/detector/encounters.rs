@@ -168,7 +168,7 @@ impl StepInputs<'_> {
         pair: &[Participant; 2],
         found: &mut Findings,
     ) -> Option<Unsettled> {
-        let overlap = self.overlap(pair);
+        let overlap = self.overlap(slots, pair);
         if overlap.collision {
             let [first, second] = [&pair[0], &pair[1]];
             let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
@@ -200,15 +200,33 @@ impl StepInputs<'_> {
     }
 
     /// How deep a pair overlaps now.
-    fn overlap(&self, [first, second]: &[Participant; 2]) -> Overlap {
+    fn overlap(&self, slots: [u32; 2], [first, second]: &[Participant; 2]) -> Overlap {
         if !side::touch_now(first, second) {
             return Overlap::default();
         }
         let depth = side::overlap_now(first, second);
-        let tolerance = self.options.contact_tolerance;
+        let tolerance = match self.options.contact_tolerance {
+            0.0 => 0.0,
+            tolerance => tolerance + self.drawn_overlap(slots),
+        };
         // Both shrink by half of it, which parts them; an obstacle does not shrink.
         let shrinks = if second.shape.is_empty() { tolerance / 2.0 } else { tolerance };
         Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks }
+    }
+
+    /// By how much the lanes under two vehicles overlap as drawn.
+    fn drawn_overlap(&self, slots: [u32; 2]) -> Metre {
+        if self.overlaps.is_empty() {
+            return 0.0;
+        }
+        let lanes = slots.map(|slot| {
+            let user = self.user(slot);
+            let path = self.paths.of(user.index).filter(|path| !path.track.is_empty());
+            path.map(|path| path.lanes_between(self.paths.of_net(), -self.profile(user).length, 0.0))
+                .unwrap_or_default()
+        });
+        let widths = slots.map(|slot| self.profile(self.user(slot)).width);
+        self.overlaps.drawn_overlap_of([&lanes[0], &lanes[1]], widths)
     }
 
     /// Finds where two covered paths meet. If both drive in line, one dimension decides even so: it is exact to rounding, the

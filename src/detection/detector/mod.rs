@@ -30,7 +30,7 @@ use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, Row};
-use crate::traffic::net::Net;
+use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
@@ -53,6 +53,8 @@ pub struct Detector {
     options: Options,
     shortcuts: Shortcuts,
     net: Option<Arc<Net>>,
+    /// The lanes of the net that overlap as drawn.
+    overlaps: Overlaps,
     routes_may_change: bool,
     sublane: bool,
     conflicts_only: bool,
@@ -83,6 +85,7 @@ impl Detector {
             work: Work::default(),
             options: options.clone(),
             shortcuts: Shortcuts::of(options),
+            overlaps: net.as_ref().map(|net| net.overlaps()).unwrap_or_default(),
             net,
             routes_may_change: true,
             sublane: false,
@@ -137,6 +140,11 @@ impl Detector {
     /// Asks for the lane of every vehicle in every step, because an output needs it.
     pub fn keep_asking_for_lanes(&mut self) {
         self.shortcuts.known_paths = false;
+    }
+
+    /// The lanes of the net that overlap as drawn.
+    pub fn overlaps(&self) -> &Overlaps {
+        &self.overlaps
     }
 
     /// The shortcuts that are taken.
@@ -303,6 +311,7 @@ impl Detector {
             frame,
             roster,
             flat_net: self.net.as_deref().filter(|net| net.rise() < LEVEL),
+            overlaps: &self.overlaps,
             paths: self.all_paths(),
             turnings: &self.turnings,
             reach: Reach::new(frame, roster, &self.options, self.shortcuts, self.all_paths()),

@@ -65,6 +65,11 @@ impl<'a> Paths<'a> {
         Self { paths, of_net: lines_of(net) }
     }
 
+    /// The lines of the net's lanes.
+    pub(super) fn of_net(&self) -> &'a Lines {
+        self.of_net
+    }
+
     /// A road user's path, if it ever had one.
     pub(super) fn of(&self, user: UserIndex) -> Option<&'a LanePath> {
         self.paths.get(user.0 as usize)

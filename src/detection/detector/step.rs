@@ -6,7 +6,7 @@ use super::shortcuts::Shortcuts;
 use crate::detection::path::turning::Turning;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, State};
-use crate::traffic::net::Net;
+use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::Roster;
 use crate::util::units::Metre;
@@ -21,6 +21,8 @@ pub(super) struct StepInputs<'a> {
     pub roster: &'a Roster,
     /// The net, if it has no heights that tell a bridge from what it crosses.
     pub flat_net: Option<&'a Net>,
+    /// The lanes that overlap as drawn.
+    pub overlaps: &'a Overlaps,
     pub paths: Paths<'a>,
     pub turnings: &'a [Turning],
     pub reach: Reach<'a>,

@@ -135,6 +135,11 @@ impl Replay {
         Ok(Some(self.step.time))
     }
 
+    /// The time between the first two steps, in s.
+    pub fn step_length(&self) -> Second {
+        self.step_length
+    }
+
     /// A line that names the types that no file defines, if there are any so far.
     pub fn remark(&self) -> Option<String> {
         let quoted = |name: &String| if name.is_empty() { "(none)".to_owned() } else { format!("\"{name}\"") };

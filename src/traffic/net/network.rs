@@ -45,11 +45,15 @@ impl Net {
         self.finder.lane_at(&self.lanes, place)
     }
 
+    /// The length of a lane's shape.
+    pub fn drawn_length(&self, lane: LaneIndex) -> Metre {
+        let line = self.lines.line(lane.0);
+        line.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
+    }
+
     /// How many metres of SUMO's a metre of a lane's shape is; 1 for a lane that is as long as it is drawn.
     pub fn stretch(&self, lane: LaneIndex) -> f64 {
-        let line = self.lines.line(lane.0);
-        let drawn = line.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum();
-        if self.lines.is_stretched() { stretch(self.lines.length(lane.0), drawn) } else { 1.0 }
+        if self.lines.is_stretched() { stretch(self.lines.length(lane.0), self.drawn_length(lane)) } else { 1.0 }
     }
 
     /// The height of its highest point above its lowest; 0 for a net without heights, as most imported ones are.

@@ -76,6 +76,20 @@ impl Overlaps {
         &self.places
     }
 
+    /// Whether no two lanes overlap.
+    pub fn is_empty(&self) -> bool {
+        self.places.is_empty()
+    }
+
+    /// By how much two vehicles of these widths overlap as drawn where each is on one of these lanes.
+    pub fn drawn_overlap_of(&self, lanes: [&[LaneIndex]; 2], widths: [Metre; 2]) -> Metre {
+        let [ones, others] = lanes;
+        let pairs = ones.iter().flat_map(|one| others.iter().map(|other| self.drawn_overlap(*one, *other)));
+        let deepest = pairs.fold(0.0, f64::max);
+        let wider = widths.iter().sum::<Metre>() / 2.0 - VEHICLE_WIDTH;
+        if deepest > 0.0 { (deepest + wider).max(0.0) } else { 0.0 }
+    }
+
     /// By how much two lanes overlap as drawn; 0 if they do not or are not independent.
     pub fn drawn_overlap(&self, one: LaneIndex, other: LaneIndex) -> Metre {
         if self.depths.is_empty() {

@@ -34,7 +34,7 @@ fn lengths(net: &Net) -> Option<String> {
     let mut worst = (0.0, LaneIndex(0));
     for lane in lanes {
         all += 1;
-        let (length, drawn) = (net.lanes[lane.0 as usize].length, net.lines.length(lane.0));
+        let (length, drawn) = (net.lanes[lane.0 as usize].length, net.drawn_length(lane));
         let difference = (length - drawn).abs();
         if difference > SHORTEST && difference > LENGTHS_DIFFER * length.max(drawn) {
             differ += 1;
@@ -45,7 +45,7 @@ fn lengths(net: &Net) -> Option<String> {
     }
     let are = if differ == 1 { "is" } else { "are" };
     let lane = &net.lanes[worst.1.0 as usize];
-    let (id, length, drawn) = (&lane.id, lane.length, net.lines.length(worst.1.0));
+    let (id, length, drawn) = (&lane.id, lane.length, net.drawn_length(worst.1));
     (differ > 0).then(|| {
         format!(
             "{differ} of {all} lanes {are} longer or shorter than drawn by more than 5 %; the worst is {id}: {length:.1} m, drawn \
