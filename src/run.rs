@@ -53,6 +53,8 @@ pub struct Run {
     lane_lookups: u64,
     /// Settings of single types: as the options name the type, and as the roster does.
     type_settings: Vec<(String, String)>,
+    /// How long a step lasts: as the source says, or else the time between the first two steps.
+    step_length: Option<Second>,
     summary: Summary,
 }
 
@@ -85,6 +87,7 @@ impl Run {
             unplaced: Vec::new(),
             lane_lookups: 0,
             type_settings: type_settings(options),
+            step_length: None,
             summary: Summary::default(),
         })
     }
@@ -117,6 +120,16 @@ impl Run {
             self.detector.keep_asking_for_lanes();
         }
         self.outputs = outputs;
+    }
+
+    /// States how long a step lasts; by default as long as the time between the first two.
+    pub fn set_step_length(&mut self, length: Second) {
+        self.step_length = Some(length);
+    }
+
+    /// How long a step lasts, if it is known.
+    pub fn step_length(&self) -> Option<Second> {
+        self.step_length
     }
 
     /// The shortcuts that the run takes.
@@ -183,7 +196,10 @@ impl Run {
     pub fn begin_step(&mut self, time: Second) {
         match self.time() {
             None => self.summary.begin = time,
-            Some(last) => self.count_exposure(time - last),
+            Some(last) => {
+                self.step_length.get_or_insert(time - last);
+                self.count_exposure(time - last);
+            }
         }
         self.summary.steps += 1;
         self.summary.end = time;
@@ -198,7 +214,7 @@ impl Run {
         (self.summary.steps > 0).then_some(self.frame.time)
     }
 
-    /// Counts the traffic of the previous step, which lasted this long.
+    /// Counts the traffic of the frame's step, which lasted this long.
     fn count_exposure(&mut self, lasted: Second) {
         let exposure = &mut self.summary.exposure;
         for Row { user, state } in self.frame.rows() {
@@ -265,6 +281,7 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     pub fn finish(&mut self) -> Result<Summary> {
+        self.count_exposure(self.step_length.unwrap_or_default());
         let closed = self.tracker.finish(&self.roster);
         if let Some(log) = &mut self.log {
             log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;

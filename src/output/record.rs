@@ -18,7 +18,7 @@ pub struct RunRecord {
     pub scenario: PathBuf,
     /// SUMO's random seed; none for a replay, and where SUMO chose one that it does not report (its option random).
     pub seed: Option<String>,
-    /// Length of a step, in s.
+    /// Length of a step, in s: SUMO's, or the time between a recording's first two steps.
     pub step_length: Option<Second>,
     /// Whether road users may move sideways without changing lanes (SUMO's sublane model).
     pub sublane: bool,

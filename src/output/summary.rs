@@ -17,7 +17,7 @@ use crate::util::units::Second;
 pub struct Summary {
     /// First step, in s.
     pub begin: Second,
-    /// Last step, in s.
+    /// Last step, in s; it lasts as long as the others.
     pub end: Second,
     /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,

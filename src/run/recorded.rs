@@ -45,6 +45,9 @@ impl RecordedRun {
         log.write_record(&record)?;
         run.set_log(log);
         run.set_outputs(outputs);
+        if let Some(length) = record.step_length {
+            run.set_step_length(length);
+        }
         Ok(Self { run, record: Some(Box::new(record)) })
     }
 
@@ -65,7 +68,13 @@ impl RecordedRun {
         summary.spent = spent;
         self.run.summary.clone_from(&summary);
         if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
-            log.write_record(&RunRecord { summary: summary.clone(), complete: error.is_none(), error, ..*record })?;
+            log.write_record(&RunRecord {
+                step_length: self.run.step_length(),
+                summary: summary.clone(),
+                complete: error.is_none(),
+                error,
+                ..*record
+            })?;
         }
         Ok(summary)
     }

@@ -69,8 +69,66 @@ impl LoggedRun {
         serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))
     }
 
-    /// Simulated hours from the first to the last step.
+    /// Simulated hours: from the first step to the end of the last, which lasts as long as the others.
     pub fn hours(&self) -> f64 {
-        (self.summary.end - self.summary.begin) / 3600.0
+        (self.summary.end - self.summary.begin + self.step_length.unwrap_or_default()) / 3600.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::Options;
+    use crate::output::formats::OutputFiles;
+    use crate::output::record::{RunRecord, Versions};
+    use crate::run::Run;
+    use crate::run::recorded::{Ending, RecordedRun};
+    use crate::traffic::frame::State;
+    use crate::traffic::profile::Profile;
+    use crate::traffic::sumo_type::SumoType;
+
+    /// A run of a car at 10 m/s with a step at each of these times, read back.
+    fn logged(times: &[Second], step_length: Option<Second>) -> LoggedRun {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options::default();
+        let record = RunRecord {
+            versions: Versions::with_sumo(None),
+            scenario: PathBuf::new(),
+            seed: None,
+            step_length,
+            sublane: false,
+            options: options.clone(),
+            sumo_words: Vec::new(),
+            inputs: Vec::new(),
+            complete: false,
+            error: None,
+            summary: Summary::default(),
+        };
+        let run = Run::new(&options, None).unwrap();
+        let mut recorded = RecordedRun::open(run, record, folder.path(), &OutputFiles::default()).unwrap();
+        let run = &mut recorded.run;
+        let profile = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
+        let car = run.enter("car", profile);
+        for time in times {
+            run.begin_step(*time);
+            run.frame.push(car, State { x: 10.0 * time, y: 0.0, z: 0.0, heading: 0.0, speed: 10.0 });
+            run.step(|_, _| Ok::<_, Error>(())).unwrap();
+        }
+        recorded.close(Ending::default()).unwrap();
+        LoggedRun::read(folder.path()).unwrap()
+    }
+
+    #[test]
+    fn every_step_counts_in_full_the_last_included() {
+        for (times, step_length, seconds) in
+            [(&[2.0, 2.5, 3.0, 3.5][..], None, 2.0), (&[2.0, 2.5], Some(0.5), 1.0), (&[2.0], Some(0.5), 0.5)]
+        {
+            let run = logged(times, step_length);
+            assert_eq!(run.step_length, Some(0.5));
+            let near = |found: f64, wanted: f64| assert!((found - wanted).abs() < 1e-12, "{found}, not {wanted}");
+            near(run.hours(), seconds / 3600.0);
+            near(run.summary.exposure.vehicle_hours, seconds / 3600.0);
+            near(run.summary.exposure.vehicle_kilometres, seconds * 10.0 / 1000.0);
+        }
     }
 }
