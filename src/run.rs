@@ -4,6 +4,7 @@
 //! [`Run::begin_step`], pushes a row into [`Run::frame`] per road user, and calls [`Run::step`] with a function that
 //! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
 
+mod obstacles;
 pub mod recorded;
 pub mod step;
 
@@ -14,7 +15,6 @@ use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Conflict, Tracker};
 use crate::geometry::Point;
-use crate::geometry::polygon::convex_parts;
 use crate::options::Options;
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
@@ -23,7 +23,7 @@ use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::net::Net;
 use crate::traffic::net::filter::Filter;
 use crate::traffic::placement::Placement;
-use crate::traffic::profile::{Category, Profile, obstacle_name};
+use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
 use crate::{Error, Result};
@@ -171,20 +171,6 @@ impl Run {
             Category::Obstacle => {}
         }
         user
-    }
-
-    /// A static obstacle enters the scene and stays: a polygon of this type and outline.
-    ///
-    /// # Errors
-    /// [`Error::Value`] if the outline has fewer than three points or a point that is not finite.
-    pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
-        if outline.len() < 3 || outline.iter().any(|point| !(point.x + point.y).is_finite()) {
-            return Err(Error::Value(format!("polygon \"{id}\" needs at least three points, all finite")));
-        }
-        let shape = convex_parts(outline).into();
-        let profile = self.roster.profile(Profile::obstacle(polygon_type))?;
-        self.obstacles.push((self.roster.enter_shaped(id, profile, shape), outline[0]));
-        Ok(())
     }
 
     /// A road user leaves the scene; it must not be in a later frame.

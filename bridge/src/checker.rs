@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use closecall::internals::output::{Context, LoggedConflict};
 use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
@@ -22,9 +22,10 @@ use crate::pull::{self, Source};
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, run.json, and encounters.csv with `log_encounters=True`); by default
-///         no log is written.
+///         no log is written. An earlier log is kept in its folder `earlier`.
+///     force: whether to replace an earlier log instead of keeping it.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
-///     **options: the long options of the command line, with underscores: `mu="at-rest"`, `epsilon=1.0`.
+///     **options: the long options of the command line, with underscores: `mu="at_rest"`, `epsilon=1.0`.
 ///
 /// Raises:
 ///     ValueError: an option is unknown or out of its range, the net cannot be used, or the simulation is mesoscopic; the
@@ -48,11 +49,13 @@ enum Feed {
 #[pymethods]
 impl Checker {
     #[new]
-    #[pyo3(signature = (source=None, *, net=None, out=None, paint=None, **options))]
+    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, **options))]
     fn new(
+        py: Python,
         source: Option<&Bound<PyAny>>,
         net: Option<PathBuf>,
         out: Option<PathBuf>,
+        force: bool,
         paint: Option<bool>,
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
@@ -74,7 +77,12 @@ impl Checker {
         let recorded = match out {
             Some(folder) => {
                 let record = provenance::record_of_script(source, given, &run, &options)?;
-                RecordedRun::open(run, record, &folder, &OutputFiles::default()).map_err(exception)?
+                let files = OutputFiles { force, ..OutputFiles::default() };
+                let recorded = RecordedRun::open(run, record, &folder, &files).map_err(exception)?;
+                if let Some(line) = recorded.earlier_log() {
+                    py.import("sys")?.getattr("stderr")?.call_method1("write", (format!("closecall: {line}\n"),))?;
+                }
+                recorded
             }
             None => RecordedRun::in_memory(run),
         };
@@ -91,16 +99,17 @@ impl Checker {
     /// Args:
     ///     time: simulated time in s; only with `states`.
     ///     states: without a simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper centre, m),
-    ///         `heading` (rad, counter-clockwise from +x), `speed` (m/s) and, if known, `z`, `length`, `width` (m),
-    ///         `decel` (m/s²), `mass` (kg). A row whose position, heading or speed is not finite is ignored.
+    ///         `heading` (rad, counter-clockwise from +x), `speed` (m/s) and, if known, `category` (`vehicle`, `bicycle`,
+    ///         `person`, `obstacle`), `z`, `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row whose position,
+    ///         heading or speed is not finite is ignored.
     ///
     /// Returns:
     ///     Whether the listener wants the next step too: a simulation drops one that is closed. If the simulation's time
-    ///     goes back (another one was started or loaded, or an earlier state), the checker closes itself.
+    ///     goes back (another one was started or loaded, or an earlier state), the checker closes itself with a warning.
     ///
     /// Raises:
-    ///     ValueError: a column is missing or has another length, an id occurs twice, the time is before the last one, or
-    ///         dimensions are impossible.
+    ///     ValueError: a column is missing, unknown or has another length, an id occurs twice, the time is before the last
+    ///         one, or dimensions are impossible.
     ///     RuntimeError: the checker is closed and has no simulation.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
@@ -109,10 +118,11 @@ impl Checker {
             (Feed::Simulation(_), None) if self.is_closed => return Ok(false),
             (Feed::Simulation(source), None) => {
                 let time = source.time(py)?;
-                if run.time().is_some_and(|last| time < last) {
+                if let Some(last) = run.time().filter(|last| time < *last) {
                     // The vehicles that it painted are not in the new simulation.
                     self.painter = None;
                     self.close(py)?;
+                    warn_of_another(py, last, time)?;
                     return Ok(false);
                 }
                 source.pull(py, run, time)?;
@@ -179,13 +189,22 @@ impl Checker {
     }
 }
 
+/// Says that a checker has stopped, as another simulation has taken the place of its own.
+fn warn_of_another(py: Python, last: f64, time: f64) -> PyResult<()> {
+    let message = format!(
+        "this checker has stopped: the simulation's time went back from {last} to {time} s, as another one was started or \
+         loaded, or an earlier state; make a new Checker for it"
+    );
+    py.import("warnings")?.call_method1("warn", (message, py.get_type::<PyRuntimeWarning>())).map(|_| ())
+}
+
 /// The options that Python keywords set.
 pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
     let mut settings = Vec::new();
     for (name, value) in keywords.into_iter().flatten() {
         let text = if let Ok(flag) = value.extract::<bool>() {
             flag.to_string()
-        } else if let Ok(items) = value.cast::<PyList>() {
+        } else if let Ok(items) = value.extract::<Vec<Bound<PyAny>>>() {
             items.iter().map(|item| item.to_string()).collect::<Vec<_>>().join(",")
         } else {
             value.to_string()

@@ -1,6 +1,6 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 
-use closecall::{Options, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
+use closecall::{Category, Options, Point, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -13,73 +13,99 @@ pub struct Frames {
     options: Options,
     /// Each road user by its id, and the last step that it was in.
     live: FxHashMap<String, (UserIndex, u64)>,
+    /// The types of the persons in the first step, whose length is not known before the second.
+    early_persons: Vec<ProfileIndex>,
     steps: u64,
 }
 
+/// The columns of a frame.
+const COLUMNS: [&str; 11] = ["id", "x", "y", "heading", "speed", "z", "length", "width", "decel", "mass", "category"];
+
+/// What a road user is, as the column `category` says.
+#[derive(Clone, Copy)]
+enum Sort {
+    Vehicle,
+    Bicycle,
+    Person,
+    Obstacle,
+}
+
+const SORTS: [(&str, Sort); 4] =
+    [("vehicle", Sort::Vehicle), ("bicycle", Sort::Bicycle), ("person", Sort::Person), ("obstacle", Sort::Obstacle)];
+
 type StateColumn<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
+
+/// The optional columns, none where the frame lacks them.
+struct Optional<'py> {
+    length: Option<StateColumn<'py>>,
+    width: Option<StateColumn<'py>>,
+    decel: Option<StateColumn<'py>>,
+    mass: Option<StateColumn<'py>>,
+}
+
+fn value(column: Option<&StateColumn>, row: usize) -> Option<f64> {
+    column.map(|column| column.as_array()[row])
+}
 
 impl Frames {
     pub fn new(options: &Options) -> Self {
-        Self { options: options.clone(), live: FxHashMap::default(), steps: 0 }
+        Self { options: options.clone(), live: FxHashMap::default(), early_persons: Vec::new(), steps: 0 }
     }
 
     /// Begins a step with the rows of `states`: a mapping of columns of equal length.
     pub fn pull(&mut self, run: &mut Run, time: f64, states: &Bound<PyAny>) -> PyResult<()> {
-        let ids =
-            states.get_item("id")?.try_iter()?.map(|id| Ok(id?.str()?.to_string())).collect::<PyResult<Vec<_>>>()?;
+        check_names(states)?;
+        let ids = texts(states, "id")?;
+        let check = |name: &str, length: usize| {
+            let message = || format!("\"{name}\" has {length} values, \"id\" has {}", ids.len());
+            if length == ids.len() { Ok(()) } else { Err(PyValueError::new_err(message())) }
+        };
         let column = |name: &str| -> PyResult<StateColumn> {
             let Ok(column) = states.get_item(name) else {
                 return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
             };
             let column: StateColumn = column.extract()?;
-            if column.as_array().len() == ids.len() {
-                Ok(column)
-            } else {
-                let length = column.as_array().len();
-                Err(PyValueError::new_err(format!("\"{name}\" has {length} values, \"id\" has {}", ids.len())))
-            }
+            check(name, column.as_array().len())?;
+            Ok(column)
         };
         let optional = |name: &str| states.contains(name)?.then(|| column(name)).transpose();
         let [x, y, heading, speed] = [column("x")?, column("y")?, column("heading")?, column("speed")?];
-        let [z, length, width, decel, mass] =
-            [optional("z")?, optional("length")?, optional("width")?, optional("decel")?, optional("mass")?];
+        let z = optional("z")?;
+        let others = Optional {
+            length: optional("length")?,
+            width: optional("width")?,
+            decel: optional("decel")?,
+            mass: optional("mass")?,
+        };
+        let sorts = if states.contains("category")? { sorts(states)? } else { vec![Sort::Vehicle; ids.len()] };
+        check("category", sorts.len())?;
         if !time.is_finite() {
             return Err(PyValueError::new_err(format!("time is {time}")));
         }
         run.begin_step(time);
         self.steps += 1;
-        let value = |column: &Option<StateColumn>, row: usize, default| {
-            column.as_ref().map_or(default, |column| column.as_array()[row])
-        };
+        if let Some(length) = run.step_length() {
+            self.early_persons.drain(..).for_each(|persons| run.roster.set_response(persons, length));
+        }
         for (row, id) in ids.iter().enumerate() {
+            let mut state = State {
+                x: x.as_array()[row],
+                y: y.as_array()[row],
+                z: value(z.as_ref(), row).unwrap_or_default(),
+                heading: heading.as_array()[row],
+                speed: speed.as_array()[row],
+            };
             let user = match self.live.get(id) {
                 Some(&(_, step)) if step == self.steps => {
                     return Err(PyValueError::new_err(format!("\"{id}\" is there twice")));
                 }
                 Some(&(user, _)) => user,
-                None => {
-                    let car = SumoType::car("");
-                    let decel = value(&decel, row, car.emergency_decel);
-                    let sumo = SumoType {
-                        length: value(&length, row, car.length),
-                        width: value(&width, row, car.width),
-                        mass: value(&mass, row, car.mass),
-                        emergency_decel: decel,
-                        decel,
-                        ..car
-                    };
-                    let profile = self.profile(run, sumo)?;
-                    run.enter(id, profile)
-                }
+                None => self.enter(run, id, sorts[row], &state, &others, row)?,
             };
             self.live.insert(id.clone(), (user, self.steps));
-            let state = State {
-                x: x.as_array()[row],
-                y: y.as_array()[row],
-                z: value(&z, row, 0.0),
-                heading: heading.as_array()[row],
-                speed: speed.as_array()[row],
-            };
+            if run.roster.profile_of(user).category == Category::Obstacle {
+                state.speed = 0.0;
+            }
             run.frame.push(user, state);
         }
         let steps = self.steps;
@@ -92,10 +118,96 @@ impl Frames {
         Ok(())
     }
 
-    /// The profile that all road users with these dimensions share.
-    fn profile(&self, run: &mut Run, sumo: SumoType) -> PyResult<ProfileIndex> {
-        let SumoType { length, width, decel, mass, .. } = sumo;
-        let name = format!("{length} m x {width} m, {decel} m/s², {mass} kg");
-        run.roster.profile(Profile::vehicle(&SumoType { name, ..sumo }, &self.options)).map_err(exception)
+    /// The road user of a row enters the scene.
+    fn enter(
+        &mut self,
+        run: &mut Run,
+        id: &str,
+        sort: Sort,
+        state: &State,
+        columns: &Optional,
+        row: usize,
+    ) -> PyResult<UserIndex> {
+        let usual = match sort {
+            Sort::Vehicle => SumoType::car(""),
+            Sort::Bicycle => SumoType::of_class("", "bicycle"),
+            Sort::Person => SumoType::of_class("", "pedestrian"),
+            // An obstacle has no usual size.
+            Sort::Obstacle => SumoType { length: f64::NAN, width: f64::NAN, ..SumoType::car("") },
+        };
+        let size = |name: &str, column: Option<&StateColumn>, usual: f64| match value(column, row).unwrap_or(usual) {
+            size if size.is_finite() && size > 0.0 => Ok(size),
+            size if column.is_some() => {
+                Err(PyValueError::new_err(format!("\"{id}\": {name} is {size}, it must be finite and above 0")))
+            }
+            _ => Err(PyValueError::new_err(format!("\"{id}\" is an obstacle, which needs \"length\" and \"width\""))),
+        };
+        let length = size("length", columns.length.as_ref(), usual.length)?;
+        let width = size("width", columns.width.as_ref(), usual.width)?;
+        if let Sort::Obstacle = sort {
+            return run.enter_shape(id, "obstacle", &outline(state, length, width)).map_err(exception);
+        }
+        let decel = value(columns.decel.as_ref(), row).unwrap_or(usual.emergency_decel);
+        let mass = value(columns.mass.as_ref(), row).unwrap_or(usual.mass);
+        let what = if let Sort::Person = sort { "person " } else { "" };
+        let name = format!("{what}{length} m x {width} m, {decel} m/s², {mass} kg");
+        let sumo = SumoType { name, length, width, mass, emergency_decel: decel, decel, ..usual };
+        let profile = if let Sort::Person = sort {
+            let profile = Profile::person(&sumo, &self.options, run.step_length().unwrap_or_default());
+            let profile = run.roster.profile(profile).map_err(exception)?;
+            if run.step_length().is_none() {
+                self.early_persons.push(profile);
+            }
+            profile
+        } else {
+            run.roster.profile(Profile::vehicle(&sumo, &self.options)).map_err(exception)?
+        };
+        Ok(run.enter(id, profile))
     }
+}
+
+/// The corners of a rectangle whose front's centre and heading are those of the state.
+fn outline(state: &State, length: f64, width: f64) -> [Point; 4] {
+    let (sine, cosine) = state.heading.sin_cos();
+    let corner = |behind: f64, left: f64| {
+        Point::new(state.x - behind * cosine - left * sine, state.y - behind * sine + left * cosine)
+    };
+    let half = width / 2.0;
+    [corner(0.0, half), corner(length, half), corner(length, -half), corner(0.0, -half)]
+}
+
+/// The values of a column as texts.
+fn texts(states: &Bound<PyAny>, name: &str) -> PyResult<Vec<String>> {
+    let Ok(column) = states.get_item(name) else {
+        return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
+    };
+    column.try_iter()?.map(|text| Ok(text?.str()?.to_string())).collect()
+}
+
+fn sorts(states: &Bound<PyAny>) -> PyResult<Vec<Sort>> {
+    let sort = |text: &String| {
+        let known = SORTS.iter().find(|(name, _)| name == text).map(|(_, sort)| *sort);
+        let message = || format!("category is \"{text}\": vehicle, bicycle, person or obstacle");
+        known.ok_or_else(|| PyValueError::new_err(message()))
+    };
+    texts(states, "category")?.iter().map(sort).collect()
+}
+
+/// Refuses a column that is not known: its name is most likely misspelt.
+fn check_names(states: &Bound<PyAny>) -> PyResult<()> {
+    // A table of Polars has no keys, an array of NumPy's structures neither.
+    let names = match (states.call_method0("keys"), states.getattr("columns")) {
+        (Ok(names), _) | (_, Ok(names)) => names,
+        _ => return Ok(()),
+    };
+    for name in names.try_iter()? {
+        let name = name?.str()?.to_string();
+        if !COLUMNS.contains(&name.as_str()) {
+            let alike = |known: &&str| strsim::jaro_winkler(known, &name);
+            let nearest = COLUMNS.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
+            let message = format!("there is no column \"{name}\"; did you mean \"{}\"?", nearest.unwrap_or(&"id"));
+            return Err(PyValueError::new_err(message));
+        }
+    }
+    Ok(())
 }

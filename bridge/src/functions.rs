@@ -54,8 +54,8 @@ pub fn mu<'py>(
         return Err(bad(format!("angle is {angle}, it must be 0 to π")));
     }
     let sigmas = angles.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), kind.sigma()), |angles| angles.mapv(f64::cos));
-    let model = MuModel::from_str(&model.replace('_', "-"), false)
-        .map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
+    let model =
+        MuModel::from_str(model, false).map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
     let given = |numbers: Option<Numbers>, default: f64| {
         numbers.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), default), |numbers| numbers.as_array().to_owned())
     };

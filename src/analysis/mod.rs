@@ -6,3 +6,4 @@ pub mod logged;
 pub mod plot;
 pub mod report;
 pub mod statistics;
+pub mod variants;

@@ -30,6 +30,7 @@ pub enum MuModel {
     #[default]
     Minimal,
     /// The room when both stand.
+    #[cfg_attr(feature = "cli", value(alias = "at_rest"))]
     AtRest,
     /// Eq. 19 and 21 as printed: always a minus sign, no floor.
     Paper,

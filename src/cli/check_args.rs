@@ -5,16 +5,20 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ending;
-use super::files::kept;
+use super::files::{default_folder, kept, say_if_elsewhere};
 use crate::Result;
 use crate::options::Options;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
 
+/// The name of the log's default folder.
+const LOG: &str = "closecall-out";
+
 /// How to check a scenario or a recording, and what to write.
 #[derive(Args)]
 pub(super) struct CheckArgs {
-    /// Folder for the log [default: closecall-out next to the scenario or recording].
+    /// Folder for the log [default: closecall-out next to the scenario or recording, or else in the working directory].
+    /// An earlier log is kept in its folder earlier.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// TOML file with options.
@@ -35,8 +39,7 @@ pub(super) struct CheckArgs {
 impl CheckArgs {
     /// The folder for the log of this scenario or recording.
     pub fn log_folder(&self, input: &Path) -> PathBuf {
-        let beside = || input.parent().unwrap_or(Path::new("")).join("closecall-out");
-        self.out.clone().unwrap_or_else(beside)
+        self.out.clone().unwrap_or_else(|| default_folder(input, LOG))
     }
 
     /// The options.
@@ -49,8 +52,14 @@ impl CheckArgs {
         Ok(options)
     }
 
-    /// Prints what was found, unless only errors are wanted.
-    pub fn print(&self, summary: &Summary, log: &Path) -> Result<()> {
-        if self.quiet { Ok(()) } else { ending::print(summary, log, self.explain) }
+    /// Prints what was found in a scenario or recording, unless only errors are wanted.
+    pub fn print(&self, summary: &Summary, input: &Path, log: &Path) -> Result<()> {
+        if self.quiet {
+            return Ok(());
+        }
+        if self.out.is_none() {
+            say_if_elsewhere(log, input, LOG)?;
+        }
+        ending::print(summary, log, self.explain)
     }
 }

@@ -29,11 +29,12 @@ mod sweep;
 mod workers;
 
 use std::ffi::OsString;
+use std::io::Write;
 use std::path::Path;
 
 use crate::batch::regress::Scenario;
 use crate::{Error, Result};
-use parse::{Command, ParseError, command, parse, usage};
+use parse::{Command, ParseError, command, parse};
 
 pub use sumo::{RunRequest, Simulate, Sumo};
 #[cfg(feature = "parquet")]
@@ -41,19 +42,12 @@ pub use workers::{Distribute, ReportEnd, Workers};
 
 /// Runs the command line `words`, which begins with the program's name; returns the exit status.
 ///
-/// Results go to standard output, messages to standard error, one line each.
+/// Results go to standard output, messages to standard error, one line each; the usage follows that of a wrong word.
 pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
     let words = words.into_iter().collect::<Vec<_>>();
     let cli = match parse(words) {
         Ok(cli) => cli,
-        Err(ParseError::Clap(error)) => {
-            if error.use_stderr() {
-                return failed(&usage(&error));
-            }
-            // If even this cannot be printed, there is nothing else to do.
-            let _ = error.print();
-            return 0;
-        }
+        Err(ParseError::Clap(error)) => return refused(&error),
         Err(ParseError::File(error)) => return failed(&error),
     };
     let done = match cli.command {
@@ -84,6 +78,18 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
 /// Those of `Scenario::read`.
 pub fn scenario(path: &Path) -> Result<Scenario> {
     Scenario::at(path, &settings::known(&command()))
+}
+
+/// Prints clap's help, version, or message with the usage below it.
+fn refused(error: &clap::Error) -> u8 {
+    let text = error.to_string();
+    // If even this cannot be printed, there is nothing else to do.
+    let _ = match text.strip_prefix("error: ") {
+        Some(message) => write!(std::io::stderr(), "closecall: {message}"),
+        None => error.print(),
+    };
+    // clap's own status: 0 for help and version that were asked for, 2 otherwise.
+    u8::try_from(error.exit_code()).unwrap_or(2)
 }
 
 fn failed(error: &Error) -> u8 {

@@ -103,7 +103,7 @@ pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, ParseError
 }
 
 /// clap's message as one line, without the usage.
-pub(super) fn usage(error: &clap::Error) -> Error {
+fn in_one_line(error: &clap::Error) -> Error {
     let text = error.to_string();
     let parts = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
     let line = parts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ").replace(" tip: ", "; tip: ");
@@ -118,7 +118,7 @@ pub(super) fn parse_run(words: Vec<OsString>) -> Result<run::RunArgs> {
     match parse(words) {
         Ok(Cli { command: Command::Run(arguments) }) => Ok(*arguments),
         Ok(_) => Err(value("these are not the words of closecall run")),
-        Err(ParseError::Clap(error)) => Err(usage(&error)),
+        Err(ParseError::Clap(error)) => Err(in_one_line(&error)),
         Err(ParseError::File(error)) => Err(error),
     }
 }

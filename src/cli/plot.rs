@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
 use crate::analysis::plot::{self, PictureFormat};
@@ -30,8 +31,11 @@ pub struct PlotArgs {
 
 /// Draws the charts and prints the files' names.
 pub fn run(arguments: &PlotArgs) -> Result<()> {
-    let files = plot::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, arguments.format)?;
-    if !arguments.quiet {
+    let PlotArgs { folders, out, format, net, quiet } = arguments;
+    let mut bar = CountBar::new("conflicts", !quiet);
+    let files = plot::write(folders, net.as_deref(), out, *format, &mut |read, all| bar.show(read, all))?;
+    drop(bar);
+    if !quiet {
         for file in files {
             say(format_args!("{}\n", file.display()))?;
         }

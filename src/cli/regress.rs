@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::files::absolute;
+use super::progress::CountBar;
 use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use crate::Result;
@@ -70,13 +71,17 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
             Err(error) => drop(reports.insert(place, Report::unreadable(name(folder), Level::Exact, error))),
         }
     }
+    let mut bar = CountBar::new("runs", true);
+    let mut progress = |done, all| bar.show(done, all);
     let mut runner = Runner {
         closecall: sumo.closecall,
         jobs: arguments.jobs.map_or_else(processors, usize::from),
         out: arguments.out.as_deref().map(absolute).transpose()?,
         interrupted: sumo.interrupted,
+        progress: &mut progress,
     };
     let done = regress(&scenarios, &mut runner, arguments.bless)?;
+    drop(bar);
     reports.extend(places.into_iter().zip(done));
     let mut reports = reports.into_values().collect::<Vec<_>>();
     for report in &mut reports {

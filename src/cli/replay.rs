@@ -66,7 +66,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
         ..Ending::default()
     })?;
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        arguments.check.print(&summary, &out)?;
+        arguments.check.print(&summary, &arguments.recording, &out)?;
     }
     ended
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
 use crate::analysis::report;
@@ -28,7 +29,10 @@ pub struct ReportArgs {
 
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
-    let made = report::write(&arguments.folders, arguments.net.as_deref(), &arguments.out)?;
+    let mut bar = CountBar::new("conflicts", !arguments.quiet);
+    let mut progress = |read, all| bar.show(read, all);
+    let made = report::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, &mut progress)?;
+    drop(bar);
     if !arguments.quiet {
         let report::Made { runs, conflicts, bytes } = made;
         let size = bytes as f64 / 1e6;

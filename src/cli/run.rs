@@ -50,7 +50,7 @@ pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let Some(sumo) = sumo else { return no_sumo() };
     let request = request(&arguments)?;
     let summary = (sumo.simulate)(&request)?;
-    arguments.check.print(&summary, &request.out)
+    arguments.check.print(&summary, &request.scenario, &request.out)
 }
 
 /// The request for the bridge, with everything checked that can be before SUMO starts.

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::progress::CountBar;
 use super::say::{say, value};
 use crate::Result;
 use crate::analysis::statistics::{By, Request, Statistics, table};
@@ -44,7 +45,9 @@ enum Format {
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
     let StatsArgs { folders, by, format, against, worst } = arguments;
-    let statistics = Statistics::of(&Request { folders, by, against, worst })?;
+    let mut bar = CountBar::new("conflicts", true);
+    let statistics = Statistics::of(&Request { folders, by, against, worst }, &mut |read, all| bar.show(read, all))?;
+    drop(bar);
     for log in &statistics.left_out {
         eprintln!("closecall: {}: {}", log.folder.display(), log.why);
     }

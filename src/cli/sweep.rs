@@ -8,7 +8,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::files::absolute;
+use super::files::{absolute, default_folder, say_if_elsewhere};
 use super::run::{RunArgs, request};
 use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
@@ -30,7 +30,7 @@ pub struct SweepArgs {
     /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), one run each. If repeated, every combination is run.
     #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
     vary: Vec<Vary>,
-    /// Folder for the results [default: closecall-sweep next to the scenario].
+    /// Folder for the results [default: closecall-sweep next to the scenario, or else in the working directory].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Runs at the same time on this machine [default: one per processor].
@@ -59,8 +59,10 @@ struct Passed {
 }
 
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 9] =
-    ["scenario", "configuration_file", "gui", "out", "seed", "quiet", "explain", "ssm_output", "trj_output"];
+const OWN: [&str; 10] =
+    ["scenario", "configuration_file", "gui", "out", "force", "seed", "quiet", "explain", "ssm_output", "trj_output"];
+/// The name of the results' default folder.
+const RESULTS: &str = "closecall-sweep";
 /// Options that name a file whose content matters.
 const FILES: [&str; 2] = ["config", "filter"];
 /// The argument for the words after `--`.
@@ -120,7 +122,7 @@ impl FromArgMatches for Passed {
 /// Does the missing runs; returns the exit status, 1 if some failed.
 pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
     let Some(sumo) = sumo else { return no_sumo().map(|()| 0) };
-    let default_out = arguments.scenario.parent().unwrap_or(Path::new("")).join("closecall-sweep");
+    let default_out = default_folder(&arguments.scenario, RESULTS);
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_out))?;
     // Opened here so that an error carries the operating system's own message.
     std::fs::File::open(&arguments.scenario).map_err(|source| Error::file(&arguments.scenario, source))?;
@@ -144,6 +146,9 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     };
     let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &out)?;
     if !arguments.quiet {
+        if arguments.out.is_none() {
+            say_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
+        }
         let runs = counted((plan.tasks.len() - failed) as u64, "run");
         say(format_args!("{runs} in {}\n", plan.data_set().display()))?;
         if done > 0 {

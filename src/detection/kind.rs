@@ -11,6 +11,7 @@ use crate::util::units::Radian;
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// The ego runs into a foe that drives in the same direction.
+    #[cfg_attr(feature = "cli", value(alias = "rear-end"))]
     RearEnd,
     /// Both drive towards each other.
     Frontal,

@@ -1,5 +1,6 @@
 //! Options from names and values: the parser behind the TOML file and Python keywords is that of the command line.
 
+use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches, Parser};
 
 use super::Options;
@@ -25,20 +26,44 @@ impl Options {
         for (name, value) in settings {
             let option = name.replace('_', "-");
             if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
-                return Err(Error::Value(format!("unexpected argument '--{option}' found")));
+                let similar = command.try_get_matches_from_mut([format!("--{option}")]).err();
+                let similar = similar.and_then(|error| text(&error, ContextKind::SuggestedArg));
+                let similar = similar.map(|similar| format!("; did you mean \"{}\"?", name_of(&similar)));
+                return Err(Error::Value(format!("there is no option \"{name}\"{}", similar.unwrap_or_default())));
             }
             given.extend(word(name, &value));
         }
-        let matches = command.try_get_matches_from_mut(given).map_err(plain)?;
-        let settings = SettingsParser::from_arg_matches(&matches).map_err(plain)?;
+        let matches = command.try_get_matches_from_mut(given).map_err(|error| plain(&error))?;
+        let settings = SettingsParser::from_arg_matches(&matches).map_err(|error| plain(&error))?;
         settings.options.checked()
     }
 }
 
-/// clap's message as one line, without the usage.
-fn plain(error: clap::Error) -> Error {
-    let text = error.to_string();
-    Error::Value(text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned())
+/// clap's message as one line that names the setting, not the long option.
+fn plain(error: &clap::Error) -> Error {
+    let message = error.to_string();
+    let mut line = message.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned();
+    if let Some(argument) = text(error, ContextKind::InvalidArg) {
+        line = line.replace(&format!("'{argument}'"), &format!("\"{}\"", name_of(&argument)));
+    }
+    if let Some(ContextValue::Strings(values)) = error.get(ContextKind::ValidValue) {
+        line += &format!("; possible values: {}", values.join(", "));
+    }
+    Error::Value(line)
+}
+
+/// A part of clap's error.
+fn text(error: &clap::Error, kind: ContextKind) -> Option<String> {
+    match error.get(kind) {
+        Some(ContextValue::String(text)) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// The name of the setting whose long option clap shows as `--serious-ttc <S>`.
+fn name_of(argument: &str) -> String {
+    let option = argument.trim_start_matches('-').split([' ', '=']).next().unwrap_or_default();
+    option.replace('-', "_")
 }
 
 #[cfg(test)]
@@ -62,12 +87,24 @@ mod tests {
     }
 
     #[test]
+    fn a_value_of_two_words_has_both_spellings() {
+        for spelling in ["at-rest", "at_rest"] {
+            assert_eq!(Options::from_settings([("mu", spelling.to_owned())]).unwrap().mu, MuModel::AtRest);
+        }
+    }
+
+    #[test]
     fn an_unknown_or_impossible_setting_is_named() {
-        let unknown = Options::from_settings([("colour", "red".to_owned())]).unwrap_err().to_string();
-        assert!(unknown.contains("--colour"), "{unknown}");
-        let unset = Options::from_settings([("colour", "false".to_owned())]).unwrap_err().to_string();
-        assert!(unset.contains("--colour"), "{unset}");
-        let negative = Options::from_settings([("epsilon", "-1".to_owned())]).unwrap_err().to_string();
-        assert!(negative.contains("--epsilon") && !negative.contains('\n'), "{negative}");
+        for (name, value, said) in [
+            ("colour", "red", "there is no option \"colour\""),
+            ("colour", "false", "there is no option \"colour\""),
+            ("serious_tcc", "1", "there is no option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
+            ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be a finite number, 0 or more"),
+            ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper"),
+            ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),
+        ] {
+            let message = Options::from_settings([(name, value.to_owned())]).unwrap_err().to_string();
+            assert_eq!(message, said);
+        }
     }
 }

@@ -1,6 +1,7 @@
 //! What a run writes: its log, its record, and files for other tools.
 
 pub mod badness;
+pub mod earlier_log;
 pub mod formats;
 pub mod input_hash;
 pub mod log;

@@ -8,6 +8,7 @@ use std::path::Path;
 use super::Run;
 use crate::Result;
 use crate::detection::detector::LeftOut;
+use crate::output::earlier_log::EarlierLog;
 use crate::output::formats::{OutputFiles, Outputs};
 use crate::output::log::Log;
 use crate::output::record::RunRecord;
@@ -19,6 +20,7 @@ pub struct RecordedRun {
     pub run: Run,
     /// None without a log.
     record: Option<Box<RunRecord>>,
+    earlier: Option<EarlierLog>,
 }
 
 /// How a run ended, and what its source adds to the summary.
@@ -35,12 +37,14 @@ pub struct Ending {
 }
 
 impl RecordedRun {
-    /// Opens the log in a folder and the other files; from here on the run writes to them.
+    /// Opens the log in a folder and the other files; from here on the run writes to them. An earlier log in the folder is
+    /// kept, unless it is to be replaced.
     ///
     /// # Errors
     /// [`crate::Error::File`] that names what cannot be written, and the errors of `Outputs::create`.
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
+        let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
         let log = Log::create(folder, record.options.log_encounters)?;
         log.write_record(&record)?;
         run.set_log(log);
@@ -48,12 +52,17 @@ impl RecordedRun {
         if let Some(length) = record.step_length {
             run.set_step_length(length);
         }
-        Ok(Self { run, record: Some(Box::new(record)) })
+        Ok(Self { run, record: Some(Box::new(record)), earlier })
     }
 
     /// A run without a log, whose conflicts stay in memory.
     pub fn in_memory(run: Run) -> Self {
-        Self { run, record: None }
+        Self { run, record: None, earlier: None }
+    }
+
+    /// Where the earlier log of the folder is now, if there was one, in a line for the user.
+    pub fn earlier_log(&self) -> Option<String> {
+        self.earlier.as_ref().map(|earlier| format!("the earlier log is kept in {}", earlier.kept.display()))
     }
 
     /// Closes the open conflicts and completes the log; returns the summary.
@@ -64,7 +73,7 @@ impl RecordedRun {
         let Ending { error, left_out, remarks, spent } = ending;
         let mut summary = self.run.finish()?;
         summary.left_out.extend(left_out);
-        summary.remarks.extend(remarks);
+        summary.remarks.extend(remarks.into_iter().chain(self.earlier_log()));
         summary.spent = spent;
         self.run.summary.clone_from(&summary);
         if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
@@ -84,6 +93,9 @@ impl RecordedRun {
         std::mem::take(&mut self.run.outputs).discard();
         if let Some(log) = self.run.log.take() {
             log.discard();
+        }
+        if let Some(earlier) = self.earlier {
+            earlier.restore();
         }
     }
 }

@@ -76,11 +76,12 @@ impl Profile {
     /// Checks that the values are possible.
     ///
     /// # Errors
-    /// [`Error::Value`] where a dimension, mass or brake value is not finite, negative, or a deceleration of 0.
+    /// [`Error::Value`] where a dimension, mass or brake value is not finite or negative, or where the mass, the
+    /// deceleration, or a dimension of what is no obstacle is 0.
     pub fn check(&self) -> Result<()> {
         let checks = [
-            ("length", self.length, false),
-            ("width", self.width, false),
+            ("length", self.length, self.category != Category::Obstacle),
+            ("width", self.width, self.category != Category::Obstacle),
             ("mass", self.mass, true),
             ("deceleration", self.brakes.deceleration, self.category == Category::Vehicle),
             ("response time", self.brakes.response, false),
@@ -187,5 +188,16 @@ mod tests {
         // Masses that a type or the user sets are taken as they are.
         assert_eq!(mass(SumoType { mass: 95.0, ..SumoType::of_class("any", "bicycle") }), 95.0);
         assert_eq!(mass(SumoType::of_class("light", "bicycle")), 12.0);
+    }
+
+    #[test]
+    fn a_road_user_without_size_is_refused() {
+        let options = Options::default();
+        let flat = SumoType { width: 0.0, ..SumoType::car("car") };
+        for profile in [Profile::vehicle(&flat, &options), Profile::person(&flat, &options, 0.1)] {
+            let message = profile.check().unwrap_err().to_string();
+            assert_eq!(message, "type \"car\": width is 0, it must be finite and above 0");
+        }
+        Profile::obstacle("kiosk").check().unwrap();
     }
 }

@@ -8,6 +8,7 @@ use rustc_hash::FxHashMap;
 use super::profile::{Category, Profile, origins};
 use crate::Result;
 use crate::geometry::polygon::Polygon;
+use crate::util::units::Second;
 
 /// A road user of a [`Roster`]: valid from when it enters the scene until it leaves, then given to another.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -46,6 +47,12 @@ impl Roster {
         self.by_name.entry(profile.name.clone()).or_default()[profile.category as usize] = Some(index);
         self.profiles.push(profile);
         Ok(index)
+    }
+
+    /// Sets the response time of a type, from the next step on.
+    pub fn set_response(&mut self, profile: ProfileIndex, response: Second) {
+        self.changes += 1;
+        self.profiles[profile.0 as usize].brakes.response = response;
     }
 
     /// The type added under this name.

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
 mod bisection;
+mod command_line;
 mod contact;
 mod detector;
 mod lane_lengths;

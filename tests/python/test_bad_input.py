@@ -15,12 +15,16 @@ from conftest import closecall, python
 Copy = Callable[[str], Path]
 
 
-def refused(config: Path, *words: str, names: str) -> None:
-    """Run the configuration and expect that closecall refuses it."""
+def refused(config: Path, *words: str, names: str, usage: bool = False) -> None:
+    """Run the configuration and expect that closecall refuses it, in one line or with the usage."""
     done = closecall("run", config, *words)
     assert done.returncode == 2, (done.returncode, done.stderr)
     assert done.stdout == ""
-    assert done.stderr.count("\n") == 1, done.stderr
+    assert done.stderr.startswith("closecall: "), done.stderr
+    if usage:
+        assert done.stderr.endswith("\nFor more information, try '--help'.\n"), done.stderr
+    else:
+        assert done.stderr.count("\n") == 1, done.stderr
     assert re.search(names, done.stderr), done.stderr
     assert not (config.parent / "closecall-out").exists()
 
@@ -38,7 +42,8 @@ def test_a_missing_configuration_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_misspelt_option_gets_a_suggestion(scenario: Copy) -> None:
-    refused(scenario("rear_end"), "--modus", "paper", names="'--modus' found; tip: a similar .* exists: '--mode'; tip:")
+    found = r"unexpected argument '--modus' found\n\n  tip: a similar argument exists: '--mode'\n(.*\n)*\nUsage: closecall run "
+    refused(scenario("rear_end"), "--modus", "paper", names=found, usage=True)
 
 
 def test_a_full_output_is_reported_and_a_closed_pipe_accepted(scenario: Copy) -> None:
@@ -120,7 +125,7 @@ def test_impossible_dimensions_are_refused(name: str, value: str, scenario: Copy
 
 @pytest.mark.parametrize(("option", "value"), [("--mu", "big"), ("--epsilon", "-1"), ("--step-length", "0")])
 def test_an_impossible_option_is_refused(option: str, value: str, scenario: Copy) -> None:
-    refused(scenario("rear_end"), option, value, names=option)
+    refused(scenario("rear_end"), option, value, names=option, usage=True)
 
 
 def test_an_output_folder_that_cannot_be_written_is_refused(scenario: Copy, tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from pathlib import Path
 from typing import Any, Callable
@@ -244,7 +245,12 @@ def test_a_row_that_is_not_finite_is_ignored() -> None:
     ("states", "message"),
     [
         ({"x": [0.0]}, '"x" has 1 values, "id" has 2'),
-        ({"x": [0.0, 9.0], "length": [-5.0, 5.0]}, "length is -5"),
+        ({"x": [0.0, 9.0], "length": [-5.0, 5.0]}, '"a": length is -5, it must be finite and above 0'),
+        ({"x": [0.0, 9.0], "width": [1.8, 0.0]}, '"b": width is 0, it must be finite and above 0'),
+        ({"x": [0.0, 9.0], "lenght": [5.0, 5.0]}, 'there is no column "lenght"; did you mean "length"'),
+        ({"x": [0.0, 9.0], "category": ["car", "person"]}, 'category is "car": vehicle, bicycle, person or obstacle'),
+        ({"x": [0.0, 9.0], "category": ["person"]}, '"category" has 1 values, "id" has 2'),
+        ({"x": [0.0, 9.0], "category": ["vehicle", "obstacle"]}, '"b" is an obstacle, which needs "length" and "width"'),
         ({}, 'there is no "x"'),
         ({"x": [0.0, 9.0], "id": ["a", "a"]}, '"a" is there twice'),
     ],
@@ -254,10 +260,100 @@ def test_impossible_frames_are_refused(states: dict[str, Any], message: str) -> 
         cc.Checker().step(0.0, {**CAR, **states})
 
 
+def encounter(category: str, **foe: Any) -> list[cc.Conflict]:
+    """The conflicts of a car that drives at 15 m/s towards a standing road user."""
+    with cc.Checker() as checker:
+        for step in range(10):
+            sizes = {name: [5.0 if name == "length" else 1.8, size] for name, size in foe.items()}
+            front = 15.0 * step / 10
+            frame = {"id": ["car", "foe"], "x": [front, 30.0], "y": [0.0, 0.0], "heading": [0.0, 0.0], "speed": [15.0, 0.0]}
+            checker.step(step / 10, {**frame, "category": ["vehicle", category], **sizes})
+        return checker.conflicts
+
+
+def test_every_category_can_be_given_in_plain_frames() -> None:
+    lengths = {"vehicle": 5.0, "bicycle": 1.6, "person": 0.215}
+    for category, length in lengths.items():
+        (conflict,) = encounter(category)
+        assert (conflict.ego, conflict.foe) == ("car", "foe")
+        assert (conflict.foe_length, conflict.kind) == (length, "rear_end")
+    (conflict,) = encounter("obstacle", length=2.0, width=1.0)
+    assert (conflict.ego, conflict.foe, conflict.foe_type) == ("car", "foe", "polygon:obstacle")
+    # From the obstacle's front at 30 m its rear is 2 m nearer.
+    assert conflict.gap == pytest.approx(28.0 - 15.0 * conflict.time, abs=1e-3)
+
+
+def test_two_persons_are_no_pair_and_no_vehicles() -> None:
+    with cc.Checker() as checker:
+        for step in range(5):
+            place = 1.4 * step / 10
+            frame = {"id": ["a", "b"], "x": [place, place], "y": [0.0, 0.1], "heading": [0.0, 0.0], "speed": [1.4, 1.4]}
+            checker.step(step / 10, {**frame, "category": ["person", "person"]})
+        assert checker.conflicts == []
+    exposure = checker.summary["exposure"]
+    assert (exposure["vehicles"], exposure["persons"], exposure["vehicle_hours"]) == (0, 2, 0)
+
+
+def test_an_earlier_log_is_kept_unless_it_is_to_be_replaced(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    cc.Checker(out=tmp_path).close()
+    first = (tmp_path / "run.json").read_text()
+    assert capfd.readouterr().err == ""
+    cc.Checker(out=tmp_path, epsilon=1.0).close()
+    assert capfd.readouterr().err == f"closecall: the earlier log is kept in {tmp_path}/earlier/1\n"
+    assert (tmp_path / "earlier" / "1" / "run.json").read_text() == first
+    cc.Checker(out=tmp_path, force=True).close()
+    assert capfd.readouterr().err == ""
+    assert [path.name for path in (tmp_path / "earlier").iterdir()] == ["1"]
+
+
+LOADED = """
+import sys, warnings
+import {module} as sumo
+import closecall
+sumo.start(["sumo", "-c", sys.argv[1], "--no-warnings"])
+checker = closecall.Checker(sumo)
+sumo.addStepListener(checker)
+for _ in range(40):
+    sumo.simulationStep()
+steps = checker.summary["steps"]
+sumo.load(["-c", sys.argv[1], "--no-warnings"])
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    for _ in range(3):
+        sumo.simulationStep()
+assert checker.summary["steps"] == steps == 40
+print([(warning.category.__name__, str(warning.message)) for warning in caught])
+sumo.close()
+"""
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_a_checker_says_that_a_load_has_stopped_it(module: str, scenario: Copy) -> None:
+    done = python(LOADED.replace("{module}", module), scenario("curves"))
+    assert done.returncode == 0, done.stderr
+    ((kind, message),) = ast.literal_eval(done.stdout.splitlines()[-1])
+    assert kind == "RuntimeWarning" and message.startswith("this checker has stopped: the simulation's time went back")
+
+
 def test_an_unknown_option_is_named() -> None:
     for value in ("red", False):
-        with pytest.raises(ValueError, match="--colour"):
+        with pytest.raises(ValueError, match='there is no option "colour"'):
             cc.Checker(colour=value)
+    with pytest.raises(ValueError, match='"serious_tcc"; did you mean "serious_ttc"'):
+        cc.Checker(serious_tcc=1.5)
+
+
+def test_an_error_names_the_keyword_not_the_long_option() -> None:
+    with pytest.raises(ValueError, match=r'^invalid value \'big\' for "mu"; possible values: minimal, at-rest, paper$'):
+        cc.Checker(mu="big")
+    with pytest.raises(ValueError, match=r'^invalid value \'-1\' for "serious_ttc": '):
+        cc.Checker(serious_ttc=-1)
+
+
+@pytest.mark.parametrize("spelling", ["at_rest", "at-rest"])
+def test_a_value_of_two_words_has_both_spellings(spelling: str, tmp_path: Path) -> None:
+    cc.Checker(out=tmp_path, mu=spelling).close()
+    assert json.loads((tmp_path / "run.json").read_text())["options"]["mu"] == "at-rest"
 
 
 def test_a_missing_net_raises_file_not_found(tmp_path: Path) -> None:

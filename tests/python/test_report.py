@@ -279,6 +279,22 @@ def test_several_runs_share_one_report(browser: Any, scenario: Copy, tmp_path: P
     assert "conflicts per vehicle-km" not in opened.text("#figures")
 
 
+def test_runs_that_differ_in_an_option_are_variants(browser: Any, scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("side")
+    for epsilon in ("0.5", "0.25"):
+        for seed in ("1", "2"):
+            words = ("--seed", seed, "--epsilon", epsilon, "--out", tmp_path / "runs" / f"{epsilon}-{seed}")
+            assert closecall("run", config, *words).returncode == 0
+    assert closecall("report", tmp_path / "runs", "-o", tmp_path / "r.html").returncode == 0
+    opened = Opened(browser, tmp_path / "r.html")
+    assert "The runs differ in epsilon" in opened.text("#notes")
+    figures = opened.text("#figures").lower()
+    assert [f"conflicts per vehicle-km, epsilon={epsilon}" in figures for epsilon in ("0.25", "0.5")] == [True, True]
+    opened.page.select_option("#variant", label="epsilon=0.25")
+    assert opened.text("#shown") == "2 of 4 conflicts"
+    assert opened.complaints == []
+
+
 def test_a_missing_net_is_noted_and_conflicts_are_drawn(browser: Any, scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
     net = config.parent / "side.net.xml"

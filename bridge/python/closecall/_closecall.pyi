@@ -117,6 +117,7 @@ class Checker:
         *,
         net: str | PathLike[str] | None = None,
         out: str | PathLike[str] | None = None,
+        force: bool = False,
         paint: bool | None = None,
         **options: Any,
     ) -> Checker: ...

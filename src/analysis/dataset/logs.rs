@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::analysis::logged::{self, PARQUET};
+use crate::analysis::logged::{self, LoggedRun, PARQUET};
 use crate::output::log::RUN;
 use crate::{Error, Result};
 
@@ -13,4 +13,9 @@ pub fn record(log: &Path) -> Result<serde_json::Value> {
     }
     let (path, text) = logged::record(log)?;
     serde_json::from_str(&text).map_err(|error| Error::content(&path, format!("it is not JSON: {error}")))
+}
+
+/// How a run was made; none where its record is not that of a log.
+pub fn run(record: &serde_json::Value) -> Option<LoggedRun> {
+    serde_json::from_value(record.clone()).ok()
 }

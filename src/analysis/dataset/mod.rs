@@ -6,7 +6,8 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
-use super::logged::{ConflictReader, log_folders};
+use super::logged::{ConflictReader, Progress, Reading, log_folders};
+use super::variants::{Variant, Variants};
 use crate::Result;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
@@ -24,6 +25,8 @@ pub struct Conflicts {
     pub(super) logs: Vec<PathBuf>,
     /// Their `run.json`; null where there is none.
     pub(super) records: Vec<serde_json::Value>,
+    /// Their variants: runs that were made alike but for the seed.
+    pub(super) variants: Vec<Variant>,
     /// The net, and notes about it.
     pub(super) ground: Ground,
     /// The conflicts, worst first.
@@ -33,20 +36,28 @@ pub struct Conflicts {
 }
 
 /// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
-/// first log.
+/// first log. `progress` is told how far the logs are read.
 ///
 /// # Errors
 /// [`crate::Error::File`] where a folder cannot be read, [`crate::Error::Content`] where a folder holds no log,
 /// [`crate::Error::Line`] where a row of `conflicts.csv` is not as docs/log.md describes it.
-pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
+pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) -> Result<Conflicts> {
     let logs = log_folders(folders)?;
+    let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
+    let runs = records.iter().map(logs::run).collect::<Vec<_>>();
+    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?))).collect::<Vec<_>>();
+    let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
     for (run, log) in (0..).zip(&logs) {
         for conflict in ConflictReader::open(log)?.with_snapshots() {
             worst.push(RunConflict { run, conflict: conflict? });
+            reading.count();
         }
     }
-    let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
+    let mut variants = Variants::of(&known.iter().map(|(_, run)| *run).collect::<Vec<_>>());
+    for variant in &mut variants.all {
+        variant.runs.iter_mut().for_each(|run| *run = known[*run].0);
+    }
     let mut ground = nets::find(net, &logs, &records)?;
     // A record without steps is that of a run that has begun; null means that there is no record.
     let without = records.iter().filter(|record| record["summary"]["steps"].as_u64().is_none_or(|steps| steps == 0));
@@ -58,8 +69,15 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>) -> Result<Conflicts> {
             logs.len()
         ));
     }
+    if variants.are_several() {
+        let varied = variants.varied.join(", ");
+        ground
+            .notes
+            .push(format!("The runs differ in {varied}: the filter selects one variant, the page begins with all."));
+    }
+    ground.notes.append(&mut variants.notes);
     let seen = worst.seen();
-    Ok(Conflicts { logs, records, ground, conflicts: worst.into_sorted(), seen })
+    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen })
 }
 
 impl Conflicts {

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::output::earlier_log::EARLIER;
 use crate::output::log::CONFLICTS;
 use crate::{Error, Result};
 
@@ -14,7 +15,8 @@ pub const SUMMARY: &str = "summary.json";
 /// How many levels below a named folder are searched: a guard against links that lead upwards.
 const DEEPEST: usize = 16;
 
-/// The log folders among these and below them, each once, in the order of their paths.
+/// The log folders among these and below them, each once, in the order of their paths. Earlier logs that a run has kept
+/// are found only in folders that are named.
 ///
 /// # Errors
 /// [`Error::File`] where a folder is missing or cannot be read; [`Error::Content`] where it holds no log.
@@ -55,6 +57,9 @@ fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
             is_blessed |= name == SUMMARY;
         }
     }
+    if is_log {
+        below.retain(|path| path.file_name().unwrap_or_default() != EARLIER);
+    }
     // What `closecall regress` has blessed looks like a log, but is none.
     if is_log && !is_blessed {
         found.push(folder.to_owned());
@@ -84,5 +89,18 @@ mod tests {
         assert!(log_folders(&[top.join("b")]).unwrap_err().to_string().contains("there is no log in it"));
         assert!(log_folders(&[top.join("c")]).unwrap_err().to_string().contains("/c: "));
         fs::remove_dir_all(top).unwrap();
+    }
+
+    #[test]
+    fn earlier_logs_count_only_where_they_are_named() {
+        let top = tempfile::tempdir().unwrap();
+        let log = top.path().join("log");
+        for folder in [log.clone(), log.join("earlier/1"), log.join("earlier/2")] {
+            fs::create_dir_all(&folder).unwrap();
+            fs::write(folder.join(CONFLICTS), "").unwrap();
+        }
+        assert_eq!(log_folders(&[top.path().to_owned()]).unwrap(), [log.clone()]);
+        let earlier = log.join("earlier");
+        assert_eq!(log_folders(&[earlier.clone()]).unwrap(), [earlier.join("1"), earlier.join("2")]);
     }
 }

@@ -14,6 +14,7 @@ mod parquet;
 #[path = "no_parquet.rs"]
 mod parquet;
 mod reader;
+mod reading;
 mod run;
 
 pub use folders::{PARQUET, SUMMARY, log_folders};
@@ -22,6 +23,7 @@ pub use pack::{Label, LabelValue, pack};
 #[cfg(feature = "parquet")]
 pub use parquet::Packed;
 pub use reader::ConflictReader;
+pub use reading::{Progress, Reading};
 pub use run::{LoggedRun, record};
 
 pub use crate::output::schema::LoggedConflict;

@@ -69,6 +69,11 @@ impl LoggedRun {
         serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))
     }
 
+    /// The number of conflicts that it found.
+    pub fn conflicts(&self) -> u64 {
+        self.summary.count(None, None)
+    }
+
     /// Simulated hours: from the first step to the end of the last, which lasts as long as the others.
     pub fn hours(&self) -> f64 {
         (self.summary.end - self.summary.begin + self.step_length.unwrap_or_default()) / 3600.0

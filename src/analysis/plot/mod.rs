@@ -16,6 +16,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
 use super::dataset::{self, Conflicts};
+use super::logged::Progress;
 use crate::{Error, Result};
 use chart::{Chart, message};
 
@@ -37,8 +38,14 @@ pub enum PictureFormat {
 ///
 /// # Errors
 /// Those of [`dataset::read`], and [`Error::File`] if a picture cannot be written.
-pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, format: PictureFormat) -> Result<Vec<PathBuf>> {
-    let conflicts = dataset::read(folders, net)?;
+pub fn write(
+    folders: &[PathBuf],
+    net: Option<&Path>,
+    out: &Path,
+    format: PictureFormat,
+    progress: &mut Progress,
+) -> Result<Vec<PathBuf>> {
+    let conflicts = dataset::read(folders, net, progress)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
     font::register()?;
     let mut files = vec![picture(out, "map", format, MAP_SIZE, &conflicts, map::Map)?];

@@ -20,7 +20,7 @@ const NOT_SHOWN: &str = "clearance";
 
 /// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
 pub fn json(found: Conflicts) -> String {
-    let Conflicts { logs, records, ground, mut conflicts, seen } = found;
+    let Conflicts { logs, records, variants, ground, mut conflicts, seen } = found;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
@@ -33,6 +33,7 @@ pub fn json(found: Conflicts) -> String {
         "severities": Severity::ALL.map(Severity::name),
         "conflicts": columns(&conflicts, drawn, ground.net.as_ref()),
         "runs": runs(&logs, records),
+        "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
         "net": ground.net.as_ref().map(roads::json),
         "notes": ground.notes,
@@ -190,8 +191,14 @@ mod tests {
         };
         let conflict = LoggedConflict::from_cells(cell).unwrap();
         let conflicts = vec![RunConflict { run: 0, conflict }];
-        let text =
-            json(Conflicts { logs: Vec::new(), records: Vec::new(), ground: Default::default(), conflicts, seen: 1 });
+        let text = json(Conflicts {
+            logs: Vec::new(),
+            records: Vec::new(),
+            variants: Vec::new(),
+            ground: Default::default(),
+            conflicts,
+            seen: 1,
+        });
         assert!(!text.contains('<'));
         let read: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(read["conflicts"]["ids"][0], "</script><script>");

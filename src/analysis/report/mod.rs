@@ -10,6 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::dataset::read;
+use super::logged::Progress;
 use crate::{Error, Result};
 
 /// The template, with a mark for each part.
@@ -48,8 +49,8 @@ pub struct Made {
 ///
 /// # Errors
 /// Those of [`fn@read`], and [`Error::File`] if `out` cannot be written.
-pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path) -> Result<Made> {
-    let conflicts = read(folders, net)?;
+pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut Progress) -> Result<Made> {
+    let conflicts = read(folders, net, progress)?;
     let runs = conflicts.logs.len();
     let seen = conflicts.seen;
     let page = page(&data::json(conflicts));

@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
-use serde::Serialize;
 
+use super::chosen::{Chosen, LeftOutLog, choose};
 use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::quantile;
 use super::worst::WorstOf;
-use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, log_folders};
+use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, Progress, Reading, log_folders};
+use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
 use crate::{Error, Result};
 
@@ -43,6 +44,16 @@ impl Counts {
         counts
     }
 
+    /// The counts of these runs, which are in ascending order.
+    pub fn of(&self, runs: &[usize]) -> Vec<f64> {
+        let mut counts = self.0.iter().peekable();
+        let count = |run: &usize| {
+            while counts.next_if(|(known, _)| (*known as usize) < *run).is_some() {}
+            counts.peek().filter(|(known, _)| *known as usize == *run).map_or(0.0, |(_, count)| *count as f64)
+        };
+        runs.iter().map(count).collect()
+    }
+
     /// The count over all runs.
     pub fn sum(&self) -> u64 {
         self.0.iter().map(|(_, count)| count).sum()
@@ -69,15 +80,6 @@ pub struct Spot {
     pub severities: [u64; 3],
 }
 
-/// A log that is not counted or needs a warning, and why.
-#[derive(Clone, Debug, Serialize)]
-pub struct LeftOutLog {
-    /// The log folder.
-    pub folder: PathBuf,
-    /// Why.
-    pub why: String,
-}
-
 /// The result of one pass over a set of runs.
 #[derive(Debug)]
 pub struct Collection {
@@ -85,12 +87,12 @@ pub struct Collection {
     pub runs: Vec<LoggedRun>,
     /// The folder of each run.
     pub folders: Vec<Arc<Path>>,
-    /// The runs of each seed.
-    by_seed: FxHashMap<Option<String>, Vec<usize>>,
-    /// Logs that were not counted, were counted in part, or repeat another.
+    /// The variants of the runs.
+    pub variants: Variants,
+    /// Logs that were not counted, were counted in part, or seem to repeat another.
     pub left_out: Vec<LeftOutLog>,
-    /// The conflicts, by group.
-    pub groups: FxHashMap<String, ConflictGroup>,
+    /// The conflicts of each variant, by group.
+    pub groups: Vec<FxHashMap<String, ConflictGroup>>,
     /// Counts by kind and severity.
     pub tallies: [[Counts; 3]; 3],
     /// Counts by edge.
@@ -106,28 +108,35 @@ pub struct Collection {
 }
 
 impl Collection {
-    /// Reads the logs in and below these folders.
+    /// Reads the logs in and below these folders. `progress` is told now and then how many conflicts of how many are read.
     ///
     /// # Errors
     /// An error that names the folder, or the file and its line: missing, not a log, empty, cut short, with other columns
     /// than the first log, or if no run has a result.
-    pub fn read(named: &[PathBuf], by: By, worst: usize) -> Result<Self> {
+    pub fn read(named: &[PathBuf], by: By, worst: usize, progress: &mut Progress) -> Result<Self> {
+        let Chosen { runs, variants, left_out } = choose(&log_folders(named)?)?;
+        let (folders, runs) = runs.into_iter().unzip::<_, _, Vec<Arc<Path>>, Vec<_>>();
         let mut found = Self {
-            runs: Vec::new(),
-            folders: Vec::new(),
-            by_seed: FxHashMap::default(),
-            left_out: Vec::new(),
-            groups: FxHashMap::default(),
+            medians: Vec::with_capacity(runs.len()),
+            groups: variants.all.iter().map(|_| FxHashMap::default()).collect(),
+            runs,
+            folders,
+            variants,
+            left_out,
             tallies: Default::default(),
             edges: FxHashMap::default(),
             junctions: FxHashMap::default(),
-            medians: Vec::new(),
             worst: WorstOf::new(worst),
             tails: Tails::default(),
         };
+        let mut variant_of = vec![0; found.runs.len()];
+        for (variant, members) in found.variants.all.iter().enumerate() {
+            members.runs.iter().for_each(|run| variant_of[*run] = variant);
+        }
+        let mut progress = Reading::new(found.runs.iter().map(LoggedRun::conflicts).sum(), progress);
         let mut columns: Option<(PathBuf, Vec<String>)> = None;
-        for folder in log_folders(named)? {
-            let reader = ConflictReader::open(&folder)?;
+        for (run, variant) in variant_of.into_iter().enumerate() {
+            let reader = ConflictReader::open(&found.folders[run])?;
             let header = reader.columns();
             if by == By::Type && !header.iter().any(|column| column == "ego_type") {
                 let message = "the column \"ego_type\" is missing: logs of earlier versions do not have types";
@@ -141,36 +150,25 @@ impl Collection {
                 Some(_) => {}
                 None => columns = Some((reader.path().to_owned(), header)),
             }
-            let run = LoggedRun::read(&folder)?;
-            if run.summary.steps == 0 {
-                let why = "the run has no result: it was killed, or is still running".to_owned();
-                found.left_out.push(LeftOutLog { folder, why });
-                continue;
-            }
-            found.add_run(run, folder.into(), reader, by)?;
+            found.add_run(run, variant, reader, by, &mut progress)?;
         }
-        match found.left_out.first() {
-            Some(first) if found.runs.is_empty() => Err(Error::content(&first.folder, first.why.clone())),
-            _ => Ok(found),
-        }
+        Ok(found)
     }
 
-    fn add_run(&mut self, run: LoggedRun, folder: Arc<Path>, reader: ConflictReader, by: By) -> Result<()> {
-        let number = self.runs.len();
-        let of_seed = self.by_seed.entry(run.seed.clone()).or_default();
-        let before = of_seed.iter().copied().find(|known| same_run(&self.runs[*known], &run));
-        of_seed.push(number);
-        if let Some(before) = before {
-            let why = format!("counted, but it repeats {}: same scenario and seed", self.folders[before].display());
-            self.left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });
-        } else if !run.complete {
-            let why = "counted in part: the run did not reach its end".to_owned();
-            self.left_out.push(LeftOutLog { folder: folder.to_path_buf(), why });
-        }
+    fn add_run(
+        &mut self,
+        run: usize,
+        variant: usize,
+        reader: ConflictReader,
+        by: By,
+        progress: &mut Reading,
+    ) -> Result<()> {
+        let folder = self.folders[run].clone();
         let mut own = Columns::default();
         for conflict in reader {
             let conflict = conflict?;
-            self.add(number, &folder, &conflict, by);
+            progress.count();
+            self.add(run, variant, &folder, &conflict, by);
             for (column, value) in own.iter_mut().zip(measures(&conflict)) {
                 column.extend(value);
             }
@@ -179,13 +177,11 @@ impl Collection {
             values.sort_unstable_by(f64::total_cmp);
             quantile(&values, 0.5)
         }));
-        self.runs.push(run);
-        self.folders.push(folder);
         Ok(())
     }
 
-    fn add(&mut self, run: usize, folder: &Arc<Path>, conflict: &LoggedConflict, by: By) {
-        update(&mut self.groups, &by.group(conflict), |group| {
+    fn add(&mut self, run: usize, variant: usize, folder: &Arc<Path>, conflict: &LoggedConflict, by: By) {
+        update(&mut self.groups[variant], &by.group(conflict), |group| {
             group.counts.add(run);
             group.collisions += u64::from(conflict.collision);
             for (column, value) in group.columns.iter_mut().zip(measures(conflict)) {
@@ -207,6 +203,11 @@ impl Collection {
         self.tails.take(conflict);
     }
 
+    /// The records of a variant's runs.
+    pub fn members(&self, variant: &Variant) -> Vec<&LoggedRun> {
+        variant.runs.iter().map(|run| &self.runs[*run]).collect()
+    }
+
     /// Conflicts per run, of one kind or all, and of one severity or all.
     pub fn counts(&self, kind: Option<Kind>, severity: Option<Severity>) -> Vec<f64> {
         let mut sum = vec![0.0; self.runs.len()];
@@ -222,9 +223,9 @@ impl Collection {
 
     /// All values of a measure, in ascending order.
     pub fn sorted(&self, measure: usize) -> Vec<f64> {
-        let all = self.groups.values().map(|group| group.columns[measure].len()).sum();
-        let mut values = Vec::with_capacity(all);
-        self.groups.values().for_each(|group| values.extend_from_slice(&group.columns[measure]));
+        let groups = || self.groups.iter().flat_map(FxHashMap::values);
+        let mut values = Vec::with_capacity(groups().map(|group| group.columns[measure].len()).sum());
+        groups().for_each(|group| values.extend_from_slice(&group.columns[measure]));
         values.sort_unstable_by(f64::total_cmp);
         values
     }
@@ -247,15 +248,4 @@ fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl F
         change(&mut new);
         map.insert(name.to_owned(), new);
     }
-}
-
-/// Whether two runs repeat each other, so that they are not independent.
-fn same_run(one: &LoggedRun, other: &LoggedRun) -> bool {
-    let is_random = one.seed.is_none() && one.versions.sumo.is_some();
-    !is_random
-        && one.seed == other.seed
-        && one.sumo_words == other.sumo_words
-        && one.inputs == other.inputs
-        && one.options == other.options
-        && one.scenario == other.scenario
 }

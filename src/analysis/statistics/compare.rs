@@ -3,10 +3,10 @@
 use serde::Serialize;
 
 use super::collect::{Collection, MEASURES};
+use super::pairs::{Unit, pairs, ratio};
 use super::permutation::{Test, holm, p_value, splits};
 use super::quantiles::{cliffs_delta, quantile};
-use super::rate::{Ratio, rate_ratio};
-use crate::analysis::logged::LoggedRun;
+use super::rate::Ratio;
 use crate::detection::kind::{Kind, Severity};
 
 /// How two sets of runs differ.
@@ -76,15 +76,13 @@ pub struct Significance {
 
 /// Compares two sets of runs.
 pub fn compare(first: &Collection, other: &Collection) -> Comparison {
-    let kilometres = |run: &LoggedRun| run.summary.exposure.vehicle_kilometres;
-    let has_kilometres = [first, other].iter().all(|set| set.runs.iter().map(kilometres).sum::<f64>() > 0.0);
-    let traffic = |set: &Collection| -> Vec<f64> {
-        set.runs.iter().map(|run| if has_kilometres { kilometres(run) } else { run.hours() }).collect()
-    };
-    let traffics = [traffic(first), traffic(other)];
+    let all = [first, other].map(|set| set.runs.iter().collect::<Vec<_>>());
+    let unit = Unit::of(&[&all[0], &all[1]]);
+    let traffics = all.each_ref().map(|runs| unit.of_each(runs));
+    let pairs = pairs(&all[0], &all[1]);
     let mut rates = groups()
         .map(|(group, kind, severity)| {
-            rate_difference(group, [first, other].map(|set| set.counts(kind, severity)), &traffics)
+            rate_difference(group, [first, other].map(|set| set.counts(kind, severity)), &traffics, pairs.as_deref())
         })
         .collect::<Vec<_>>();
     let mut measures = (0..MEASURES.len()).map(|measure| measure_difference(measure, first, other)).collect::<Vec<_>>();
@@ -101,14 +99,7 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
         )
     });
     correct(tested);
-    Comparison {
-        runs,
-        against_runs,
-        rates_per: if has_kilometres { "vehicle_kilometre" } else { "hour" },
-        rates,
-        measures,
-        note,
-    }
+    Comparison { runs, against_runs, rates_per: unit.name, rates, measures, note }
 }
 
 /// The groups that are compared: all, each kind, each severity.
@@ -118,7 +109,12 @@ fn groups() -> impl Iterator<Item = (&'static str, Option<Kind>, Option<Severity
     std::iter::once(("all", None, None)).chain(kinds).chain(severities)
 }
 
-fn rate_difference(group: &'static str, counts: [Vec<f64>; 2], traffic: &[Vec<f64>; 2]) -> RateDifference {
+fn rate_difference(
+    group: &'static str,
+    counts: [Vec<f64>; 2],
+    traffic: &[Vec<f64>; 2],
+    pairs: Option<&[usize]>,
+) -> RateDifference {
     let value = |set: usize| {
         let total = traffic[set].iter().sum::<f64>();
         if total > 0.0 { counts[set].iter().sum::<f64>() / total } else { 0.0 }
@@ -144,7 +140,7 @@ fn rate_difference(group: &'static str, counts: [Vec<f64>; 2], traffic: &[Vec<f6
         rate,
         against,
         difference: rate - against,
-        ratio: rate_ratio((&counts[0], &traffic[0]), (&counts[1], &traffic[1])),
+        ratio: ratio((&counts[0], &traffic[0]), (&counts[1], &traffic[1]), pairs),
         significance: tested.map(|(p, test)| Significance { p, p_holm: p, test }),
     }
 }

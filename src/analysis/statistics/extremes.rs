@@ -77,13 +77,14 @@ impl Tails {
         }
     }
 
-    /// The crash frequency by each quantity, from this many simulated hours.
-    pub fn extrapolate(&self, hours: f64) -> Vec<Extrapolation> {
+    /// The crash frequency by each quantity, from this many simulated hours; or why there is none.
+    pub fn extrapolate(&self, hours: std::result::Result<f64, &str>) -> Vec<Extrapolation> {
         let tails = QUANTITIES.iter().zip(&self.tails);
         tails
             .map(|(quantity, (count, smallest))| {
                 let sorted = smallest.clone().into_sorted_vec().into_iter().map(|value| value.0).collect::<Vec<_>>();
-                let (crashes, refused) = match crashes(&sorted, *count, hours) {
+                let found = hours.map_err(str::to_owned).and_then(|hours| crashes(&sorted, *count, hours));
+                let (crashes, refused) = match found {
                     Ok(crashes) => (Some(crashes), None),
                     Err(reason) => (None, Some(reason)),
                 };

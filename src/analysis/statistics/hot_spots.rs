@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::collect::{Collection, Spot};
 use super::rate::Rate;
-use super::rates;
+use super::rates::Rates;
 
 /// An edge or junction with conflicts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,7 +30,11 @@ pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wante
     spots.sort_by(|a, b| (b.0, a.1).cmp(&(a.0, b.1)));
     spots.truncate(wanted);
     let statistics = |(count, id, spot): (u64, &String, &Spot)| {
-        let rates = rates(&spot.counts.per_run(set.runs.len()), &set.runs);
+        // Runs that differ in their settings have no common rate.
+        let rates = match &set.variants.all[..] {
+            [only] => Rates::of(&spot.counts.of(&only.runs), &set.members(only)),
+            _ => Rates::default(),
+        };
         let [_, serious, critical] = spot.severities;
         HotSpot {
             id: id.clone(),

@@ -23,6 +23,8 @@ const EQUAL: f64 = 1e-9;
 pub enum IntervalMethod {
     /// Student's t over runs.
     TOverRuns,
+    /// Student's t over pairs of runs with the same seed.
+    TOverPairs,
     /// Poisson's exact interval of the count.
     PoissonExact,
 }
@@ -63,15 +65,45 @@ pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
 
 /// The standard error of a rate over runs, divided by the rate; none with a single run or without conflicts.
 fn relative_spread(counts: &[f64], traffic: &[f64]) -> Option<f64> {
+    let deviations = relative_deviations(counts, traffic)?;
+    let runs = deviations.len() as f64;
+    let squares = deviations.iter().map(|deviation| deviation.powi(2)).sum::<f64>();
+    Some((squares / (runs - 1.0) / runs).sqrt())
+}
+
+/// What each run's count differs from that of its traffic at the common rate, divided by the mean count; none with a single
+/// run, without conflicts or without traffic.
+fn relative_deviations(counts: &[f64], traffic: &[f64]) -> Option<Vec<f64>> {
     let count = counts.iter().sum::<f64>();
     let total = traffic.iter().sum::<f64>();
-    if counts.len() < 2 || count <= 0.0 {
+    if counts.len() < 2 || count <= 0.0 || total <= 0.0 {
         return None;
     }
-    let runs = counts.len() as f64;
+    let mean = count / counts.len() as f64;
     let value = count / total;
-    let squares = counts.iter().zip(traffic).map(|(count, traffic)| (count - value * traffic).powi(2)).sum::<f64>();
-    Some((squares / (runs - 1.0) / runs).sqrt() / (count / runs))
+    Some(counts.iter().zip(traffic).map(|(count, traffic)| (count - value * traffic) / mean).collect())
+}
+
+/// The ratio of two rates, first / second, of runs in pairs: each of the first has the seed of the other in its place.
+///
+/// The interval is the t-interval of the logarithm over pairs, which takes out what the two runs of a seed have in common.
+/// Where the pairs do not differ among themselves, it is that of [`rate_ratio`].
+pub fn paired_ratio(first: (&[f64], &[f64]), second: (&[f64], &[f64])) -> Option<Ratio> {
+    let deviations = [relative_deviations(first.0, first.1), relative_deviations(second.0, second.1)];
+    if let [Some(one), Some(two)] = deviations {
+        let pairs = one.len() as f64;
+        let squares = one.iter().zip(&two).map(|(one, two)| (one - two).powi(2)).sum::<f64>();
+        let spread = (squares / (pairs - 1.0) / pairs).sqrt();
+        if spread > EQUAL {
+            let [rate, other] =
+                [first, second].map(|(counts, traffic)| counts.iter().sum::<f64>() / traffic.iter().sum::<f64>());
+            let (value, reach) = (rate / other, t_quantile(pairs - 1.0)? * spread);
+            let high = Some(value * reach.exp());
+            let method = IntervalMethod::TOverPairs;
+            return Some(Ratio { value: Some(value), low: value * (-reach).exp(), high, method });
+        }
+    }
+    rate_ratio(first, second)
 }
 
 /// The ratio of two rates, first / second, with its 95 % interval.
@@ -182,5 +214,26 @@ mod tests {
         let least = 0.025_f64.powf(0.1);
         near(ratio.low, least / (1.0 - least));
         assert_eq!(rate_ratio((&[0.0], &[1.0]), (&[0.0], &[1.0])), None);
+    }
+
+    #[test]
+    fn pairs_take_out_what_two_runs_of_a_seed_share() {
+        // Twice as many in every pair but for a little, while the seeds themselves differ tenfold.
+        let (first, second) = ([20.0, 101.0, 199.0], [10.0, 50.0, 100.0]);
+        let traffic = [1.0; 3];
+        let paired = paired_ratio((&first, &traffic), (&second, &traffic)).unwrap();
+        let unpaired = rate_ratio((&first, &traffic), (&second, &traffic)).unwrap();
+        assert_eq!((paired.value, paired.method), (Some(2.0), IntervalMethod::TOverPairs));
+        // The deviations differ by 0, 1/160 · 1.5 and -1/160 · 1.5 of the mean counts 320/3 and 160/3.
+        let spread = (2.0 * (1.0_f64 / (320.0 / 3.0)).powi(2) / 2.0 / 3.0).sqrt();
+        near(paired.low, 2.0 * (-t_quantile(2.0).unwrap() * spread).exp());
+        assert!(unpaired.low < 0.5 && unpaired.high.unwrap() > 10.0, "{unpaired:?}");
+    }
+
+    #[test]
+    fn pairs_without_any_difference_get_the_interval_of_counts() {
+        let equal = ([3.0, 5.0], [1.0, 1.0]);
+        let ratio = paired_ratio((&equal.0, &equal.1), (&equal.0, &equal.1)).unwrap();
+        assert!(ratio.value == Some(1.0) && ratio.low < 0.9 && ratio.method != IntervalMethod::TOverPairs);
     }
 }

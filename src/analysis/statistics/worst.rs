@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::analysis::logged::{LoggedConflict, LoggedRun};
+use crate::analysis::variants::Variants;
 use crate::output::badness::Badness;
 use crate::util::units::{Metre, Second};
 
@@ -22,6 +23,8 @@ const ZOOM: f64 = 1000.0;
 pub struct RankedConflict {
     /// Its log folder.
     pub folder: Arc<Path>,
+    /// The variant of its run; none if there is only one.
+    pub variant: Option<String>,
     /// The seed of its run.
     pub seed: Option<String>,
     /// The edge of the conflict point.
@@ -86,6 +89,7 @@ impl WorstOf {
         }
         let worst = RankedConflict {
             folder: folder.clone(),
+            variant: None,
             seed: None,
             edge: conflict.edge().to_owned(),
             conflict: conflict.clone(),
@@ -106,10 +110,12 @@ impl WorstOf {
     }
 
     /// The worst first.
-    pub fn into_sorted(self, runs: &[LoggedRun]) -> Vec<RankedConflict> {
+    pub fn into_sorted(self, runs: &[LoggedRun], variants: &Variants) -> Vec<RankedConflict> {
         let mut worst = self.kept.into_sorted_vec().into_iter().map(|kept| kept.0).collect::<Vec<_>>();
         for found in &mut worst {
             let Some(run) = runs.get(found.run) else { continue };
+            let of_run = variants.all.iter().find(|variant| variant.runs.binary_search(&found.run).is_ok());
+            found.variant = of_run.filter(|_| variants.are_several()).map(|variant| variant.name.clone());
             found.seed.clone_from(&run.seed);
             found.command = show(run, &found.conflict);
         }

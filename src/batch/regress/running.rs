@@ -24,6 +24,8 @@ pub struct Runner<'a> {
     pub out: Option<PathBuf>,
     /// Whether the user wants to stop; called repeatedly.
     pub interrupted: &'a mut dyn FnMut() -> bool,
+    /// Told repeatedly how many runs of how many have ended.
+    pub progress: &'a mut dyn FnMut(u64, u64),
 }
 
 /// One run.
@@ -61,6 +63,8 @@ impl Runner<'_> {
                 if (self.interrupted)() {
                     stop.store(true, Ordering::Relaxed);
                 }
+                let done = ended.lock().unwrap_or_else(PoisonError::into_inner).iter().flatten().count();
+                (self.progress)(done as u64, jobs.len() as u64);
                 std::thread::sleep(ASKED_EVERY);
             }
         });

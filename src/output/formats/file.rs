@@ -14,7 +14,11 @@ pub(super) struct OutputFile {
 }
 
 impl OutputFile {
+    /// Creates the file, and its folder if that does not exist.
     pub fn create(path: &Path) -> Result<Self> {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
+        }
         let file = File::create(path).map_err(|source| Error::file(path, source))?;
         Ok(Self { path: path.to_owned(), writer: BufWriter::new(file) })
     }

@@ -16,7 +16,7 @@ use crate::{Error, Result};
 use ssm::Ssm;
 use trajectories::Trajectories;
 
-/// Which files to write besides the log.
+/// Which files to write besides the log, and what becomes of an earlier log.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::Args))]
 pub struct OutputFiles {
@@ -26,6 +26,9 @@ pub struct OutputFiles {
     /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub trj_output: Option<PathBuf>,
+    /// Replace an earlier log in the folder, instead of keeping it in the folder's own folder earlier.
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub force: bool,
 }
 
 impl OutputFiles {

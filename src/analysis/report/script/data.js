@@ -11,28 +11,33 @@ const KINDS = ["rear-end", "frontal", "side"];
 const SEVERITIES = ["caution", "serious", "critical"];
 const options = (data.runs.find((run) => run.options) || {}).options || data.defaults;
 
+/** The variant of each run: runs of one variant were made alike but for the seed. */
+const variantOf = [];
+data.variants.forEach((variant, place) => variant.runs.forEach((run) => { variantOf[run] = place; }));
+
 /** The conflicts that have a drawing: row → [row, ego, foe]. */
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
 
-/** The filter: kinds, severities, a period in s, a type (of ego or foe), a run; null for all. */
+/** The filter: kinds, severities, a period in s, a type (of ego or foe), a variant, a run; null for all. */
 const filter = {};
 
 function resetFilter() {
   Object.assign(filter, { kinds: [true, true, true], severities: [true, true, true], from: -Infinity, to: Infinity,
-    type: null, run: null });
+    type: null, variant: null, run: null });
 }
 resetFilter();
 
 /** The rows that pass the filter; with `always`, those of all times. */
 function shownRows(always) {
   const rows = [];
-  const { kinds, severities, type, run } = filter;
+  const { kinds, severities, type, variant, run } = filter;
   const from = always ? -Infinity : filter.from;
   const to = always ? Infinity : filter.to;
   for (let row = 0; row < count; row++) {
     if (kinds[column.kind[row]] && severities[column.severity[row]]
       && column.time[row] >= from && column.time[row] <= to
       && (type === null || column.ego_type[row] === type || column.foe_type[row] === type)
+      && (variant === null || variantOf[column.run[row]] === variant)
       && (run === null || column.run[row] === run)) {
       rows.push(row);
     }

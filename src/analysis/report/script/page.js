@@ -1,5 +1,8 @@
 // The page from top to bottom: the parts that are drawn once, and those that follow the filter.
 
+/** The most variants whose rates are shown. */
+const MOST_VARIANTS = 12;
+
 function showHeader() {
   const records = data.runs.filter((run) => run.summary);
   const scenarios = [...new Set(records.map((run) => run.scenario))];
@@ -17,7 +20,16 @@ function showHeader() {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
     // A run that was killed has conflicts but no record of its traffic.
     const isKnown = data.runs.every((run) => run.summary?.steps > 0);
-    if (kilometres > 0 && isKnown) figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
+    if (kilometres > 0 && isKnown && data.variants.length < 2) {
+      figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
+    }
+    // Runs that differ in their settings have no common rate.
+    if (data.variants.length > 1) data.variants.slice(0, MOST_VARIANTS).forEach((variant) => {
+      const summaries = variant.runs.map((run) => data.runs[run].summary);
+      const driven = summaries.reduce((all, summary) => all + summary.exposure.vehicle_kilometres, 0);
+      const found = summaries.reduce((all, summary) => all + summary.conflicts.reduce((sum, { count }) => sum + count, 0), 0);
+      if (driven > 0) figures.push([`conflicts per vehicle-km, ${variant.name}`, number(found / driven, 2)]);
+    });
   }
   byId("figures").append(...figures.map(([name, value]) =>
     make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
@@ -49,6 +61,7 @@ function makeFilter(changed) {
   };
   const types = conflicts.types.map((type, place) => [place, type]).filter(([, type]) => type !== "");
   choice("type", "who", types.sort((a, b) => (a[1] < b[1] ? -1 : 1)));
+  choice("variant", "how", data.variants.map((variant, place) => [place, variant.name]));
   choice("run", "which", data.runs.map((run, place) => [place, `${place + 1}: ${run.folder}`]));
   const limit = (id, otherwise) => {
     byId(id).onchange = () => {

@@ -2,8 +2,8 @@
 
 use super::cells::{Cell, Table};
 use crate::analysis::statistics::{
-    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Significance,
-    Statistics, Test, Traffic,
+    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Ratio,
+    Significance, Statistics, Test, VariantStatistics,
 };
 
 /// A measure's name in the table, and its quantiles.
@@ -18,11 +18,16 @@ const MEASURES: [QuantileRow; 4] = [
 
 /// All tables of the statistics, in reading order.
 pub fn tables(statistics: &Statistics) -> Vec<Table> {
-    let mut tables = vec![traffic(statistics.runs, &statistics.traffic), rates(&statistics.groups)];
-    tables[0].notes = statistics.left_out.iter().map(|log| format!("{}: {}", log.folder.display(), log.why)).collect();
+    let mut tables = vec![traffic(statistics), rates(&statistics.groups), ratios(statistics)];
     tables.push(quantiles(&statistics.groups));
     tables.push(spots("edges", &statistics.edges));
     tables.push(spots("junctions", &statistics.junctions));
+    if let [_, _, ..] = statistics.variants[..] {
+        let spots = tables.iter_mut().filter(|table| ["edges", "junctions"].contains(&table.title));
+        spots.for_each(|table| {
+            table.notes.push("counts of all variants together, which have no common rate".to_owned())
+        });
+    }
     tables.push(worst(&statistics.worst));
     tables.push(extremes(&statistics.extremes));
     if let Some(comparison) = &statistics.comparison {
@@ -32,19 +37,62 @@ pub fn tables(statistics: &Statistics) -> Vec<Table> {
     tables
 }
 
-fn traffic(runs: usize, traffic: &Traffic) -> Table {
-    Table {
-        title: "traffic",
-        columns: vec!["runs", "hours", "vehicles", "persons", "vehicle-km", "vehicle-hours"],
-        rows: vec![vec![
-            Cell::Count(runs as u64),
+/// A column for the variant, where there are several.
+fn variant_column<'a>(variants: impl IntoIterator<Item = &'a Option<String>>) -> Option<&'static str> {
+    variants.into_iter().any(Option::is_some).then_some("variant")
+}
+
+fn variant_cell(variant: &Option<String>) -> Option<Cell> {
+    variant.clone().map(Cell::Text)
+}
+
+/// The traffic of each variant.
+fn traffic(statistics: &Statistics) -> Table {
+    let several = statistics.variants.len() > 1;
+    let row = |of_variant: &VariantStatistics| {
+        let traffic = &of_variant.traffic;
+        let name = several.then(|| Cell::Text(of_variant.variant.name.clone()));
+        let cells = [
+            Cell::Count(of_variant.runs as u64),
             Cell::Number(traffic.hours),
             Cell::Count(traffic.vehicles),
             Cell::Count(traffic.persons),
             Cell::Number(traffic.vehicle_kilometres),
             Cell::Number(traffic.vehicle_hours),
-        ]],
-        notes: Vec::new(),
+        ];
+        name.into_iter().chain(cells).collect()
+    };
+    let names = ["runs", "hours", "vehicles", "persons", "vehicle-km", "vehicle-hours"];
+    let differ = format!("the runs differ in {}: each variant has rates of its own", statistics.varied.join(", "));
+    let left_out = statistics.left_out.iter().map(|log| format!("{}: {}", log.folder.display(), log.why));
+    Table {
+        title: "traffic",
+        columns: several.then_some("variant").into_iter().chain(names).collect(),
+        rows: statistics.variants.iter().map(row).collect(),
+        notes: several.then_some(differ).into_iter().chain(statistics.notes.clone()).chain(left_out).collect(),
+    }
+}
+
+/// The rates of the variants beside those of the first.
+fn ratios(statistics: &Statistics) -> Table {
+    let row = |group: &GroupStatistics| {
+        let Ratio { value, low, high, method } = group.ratio.as_ref()?.ratio;
+        let method = match method {
+            IntervalMethod::TOverPairs => "t over pairs",
+            IntervalMethod::TOverRuns => "t over runs",
+            IntervalMethod::PoissonExact => "counts",
+        };
+        let ends = [value, Some(low), high].map(Cell::maybe);
+        let head = [variant_cell(&group.variant)?, Cell::Text(group.group.clone())];
+        Some(head.into_iter().chain(ends).chain([method.into()]).collect())
+    };
+    let first = statistics.variants.first().map(|first| format!("rates / those of {}", first.variant.name));
+    let pairs = "low, high: 95 % interval; t over pairs: of runs with the same seed".to_owned();
+    Table {
+        title: "compared variants",
+        columns: vec!["variant", "group", "ratio", "low", "high", "interval"],
+        rows: statistics.groups.iter().filter_map(row).collect(),
+        notes: first.into_iter().chain([pairs]).collect(),
     }
 }
 
@@ -55,10 +103,25 @@ fn with_interval(rate: Option<Rate>) -> [Cell; 3] {
 fn rates(groups: &[GroupStatistics]) -> Table {
     let rows = groups.iter().map(|group| {
         let head = [Cell::Text(group.group.clone()), Cell::Count(group.count), Cell::Count(group.collisions)];
+        let head = variant_cell(&group.variant).into_iter().chain(head);
         let rates = [group.rates.per_hour, group.rates.per_vehicle_kilometre, group.rates.per_1000_vehicles];
-        head.into_iter().chain(rates.into_iter().flat_map(with_interval)).collect()
+        head.chain(rates.into_iter().flat_map(with_interval)).collect()
     });
     let rows = rows.collect();
+    let names = [
+        "group",
+        "conflicts",
+        "collisions",
+        "per hour",
+        "low",
+        "high",
+        "per vehicle-km",
+        "low",
+        "high",
+        "per 1000 vehicles",
+        "low",
+        "high",
+    ];
     let all = groups.iter().filter_map(|group| group.rates.per_hour);
     let one = all.clone().any(|rate| rate.method == IntervalMethod::PoissonExact);
     let several = all.clone().any(|rate| rate.method == IntervalMethod::TOverRuns);
@@ -69,37 +132,25 @@ fn rates(groups: &[GroupStatistics]) -> Table {
     };
     Table {
         title: "rates",
-        columns: vec![
-            "group",
-            "conflicts",
-            "collisions",
-            "per hour",
-            "low",
-            "high",
-            "per vehicle-km",
-            "low",
-            "high",
-            "per 1000 vehicles",
-            "low",
-            "high",
-        ],
+        columns: variant_column(groups.iter().map(|group| &group.variant)).into_iter().chain(names).collect(),
         rows,
         notes: vec![note.to_owned()],
     }
 }
 
 fn quantiles(groups: &[GroupStatistics]) -> Table {
+    let names = ["group", "measure", "conflicts", "5 %", "25 %", "50 %", "75 %", "95 %"];
     let rows = groups.iter().flat_map(|group| {
         MEASURES.iter().map(|(name, of)| {
             let found = of(group);
             let shares = [found.q05, found.q25, found.q50, found.q75, found.q95].map(Cell::maybe);
             let head = [Cell::Text(group.group.clone()), (*name).into(), Cell::Count(found.count)];
-            head.into_iter().chain(shares).collect()
+            variant_cell(&group.variant).into_iter().chain(head).chain(shares).collect()
         })
     });
     Table {
         title: "quantiles",
-        columns: vec!["group", "measure", "conflicts", "5 %", "25 %", "50 %", "75 %", "95 %"],
+        columns: variant_column(groups.iter().map(|group| &group.variant)).into_iter().chain(names).collect(),
         rows: rows.collect(),
         notes: Vec::new(),
     }
@@ -133,7 +184,7 @@ fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
 fn worst(worst: &[RankedConflict]) -> Table {
     let row = |(rank, found): (usize, &RankedConflict)| {
         let conflict = &found.conflict;
-        vec![
+        let cells = [
             Cell::Count(rank as u64 + 1),
             Cell::Text(found.seed.clone().unwrap_or_default()),
             Cell::Number(conflict.time),
@@ -147,18 +198,19 @@ fn worst(worst: &[RankedConflict]) -> Table {
             Cell::maybe(conflict.ttc),
             Cell::maybe(conflict.pet),
             Cell::Number(conflict.margin),
-        ]
+        ];
+        cells.into_iter().chain(variant_cell(&found.variant)).collect()
     };
+    let names = [
+        "rank", "seed", "time s", "kind", "severity", "ego", "foe", "lane", "x m", "y m", "TTC s", "PET s", "margin m",
+    ];
     let notes = worst
         .iter()
         .enumerate()
         .filter_map(|(rank, found)| found.command.as_ref().map(|command| format!("{}: {command}", rank + 1)));
     Table {
         title: "worst",
-        columns: vec![
-            "rank", "seed", "time s", "kind", "severity", "ego", "foe", "lane", "x m", "y m", "TTC s", "PET s",
-            "margin m",
-        ],
+        columns: names.into_iter().chain(variant_column(worst.iter().map(|found| &found.variant))).collect(),
         rows: worst.iter().enumerate().map(row).collect(),
         notes: notes.collect(),
     }

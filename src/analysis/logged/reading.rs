@@ -1,0 +1,29 @@
+//! How far the logs are read, for whoever waits.
+
+/// Takes how many of how many conflicts are read.
+pub type Progress<'a> = dyn FnMut(u64, u64) + 'a;
+
+/// Conflicts between two reports.
+const EVERY: u64 = 4096;
+
+/// Counts conflicts as they are read.
+pub struct Reading<'a, 'b> {
+    read: u64,
+    all: u64,
+    progress: &'a mut Progress<'b>,
+}
+
+impl<'a, 'b> Reading<'a, 'b> {
+    /// None of `all` conflicts is read yet. A run that was killed does not say how many it has, so there may be more.
+    pub fn new(all: u64, progress: &'a mut Progress<'b>) -> Self {
+        Self { read: 0, all, progress }
+    }
+
+    /// Another conflict is read.
+    pub fn count(&mut self) {
+        self.read += 1;
+        if self.read.is_multiple_of(EVERY) {
+            (self.progress)(self.read, self.all.max(self.read));
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Static obstacles: polygons that enter the scene.
+
+use super::Run;
+use crate::geometry::Point;
+use crate::geometry::polygon::convex_parts;
+use crate::traffic::profile::Profile;
+use crate::traffic::roster::UserIndex;
+use crate::{Error, Result};
+
+impl Run {
+    /// A static obstacle enters the scene and stays: a polygon of this type and outline.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if the outline has fewer than three points or a point that is not finite.
+    pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
+        let user = self.enter_shape(id, polygon_type, outline)?;
+        self.obstacles.push((user, outline[0]));
+        Ok(())
+    }
+
+    /// The same, for an obstacle that the source adds to each frame itself.
+    ///
+    /// # Errors
+    /// Those of [`Run::enter_obstacle`].
+    pub fn enter_shape(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<UserIndex> {
+        if outline.len() < 3 || outline.iter().any(|point| !(point.x + point.y).is_finite()) {
+            return Err(Error::Value(format!("polygon \"{id}\" needs at least three points, all finite")));
+        }
+        let shape = convex_parts(outline).into();
+        let profile = self.roster.profile(Profile::obstacle(polygon_type))?;
+        Ok(self.roster.enter_shaped(id, profile, shape))
+    }
+}

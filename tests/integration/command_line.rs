@@ -1,0 +1,152 @@
+//! The command itself, as a user types it: usage, where logs go, statistics of runs that differ.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Runs closecall with these words in a folder.
+fn closecall(folder: &Path, words: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_closecall")).args(words).current_dir(folder).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A recording of a car that comes too close to another, in a file of its own folder.
+fn record(folder: &Path) {
+    fs::create_dir_all(folder).unwrap();
+    let mut text = "<fcd-export>\n".to_owned();
+    for step in 0..40 {
+        let time = f64::from(step) / 10.0;
+        text += &format!("<timestep time=\"{time}\">\n");
+        for (id, from, speed) in [("follower", 78.0, 30.0), ("leader", 200.0, 10.0)] {
+            let x = from + speed * time;
+            text += &format!(
+                "<vehicle id=\"{id}\" x=\"{x}\" y=\"0\" angle=\"90\" type=\"car\" speed=\"{speed}\" pos=\"{x}\" \
+                 lane=\"road_0\"/>\n"
+            );
+        }
+        text += "</timestep>\n";
+    }
+    fs::write(folder.join("fcd.xml"), text + "</fcd-export>\n").unwrap();
+    let net = Path::new(env!("CARGO_MANIFEST_DIR")).join("sumo_nets/rear_end/rear_end.net.xml");
+    fs::copy(net, folder.join("net.xml")).unwrap();
+}
+
+/// The words that replay the recording in the folder `recorded`, with more.
+fn replay<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    [&["replay", "recorded/fcd.xml", "--net", "recorded/net.xml"], more].concat()
+}
+
+#[test]
+fn without_words_the_command_prints_its_help() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = closecall(folder.path(), &[]);
+    let said = stderr(&done);
+    assert_eq!((done.status.code(), stdout(&done).as_str()), (Some(2), ""));
+    assert!(said.contains("\nUsage: closecall <COMMAND>\n") && said.contains("\n  replay "), "{said}");
+    let asked = closecall(folder.path(), &["--help"]);
+    assert_eq!((asked.status.code(), stdout(&asked)), (Some(0), said));
+}
+
+#[test]
+fn a_wrong_word_gets_clap_s_message_with_the_usage() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = closecall(folder.path(), &["stats", "--modus", "x"]);
+    let said = stderr(&done);
+    assert_eq!(done.status.code(), Some(2));
+    assert!(said.starts_with("closecall: unexpected argument '--modus' found\n"), "{said}");
+    assert!(said.contains("\nUsage: closecall stats "), "{said}");
+    assert!(said.ends_with("\nFor more information, try '--help'.\n"), "{said}");
+}
+
+#[test]
+fn a_value_of_two_words_has_both_spellings() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    for (out, words) in [("a", ["--mu", "at-rest"]), ("b", ["--mu", "at_rest"]), ("c", ["--config", "c.toml"])] {
+        fs::write(folder.path().join("c.toml"), "mu = \"at_rest\"\n").unwrap();
+        let done = closecall(folder.path(), &replay(&["--out", out, words[0], words[1]]));
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+        let run = fs::read_to_string(folder.path().join(out).join("run.json")).unwrap();
+        assert!(run.contains("\"mu\": \"at-rest\""), "{run}");
+    }
+}
+
+#[test]
+fn an_earlier_log_is_kept_unless_it_is_to_be_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    let log = |path: &str| fs::read_to_string(folder.path().join(path).join("conflicts.csv")).ok();
+    let said = |more: &[&str]| {
+        let done = closecall(folder.path(), &replay(more));
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+        stdout(&done)
+    };
+    assert!(!said(&[]).contains("earlier"));
+    let first = log("recorded/closecall-out").unwrap();
+    assert_eq!(first.lines().count(), 2);
+    let kept = said(&["--epsilon", "0"]);
+    assert!(kept.contains("\nthe earlier log is kept in recorded/closecall-out/earlier/1\n"), "{kept}");
+    assert_eq!(log("recorded/closecall-out/earlier/1").as_ref(), Some(&first));
+    assert_ne!(log("recorded/closecall-out").as_ref(), Some(&first));
+    assert!(!said(&["--force"]).contains("earlier"));
+    assert_eq!(log("recorded/closecall-out").as_ref(), Some(&first));
+    assert_eq!(log("recorded/closecall-out/earlier/2"), None);
+}
+
+#[test]
+fn the_default_folder_is_here_where_it_cannot_be_there() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    // Even root cannot make a folder where a file is.
+    fs::write(folder.path().join("recorded/closecall-out"), "").unwrap();
+    let done = closecall(folder.path(), &replay(&[]));
+    assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+    let said = stdout(&done);
+    assert!(said.contains("recorded/closecall-out cannot be written, so the results are in the working directory\n"));
+    assert!(said.contains("log in closecall-out;"), "{said}");
+    assert!(folder.path().join("closecall-out/conflicts.csv").is_file());
+}
+
+#[test]
+fn an_output_makes_its_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    let done = closecall(folder.path(), &replay(&["--trj-output", "x/y/t.trj", "--ssm-output", "z/ssm.xml"]));
+    assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+    assert!(folder.path().join("x/y/t.trj").is_file() && folder.path().join("z/ssm.xml").is_file());
+}
+
+#[test]
+fn runs_that_differ_in_an_option_have_rates_of_their_own() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    for epsilon in ["0.5", "0.25"] {
+        for out in ["a", "b"] {
+            let out = format!("runs/{epsilon}/{out}");
+            let done = closecall(folder.path(), &replay(&["--quiet", "--epsilon", epsilon, "--out", &out]));
+            assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+        }
+    }
+    let done = closecall(folder.path(), &["stats", "runs", "--format", "json"]);
+    let found: serde_json::Value = serde_json::from_str(&stdout(&done)).unwrap();
+    assert_eq!((found["runs"].as_u64(), &found["varied"]), (Some(2), &serde_json::json!(["epsilon"])));
+    let names = found["variants"].as_array().unwrap().iter().map(|variant| variant["name"].as_str().unwrap());
+    assert_eq!(names.collect::<Vec<_>>(), ["epsilon=0.25", "epsilon=0.5"]);
+    // Each repeats another.
+    assert_eq!(stderr(&done).matches("left out: it repeats runs/").count(), 2, "{}", stderr(&done));
+    // 40 steps of 0.1 s with one conflict.
+    for group in found["groups"].as_array().unwrap().iter().filter(|group| group["group"] == "all") {
+        let rate = group["per_hour"]["value"].as_f64().unwrap();
+        assert!((rate - 3600.0 / 4.0).abs() < 1e-6, "{rate}");
+    }
+    let refused = closecall(folder.path(), &["stats", "runs", "--against", "runs/0.5"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(stderr(&refused).ends_with("runs: the runs differ in epsilon: for --against name those of one variant\n"));
+}
