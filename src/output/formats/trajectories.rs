@@ -35,7 +35,7 @@ const VERSION: f32 = 3.0;
 const METRIC: u8 = 1;
 const SCALE: f32 = 1.0;
 /// The origin is a multiple of this, in m: most nets keep SUMO's coordinates, others lose leading digits only.
-const ROUND: Metre = 10_000.0;
+const ROUND: Metre = 1_000.0;
 /// A vehicle's middle is at most this far outside the lanes' bounds, in m.
 const MARGIN: Metre = 20.0;
 const DAY: Second = 86_400.0;
