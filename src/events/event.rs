@@ -55,7 +55,9 @@ pub struct Conflict {
     /// Post-encroachment time, in s; side and frontal only.
     pub pet: Option<Second>,
     /// Speed change of the ego in a fully inelastic collision, in m/s.
-    pub delta_v: MetrePerSecond,
+    pub ego_delta_v: MetrePerSecond,
+    /// The same of the foe, in m/s.
+    pub foe_delta_v: MetrePerSecond,
     /// Speed of the ego, in m/s.
     pub ego_speed: MetrePerSecond,
     /// Speed of the foe, in m/s.
@@ -95,6 +97,8 @@ impl Conflict {
         let foe_type = roster.profile_of(foe);
         let [ego_speed, foe_speed] = worst.speeds;
         let [ego_snapshot, foe_snapshot] = worst.snapshots.clone();
+        let [ego_delta_v, foe_delta_v] =
+            measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle);
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),
@@ -113,7 +117,8 @@ impl Conflict {
             ttc,
             drac,
             pet: pet.map(|pet| pet.lasts),
-            delta_v: measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle),
+            ego_delta_v,
+            foe_delta_v,
             ego_speed,
             foe_speed,
             angle,

@@ -5,23 +5,33 @@ use std::cmp::Ordering;
 use super::schema::LoggedConflict;
 use crate::detection::kind::Severity;
 use crate::events::Conflict;
-use crate::util::units::{Metre, Second};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
-/// How bad a conflict is; the larger, the worse. A collision is worst, then the severity decides, then the TTC, then the
-/// margin.
+/// How bad a conflict is; the larger, the worse. A collision is worst; of two, the one with the larger ΔV. Of others the
+/// severity decides, then the TTC, then the margin.
 #[derive(Clone, Copy, Debug)]
 pub struct Badness {
     collision: bool,
     severity: Severity,
+    /// The larger of both in a collision, otherwise 0.
+    delta_v: MetrePerSecond,
     /// Infinite where there is none.
     ttc: Second,
     margin: Metre,
+}
+
+impl Badness {
+    fn new(collision: bool, severity: Severity, delta_v: MetrePerSecond, ttc: Option<Second>, margin: Metre) -> Self {
+        let delta_v = if collision { delta_v } else { 0.0 };
+        Self { collision, severity, delta_v, ttc: ttc.unwrap_or(Second::INFINITY), margin }
+    }
 }
 
 impl Ord for Badness {
     fn cmp(&self, other: &Self) -> Ordering {
         (self.collision, self.severity)
             .cmp(&(other.collision, other.severity))
+            .then_with(|| self.delta_v.total_cmp(&other.delta_v))
             .then_with(|| other.ttc.total_cmp(&self.ttc))
             .then_with(|| other.margin.total_cmp(&self.margin))
     }
@@ -43,15 +53,15 @@ impl Eq for Badness {}
 
 impl From<&Conflict> for Badness {
     fn from(conflict: &Conflict) -> Self {
-        let Conflict { collision, severity, ttc, margin, .. } = *conflict;
-        Self { collision, severity, ttc: ttc.unwrap_or(Second::INFINITY), margin }
+        let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, .. } = *conflict;
+        Self::new(collision, severity, ego_delta_v.max(foe_delta_v), ttc, margin)
     }
 }
 
 impl From<&LoggedConflict> for Badness {
     fn from(conflict: &LoggedConflict) -> Self {
         let LoggedConflict { collision, severity, ttc, margin, .. } = *conflict;
-        Self { collision, severity, ttc: ttc.unwrap_or(Second::INFINITY), margin }
+        Self::new(collision, severity, conflict.delta_v(), ttc, margin)
     }
 }
 
@@ -61,14 +71,14 @@ mod tests {
 
     #[test]
     fn collisions_are_worst_then_severity_then_ttc_then_margin() {
-        let of = |collision, severity, ttc, margin| Badness { collision, severity, ttc, margin };
         let milder_first = [
-            of(false, Severity::Caution, f64::INFINITY, -9.0),
-            of(false, Severity::Serious, 1.0, -1.0),
-            of(false, Severity::Serious, 0.5, -1.0),
-            of(false, Severity::Serious, 0.5, -2.0),
-            of(false, Severity::Critical, 2.0, 0.0),
-            of(true, Severity::Critical, 0.0, 0.0),
+            Badness::new(false, Severity::Caution, 9.0, None, -9.0),
+            Badness::new(false, Severity::Serious, 9.0, Some(1.0), -1.0),
+            Badness::new(false, Severity::Serious, 1.0, Some(0.5), -1.0),
+            Badness::new(false, Severity::Serious, 0.0, Some(0.5), -2.0),
+            Badness::new(false, Severity::Critical, 0.0, Some(2.0), 0.0),
+            Badness::new(true, Severity::Critical, 1.0, Some(0.0), -9.0),
+            Badness::new(true, Severity::Critical, 8.0, Some(0.0), 0.0),
         ];
         assert!(milder_first.is_sorted_by(|a, b| a < b));
     }

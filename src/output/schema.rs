@@ -109,7 +109,9 @@ columns! { |conflict, context|
     /// frontal conflicts only
     [Required] pet: Option<Second> = conflict.pet;
     /// speed change of the ego in a fully inelastic collision
-    [Required] delta_v: MetrePerSecond = conflict.delta_v;
+    [Required] ego_delta_v: MetrePerSecond = conflict.ego_delta_v;
+    /// speed change of the foe in a fully inelastic collision
+    [Optional] foe_delta_v: Option<MetrePerSecond> = Some(conflict.foe_delta_v);
     /// speed of the ego
     [Required] ego_speed: MetrePerSecond = conflict.ego_speed;
     /// speed of the foe
@@ -160,6 +162,13 @@ columns! { |conflict, context|
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
 }
 
+impl LoggedConflict {
+    /// ΔV of the one whose speed changes most in a collision; the ego's where the log does not have the foe's.
+    pub fn delta_v(&self) -> MetrePerSecond {
+        self.foe_delta_v.map_or(self.ego_delta_v, |foe| foe.max(self.ego_delta_v))
+    }
+}
+
 /// One column of the log.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
@@ -188,10 +197,18 @@ pub enum Presence {
     Snapshot,
 }
 
+/// Columns that logs of earlier versions have under another name: the name now, and the one then.
+const RENAMED: [(&str, &str); 1] = [("ego_delta_v", "delta_v")];
+
 impl Column {
     /// The column of this name.
     pub fn named(name: &str) -> Option<&'static Self> {
-        COLUMNS.iter().find(|column| column.name == name)
+        COLUMNS.iter().find(|column| column.is_named(name))
+    }
+
+    /// Whether a log has this column under this name.
+    pub fn is_named(&self, name: &str) -> bool {
+        self.name == name || RENAMED.contains(&(self.name, name))
     }
 
     /// The unit of its values; empty where they have none.

@@ -12,7 +12,7 @@ use crate::Result;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::options::Options;
-use crate::output::schema::{Column, Value};
+use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
 use crate::util::units::Second;
 use kept::{KeptConflicts, RunConflict};
@@ -93,19 +93,17 @@ impl Conflicts {
             .map(|RunConflict { conflict, .. }| (conflict.kind, conflict.severity, Point::new(conflict.x, conflict.y)))
     }
 
-    /// The values of a number column of `conflicts.csv`, each with the conflict's severity.
-    pub fn numbers(&self, name: &str) -> impl Iterator<Item = (Severity, f64)> {
-        let column = Column::named(name);
-        self.conflicts.iter().filter_map(move |RunConflict { conflict, .. }| match (column?.get)(conflict) {
-            Value::Number(number) => Some((conflict.severity, number)),
-            _ => None,
-        })
+    /// The values of a measure, each with the conflict's severity.
+    pub fn numbers(&self, measure: fn(&LoggedConflict) -> Option<f64>) -> impl Iterator<Item = (Severity, f64)> {
+        self.conflicts
+            .iter()
+            .filter_map(move |RunConflict { conflict, .. }| Some((conflict.severity, measure(conflict)?)))
     }
 
     /// First and last second of all runs.
     pub fn period(&self) -> (Second, Second) {
         let of_run = |key| self.records.iter().filter_map(move |record| record.get("summary")?.get(key)?.as_f64());
-        let times = self.numbers("time").map(|(_, time)| time).chain(of_run("begin")).chain(of_run("end"));
+        let times = self.numbers(|conflict| Some(conflict.time)).map(|(_, time)| time).chain(of_run("begin")).chain(of_run("end"));
         let (begin, end) = times.fold((f64::INFINITY, 0.0), |(begin, end), time| (time.min(begin), time.max(end)));
         (begin.min(end), end)
     }

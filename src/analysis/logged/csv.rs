@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use crate::output::schema::{COLUMNS, LoggedConflict, Presence, Value};
+use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use crate::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
@@ -57,8 +57,8 @@ impl CsvLog {
     }
 
     fn read_columns(&mut self, is_wanted: impl Fn(Presence) -> bool) {
-        let place = |name: &str| self.header.iter().position(|known| known == name);
-        self.places = COLUMNS.map(|column| place(column.name).filter(|_| is_wanted(column.presence)));
+        let place = |column: &Column| self.header.iter().position(|known| column.is_named(known));
+        self.places = COLUMNS.map(|column| place(&column).filter(|_| is_wanted(column.presence)));
     }
 
     /// The columns of the file.
@@ -154,6 +154,15 @@ mod tests {
         assert_eq!((conflict.id, &*conflict.ego, conflict.kind, conflict.margin), (1, "a", Kind::Side, -2.0));
         assert_eq!((conflict.ttc, conflict.pet, conflict.collision), (Some(1.2), None, false));
         assert_eq!((conflict.edge(), conflict.junction(), &*conflict.foe_type), (":J_12_0", "J_12", "truck"));
+    }
+
+    #[test]
+    fn the_delta_v_of_an_earlier_version_is_the_egos() {
+        let [conflict] = &read("earlier", &(header() + ROW)).unwrap()[..] else { panic!() };
+        assert_eq!((conflict.ego_delta_v, conflict.foe_delta_v, conflict.delta_v()), (2.0, None, 2.0));
+        let header = header().replace("delta_v", "ego_delta_v,foe_delta_v");
+        let [conflict] = &read("delta_v", &(header + &ROW.replace(",,2,10,", ",,2,9,10,"))).unwrap()[..] else { panic!() };
+        assert_eq!((conflict.ego_delta_v, conflict.foe_delta_v, conflict.delta_v()), (2.0, Some(9.0), 9.0));
     }
 
     #[test]

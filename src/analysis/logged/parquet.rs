@@ -93,7 +93,7 @@ impl ParquetLog {
     pub fn open(path: &Path) -> Result<Self> {
         let file = open(path)?;
         let columns = file.metadata().file_metadata().schema_descr().columns();
-        let places = COLUMNS.map(|column| columns.iter().position(|known| known.name() == column.name));
+        let places = COLUMNS.map(|column| columns.iter().position(|known| column.is_named(known.name())));
         for (column, place) in COLUMNS.iter().zip(places) {
             let wrong = match place {
                 Some(place) if columns[place].physical_type() == physical(column.column_type) => continue,

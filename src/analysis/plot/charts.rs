@@ -9,6 +9,7 @@ use super::chart::{Chart, INK, colour, message};
 use super::font;
 use crate::analysis::dataset::Conflicts;
 use crate::detection::kind::Severity;
+use crate::output::schema::LoggedConflict;
 use crate::util::units::Second;
 
 /// The number of bars of a distribution.
@@ -29,18 +30,19 @@ const LEGEND: (i32, i32) = (122, 140);
 
 /// A measure whose distribution has a chart.
 pub struct ChartedMeasure {
-    /// The column, and the file's name.
+    /// The file's name.
     pub name: &'static str,
     title: &'static str,
+    of: fn(&LoggedConflict) -> Option<f64>,
 }
 
 /// The measures that have a chart, the same as on the report's page.
 pub const MEASURES: [ChartedMeasure; 5] = [
-    ChartedMeasure { name: "ttc", title: "Time to collision (TTC), s" },
-    ChartedMeasure { name: "drac", title: "Deceleration to avoid it (DRAC), m/s²" },
-    ChartedMeasure { name: "pet", title: "Post-encroachment time (PET), s" },
-    ChartedMeasure { name: "margin", title: "Margin: gap − μ, m" },
-    ChartedMeasure { name: "delta_v", title: "Speed change in a collision (ΔV), m/s" },
+    ChartedMeasure { name: "ttc", title: "Time to collision (TTC), s", of: |conflict| conflict.ttc },
+    ChartedMeasure { name: "drac", title: "Deceleration to avoid it (DRAC), m/s²", of: |conflict| conflict.drac },
+    ChartedMeasure { name: "pet", title: "Post-encroachment time (PET), s", of: |conflict| conflict.pet },
+    ChartedMeasure { name: "margin", title: "Margin: gap − μ, m", of: |conflict| Some(conflict.margin) },
+    ChartedMeasure { name: "delta_v", title: "Largest speed change in a collision (ΔV), m/s", of: |conflict| Some(conflict.delta_v()) },
 ];
 
 /// Conflicts over time.
@@ -78,7 +80,7 @@ impl Chart for TimeLine {
         let width = if length >= LONG { width.max(60.0) } else { width };
         let low = (begin / width).floor() * width;
         let mut bars = Bars::new(low, low + ((end - low) / width).floor() * width + width, width);
-        found.numbers("time").for_each(|(severity, time)| bars.add(time, severity));
+        found.numbers(|conflict| Some(conflict.time)).for_each(|(severity, time)| bars.add(time, severity));
         draw(area, &bars, "Time, s", &format!("Conflicts per {width} s"), None)
     }
 }
@@ -86,7 +88,7 @@ impl Chart for TimeLine {
 impl Chart for Distribution {
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, found: &Conflicts) -> Result<(), String> {
         let threshold = found.threshold(self.0.name);
-        let mut sizes = found.numbers(self.0.name).map(|(_, value)| value.abs()).collect::<Vec<_>>();
+        let mut sizes = found.numbers(self.0.of).map(|(_, value)| value.abs()).collect::<Vec<_>>();
         sizes.sort_by(f64::total_cmp);
         let covered = sizes.get((COVERED * sizes.len() as f64) as usize).or(sizes.last()).copied().unwrap_or(1.0);
         let furthest = round_up(covered.max(threshold.map_or(0.0, |threshold| threshold * 1.3)));
@@ -95,7 +97,7 @@ impl Chart for Distribution {
         let reach = (furthest / width - 1e-9).ceil() * width;
         let (low, high) = if self.0.name == "margin" { (-reach, 0.0) } else { (0.0, reach) };
         let mut bars = Bars::new(low, high, width);
-        found.numbers(self.0.name).for_each(|(severity, value)| bars.add(value, severity));
+        found.numbers(self.0.of).for_each(|(severity, value)| bars.add(value, severity));
         let words = if self.0.name == "ttc" { "serious below" } else { "serious above" };
         draw(area, &bars, self.0.title, "Conflicts", threshold.map(|at| (at, words)))
     }

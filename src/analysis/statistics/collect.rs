@@ -17,7 +17,7 @@ use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
 use crate::{Error, Result};
 
-/// The measures whose values are kept, by their names in every output.
+/// The measures whose values are kept, by their names in every output; ΔV is the larger of the two.
 pub const MEASURES: [&str; 4] = ["ttc", "pet", "margin", "delta_v"];
 
 /// The values of the [`MEASURES`].
@@ -232,7 +232,7 @@ impl Collection {
 }
 
 fn measures(conflict: &LoggedConflict) -> [Option<f64>; MEASURES.len()] {
-    [conflict.ttc, conflict.pet, Some(conflict.margin), Some(conflict.delta_v)]
+    [conflict.ttc, conflict.pet, Some(conflict.margin), Some(conflict.delta_v())]
 }
 
 fn rank<T: PartialEq>(all: &[T], one: T) -> usize {

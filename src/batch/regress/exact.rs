@@ -5,8 +5,21 @@ use super::outcome::{Outcome, SeedConflict, SeedSummary};
 use crate::output::schema::{COLUMNS, Column};
 
 /// The columns that tell how bad a conflict was, and where.
-const TELLING: [&str; 12] =
-    ["severity", "collision", "begin", "end", "gap", "mu", "margin", "ttc", "drac", "pet", "delta_v", "lane"];
+const TELLING: [&str; 13] = [
+    "severity",
+    "collision",
+    "begin",
+    "end",
+    "gap",
+    "mu",
+    "margin",
+    "ttc",
+    "drac",
+    "pet",
+    "ego_delta_v",
+    "foe_delta_v",
+    "lane",
+];
 
 /// The measures in the description of a conflict.
 const MEASURES: [&str; 5] = ["gap", "margin", "ttc", "drac", "pet"];

@@ -29,12 +29,13 @@ pub fn severity(
     }
 }
 
-/// ΔV in m/s: the change of the ego's velocity in a fully inelastic collision of both masses, at the current speeds and
-/// the angle α at the conflict point.
-pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram), angle: Radian) -> MetrePerSecond {
+/// ΔV in m/s of the ego and of the foe: the changes of their velocities in a fully inelastic collision of both masses, at
+/// the current speeds and the angle α at the conflict point.
+pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram), angle: Radian) -> [MetrePerSecond; 2] {
     let along = ego.0 - foe.0 * angle.cos();
     let across = foe.0 * angle.sin();
-    along.hypot(across) / (1.0 + ego.1 / foe.1)
+    let closing = along.hypot(across);
+    [closing / (1.0 + ego.1 / foe.1), closing / (1.0 + foe.1 / ego.1)]
 }
 
 #[cfg(test)]
@@ -43,12 +44,19 @@ mod tests {
 
     #[test]
     fn equal_masses_share_the_speed_difference() {
-        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), 5.0);
-        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), 15.0);
+        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), [5.0, 5.0]);
+        assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), [15.0, 15.0]);
     }
 
     #[test]
     fn a_wall_takes_all_of_the_speed() {
-        assert_eq!(delta_v((13.0, 1500.0), (0.0, f64::MAX), std::f64::consts::PI), 13.0);
+        let [car, wall] = delta_v((13.0, 1500.0), (0.0, f64::MAX), std::f64::consts::PI);
+        assert!(car == 13.0 && wall < 1e-300, "{car} and {wall}");
+    }
+
+    #[test]
+    fn the_lighter_of_two_changes_its_speed_most() {
+        let [truck, cyclist] = delta_v((12.0, 11_900.0), (0.0, 100.0), std::f64::consts::FRAC_PI_2);
+        assert_eq!((truck, cyclist), (0.1, 11.9));
     }
 }

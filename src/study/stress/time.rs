@@ -5,7 +5,7 @@ use super::case::Case;
 use super::tally::{Group, Property, Tally, Unit};
 use crate::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
 use crate::detection::path::Pose;
-use crate::events::CLOSES_AFTER;
+use crate::events::{CLOSES_AFTER, Conflict};
 use crate::geometry::contact::distance;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, left_of};
@@ -206,7 +206,10 @@ fn is_finite(steps: &[[State; 2]]) -> bool {
         // An hour passes between two steps.
         scene.step(number as f64 * 3600.0, &[(users[0], *first), (users[1], *second)]);
     }
-    scene.finite && scene.finish().iter().all(|conflict| (conflict.margin + conflict.delta_v + conflict.x).is_finite())
+    let finite = |conflict: &Conflict| {
+        (conflict.margin + conflict.ego_delta_v + conflict.foe_delta_v + conflict.x).is_finite()
+    };
+    scene.finite && scene.finish().iter().all(finite)
 }
 
 /// The number of conflicts of two cars, one of which leaves and returns elsewhere under the same id.

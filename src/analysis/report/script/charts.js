@@ -116,7 +116,7 @@ const MEASURES = [
     threshold: { at: options.serious_drac, text: `serious above ${options.serious_drac} m/s²` } },
   { name: "pet", title: "Post-encroachment time (PET)", unit: "s", low: 0 },
   { name: "margin", title: "Margin: gap − μ", unit: "m", high: 0 },
-  { name: "delta_v", title: "Speed change in a collision (ΔV)", unit: "m/s", low: 0 },
+  { name: "delta_v", title: "Largest speed change in a collision (ΔV)", unit: "m/s", low: 0 },
 ];
 const DISTRIBUTION_BINS = 30;
 /** The share of the values that the axis covers; values beyond it count in the last bar. */

@@ -7,6 +7,8 @@ const count = conflicts.count;
 /** A column with the same value in every row is stored as that one value. */
 const column = Object.fromEntries(Object.entries(conflicts.columns).map(([name, values]) =>
   [name, Array.isArray(values) ? values : new Array(count).fill(values)]));
+/** ΔV of the one whose speed changes most; a log of an earlier version has the ego's only. */
+column.delta_v = column.ego_delta_v.map((ego, row) => Math.max(ego, column.foe_delta_v[row]));
 const KINDS = ["rear-end", "frontal", "side"];
 const SEVERITIES = ["caution", "serious", "critical"];
 const options = (data.runs.find((run) => run.options) || {}).options || data.defaults;
@@ -45,12 +47,13 @@ function shownRows(always) {
   return rows;
 }
 
-/** Order of rows, worst first: severity, collision, TTC, margin. */
+/** Order of rows, worst first: collision, severity, ΔV of collisions, TTC, margin. */
 function byBadness(a, b) {
-  const { severity, collision, ttc, margin } = column;
+  const { severity, collision, delta_v, ttc, margin } = column;
   const or = (value) => (value === null ? Infinity : value);
   const less = (x, y) => (x < y ? -1 : x > y ? 1 : 0);
-  return severity[b] - severity[a] || collision[b] - collision[a] || less(or(ttc[a]), or(ttc[b]))
+  return collision[b] - collision[a] || severity[b] - severity[a]
+    || collision[a] * (delta_v[b] - delta_v[a]) || less(or(ttc[a]), or(ttc[b]))
     || less(or(margin[a]), or(margin[b])) || a - b;
 }
 
