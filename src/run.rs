@@ -10,6 +10,8 @@ pub mod step;
 
 use std::sync::Arc;
 
+use rustc_hash::FxHashSet;
+
 use crate::detection::detector::Detector;
 use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
@@ -49,6 +51,10 @@ pub struct Run {
     obstacles: Vec<(UserIndex, Point)>,
     /// The rows whose placement the step under way needs.
     unplaced: Vec<u32>,
+    /// The pairs of ids of which SUMO reports a collision in the step under way; none where it is not asked.
+    collided: Option<Vec<[String; 2]>>,
+    /// All such pairs so far, each in the order of the ids.
+    collided_so_far: FxHashSet<[String; 2]>,
     /// Placements asked for so far.
     lane_lookups: u64,
     /// Settings of single types: as the options name the type, and as the roster does.
@@ -77,7 +83,7 @@ impl Run {
             detector,
             net,
             filter,
-            tracker: Tracker::default(),
+            tracker: Tracker::new(options.kind_bounds().rear_end_below),
             log: None,
             outputs: Outputs::default(),
             keeps_conflicts: true,
@@ -85,6 +91,8 @@ impl Run {
             leaving: Vec::new(),
             obstacles: Vec::new(),
             unplaced: Vec::new(),
+            collided: None,
+            collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
             type_settings: type_settings(options),
             step_length: None,
@@ -193,6 +201,16 @@ impl Run {
         for &(user, corner) in &self.obstacles {
             self.frame.push(user, State { x: corner.x, y: corner.y, z: 0.0, heading: 0.0, speed: 0.0 });
         }
+    }
+
+    /// States the pairs of ids of which SUMO reports a collision in the step under way.
+    pub fn set_collisions_of_sumo(&mut self, collided: Vec<[String; 2]>) {
+        self.collided_so_far.extend(collided.iter().cloned().map(|mut pair| {
+            pair.sort_unstable();
+            pair
+        }));
+        self.summary.collisions_sumo.get_or_insert_default().reported = self.collided_so_far.len() as u64;
+        self.collided = Some(collided);
     }
 
     /// The time of the step under way, if one has begun.

@@ -52,8 +52,11 @@ pub struct Nearness {
     pub clearance: Metre,
     /// Time to collision at the current speeds, along the paths; none if the two never touch.
     pub ttc: Option<Second>,
-    /// Deceleration with which the ego just avoids contact; none if the two touch now or, at the current speeds, never.
+    /// Deceleration that just avoids contact, at most [`super::measures::drac::LIMIT`]; none if the two touch now or, at
+    /// the current speeds, never.
     pub drac: Option<MetrePerSecondSquared>,
+    /// Whether neither that limit nor the ego's brakes avoid contact.
+    pub unavoidable: bool,
     /// Severity by the values above.
     pub severity: Severity,
 }

@@ -52,6 +52,8 @@ pub struct Conflict {
     pub ttc: Option<Second>,
     /// Largest deceleration rate to avoid the collision, in m/s².
     pub drac: Option<MetrePerSecondSquared>,
+    /// Whether in any step before contact no deceleration would have avoided it.
+    pub unavoidable: bool,
     /// Post-encroachment time, in s; side and frontal only.
     pub pet: Option<Second>,
     /// Speed change of the ego in a fully inelastic collision, in m/s.
@@ -76,6 +78,8 @@ pub struct Conflict {
     /// Deepest overlap of the rectangles over the event: the shortest displacement that parts them, in m; 0 where they never
     /// overlapped.
     pub overlap: Metre,
+    /// Whether SUMO reported a collision of the two meanwhile; none where it is not known what SUMO reports.
+    pub collision_sumo: Option<bool>,
     /// Where the ego was and would go.
     #[serde(skip)]
     pub ego_snapshot: Snapshot,
@@ -90,8 +94,20 @@ pub struct Conflict {
 impl Conflict {
     /// The event so far, of two road users that are still in the roster, and its PET.
     pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
-        let Extremes { begin, end, severity, collision, overlap, clearance, ttc, drac, ref found, ref worst } =
-            *extremes;
+        let Extremes {
+            begin,
+            end,
+            severity,
+            collision,
+            collision_sumo,
+            overlap,
+            clearance,
+            ttc,
+            drac,
+            unavoidable,
+            ref found,
+            ref worst,
+        } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
         let foe_type = roster.profile_of(foe);
@@ -116,6 +132,7 @@ impl Conflict {
             clearance,
             ttc,
             drac,
+            unavoidable,
             pet: pet.map(|pet| pet.lasts),
             ego_delta_v,
             foe_delta_v,
@@ -127,6 +144,7 @@ impl Conflict {
             lane,
             collision,
             overlap,
+            collision_sumo,
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],

@@ -29,9 +29,12 @@ pub(super) struct Extremes {
     pub severity: Severity,
     pub collision: bool,
     pub overlap: Metre,
+    /// Whether SUMO reported a collision of the two; none where it is not known what SUMO reports.
+    pub collision_sumo: Option<bool>,
     pub clearance: Metre,
     pub ttc: Option<Second>,
     pub drac: Option<MetrePerSecondSquared>,
+    pub unavoidable: bool,
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
@@ -75,6 +78,10 @@ impl Observation<'_> {
         self.found.nearness?.drac
     }
 
+    fn is_unavoidable(&self) -> bool {
+        self.found.nearness.is_some_and(|near| near.unavoidable)
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -102,9 +109,11 @@ impl Extremes {
             severity: seen.severity(),
             collision: seen.found.collision,
             overlap: seen.found.overlap,
+            collision_sumo: None,
             clearance: seen.clearance(),
             ttc: seen.ttc(),
             drac: seen.drac(),
+            unavoidable: seen.is_unavoidable(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
         }
@@ -121,6 +130,7 @@ impl Extremes {
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;
         self.overlap = self.overlap.max(seen.found.overlap);
+        self.unavoidable |= seen.is_unavoidable();
         let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
         for (found, taken) in self.found.iter_mut().zip(taken) {
             if taken {

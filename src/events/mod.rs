@@ -6,6 +6,7 @@
 mod event;
 mod extremes;
 mod moment;
+mod past;
 pub mod pet;
 mod snapshot;
 
@@ -19,8 +20,9 @@ use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::Second;
+use crate::util::units::{Radian, Second};
 use extremes::{Extremes, Observation};
+use past::Past;
 
 pub use snapshot::Snapshot;
 
@@ -43,8 +45,11 @@ pub struct Alarm {
 }
 
 /// Follows the pairs in conflict over the steps.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub struct Tracker {
+    /// Paths that meet at a smaller angle do not cross.
+    crossing: Radian,
+    past: Past,
     /// In the order of the pairs.
     events: Vec<(Pair, Box<Event>)>,
     /// Closed, but its PET is not known yet.
@@ -63,7 +68,8 @@ struct Event {
     driven: Option<Box<PetTracker>>,
 }
 
-/// The paths that the two of a side or frontal event have driven since it began, in their order, and the PET so far.
+/// The paths that the two of a side or frontal event have driven, from some seconds before it became one, in their order,
+/// and the PET so far.
 #[derive(Debug)]
 struct PetTracker {
     paths: [pet::DrivenPath; 2],
@@ -77,27 +83,42 @@ impl Event {
 }
 
 impl Tracker {
+    /// A tracker for which two paths cross from this angle on.
+    pub fn new(crossing: Radian) -> Self {
+        Self { crossing, past: Past::default(), events: Vec::new(), waiting: Vec::new(), closed: Vec::new() }
+    }
+
     /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
-    /// `path` returns the path of a row's front bumper, from where it is.
+    /// `path` returns the path of a row's front bumper, from where it is; `collided` are the pairs of ids of which SUMO
+    /// reports a collision, if that is known.
     pub fn step<'a>(
         &mut self,
         frame: &Frame,
         roster: &Roster,
         encounters: impl Iterator<Item = &'a Encounter> + Clone,
         path: impl Fn(u32) -> Vec<Point>,
+        collided: Option<&[[String; 2]]>,
     ) -> &[Conflict] {
         self.forget_closed();
-        if self.events.is_empty() && self.waiting.is_empty() && encounters.clone().all(|found| !found.in_conflict()) {
-            return &self.closed;
+        if !self.events.is_empty() || !self.waiting.is_empty() || encounters.clone().any(Encounter::in_conflict) {
+            for found in encounters.filter(|found| found.in_conflict()) {
+                self.take(&Observation { frame, roster, found }, &path);
+            }
+            if let Some(collided) = collided {
+                self.mark(collided, roster);
+            }
+            self.follow(frame, roster);
+            self.close(frame);
+            self.settle(frame.time, false, roster);
+            sort(&mut self.closed);
         }
-        for found in encounters.filter(|found| found.in_conflict()) {
-            self.take(&Observation { frame, roster, found }, &path);
-        }
-        self.follow(frame, roster);
-        self.close(frame);
-        self.settle(frame.time, false, roster);
-        sort(&mut self.closed);
+        self.past.add(frame, roster.len());
         &self.closed
+    }
+
+    /// Forgets where a road user was that has left the scene, as its index may be given to another.
+    pub fn forget(&mut self, user: UserIndex) {
+        self.past.forget(user);
     }
 
     /// The conflicts that the last step settled.
@@ -144,8 +165,8 @@ impl Tracker {
                 place
             }
             Err(place) => {
-                let extremes = Extremes::of(seen, path);
-                self.events.insert(place, (pair, Box::new(Event { alarm, extremes, driven: None })));
+                let event = Event { alarm, extremes: Extremes::of(seen, path), driven: None };
+                self.events.insert(place, (pair, Box::new(event)));
                 place
             }
         };
@@ -153,9 +174,25 @@ impl Tracker {
         if kind != Kind::RearEnd && event.driven.is_none() {
             let paths = pair.map(|user| {
                 let profile = seen.roster.profile_of(user);
-                pet::DrivenPath::new(profile.length, profile.width)
+                let mut path = pet::DrivenPath::new(profile.length, profile.width);
+                if profile.category != Category::Obstacle {
+                    self.past
+                        .of(user, seen.frame.time)
+                        .for_each(|(time, front, heading)| path.push(time, front, heading));
+                }
+                path
             });
             event.driven = Some(Box::new(PetTracker { paths, pet: None }));
+        }
+    }
+
+    /// Marks the open events whose pairs collide as SUMO says.
+    fn mark(&mut self, collided: &[[String; 2]], roster: &Roster) {
+        for (pair, event) in &mut self.events {
+            let [a, b] = pair.map(|user| roster.id(user).as_str());
+            let is_reported = collided.iter().any(|[one, other]| [a, b] == [one, other] || [b, a] == [one, other]);
+            let known = &mut event.extremes.collision_sumo;
+            *known = Some(is_reported || *known == Some(true));
         }
     }
 
@@ -198,7 +235,7 @@ impl Tracker {
                     || paths.iter().any(pet::DrivenPath::has_ended);
                 let just_closed = since < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
-                    *pet = pet::post_encroachment_time(&mut halves, &paths[0], &paths[1]);
+                    *pet = pet::post_encroachment_time(&mut halves, &paths[0], &paths[1], self.crossing);
                     return last_call || pet.is_some_and(|pet| pet.is_final);
                 }
                 return false;
@@ -225,6 +262,8 @@ mod tests {
         tracker: Tracker,
         roster: Roster,
         users: [UserIndex; 2],
+        /// What SUMO reports, if that is known.
+        collided: Option<Vec<[String; 2]>>,
     }
 
     impl TrackedPair {
@@ -233,7 +272,12 @@ mod tests {
             let sumo = SumoType { width: 2.0, ..SumoType::car("car") };
             let profile = roster.profile(Profile::vehicle(&sumo, &Options::default())).unwrap();
             let users = [roster.enter("a", profile), roster.enter("b", profile)];
-            Self { tracker: Tracker::default(), roster, users }
+            Self {
+                tracker: Tracker::new(Options::default().kind_bounds().rear_end_below),
+                roster,
+                users,
+                collided: None,
+            }
         }
 
         /// A step in which both are there and their margin is this (rear-end).
@@ -267,7 +311,7 @@ mod tests {
                 nearness: None,
             };
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker.step(&frame, &self.roster, found.iter(), |_| Vec::new()).to_vec()
+            self.tracker.step(&frame, &self.roster, found.iter(), |_| Vec::new(), self.collided.as_deref()).to_vec()
         }
     }
 
@@ -308,6 +352,18 @@ mod tests {
         let mut scene = TrackedPair::new();
         scene.step(0.0, -1.0);
         assert_eq!(scene.step_with(0.1, &[(0, 0.0)], -1.0, Kind::RearEnd).len(), 1);
+    }
+
+    #[test]
+    fn a_collision_that_sumo_reports_is_that_of_the_open_event() {
+        let mut scene = TrackedPair::new();
+        let mut marks = Vec::new();
+        for collided in [None, Some(vec![]), Some(vec![["b", "x"]]), Some(vec![["b", "a"]]), Some(vec![])] {
+            scene.collided = collided.map(|pairs| pairs.iter().map(|pair| pair.map(str::to_owned)).collect());
+            scene.step(0.1 * marks.len() as f64, -1.0);
+            marks.push(scene.tracker.open(&scene.roster)[0].collision_sumo);
+        }
+        assert_eq!(marks, [None, Some(false), Some(false), Some(true), Some(true)]);
     }
 
     #[test]

@@ -4,13 +4,16 @@
 //! where the two corridors overlap. The first leaves it when its rectangle touches the other's corridor for the last
 //! time. The second enters it when its rectangle touches the first's corridor for the first time. While the second is in
 //! that corridor, its own may still overlap a later part of it, so the time is final when the second has left.
+//!
+//! Only of two whose paths cross: where the second enters, its heading has to differ from that of the first when that was
+//! there. One that follows the other, out of the same lane too, has none.
 
 use crate::detection::path::Pose;
 use crate::geometry::bisection::{Bisection, Part};
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{Bounds, Point};
+use crate::geometry::{Bounds, Point, Vector, angle_between};
 use crate::util::units::{Metre, Radian, Second};
 
 /// How long after a conflict closed its PET is waited for, in s.
@@ -90,7 +93,7 @@ impl DrivenPath {
                 return None;
             }
             let part = halves.add(start.movement_to(&end, self.length, self.width));
-            Some((pair[0].time, pair[1].time, part))
+            Some(Step { from: pair[0].time, to: pair[1].time, axes: [start.axis, end.axis], part })
         });
         Corridor { steps: steps.collect(), end: self.poses.last().map_or(0.0, |pose| pose.time) }
     }
@@ -98,34 +101,66 @@ impl DrivenPath {
 
 /// The area that one road user covered, as far as the other may have been there.
 struct Corridor {
-    steps: Vec<(Second, Second, Part)>,
+    steps: Vec<Step>,
     /// When it ends.
     end: Second,
 }
 
+/// The area covered between two times.
+struct Step {
+    from: Second,
+    to: Second,
+    /// The directions at its begin and end.
+    axes: [Vector; 2],
+    part: Part,
+}
+
+impl Step {
+    fn time(&self, part: f64) -> Second {
+        self.from + (self.to - self.from) * part
+    }
+
+    fn axis(&self, part: f64) -> Vector {
+        self.axes[0] * (1.0 - part) + self.axes[1] * part
+    }
+}
+
+/// Where one enters the other's corridor.
+struct Entry {
+    time: Second,
+    /// Between its heading there and that of the other when it was there.
+    angle: Radian,
+}
+
 impl Corridor {
     /// The first time at which it touches the other's corridor. The steps after it, which cost most, are not tested.
-    fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
-        self.steps.iter().find_map(|&(from, to, part)| {
-            let enters = other.touch(part, Contact::Entry, halves)?;
-            Some(from + (to - from) * enters)
+    fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Entry> {
+        self.steps.iter().find_map(|step| {
+            let (enters, met) = other.touch(step.part, Contact::Entry, halves)?;
+            Some(Entry { time: step.time(enters), angle: angle_between(&step.axis(enters), &met.axis(0.5)) })
         })
     }
 
     /// The last time; none where it still touches it at the end.
     fn leaves(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
-        let (from, to, leaves) = self.steps.iter().rev().find_map(|&(from, to, part)| {
-            let leaves = other.touch(part, Contact::Exit, halves)?;
-            Some((from, to, leaves.min(1.0)))
+        let (step, leaves) = self.steps.iter().rev().find_map(|step| {
+            let (leaves, _) = other.touch(step.part, Contact::Exit, halves)?;
+            Some((step, leaves.min(1.0)))
         })?;
-        let still = to == self.end && leaves >= 1.0;
-        (!still).then_some(from + (to - from) * leaves)
+        let still = step.to == self.end && leaves >= 1.0;
+        (!still).then_some(step.time(leaves))
     }
 
-    /// The fraction of a step of the other at which it touches this corridor.
-    fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<f64> {
-        let touch = self.steps.iter().fold(which.none(), |known, step| halves.touch(part, step.2, which, known));
-        (touch != which.none()).then_some(touch)
+    /// The fraction of a step of the other at which it touches this corridor, and the step of this one that it touches.
+    fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<(f64, &Step)> {
+        let mut found = (which.none(), None);
+        for step in &self.steps {
+            let touch = halves.touch(part, step.part, which, found.0);
+            if touch != found.0 {
+                found = (touch, Some(step));
+            }
+        }
+        Some((found.0, found.1?))
     }
 }
 
@@ -140,24 +175,34 @@ pub struct Pet {
     pub is_final: bool,
 }
 
-/// The PET of two driven paths. None where the corridors do not overlap, or both are in the conflict area at once, as
-/// where one merges behind the other. `halves` only lends its allocations.
-pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath) -> Option<Pet> {
+/// The PET of two driven paths that cross at an angle of at least `crossing`. None where the corridors do not overlap, or
+/// both are in the conflict area at once, as where one merges behind the other. `halves` only lends its allocations.
+pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath, crossing: Radian) -> Option<Pet> {
     let near = a.bounds().shared_with(&b.bounds())?;
     halves.clear();
     let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
     let (a_enters, b_enters) = (a.enters(&b, halves)?, b.enters(&a, halves)?);
-    if a_enters == b_enters {
+    if a_enters.time == b_enters.time {
         return None;
     }
-    let (first, second, enters) = if a_enters < b_enters { (a, b, b_enters) } else { (b, a, a_enters) };
-    let lasts = enters - first.leaves(&second, halves)?;
-    (lasts >= 0.0).then(|| Pet { lasts, enters, is_final: second.leaves(&first, halves).is_some() })
+    let (first, second, enters) = if a_enters.time < b_enters.time { (a, b, b_enters) } else { (b, a, a_enters) };
+    if enters.angle < crossing {
+        return None;
+    }
+    let lasts = enters.time - first.leaves(&second, halves)?;
+    (lasts >= 0.0).then(|| Pet { lasts, enters: enters.time, is_final: second.leaves(&first, halves).is_some() })
 }
 
 #[cfg(test)]
 mod tests {
     use crate::events::pet::*;
+
+    /// The bound below which a conflict is rear-end.
+    const CROSSING: Radian = std::f64::consts::FRAC_PI_6;
+
+    fn pet_of(a: &DrivenPath, b: &DrivenPath) -> Option<Pet> {
+        post_encroachment_time(&mut Bisection::default(), a, b, CROSSING)
+    }
 
     /// A car of 4 m by 2 m that drives with 10 m/s through the origin; its front is there at `arrives`.
     fn course(heading: f64, arrives: f64) -> DrivenPath {
@@ -175,12 +220,8 @@ mod tests {
     fn one_that_crosses_behind_another_leaves_the_time_between() {
         // The first's rear leaves the other's corridor (1 m beyond the origin) at 2 + 0.5 s, the second's front
         // enters the first's (1 m before the origin) at 5 − 0.1 s.
-        let Pet { lasts, enters, is_final } = post_encroachment_time(
-            &mut Bisection::default(),
-            &course(0.0, 2.0),
-            &course(std::f64::consts::FRAC_PI_2, 5.0),
-        )
-        .unwrap();
+        let Pet { lasts, enters, is_final } =
+            pet_of(&course(0.0, 2.0), &course(std::f64::consts::FRAC_PI_2, 5.0)).unwrap();
         assert!((lasts - 2.4).abs() < 1e-9 && (enters - 4.9).abs() < 1e-9 && is_final, "{lasts} at {enters}");
     }
 
@@ -206,7 +247,7 @@ mod tests {
             for time in (0..=steps).map(|number| f64::from(number) * step) {
                 course.push(time, Point::new(10.0 * (time - 5.0), 5.0), 0.0);
             }
-            post_encroachment_time(&mut Bisection::default(), &turn(step), &course).unwrap()
+            pet_of(&turn(step), &course).unwrap()
         };
         let (long, short) = (crossing(0.2), crossing(0.01));
         assert!((long.lasts - short.lasts).abs() < 0.02, "{long:?} {short:?}");
@@ -222,7 +263,8 @@ mod tests {
             for time in (0..=80).map(|number| f64::from(number) * 0.1).take_while(|time| *time < until) {
                 course.push(time, Point::new(1.0, 9.0) + axis * (10.0 * (time - 5.0)), 2.6);
             }
-            post_encroachment_time(&mut Bisection::default(), &first, &course)
+            // The second crosses the exit at a small angle.
+            post_encroachment_time(&mut Bisection::default(), &first, &course, 0.0)
         };
         let all = second(8.1).unwrap();
         let found = (1..=80).filter_map(|step| second(f64::from(step) * 0.1)).collect::<Vec<_>>();
@@ -233,6 +275,24 @@ mod tests {
 
     #[test]
     fn a_follower_on_the_same_path_has_no_pet() {
-        assert_eq!(post_encroachment_time(&mut Bisection::default(), &course(0.0, 2.0), &course(0.0, 4.0)), None);
+        assert_eq!(pet_of(&course(0.0, 2.0), &course(0.0, 4.0)), None);
+    }
+
+    #[test]
+    fn two_that_leave_one_lane_for_different_ones_have_no_pet() {
+        // The first turns left; the second comes out of the same lane 4 s later and drives straight on.
+        let mut straight = DrivenPath::new(4.0, 2.0);
+        (0..=90).map(|step| f64::from(step) * 0.1).for_each(|time| {
+            straight.push(time, Point::new(9.0, 8.0 * (time - 5.0)), std::f64::consts::FRAC_PI_2);
+        });
+        assert_eq!(pet_of(&turn(0.1), &straight), None);
+        let from_left = |until: f64| {
+            let mut course = DrivenPath::new(4.0, 2.0);
+            (0..=90).map(|step| f64::from(step) * 0.1).take_while(|time| *time < until).for_each(|time| {
+                course.push(time, Point::new(8.0 * (time - 5.0), 2.0), 0.0);
+            });
+            course
+        };
+        assert!(pet_of(&turn(0.1), &from_left(9.1)).is_some(), "one that crosses the turn has");
     }
 }

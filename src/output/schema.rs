@@ -103,8 +103,11 @@ columns! { |conflict, context|
     [Required] clearance: Metre = conflict.clearance;
     /// smallest time to collision, if both keep their speed along their paths
     [Required] ttc: Option<Second> = conflict.ttc;
-    /// largest deceleration that the ego needs to just avoid contact
+    /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
+    /// foe comes towards it; at most 12.68 m/s²
     [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
+    /// whether in any step before contact no deceleration would have avoided it
+    [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
     /// time between the first leaving and the second entering the conflict area, from what both really drove; side and
     /// frontal conflicts only
     [Required] pet: Option<Second> = conflict.pet;
@@ -126,6 +129,8 @@ columns! { |conflict, context|
     [Required] lane: OptionalText = context.lane(conflict);
     /// whether the rectangles overlapped by more than the contact tolerance in any step
     [Required] collision: bool = conflict.collision;
+    /// whether SUMO reported a collision of the two during the conflict; empty for a recording
+    [Optional] collision_sumo: Option<bool> = conflict.collision_sumo;
     /// SUMO's type of the ego
     [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
     /// SUMO's type of the foe; an obstacle's is `polygon:` and the polygon's type

@@ -25,6 +25,9 @@ pub struct Summary {
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
+    /// The collisions that SUMO itself reported; none where it was not asked.
+    #[serde(default)]
+    pub collisions_sumo: Option<SumoCollisions>,
     /// The amount of traffic.
     pub exposure: Exposure,
     /// What the scene did not need; not read back.
@@ -53,6 +56,15 @@ pub struct Count {
     pub severity: Severity,
     /// The number of conflicts.
     pub count: u64,
+}
+
+/// The collisions that SUMO itself reported.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SumoCollisions {
+    /// The pairs that SUMO reported.
+    pub reported: u64,
+    /// The conflicts whose pair SUMO reported while they were open.
+    pub in_conflict: u64,
 }
 
 /// The amount of traffic in a run.
@@ -162,6 +174,9 @@ impl Summary {
     /// Counts a conflict.
     pub fn add(&mut self, conflict: &Conflict) {
         self.collisions += u64::from(conflict.collision);
+        if let Some(of_sumo) = &mut self.collisions_sumo {
+            of_sumo.in_conflict += u64::from(conflict.collision_sumo == Some(true));
+        }
         let known =
             self.conflicts.iter_mut().find(|known| known.kind == conflict.kind && known.severity == conflict.severity);
         match known {
@@ -201,7 +216,13 @@ impl fmt::Display for Summary {
             writeln!(f, "{:>10}", self.count(kind, None))?;
         }
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
-        writeln!(f, "collisions {}", self.collisions)?;
+        write!(f, "collisions {}", self.collisions)?;
+        match self.collisions_sumo {
+            Some(SumoCollisions { reported, in_conflict }) => {
+                writeln!(f, "; SUMO reports {reported}, {in_conflict} of them in a conflict (docs/log.md says why)")?;
+            }
+            None => writeln!(f)?,
+        }
         writeln!(
             f,
             "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s",

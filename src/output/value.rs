@@ -12,7 +12,7 @@ pub enum ColumnType {
     Text,
     /// A finite number, or none.
     Number,
-    /// Yes or no.
+    /// Yes, no, or none.
     Flag,
 }
 
@@ -40,7 +40,7 @@ impl ColumnType {
     pub fn parse(self, cell: &str) -> Result<Value<'_>, String> {
         match self {
             Self::Text => Ok(Value::Text(cell)),
-            Self::Number if cell.is_empty() => Ok(Value::Missing),
+            Self::Number | Self::Flag if cell.is_empty() => Ok(Value::Missing),
             Self::Number => cell.parse().map_err(|_| unfit(cell, "a number")).and_then(Value::finite),
             Self::Count => cell.parse().map(Value::Count).map_err(|_| unfit(cell, "a whole number")),
             Self::Flag => cell.parse().map(Value::Flag).map_err(|_| unfit(cell, "true or false")),
@@ -149,6 +149,18 @@ impl Field for bool {
 
     fn from_value(value: Value) -> Result<Self, String> {
         if let Value::Flag(flag) = value { Ok(flag) } else { Err(value.unfit("true or false")) }
+    }
+}
+
+impl Field for Option<bool> {
+    const TYPE: ColumnType = ColumnType::Flag;
+
+    fn value(&self) -> Value<'_> {
+        self.map_or(Value::Missing, Value::Flag)
+    }
+
+    fn from_value(value: Value) -> Result<Self, String> {
+        if value == Value::Missing { Ok(None) } else { bool::from_value(value).map(Some) }
     }
 }
 

@@ -91,7 +91,7 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path);
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
         count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
     }
 
@@ -114,6 +114,7 @@ impl Run {
         for user in self.leaving.drain(..) {
             self.roster.leave(user);
             self.detector.forget(user);
+            self.tracker.forget(user);
             self.outputs.forget(user);
         }
         Ok(())

@@ -14,8 +14,8 @@ import pytest
 from conftest import begin, closecall, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
-    "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,"
-    "ego_speed,foe_speed,angle,x,y,lane,collision,ego_type,foe_type,"
+    "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
+    "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,collision_sumo,ego_type,foe_type,"
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
     "headway"
 )
@@ -78,8 +78,14 @@ def test_every_collision_that_sumo_reports_was_announced(scenario: Copy, tmp_pat
     for collision in collisions:
         pair = {collision.get("collider"), collision.get("victim")}
         when = float(collision.get("time", "nan"))
-        announced = [float(row["begin"]) for row in found if {row["ego"], row["foe"]} == pair]
-        assert any(begin <= when for begin in announced), (pair, when, announced)
+        announced = [row for row in found if {row["ego"], row["foe"]} == pair and float(row["begin"]) <= when]
+        assert any(row["collision_sumo"] == "true" for row in announced), (pair, when, announced)
+    pairs = {frozenset((collision.get("collider"), collision.get("victim"))) for collision in collisions}
+    marked = [row for row in found if row["collision_sumo"] == "true"]
+    assert {frozenset((row["ego"], row["foe"])) for row in marked} == pairs
+    summary = json.loads((config.parent / "closecall-out" / "run.json").read_text())["summary"]
+    assert summary["collisions_sumo"] == {"reported": len(pairs), "in_conflict": len(marked)}
+    assert f"SUMO reports {len(pairs)}, " in done.stdout
 
 
 def test_typed_options_override_those_of_the_toml_file(scenario: Copy, tmp_path: Path) -> None:

@@ -86,7 +86,10 @@ def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None
         assert group["per_vehicle_kilometre"]["value"] == pytest.approx(len(wanted) / (driven / 1000), rel=1e-6)
         assert group["per_1000_vehicles"]["value"] == pytest.approx(1000 * len(wanted) / len(vehicles))
         for measure in ("ttc", "pet", "margin", "delta_v"):
-            values = [float(row[measure]) for row in wanted if row[measure]]
+            if measure == "delta_v":
+                values = [max(float(row["ego_delta_v"]), float(row["foe_delta_v"])) for row in wanted]
+            else:
+                values = [float(row[measure]) for row in wanted if row[measure]]
             assert group[measure]["count"] == len(values)
             for key, share in (("q05", 5), ("q25", 25), ("q50", 50), ("q75", 75), ("q95", 95)):
                 quantile = np.percentile(values, share) if values else None
@@ -136,9 +139,11 @@ def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
     every = [row for log in sorted(plans.glob("left_turn/*/*/conflicts.csv")) for row in rows(log)]
     order = ["caution", "serious", "critical"]
 
-    def badness(row: dict[str, str]) -> tuple[bool, int, float, float]:
+    def badness(row: dict[str, str]) -> tuple[bool, int, float, float, float]:
         ttc = float(row["ttc"]) if row["ttc"] else math.inf
-        return row["collision"] != "true", -order.index(row["severity"]), ttc, float(row["margin"])
+        collides = row["collision"] == "true"
+        delta_v = max(float(row["ego_delta_v"]), float(row["foe_delta_v"])) if collides else 0.0
+        return not collides, -order.index(row["severity"]), -delta_v, ttc, float(row["margin"])
 
     wanted = sorted(every, key=badness)[:25]
     assert [(one["ego"], one["foe"], one["time"]) for one in found] == [

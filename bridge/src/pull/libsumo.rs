@@ -14,6 +14,7 @@ use super::sumo::{self, TypeProfiles};
 /// libsumo's functions and the road users in the scene.
 pub struct Libsumo {
     time: Py<PyAny>,
+    collisions: Py<PyAny>,
     vehicles: LibsumoDomain,
     persons: LibsumoDomain,
     /// The getters of the vehicles that begin and end to park.
@@ -44,6 +45,7 @@ impl Libsumo {
         let function = |name: &str| compiled.getattr(name).map(Bound::unbind);
         Ok(Self {
             time: function("simulation_getTime")?,
+            collisions: function("simulation_getCollisions")?,
             vehicles: LibsumoDomain::new(&compiled, Domain::Vehicle)?,
             persons: LibsumoDomain::new(&compiled, Domain::Person)?,
             parking: [
@@ -79,6 +81,7 @@ impl Libsumo {
         let last = run.time();
         let jumped = last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin_step(time);
+        run.set_collisions_of_sumo(sumo::collisions(&self.collisions.bind(py).call0()?)?);
         if let (true, Some(last)) = (jumped, last) {
             self.remove_replaced(py, run, last)?;
         }

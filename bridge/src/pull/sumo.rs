@@ -6,6 +6,7 @@ use std::sync::Arc;
 use closecall::internals::util::Second;
 use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, Run, SumoType};
 use pyo3::exceptions::PyRuntimeError;
+use pyo3::intern;
 use pyo3::prelude::*;
 use rustc_hash::FxHashMap;
 
@@ -104,6 +105,19 @@ impl TypeProfiles {
             decel: number("getDecel")?,
         })
     }
+}
+
+/// The pairs of ids of the collisions that SUMO reports.
+pub fn collisions(reported: &Bound<PyAny>) -> PyResult<Vec<[String; 2]>> {
+    let py = reported.py();
+    let mut pairs = Vec::new();
+    for collision in reported.try_iter()? {
+        let collision = collision?;
+        let collider = collision.getattr(intern!(py, "collider"))?.extract::<String>()?;
+        let victim = collision.getattr(intern!(py, "victim"))?.extract::<String>()?;
+        pairs.push([collider, victim]);
+    }
+    Ok(pairs)
 }
 
 /// A route as the net's edges. It ends at an edge that the net does not have.

@@ -98,6 +98,8 @@ impl Traci {
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         run.begin_step(time);
+        let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
+        run.set_collisions_of_sumo(sumo::collisions(&simulation.call_method0(intern!(py, "getCollisions"))?)?);
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;

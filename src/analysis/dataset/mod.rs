@@ -103,7 +103,11 @@ impl Conflicts {
     /// First and last second of all runs.
     pub fn period(&self) -> (Second, Second) {
         let of_run = |key| self.records.iter().filter_map(move |record| record.get("summary")?.get(key)?.as_f64());
-        let times = self.numbers(|conflict| Some(conflict.time)).map(|(_, time)| time).chain(of_run("begin")).chain(of_run("end"));
+        let times = self
+            .numbers(|conflict| Some(conflict.time))
+            .map(|(_, time)| time)
+            .chain(of_run("begin"))
+            .chain(of_run("end"));
         let (begin, end) = times.fold((f64::INFINITY, 0.0), |(begin, end), time| (time.min(begin), time.max(end)));
         (begin.min(end), end)
     }

@@ -161,7 +161,9 @@ mod tests {
         let [conflict] = &read("earlier", &(header() + ROW)).unwrap()[..] else { panic!() };
         assert_eq!((conflict.ego_delta_v, conflict.foe_delta_v, conflict.delta_v()), (2.0, None, 2.0));
         let header = header().replace("delta_v", "ego_delta_v,foe_delta_v");
-        let [conflict] = &read("delta_v", &(header + &ROW.replace(",,2,10,", ",,2,9,10,"))).unwrap()[..] else { panic!() };
+        let [conflict] = &read("delta_v", &(header + &ROW.replace(",,2,10,", ",,2,9,10,"))).unwrap()[..] else {
+            panic!()
+        };
         assert_eq!((conflict.ego_delta_v, conflict.foe_delta_v, conflict.delta_v()), (2.0, Some(9.0), 9.0));
     }
 

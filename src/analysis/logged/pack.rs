@@ -137,8 +137,8 @@ fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
     let mut columns = Vec::with_capacity(COLUMNS.len() + labels.len());
     for Column { name, column_type, .. } in COLUMNS {
         let repetition = match column_type {
-            ColumnType::Count | ColumnType::Flag => Repetition::REQUIRED,
-            ColumnType::Text | ColumnType::Number => Repetition::OPTIONAL,
+            ColumnType::Count => Repetition::REQUIRED,
+            ColumnType::Text | ColumnType::Number | ColumnType::Flag => Repetition::OPTIONAL,
         };
         columns.push(column(name, physical(column_type), repetition)?);
     }
@@ -153,7 +153,7 @@ fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
     Type::group_type_builder("conflict").with_fields(columns).build()
 }
 
-/// Writes a column of the log; a number that is missing and an empty text are null.
+/// Writes a column of the log; what is missing and an empty text are null.
 fn fill(
     column: &mut SerializedColumnWriter<'_>,
     conflicts: &[LoggedConflict],
@@ -167,8 +167,8 @@ fn fill(
             column.typed::<Int64Type>().write_batch(&counts.collect::<Vec<_>>(), None, None)?;
         }
         ColumnType::Flag => {
-            let flags = values.filter_map(|value| if let Value::Flag(flag) = value { Some(flag) } else { None });
-            column.typed::<BoolType>().write_batch(&flags.collect::<Vec<_>>(), None, None)?;
+            let flags = values.map(|value| if let Value::Flag(flag) = value { Some(flag) } else { None });
+            write_optional::<BoolType>(column, flags)?;
         }
         ColumnType::Number => {
             let numbers = values.map(|value| if let Value::Number(number) = value { Some(number) } else { None });
@@ -237,8 +237,9 @@ mod tests {
             ("kind", _) => "side".to_owned(),
             ("severity", _) => "serious".to_owned(),
             (_, ColumnType::Count) => id.to_string(),
-            (_, ColumnType::Flag) => id.is_multiple_of(2).to_string(),
+            ("collision", _) => id.is_multiple_of(2).to_string(),
             _ if column.is_optional() && (id + column.name.len()).is_multiple_of(3) => String::new(),
+            (_, ColumnType::Flag) => id.is_multiple_of(2).to_string(),
             (name, ColumnType::Text) => format!("{name} {}", id % 7),
             (name, ColumnType::Number) => format!("-{}.25", id % 100 + name.len()),
         }

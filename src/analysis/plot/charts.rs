@@ -42,7 +42,11 @@ pub const MEASURES: [ChartedMeasure; 5] = [
     ChartedMeasure { name: "drac", title: "Deceleration to avoid it (DRAC), m/s²", of: |conflict| conflict.drac },
     ChartedMeasure { name: "pet", title: "Post-encroachment time (PET), s", of: |conflict| conflict.pet },
     ChartedMeasure { name: "margin", title: "Margin: gap − μ, m", of: |conflict| Some(conflict.margin) },
-    ChartedMeasure { name: "delta_v", title: "Largest speed change in a collision (ΔV), m/s", of: |conflict| Some(conflict.delta_v()) },
+    ChartedMeasure {
+        name: "delta_v",
+        title: "Largest speed change in a collision (ΔV), m/s",
+        of: |conflict| Some(conflict.delta_v()),
+    },
 ];
 
 /// Conflicts over time.

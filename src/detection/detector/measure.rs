@@ -5,7 +5,6 @@ use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::detection::encounter::{Encounter, Nearness};
-use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::drac;
 use crate::detection::measures::ttc::{self, SteadyMotion};
@@ -72,17 +71,13 @@ impl StepInputs<'_> {
         };
         let (ttc, drac) =
             if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, pair, met, encounter) };
-        let severity = measures::severity(
-            ttc,
-            drac,
-            ego.brakes.deceleration,
-            encounter.collision,
-            self.options.severity_thresholds(),
-        );
-        Nearness { clearance, ttc, drac, severity }
+        let brakes = ego.brakes.deceleration;
+        let unavoidable = drac.is_some_and(|drac| drac > brakes.max(drac::LIMIT));
+        let severity = measures::severity(ttc, drac, brakes, encounter.collision, self.options.severity_thresholds());
+        Nearness { clearance, ttc, drac: drac.map(|drac| drac.min(drac::LIMIT)), unavoidable, severity }
     }
 
-    /// The time to collision and, where there is one, the deceleration that avoids it.
+    /// The time to collision and, where there is one, the deceleration that avoids it; infinite where none does.
     fn ttc_and_drac(
         &self,
         scratch: &mut Scratch,
@@ -106,11 +101,11 @@ impl StepInputs<'_> {
             ttc::time_to_collision(&ego, &foe)
         };
         let Some(time) = ttc else { return (None, None) };
-        let in_line = drac::drac_in_line(ego.speed - met.sigma * foe.speed, time);
-        if met.meeting.foe_leads || is_obstacle || encounter.kind == Kind::Frontal {
-            return (ttc, in_line);
-        }
-        let drac = drac::drac(&mut scratch.halves, &ego, &foe, time);
-        (ttc, if drac.is_finite() { Some(drac).filter(|drac| *drac > 0.0) } else { in_line })
+        let drac = if is_obstacle {
+            ego.speed / (2.0 * time)
+        } else {
+            drac::drac(&mut scratch.halves, &ego, &foe, time, encounter.kind)
+        };
+        (ttc, Some(drac).filter(|drac| *drac > 0.0))
     }
 }

@@ -1,19 +1,19 @@
 //! DRAC of a pair in which neither road user turns.
 
-use super::ttc::HORIZON;
 use crate::geometry::Vector;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::normals;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// DRAC in m/s² if neither turns, in closed form.
+/// DRAC in m/s² if neither turns before this time, in closed form; what comes later does not count.
 ///
 /// Along each of the four normals, the ego's distances at which both overlap lie between two linear functions of time.
 /// Where all four intervals meet, the ego would touch at the largest of the lower functions. The needed deceleration is
 /// largest where that maximum bends, at an end of the time span, or where it is largest for one function alone.
 pub(super) fn straight(
-    (ego, velocity): (&Rectangle, Vector),
-    (foe, foe_velocity): (&Rectangle, Vector),
+    (ego, velocity): (Rectangle, Vector),
+    (foe, foe_velocity): (Rectangle, Vector),
+    until: Second,
 ) -> MetrePerSecondSquared {
     /// The ego does not move along a normal if its component along it is smaller than this.
     const SIDEWAYS: f64 = 1e-12;
@@ -24,7 +24,7 @@ pub(super) fn straight(
     let ahead = velocity / speed;
     let between = foe.centre - ego.centre;
     let mut from = 0.0;
-    let mut to = 2.0 * HORIZON;
+    let mut to = until;
     // Limits the time span to where `room + change · time` is not negative. No branch: the sign of `change` is
     // unpredictable.
     let mut while_positive = |room: f64, change: f64| {
@@ -37,7 +37,7 @@ pub(super) fn straight(
     let mut lower = [UniformDistance::default(); 5];
     let mut upper = [UniformDistance::default(); 4];
     let mut lines = 0;
-    for (normal, reach) in normals(ego, foe) {
+    for (normal, reach) in normals(&ego, &foe) {
         let along = normal.dot(&ahead);
         let normal = normal * 1_f64.copysign(along);
         let (room, change, along) = (normal.dot(&between), normal.dot(&foe_velocity), along.abs());

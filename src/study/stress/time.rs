@@ -206,9 +206,8 @@ fn is_finite(steps: &[[State; 2]]) -> bool {
         // An hour passes between two steps.
         scene.step(number as f64 * 3600.0, &[(users[0], *first), (users[1], *second)]);
     }
-    let finite = |conflict: &Conflict| {
-        (conflict.margin + conflict.ego_delta_v + conflict.foe_delta_v + conflict.x).is_finite()
-    };
+    let finite =
+        |conflict: &Conflict| (conflict.margin + conflict.ego_delta_v + conflict.foe_delta_v + conflict.x).is_finite();
     scene.finite && scene.finish().iter().all(finite)
 }
 

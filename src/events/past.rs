@@ -1,0 +1,112 @@
+//! Where the road users were in the last seconds, so that what an event records of both begins before the event: when a
+//! conflict opens, the first may have left a part of the conflict area already.
+
+use std::collections::VecDeque;
+
+use crate::geometry::Point;
+use crate::traffic::frame::{Frame, Row};
+use crate::traffic::roster::UserIndex;
+use crate::util::units::{Metre, Radian, Second};
+
+/// So many past steps are kept, at least [`APART`] from one another: 5 s, in which a vehicle crosses a junction.
+const STEPS: usize = 10;
+/// The time between two of them, in s: in half a second a path bends by centimetres.
+const APART: Second = 0.5;
+
+/// The x, y and heading of a road user that is not there.
+const ABSENT: [f64; 3] = [f64::NAN; 3];
+
+/// The last steps, the oldest first.
+#[derive(Debug, Default)]
+pub(super) struct Past {
+    steps: VecDeque<PastStep>,
+}
+
+/// Where everyone was at a time.
+#[derive(Debug, Default)]
+struct PastStep {
+    time: Second,
+    /// By [`UserIndex`]: x and y of the front bumper, and the heading.
+    places: Vec<[f64; 3]>,
+}
+
+impl PastStep {
+    fn of(&self, user: UserIndex) -> Option<(Second, Point, Radian)> {
+        let &[x, y, heading]: &[Metre; 3] = self.places.get(user.0 as usize)?;
+        (!x.is_nan()).then(|| (self.time, Point::new(x, y), heading))
+    }
+}
+
+impl Past {
+    /// Adds a step, if the last one is long enough ago; `users` is more than every index in use.
+    pub fn add(&mut self, frame: &Frame, users: usize) {
+        if self.steps.back().is_some_and(|last| frame.time - last.time < APART - super::SAME_MOMENT) {
+            return;
+        }
+        let mut step = if self.steps.len() < STEPS { None } else { self.steps.pop_front() }.unwrap_or_default();
+        step.time = frame.time;
+        step.places.clear();
+        step.places.reserve_exact(users);
+        step.places.resize(users, ABSENT);
+        for Row { user, state } in frame.rows() {
+            step.places[user.0 as usize] = [state.x, state.y, state.heading];
+        }
+        self.steps.push_back(step);
+    }
+
+    /// Where a road user was before this time, the oldest first, since it was last away.
+    pub fn of(&self, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
+        let away = self.steps.iter().rposition(|step| step.of(user).is_none());
+        let since = self.steps.range(away.map_or(0, |away| away + 1)..);
+        since.filter_map(move |step| step.of(user)).take_while(move |(time, ..)| *time < before)
+    }
+
+    /// Forgets a road user that has left, as its index may be given to another.
+    pub fn forget(&mut self, user: UserIndex) {
+        for place in self.steps.iter_mut().filter_map(|step| step.places.get_mut(user.0 as usize)) {
+            *place = ABSENT;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::traffic::frame::State;
+
+    const USER: UserIndex = UserIndex(1);
+
+    fn frame(time: Second, is_there: bool) -> Frame {
+        let mut frame = Frame::default();
+        frame.begin(time);
+        if is_there {
+            frame.push(USER, State { x: time, y: 0.0, z: 0.0, heading: 0.0, speed: 1.0 });
+        }
+        frame
+    }
+
+    /// The times at which the road user was there, of steps of 0.1 s.
+    fn times(past: &Past) -> Vec<Second> {
+        past.of(USER, f64::INFINITY).map(|(time, ..)| time).collect()
+    }
+
+    #[test]
+    fn the_last_five_seconds_are_kept_at_every_half_second() {
+        let mut past = Past::default();
+        (0..=80).for_each(|step| past.add(&frame(f64::from(step) * 0.1, true), 2));
+        let expected = (0..10).map(|step| 3.5 + f64::from(step) * 0.5).collect::<Vec<_>>();
+        assert!(times(&past).iter().zip(&expected).all(|(time, expected)| (time - expected).abs() < 1e-6));
+        assert_eq!((times(&past).len(), past.of(USER, 5.1).count()), (10, 4));
+    }
+
+    #[test]
+    fn what_was_before_it_was_away_is_not_its_path() {
+        let mut past = Past::default();
+        for (time, is_there) in [(0.0, true), (0.5, true), (1.0, false), (1.5, true), (2.0, true)] {
+            past.add(&frame(time, is_there), 2);
+        }
+        assert_eq!(times(&past), [1.5, 2.0]);
+        past.forget(USER);
+        assert!(times(&past).is_empty());
+    }
+}
