@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Map, Value, json};
 
+use super::contact::parts;
 use super::roads;
 use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
@@ -84,6 +85,11 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     add("kind", conflicts().map(|conflict| rank(&Kind::ALL, conflict.kind)).collect());
     add("severity", conflicts().map(|conflict| rank(&Severity::ALL, conflict.severity)).collect());
     add("collision", conflicts().map(|conflict| u8::from(conflict.collision)).collect());
+    add("unavoidable", conflicts().map(|conflict| u8::from(conflict.unavoidable == Some(true))).collect());
+    let touching = conflicts().map(parts).collect::<Vec<_>>();
+    for (place, name) in ["ego_part", "foe_part"].into_iter().enumerate() {
+        add(name, touching.iter().map(|parts| parts.map(|parts| parts[place] as u8)).collect());
+    }
     for column in COLUMNS.iter().filter(|column| is_shown_number(column)) {
         let number = |conflict| match (column.get)(conflict) {
             Cell::Number(number) => Some(rounded(number, decimals(column))),
@@ -186,6 +192,7 @@ mod tests {
                 "kind" => "side",
                 "severity" => "caution",
                 "collision" => "false",
+                "unavoidable" | "collision_sumo" => "",
                 _ => "1",
             }),
         };

@@ -3,6 +3,7 @@
 //! The page is a template (`page.html`) with its style, the chart library, the data as JSON columns, and the scripts
 //! that draw them. All of them are in one file, which works offline and sends nothing anywhere.
 
+mod contact;
 mod data;
 mod roads;
 

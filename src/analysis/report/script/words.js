@@ -2,8 +2,34 @@
 
 const kmh = (speed) => `${number(speed, 1)} m/s (${number(speed * 3.6)} km/h)`;
 
-/** The ego's collision with the foe, by kind. */
-const DEED = ["run into the rear of", "meet head-on", "run into the side of"];
+/** The parts of a road user; the first is its front. */
+const PARTS = ["front", "rear", "left side", "right side"];
+/** A road user is said to drive from this speed on, in m/s. */
+const DRIVES = 0.05;
+
+/** What the two did, or were about to do, by the parts that touch first and by who moves. */
+function deed(row, ego, foe) {
+  const value = (name) => column[name][row];
+  const moving = (who, speed) => `${who} at ${kmh(speed)}`;
+  const other = (who, speed) => `${who}, ${speed > DRIVES ? `driving ${kmh(speed)}` : "standing"}`;
+  const names = [ego, foe];
+  const parts = ["ego_part", "foe_part"].map(value);
+  const speeds = ["ego_speed", "foe_speed"].map(value);
+  const moves = speeds.map((speed) => speed > DRIVES);
+  if (parts[0] === null) {
+    const near = value("kind") === 0 ? "the rear of " : "";
+    return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
+  }
+  const did = (past, would) => (value("collision") ? past : `was about to ${would}`);
+  // The one that drives its front into the other; otherwise one that moves.
+  const fronts = [0, 1].filter((who) => parts[who] === 0 && moves[who]);
+  const by = fronts.length ? fronts[0] : moves[0] ? 0 : 1;
+  const [mover, hit] = [moving(names[by], speeds[by]), other(names[1 - by], speeds[1 - by])];
+  if (fronts.length === 2 && value("kind") === 1) return `${mover} ${did("met", "meet")} ${hit}, head-on`;
+  const part = `the ${PARTS[parts[1 - by]]} of ${hit}`;
+  return fronts.length ? `${mover} ${did("ran", "run")} into ${part}`
+    : `${mover} ${did("touched", "touch")} with its ${PARTS[parts[by]]} ${part}`;
+}
 
 function typed(id, type) {
   const word = conflicts.types[type];
@@ -20,23 +46,24 @@ function describe(row) {
   const value = (name) => column[name][row];
   const ego = typed(egoId(row), column.ego_type[row]);
   const foe = typed(foeId(row), column.foe_type[row]);
-  const foe_speed = value("foe_speed") > 0.05 ? `driving ${kmh(value("foe_speed"))}` : "standing";
   const angle = Math.round((value("angle") * 180) / Math.PI);
   const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
-  const sentences = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${ego} at ${kmh(value("ego_speed"))} was about to `
-    + `${DEED[value("kind")]} ${foe}, ${foe_speed}${across}.`];
+  const sentences = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${deed(row, ego, foe)}${across}.`];
   sentences.push(`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
     + `${number(value("margin"), 2)} m.`);
   if (value("collision")) {
     sentences.push("Their rectangles overlapped: a collision.");
   } else if (value("ttc") !== null) {
-    const hard = value("drac") !== null ? `, and the ego had to brake at ${number(value("drac"), 1)} m/s² to avoid it (DRAC)` : "";
-    sentences.push(`At the worst moment they would have touched after ${number(value("ttc"), 2)} s (TTC)${hard}.`);
+    let braking = "";
+    if (value("unavoidable")) braking = ", and no braking would have avoided it";
+    else if (value("drac") !== null) braking = `, and braking at ${number(value("drac"), 1)} m/s² would just have avoided it (DRAC)`;
+    sentences.push(`At the worst moment they would have touched after ${number(value("ttc"), 2)} s (TTC)${braking}.`);
   } else {
     sentences.push("At constant speed they would not have touched.");
   }
   if (value("pet") !== null) sentences.push(`The second entered the conflict area ${number(value("pet"), 2)} s after the first had left it (PET).`);
-  sentences.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("delta_v"), 1)} m/s.`);
+  const of_foe = value("foe_delta_v") === null ? "" : ` and the foe’s by ${number(value("foe_delta_v"), 1)} m/s`;
+  sentences.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("ego_delta_v"), 1)} m/s${of_foe} (ΔV).`);
   const lasted = value("end") - value("begin");
   if (lasted > 0) sentences.push(`The conflict lasted ${number(lasted, 1)} s.`);
   return sentences.join(" ");
