@@ -6,9 +6,9 @@
 //!
 //! All numbers are f32, which have 24 bits: a UTM northing would be rounded to half a metre. The format has no origin:
 //! the bounds in DIMENSIONS are in the coordinates of the vehicles, and SSAM ignores vehicles outside (`ValidateVehicle`
-//! and `ZoneGrid` of its source). So bounds and vehicles are both given relative to a round origin near the net's low
-//! corner, and times relative to midnight before the first step. Up to 262 km and 36 hours from there they are right to
-//! 8 mm and 4 ms.
+//! and `ZoneGrid` of its source). So where a net is far from SUMO's origin, bounds and vehicles are both given relative to
+//! its low corner; times are relative to midnight before the first step. Up to 131 km and 36 hours they are right to 4 mm
+//! and 4 ms.
 
 use std::path::Path;
 
@@ -34,8 +34,8 @@ const VERSION: f32 = 3.0;
 /// `DIMENSIONS` in metres, one per unit.
 const METRIC: u8 = 1;
 const SCALE: f32 = 1.0;
-/// The origin is a multiple of this, in m: most nets keep SUMO's coordinates, others lose leading digits only.
-const ROUND: Metre = 1_000.0;
+/// An f32 of up to this is right to 4 mm, in m.
+const FAR: Metre = 131_072.0;
 /// A vehicle's middle is at most this far outside the lanes' bounds, in m.
 const MARGIN: Metre = 20.0;
 const DAY: Second = 86_400.0;
@@ -75,7 +75,8 @@ impl Trajectories {
         file.write(&[1])?;
         let mut bounds = Bounds::EMPTY;
         net.lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
-        let origin = bounds.low.coords.map(|low| (low / ROUND).round() * ROUND);
+        let is_far = bounds.low.coords.amax().max(bounds.high.coords.amax()) > FAR;
+        let origin = if is_far { bounds.low.coords.map(f64::floor) } else { Vector::zeros() };
         let (low, high) = (bounds.low - origin, bounds.high - origin);
         file.write(&[DIMENSIONS, METRIC])?;
         file.write(&SCALE.to_le_bytes())?;
@@ -185,13 +186,13 @@ mod tests {
         let (east, north) = (567_690.0, 5_431_900.0);
         let (bounds, time, front) =
             written([(east, north), (east + 400.0, north + 300.0)], 1_700_000_000.25, (east + 0.01, north + 0.02));
-        assert_eq!(bounds, [-2330, 1880, -1890, 2220]);
+        assert_eq!(bounds, [-20, -20, 420, 320]);
         assert!((time - 80_000.25).abs() < 5e-3, "{time}");
-        assert!((front.0 + 2309.99).abs() < 5e-3 && (front.1 - 1900.02).abs() < 5e-3, "{front:?}");
+        assert!((front.0 - 0.01).abs() < 5e-3 && (front.1 - 0.02).abs() < 5e-3, "{front:?}");
     }
 
     #[test]
-    fn places_near_the_zero_point_are_those_of_sumo() {
+    fn places_near_the_origin_are_those_of_sumo() {
         let (bounds, time, front) = written([(-300.0, 0.0), (4000.0, 0.0)], 25_200.5, (12.5, 0.0));
         assert_eq!((bounds, time, front), ([-320, -20, 4020, 20], 25_200.5, (12.5, 0.0)));
     }
