@@ -52,12 +52,14 @@ fn encounter(lengths: [f64; 2], cars: [(f64, f64); 2]) -> Option<Encounter> {
 /// Checks that a follower at 20 m/s, 35 m behind a leader at `speed`, has the gap and the TTC that it has on the lane.
 fn is_as_on_the_lane(lengths: [f64; 2], position: f64, speed: f64) {
     let found = encounter(lengths, [(position, 20.0), (position + 40.0, speed)]).unwrap();
-    let plain = encounter([400.0, 400.0], [(100.0, 20.0), (140.0, speed)]);
     let as_drawn = encounter([100.0, 100.0], [(20.0, 20.0), (60.0, speed)]).unwrap();
     let near = |found: f64, right: f64| (found - right).abs() < 0.1;
     assert!(near(found.gap, 35.0) && near(found.mu, as_drawn.mu), "{lengths:?} at {position}: {found:?}");
+    let closing = 20.0 - speed;
     let ttc = found.nearness.unwrap().ttc.unwrap();
-    assert!(near(ttc, 35.0 / (20.0 - speed)), "{lengths:?} at {position}: TTC {ttc}, {plain:?}");
+    assert!(near(ttc, 35.0 / closing), "{lengths:?} at {position}: TTC {ttc}");
+    let drac = found.nearness.unwrap().drac.unwrap();
+    assert!(near(drac, closing * closing / 70.0), "{lengths:?} at {position}: DRAC {drac}");
 }
 
 #[test]

@@ -12,6 +12,9 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 /// A later contact does not count, in s: paths are not built further.
 pub const HORIZON: Second = 10.0;
 
+/// A relative difference between distances along a path and in the plane that is more than rounding.
+const STRETCHED: f64 = 1e-3;
+
 /// A road user that keeps its speed along its poses, which reach [`HORIZON`] ahead.
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyMotion<'a> {
@@ -63,14 +66,16 @@ impl SteadyMotion<'_> {
         known.map(move |pair| movement(&pair[0], &pair[1])).chain(beyond.map(move |[from, to]| movement(&from, &to)))
     }
 
-    /// Its rectangle now and its displacement in a time, if it goes straight on for so long.
+    /// Its rectangle now and its displacement in a time, if it goes straight on for so long. On a lane that is longer or
+    /// shorter than drawn, that displacement is not its speed's.
     pub(crate) fn straight(&self, time: Second) -> Option<(Rectangle, Vector)> {
         let distance = self.speed * time;
         let (first, by) = match self.poses {
             [only] => (only, only.axis * distance),
             [first, ..] => {
                 let last = self.poses.iter().take_while(|pose| pose.axis == first.axis).last()?;
-                if last.distance < distance {
+                let moves = (last.front - first.front).norm();
+                if last.distance < distance || (moves - last.distance).abs() > STRETCHED * last.distance {
                     return None;
                 }
                 let part = if distance > 0.0 { distance / last.distance } else { 0.0 };
