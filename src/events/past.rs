@@ -10,8 +10,9 @@ use crate::util::units::{Metre, Radian, Second};
 
 /// So many past steps are kept, at least [`APART`] from one another: 5 s, in which a vehicle crosses a junction.
 const STEPS: usize = 10;
-/// The time between two of them, in s: in half a second a path bends by centimetres.
-const APART: Second = 0.5;
+/// The time between two of them, in s: half a second, in which a path bends by centimetres, less what sums of steps differ
+/// from it by rounding.
+const APART: Second = 0.5 - 1e-6;
 
 /// The x, y and heading of a road user that is not there.
 const ABSENT: [f64; 3] = [f64::NAN; 3];
@@ -40,7 +41,7 @@ impl PastStep {
 impl Past {
     /// Adds a step, if the last one is long enough ago; `users` is more than every index in use.
     pub fn add(&mut self, frame: &Frame, users: usize) {
-        if self.steps.back().is_some_and(|last| frame.time - last.time < APART - super::SAME_MOMENT) {
+        if self.steps.back().is_some_and(|last| frame.time - last.time < APART) {
             return;
         }
         let mut step = if self.steps.len() < STEPS { None } else { self.steps.pop_front() }.unwrap_or_default();

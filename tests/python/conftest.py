@@ -112,6 +112,12 @@ def parked(stops: Path) -> Callable[[str, float], bool]:
     return lambda name, time: any(begin - 1e-6 <= time < end - 1e-6 for begin, end in spans.get(name, []))
 
 
+def is_one_message(stderr: str) -> bool:
+    """Whether the command said one thing: a line, with clap's usage below it if a word was wrong."""
+    has_usage = stderr.endswith("\nFor more information, try '--help'.\n")
+    return stderr.startswith("closecall: ") and (has_usage or stderr.count("\n") == 1)
+
+
 Once = Callable[[str, Callable[[Path], None]], Path]
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import closecall, python
+from conftest import closecall, is_one_message, python
 
 Copy = Callable[[str], Path]
 
@@ -20,11 +20,7 @@ def refused(config: Path, *words: str, names: str, usage: bool = False) -> None:
     done = closecall("run", config, *words)
     assert done.returncode == 2, (done.returncode, done.stderr)
     assert done.stdout == ""
-    assert done.stderr.startswith("closecall: "), done.stderr
-    if usage:
-        assert done.stderr.endswith("\nFor more information, try '--help'.\n"), done.stderr
-    else:
-        assert done.stderr.count("\n") == 1, done.stderr
+    assert is_one_message(done.stderr) and ("Usage: " in done.stderr) == usage, done.stderr
     assert re.search(names, done.stderr), done.stderr
     assert not (config.parent / "closecall-out").exists()
 

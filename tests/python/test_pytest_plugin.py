@@ -49,7 +49,7 @@ def test_options_and_the_scenarios_own_settings_apply(closecall_scenario: RunSce
 def test_unusable_arguments_raise_named_errors(closecall_scenario: RunScenario, tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError, match="no_such_folder"):
         closecall_scenario("no_such_folder")
-    with pytest.raises(ValueError, match="epsilon"):
+    with pytest.raises(ValueError, match='for "epsilon"'):
         closecall_scenario(NETS / "side", epsilon=-1)
     with pytest.raises(ValueError, match="sumocfg"):
         closecall_scenario(tmp_path)

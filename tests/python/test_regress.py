@@ -2,20 +2,26 @@
 
 from __future__ import annotations
 
+import fcntl
 import json
+import os
+import pty
 import re
 import shutil
 import signal
+import struct
 import subprocess
 import sys
+import termios
 import time
 import xml.etree.ElementTree as ET
+from contextlib import suppress
 from pathlib import Path
 from typing import Callable
 
 import psutil
 import pytest
-from conftest import NETS, begin, closecall, is_alive, until, wait_for_rows
+from conftest import NETS, TIMEOUT, begin, closecall, is_alive, until, wait_for_rows
 
 Copy = Callable[[str], Path]
 
@@ -268,6 +274,25 @@ def test_a_folder_without_a_scenario_is_refused(tmp_path: Path) -> None:
         done = closecall("regress", folder)
         assert (done.returncode, done.stderr.count("\n"), done.stdout) == (2, 1, "")
         assert str(folder) in done.stderr
+
+
+def test_progress_is_shown_on_a_terminal(blessed: Copy) -> None:
+    terminal, end = pty.openpty()
+    # 24 rows of 100 columns.
+    fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
+    seeds = ",".join(map(str, range(1, 13)))
+    command = [sys.executable, "-m", "closecall", "regress", str(blessed("side")), "--jobs", "1", "--seeds", seeds]
+    with subprocess.Popen(
+        command, stdout=subprocess.DEVNULL, stderr=end, env={**os.environ, "TERM": "xterm"}
+    ) as process:
+        os.close(end)
+        shown = b""
+        with suppress(OSError):
+            while part := os.read(terminal, 4096):
+                shown += part
+        process.wait(TIMEOUT)
+    os.close(terminal)
+    assert b" of 12 runs, " in shown, shown
 
 
 def test_logs_are_kept_on_request(blessed: Copy, tmp_path: Path) -> None:

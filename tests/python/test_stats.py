@@ -13,7 +13,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import NETS, Once, closecall, parked, rows
+from conftest import NETS, Once, closecall, is_one_message, parked, rows
 from scipy import stats as scipy_stats
 
 Copy = Callable[[str], Path]
@@ -379,7 +379,7 @@ def test_an_unusable_log_gets_one_clear_line(tmp_path: Path) -> None:
     for words, message in [*cases, ((unrun,), "run.json: No such file")]:
         done = closecall("stats", *words)
         assert done.returncode == 2 and message in done.stderr, (words, done)
-        assert done.stderr.count("\n") == 1 and not done.stdout, done
+        assert is_one_message(done.stderr) and not done.stdout, done
 
 
 def test_a_killed_run_is_left_out_and_reported(tmp_path: Path) -> None:

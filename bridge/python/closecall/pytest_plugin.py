@@ -8,6 +8,7 @@ def test_no_side_conflicts(closecall_scenario):
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -59,7 +60,7 @@ def closecall_scenario(request: pytest.FixtureRequest, tmp_path_factory: pytest.
         if done.returncode != 0:
             lines = [line for line in done.stderr.splitlines() if line.startswith("closecall: ")]
             message = lines[-1].removeprefix("closecall: ") if lines else done.stderr
-            raise (ValueError if done.returncode == 2 else RuntimeError)(message)
+            raise (ValueError if done.returncode == 2 else RuntimeError)(in_keywords(message))
         return read(log)
 
     return run
@@ -76,6 +77,11 @@ def option_words(options: dict[str, Any]) -> list[str]:
             text = ",".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
             words.append(f"{option}={text}")
     return words
+
+
+def in_keywords(message: str) -> str:
+    """A message that names keywords where that of the command names its options, such as '--serious-ttc <S>'."""
+    return re.sub(r"'--([a-z-]+)(?: <[^']*>)?'", lambda option: f'"{option[1].replace("-", "_")}"', message)
 
 
 def read(log: Path) -> ScenarioRun:
