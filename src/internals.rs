@@ -40,6 +40,7 @@ pub mod geometry {
 }
 
 pub mod input {
+    pub use crate::input::replay::demand::PlannedRoutes;
     pub use crate::input::replay::recording::Recording;
     pub use crate::input::replay::routes::Routes;
     pub use crate::input::replay::rows::RecordedStep;

@@ -44,7 +44,7 @@
 //! | feature | adds |
 //! |---|---|
 //! | `cli` | the command line, options from text, logs read back, statistics, the report, regression tests |
-//! | `parquet` | sweeps, whose logs are Parquet files |
+//! | `parquet` | sweeps, whose logs are Parquet files, and recordings in Parquet |
 //! | `plot` | charts as PNG or SVG |
 //! | `study` | the study of error against run time, and the stress cases |
 

@@ -21,13 +21,14 @@ use crate::{Error, Result};
 /// A recording and how to check it.
 #[derive(Args)]
 pub struct ReplayArgs {
-    /// Recording to check: SUMO's fcd-output as XML or CSV, also gzipped.
+    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, also gzipped.
     #[arg(value_name = "FCD")]
     recording: PathBuf,
     /// Net on which the recording was made.
     #[arg(short = 'n', long, value_name = "NET")]
     net: PathBuf,
-    /// Route and additional files that define the vehicle types; types they do not define are SUMO's default ones.
+    /// Route and additional files that define the vehicle types and the routes; types they do not define are SUMO's default
+    /// ones.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
@@ -62,7 +63,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
     let summary = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
-        remarks: replay.remark().into_iter().collect(),
+        remarks: replay.remarks(),
         ..Ending::default()
     })?;
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {

@@ -4,5 +4,7 @@ pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod golden_section;
 pub(crate) mod input_file;
+#[cfg(feature = "parquet")]
+pub mod parquet_column;
 pub mod threads;
 pub mod units;

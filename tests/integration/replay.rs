@@ -4,7 +4,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::internals::input::{RecordedStep, Recording, Routes};
+use closecall::internals::input::{PlannedRoutes, RecordedStep, Recording, Routes};
 use closecall::{EdgeIndex, Net};
 use proptest::prelude::*;
 
@@ -62,7 +62,7 @@ fn simple(values: impl Iterator<Item = (String, String)>, person: bool) -> Simpl
         person,
         type_name: String::new(),
         lane: String::new(),
-        numbers: [f64::NAN, f64::NAN, 0.0, f64::NAN, f64::NAN, 0.0, 0.0].map(f64::to_bits),
+        numbers: [f64::NAN, f64::NAN, 0.0, f64::NAN, f64::NAN, f64::NAN, 0.0].map(f64::to_bits),
     };
     for (name, value) in values {
         match &*name {
@@ -365,7 +365,7 @@ fn read_routes(rows: impl Iterator<Item = (f64, String, usize)>) -> (tempfile::N
     rows.for_each(|(time, id, edge)| writeln!(text, "{time};{id};0;0;0;1;e{edge}_0").unwrap());
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), text).unwrap();
-    let routes = Routes::read(file.path(), &net).unwrap();
+    let routes = Routes::read(file.path(), &net, PlannedRoutes::none().unwrap(), None).unwrap();
     (file, routes)
 }
 
@@ -376,7 +376,7 @@ fn routes(
     rows: impl Iterator<Item = (f64, String, usize)>,
 ) -> (Vec<Vec<u32>>, Vec<u64>) {
     let (_, mut routes) = read_routes(rows);
-    let route = |number| routes.of(number).unwrap().iter().map(|EdgeIndex(edge)| *edge).collect();
+    let route = |number| routes.of(number).unwrap().edges.iter().map(|EdgeIndex(edge)| *edge).collect();
     let routes_of_all = (0..vehicles).map(route).collect();
     (routes_of_all, (0..entering).map(|_| routes.enter().unwrap()).collect())
 }

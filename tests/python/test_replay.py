@@ -7,44 +7,15 @@ import json
 import os
 import re
 import signal
+import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import Row, begin, closecall, rows, wait_for_rows
+from conftest import begin, closecall, rows, wait_for_rows
+from recordings import record, replay, same
 
 Copy = Callable[[str], Path]
-
-FULL = ("--fcd-output.attributes", "all", "--precision", "9")
-
-
-def record(config: Path, name: str, *words: str) -> Path:
-    """Run a scenario live and record it; its log is in the folder `live` beside it."""
-    recording = config.parent / name
-    log = config.parent / "live"
-    done = closecall("run", config, *words, "--quiet", "--out", log, "--", "--fcd-output", recording, *FULL)
-    assert done.returncode == 0, done.stderr
-    return recording
-
-
-def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, str]:
-    """Exit status and messages of a replay."""
-    net, routes = config.with_suffix(".net.xml"), config.with_suffix(".rou.xml")
-    done = closecall("replay", recording, "--net", net, "--route-files", routes, "--out", out, *words)
-    return done.returncode, done.stderr
-
-
-def same(live: list[Row], again: list[Row]) -> None:
-    """Equal within 2e-6, two units in the log's last place."""
-    texts = ("ego", "foe", "ego_type", "foe_type", "kind", "severity", "lane", "collision")
-    assert [[row[name] for name in texts] for row in again] == [[row[name] for name in texts] for row in live]
-    for name in ("begin", "end", "time", "gap", "mu", "margin", "clearance", "ttc", "pet", "angle", "x", "y"):
-        for one, other in zip(live, again):
-            if one[name]:
-                assert float(other[name]) == pytest.approx(float(one[name]), abs=2e-6), (name, one, other)
-            else:
-                assert not other[name]
-
 
 STANDING = '<vehicle id="a" x="%s" y="1" angle="0" speed="0"/>'
 
@@ -52,6 +23,7 @@ RECORDINGS = [
     ("reckless", "900", 100, "fcd.xml", ()),
     ("reckless", "900", 100, "fcd.xml.gz", ()),
     ("reckless", "900", 100, "fcd.csv", ()),
+    ("reckless", "900", 100, "fcd.parquet", ()),
     ("crowd", "1000", 40, "fcd.xml", ("--sublane",)),
     ("crowd", "1000", 40, "fcd.csv", ("--sublane",)),
 ]
@@ -152,8 +124,77 @@ def test_a_recording_of_another_place_is_refused(scenario: Copy, tmp_path: Path)
     moved.write_text(re.sub(r' x="([^"]+)"', lambda x: f' x="{float(x[1]) + 9e3}"', recording.read_text()))
     code, message = replay(config, moved, tmp_path / "log")
     assert code == 2
-    assert "moved.xml" in message and "on lane" in message and "--fcd-output.geo" in message
+    assert "moved.xml" in message and "on lane" in message and "recorded on another net?" in message
     assert replay(config, recording, tmp_path / "log")[0] == 0
+
+
+def test_degrees_are_converted_by_the_projection_of_the_net(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("reckless")
+    net = config.with_suffix(".net.xml")
+    projection = 'netOffset="-385000.00,-5819000.00" projParameter="+proj=utm +zone=33 +ellps=WGS84 +units=m +no_defs"'
+    net.write_text(re.sub('netOffset="[^"]*"', "", net.read_text()).replace('projParameter="!"', projection))
+    degrees = ("--fcd-output.geo", "--precision.geo", "13")
+    assert replay(config, record(config, "fcd.xml", "--end", "900", sumo=degrees), tmp_path) == (0, "")
+    live = rows(config.parent / "live" / "conflicts.csv")
+    assert len(live) > 50
+    same(live, rows(tmp_path / "conflicts.csv"), within=2e-5)
+
+
+@pytest.mark.parametrize("recording", ["fcd.xml.gz", "fcd.csv", "fcd.parquet"])
+def test_clock_times_are_the_seconds_of_the_run(recording: str, scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    assert replay(config, record(config, recording, sumo=("--human-readable-time",)), tmp_path) == (0, "")
+    live = rows(config.parent / "live" / "conflicts.csv")
+    assert len(live) == 1
+    same(live, rows(tmp_path / "conflicts.csv"))
+
+
+@pytest.mark.parametrize("header", ["plain", "auto", "tag"])
+def test_tables_may_have_any_of_the_column_headers(header: str, scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    sumo = ("--output.column-header", header, "--output.column-separator", ",", "--output.compression", "gzip")
+    for recording in (record(config, "fcd.csv", sumo=sumo), record(config, "fcd.parquet", sumo=sumo)):
+        assert replay(config, recording, tmp_path) == (0, "")
+        same(rows(config.parent / "live" / "conflicts.csv"), rows(tmp_path / "conflicts.csv"))
+    packed = tmp_path / "fcd.parquet.gz"
+    packed.write_bytes(gzip.compress(recording.read_bytes()))
+    assert replay(config, packed, tmp_path) == (0, "")
+    same(rows(config.parent / "live" / "conflicts.csv"), rows(tmp_path / "conflicts.csv"))
+
+
+def test_parquet_of_an_unread_compression_is_refused(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    recording = record(config, "fcd.parquet", sumo=("--output.compression", "zstd"))
+    status, message = replay(config, recording, tmp_path / "out")
+    assert (status, message.count("\n")) == (2, 1)
+    assert "compressed by zstd" in message and "--output.compression" in message
+
+
+def on_lanes(lanes: list[str]) -> str:
+    """A recording in which a vehicle is on these lanes of sumo_nets/rear_end, second by second."""
+    row = '<timestep time="{}"><vehicle id="a" x="{}" y="-1.6" angle="90" speed="1" pos="{}" lane="{}"/></timestep>'
+    steps = (row.format(time, 9 + time, 9 + time, lane) for time, lane in enumerate(lanes))
+    return f"<fcd-export>{''.join(steps)}</fcd-export>"
+
+
+def test_a_recording_without_a_lane_of_the_net_is_refused(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    recording = tmp_path / "fcd.xml"
+    recording.write_text(on_lanes(["other_0", "other_1"]))
+    for words in ((), ("--path", "arc")):
+        status, message = replay(config, recording, tmp_path / "out", *words)
+        assert (status, message.count("\n")) == (2, 1)
+        assert 'the net has none of the recording\'s lanes ("other_0" and so on)' in message
+        assert not (tmp_path / "out").exists()
+
+
+def test_the_share_of_unknown_lanes_is_told(scenario: Copy, tmp_path: Path) -> None:
+    config = scenario("rear_end")
+    recording = tmp_path / "fcd.xml"
+    lane = ET.parse(config.with_suffix(".net.xml")).findall("edge[@from]/lane")[0]
+    recording.write_text(on_lanes([lane.get("id", ""), "other_0", "other_0"]))
+    done = closecall("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
+    assert "lanes: 66.7 % of the vehicle-steps are on no lane of the net" in done.stdout, done
 
 
 def test_a_missing_recording_is_named(scenario: Copy, tmp_path: Path) -> None:

@@ -13,10 +13,11 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical, unreadable};
+use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical};
 use super::reader::ConflictReader;
 use super::run::record;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
+use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
 
 /// Rows of a row group: what is in memory while one is written.

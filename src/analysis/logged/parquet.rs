@@ -4,12 +4,13 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use parquet::basic::Type as Physical;
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::{BoolType, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::column::reader::ColumnReader;
+use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
+use crate::util::parquet_column::{Batch, unreadable};
 use crate::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
@@ -232,39 +233,7 @@ impl ColumnBatch {
     }
 }
 
-/// The values of a batch; none where the file has null.
-struct Batch<T: DataType> {
-    reader: ColumnReaderImpl<T>,
-    values: Vec<Option<T::T>>,
-}
-
-impl<T: DataType> Batch<T> {
-    fn new(reader: ColumnReaderImpl<T>) -> Self {
-        Self { reader, values: Vec::new() }
-    }
-
-    fn read(&mut self, rows: usize) -> std::result::Result<usize, ParquetError> {
-        let mut values = Vec::with_capacity(rows);
-        let mut levels = Vec::with_capacity(rows);
-        let (read, ..) = self.reader.read_records(rows, Some(&mut levels), None, &mut values)?;
-        let mut values = values.into_iter();
-        self.values.clear();
-        // A column that cannot be null has no levels.
-        self.values.extend((0..read).map(|row| if levels.get(row) == Some(&0) { None } else { values.next() }));
-        Ok(read)
-    }
-
-    fn get(&self, row: usize) -> Option<&T::T> {
-        self.values.get(row)?.as_ref()
-    }
-}
-
 fn open(path: &Path) -> Result<SerializedFileReader<File>> {
     let file = File::open(path).map_err(|source| Error::file(path, source))?;
     SerializedFileReader::new(file).map_err(|error| unreadable(path, &error))
-}
-
-/// The library's error in one line.
-pub(super) fn unreadable(path: &Path, error: &ParquetError) -> Error {
-    Error::content(path, error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" "))
 }

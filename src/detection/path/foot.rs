@@ -8,8 +8,10 @@ use crate::util::units::Metre;
 const NEAR_HINT: Metre = 5.0;
 
 /// The point of a lane's centre line nearest to a front bumper.
-pub(super) struct Foot {
+pub struct Foot {
+    /// The point.
     pub point: Point,
+    /// The segment of the centre line that it is on.
     pub segment: usize,
     /// Distance from the lane's beginning.
     pub distance: Metre,
@@ -23,7 +25,12 @@ impl Foot {
     /// Looks near the distance `hint` first.
     pub fn of(line: &[Vertex], front: Point, hint: Metre) -> Self {
         let best = Self::nearest(line, front, |start, end| start <= hint + NEAR_HINT && end >= hint - NEAR_HINT);
-        best.or_else(|| Self::nearest(line, front, |_, _| true)).unwrap_or(Self {
+        best.unwrap_or_else(|| Self::on_any_part(line, front))
+    }
+
+    /// Looks on the whole lane.
+    pub fn on_any_part(line: &[Vertex], front: Point) -> Self {
+        Self::nearest(line, front, |_, _| true).unwrap_or(Self {
             point: front,
             segment: 0,
             distance: 0.0,

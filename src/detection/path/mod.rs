@@ -16,6 +16,8 @@ pub mod straight;
 pub mod track;
 pub mod turning;
 
+pub use foot::Foot;
+
 use crate::geometry::sweep::Movement;
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, Radian};

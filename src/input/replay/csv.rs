@@ -1,16 +1,17 @@
 //! fcd-output in CSV: one row per road user and step, the time in each.
-//!
-//! SUMO's xml2csv writes separate columns for vehicles and persons. SUMO itself writes the same columns for both, named
-//! after the kind of the first road user.
 
 use std::path::{Path, PathBuf};
 
+use super::clock;
+use super::columns::{Columns, NamedColumn};
 use super::names::Users;
-use super::number::number;
-use super::rows::{Attribute, Fields, RecordedStep, Scope, cut_short, in_order};
+use super::rows::{Fields, RecordedStep, Scope, cut_short, in_order};
 use super::source::{ByteWindow, find_all};
 use crate::util::units::Second;
 use crate::{Error, Result};
+
+/// What may stand between values (`--output.column-separator`), in the order in which it is looked for.
+const SEPARATORS: [u8; 3] = *b";\t,";
 
 /// A CSV recording being read.
 pub(super) struct CsvRecording {
@@ -18,11 +19,7 @@ pub(super) struct CsvRecording {
     source: ByteWindow,
     scope: Scope,
     separator: u8,
-    time: usize,
-    /// The columns that matter.
-    columns: Vec<CsvColumn>,
-    /// Whether vehicles and persons share them.
-    shared: bool,
+    columns: Columns,
     /// The number of columns up to the last one that matters.
     columns_read: usize,
     /// The ends of the values of the current row.
@@ -30,14 +27,6 @@ pub(super) struct CsvRecording {
     /// The time of the current step as it is written: most rows repeat it.
     time_text: Vec<u8>,
     last: Option<Second>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct CsvColumn {
-    /// Its position, from the left.
-    place: usize,
-    attribute: Option<Attribute>,
-    person: bool,
 }
 
 impl CsvRecording {
@@ -53,31 +42,18 @@ impl CsvRecording {
             }
         };
         let line = trimmed(&source.rest()[..header]);
-        let separator = if line.contains(&b';') { b';' } else { b',' };
+        let separator = SEPARATORS.into_iter().find(|separator| line.contains(separator)).unwrap_or(b',');
         let names = quoted(line, separator).map_err(|error| Error::content(path, error))?;
-        let names = names.iter().map(|name| String::from_utf8_lossy(name)).collect::<Vec<_>>();
-        let time = names.iter().position(|name| name == "timestep_time");
-        let Some(time) = time else {
-            return Err(Error::content(path, "it is not an fcd-output: it has no column timestep_time"));
-        };
-        for needed in ["id", "x", "y", "angle", "speed"] {
-            if !names.iter().any(|name| *name == format!("vehicle_{needed}") || *name == format!("person_{needed}")) {
-                return Err(Error::content(path, format!("it has no column vehicle_{needed}")));
-            }
-        }
-        let columns =
-            names.iter().enumerate().filter_map(|(place, name)| column(place, name, scope)).collect::<Vec<_>>();
-        let columns_read = 1 + columns.last().map_or(0, |last| last.place).max(time);
-        let shared = ["vehicle_id", "person_id"].iter().any(|id| !names.iter().any(|name| name == id));
+        let names = names.iter().map(|name| String::from_utf8_lossy(name).into_owned()).collect::<Vec<_>>();
+        let columns = Columns::of(path, &names, scope)?;
+        let columns_read = 1 + columns.named.last().map_or(0, |last| last.place).max(columns.time);
         source.consume(header);
         Ok(Self {
             path: path.to_owned(),
             source,
             scope,
             separator,
-            time,
             columns,
-            shared,
             columns_read,
             ends: Vec::new(),
             time_text: Vec::new(),
@@ -109,9 +85,9 @@ impl CsvRecording {
             };
             let plain = Values { line, ends: &self.ends };
             let value = |place: usize| quoted.as_ref().map_or_else(|| plain.get(place), |values| values.get(place));
-            let time_text = value(self.time).unwrap_or_default();
+            let time_text = value(self.columns.time).unwrap_or_default();
             if !begun || time_text != self.time_text {
-                let time = number(time_text);
+                let time = clock::time(time_text);
                 let message = || format!("timestep_time is \"{}\"", String::from_utf8_lossy(time_text));
                 let time = time.ok_or_else(|| wrong(message()))?;
                 if begun && time != step.time {
@@ -126,8 +102,8 @@ impl CsvRecording {
                 self.time_text.extend_from_slice(time_text);
             }
             let mut fields = self.scope.fields();
-            set(&mut fields, &self.columns, value).map_err(wrong)?;
-            if self.shared {
+            set(&mut fields, &self.columns.named, value).map_err(wrong)?;
+            if self.columns.shared {
                 fields.tell_apart();
             }
             // A step without road users has one row without an id.
@@ -144,22 +120,11 @@ impl CsvRecording {
     }
 }
 
-fn column(place: usize, name: &str, scope: Scope) -> Option<CsvColumn> {
-    let (person, attribute) = match name.split_once('_') {
-        Some(("vehicle", attribute)) => (false, attribute),
-        Some(("person", attribute)) => (true, attribute),
-        _ => return None,
-    };
-    let attribute = scope.attribute(attribute.as_bytes());
-    // A value in any person column shows that the row is a person's.
-    (person || attribute.is_some()).then_some(CsvColumn { place, attribute, person })
-}
-
 /// Sets the fields of a row from its values by position.
 #[inline]
 fn set<'a>(
     fields: &mut Fields<'a>,
-    columns: &[CsvColumn],
+    columns: &[NamedColumn],
     value: impl Fn(usize) -> Option<&'a [u8]>,
 ) -> std::result::Result<(), String> {
     for column in columns {

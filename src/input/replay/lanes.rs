@@ -1,7 +1,15 @@
-//! Finds the recording's lanes in the net.
+//! Finds the recording's lanes in the net, and how a road user stands to its lane.
 
 use super::recording::Recording;
+use super::rows::RecordedRow;
+use crate::detection::path::Foot;
+use crate::geometry::Point;
+use crate::geometry::rectangle::direction;
 use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
+use crate::util::units::{Metre, Radian};
+
+/// A junction has fewer parts of a lane one behind the other.
+const MOST_PARTS: usize = 10;
 
 /// The net's lane for each of the recording's lanes; each is looked up once.
 #[derive(Debug, Default)]
@@ -10,7 +18,7 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
-    /// The lane for a [`RecordedRow::lane`](super::rows::RecordedRow::lane), if the net has it.
+    /// The lane for a [`RecordedRow::lane`], if the net has it.
     #[inline]
     pub fn lane(&mut self, lane: u32, recording: &Recording, net: &Net) -> Option<LaneIndex> {
         // The recording numbers its lanes in the order in which they appear.
@@ -19,11 +27,40 @@ impl Lanes {
         }
         self.known[lane as usize]
     }
+}
 
-    /// Its edge, if that is a road between junctions.
-    #[inline]
-    pub fn edge(&mut self, lane: u32, recording: &Recording, net: &Net) -> Option<EdgeIndex> {
-        let edge = net.lanes[self.lane(lane, recording, net)?.0 as usize].edge;
-        (net.edges[edge.0 as usize].function == EdgeFunction::Normal).then_some(edge)
+/// The edge that a lane is on. For a lane in a junction, the edge before the junction and the edge behind it.
+pub(super) fn edges_of(net: &Net, lane: LaneIndex) -> Option<(EdgeIndex, Option<EdgeIndex>)> {
+    let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+    let function = |lane: LaneIndex| net.edges[edge_of(lane).0 as usize].function;
+    match function(lane) {
+        EdgeFunction::Normal => Some((edge_of(lane), None)),
+        EdgeFunction::Internal => {
+            let before = std::iter::successors(Some(lane), |lane| net.lanes[lane.0 as usize].from.first().copied());
+            let before = before.take(MOST_PARTS).find(|lane| function(*lane) == EdgeFunction::Normal)?;
+            let behind = net.lanes[lane.0 as usize].links.first().map(|link| edge_of(link.to));
+            Some((edge_of(before), behind))
+        }
+        _ => None,
     }
+}
+
+/// Whether a road user's heading is against its lane.
+pub(super) fn is_against(row: &RecordedRow, net: &Net, lane: LaneIndex) -> bool {
+    foot(row, net, lane).direction.dot(&direction(heading(row))) < 0.0
+}
+
+/// The distance of a road user from its lane's centre line.
+pub(super) fn distance(row: &RecordedRow, net: &Net, lane: LaneIndex) -> Metre {
+    (foot(row, net, lane).point - Point::new(row.x, row.y)).norm()
+}
+
+fn foot(row: &RecordedRow, net: &Net, lane: LaneIndex) -> Foot {
+    Foot::on_any_part(net.lines.line(lane.0), Point::new(row.x, row.y))
+}
+
+/// The heading, counter-clockwise from +x.
+#[inline]
+pub(super) fn heading(row: &RecordedRow) -> Radian {
+    (90.0 - row.angle).to_radians()
 }

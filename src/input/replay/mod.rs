@@ -1,27 +1,41 @@
 //! Replay: SUMO's fcd-output as frames, through the same checks as a live run. SUMO is not needed.
 //!
-//! The recording is read twice: once for the routes that the vehicles drove, then step by step.
+//! The recording is read twice: once for the routes that the vehicles drove, then step by step. Before that, its beginning
+//! tells whether it fits the net.
 
+mod clock;
+mod columns;
+mod complete;
+mod connections;
 mod csv;
+pub mod demand;
+mod drive;
+mod fit;
 mod lanes;
+mod lists;
 mod names;
 mod number;
+#[cfg(feature = "parquet")]
+mod parquet;
+#[cfg(not(feature = "parquet"))]
+#[path = "no_parquet.rs"]
+mod parquet;
+pub mod projection;
 pub mod recording;
 pub mod routes;
 pub mod rows;
 mod source;
 mod tags;
-pub mod types;
+mod types;
 mod user;
+mod vehicles;
 mod xml;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use rustc_hash::FxHashSet;
 
-use crate::geometry::{Bounds, Point};
 use crate::options::{Options, PathModel};
 use crate::run::Run;
 use crate::traffic::frame::State;
@@ -29,17 +43,15 @@ use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
-use crate::util::units::{Metre, Second};
+use crate::util::units::Second;
 use crate::{Error, Result};
-use lanes::Lanes;
+use lanes::{Lanes, heading};
+use projection::Projection;
 use recording::Recording;
 use routes::Routes;
 use rows::{RecordedRow, RecordedStep};
 use types::VehicleTypes;
 use user::ReplayedUser;
-
-/// A vehicle further than this from its lane, in m, was recorded on another net, or in degrees.
-const ELSEWHERE: Metre = 100.0;
 
 /// The number of undefined types that a remark names.
 const NAMED_TYPES: usize = 5;
@@ -48,8 +60,8 @@ const NAMED_TYPES: usize = 5;
 pub struct Replay {
     path: PathBuf,
     recording: Recording,
-    /// Whether a vehicle was found to be near its lane, so that the net is the right one.
-    is_on_net: bool,
+    /// None if the recording is in the net's metres.
+    projection: Option<Projection>,
     step: RecordedStep,
     second_step: RecordedStep,
     has_second_step: bool,
@@ -61,7 +73,10 @@ pub struct Replay {
     routes: Option<Routes>,
     options: Options,
     step_length: Second,
-    steps: u64,
+    steps: u32,
+    /// Rows of vehicles so far, and how many of them are on a lane that the net does not have.
+    vehicle_rows: u64,
+    unknown_lanes: u64,
     /// The road users in the scene, by the recording's number.
     users: Vec<Option<ReplayedUser>>,
     /// The states of the step's vehicles, if there are persons.
@@ -72,12 +87,12 @@ pub struct Replay {
 }
 
 impl Replay {
-    /// Opens a recording; `type_files` are the route and additional files that define its vehicle types.
+    /// Opens a recording; `demand_files` are the route and additional files that define its vehicles' types and routes.
     ///
     /// # Errors
     /// An error that names the file and what is wrong with it.
-    pub fn open(path: &Path, type_files: &[PathBuf], net: &Net, options: &Options) -> Result<Self> {
-        let types = VehicleTypes::read(type_files)?;
+    pub fn open(path: &Path, demand_files: &[PathBuf], net: &Net, options: &Options) -> Result<Self> {
+        let (types, planned) = demand::read(demand_files, net)?;
         let mut recording = Recording::open(path)?;
         let mut step = RecordedStep::default();
         let mut second_step = RecordedStep::default();
@@ -93,21 +108,25 @@ impl Replay {
             Err(error) => return Err(error),
         };
         let step_length = if has_second_step { second_step.time - step.time } else { 1.0 };
+        let projection = fit::projection(path, net)?;
         let follows_lanes = options.path == PathModel::Lanes;
+        let routes = follows_lanes.then(|| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
         Ok(Self {
             path: path.to_path_buf(),
             recording,
-            is_on_net: false,
+            projection,
             step,
             second_step,
             has_second_step,
             types,
             undefined: BTreeSet::new(),
             lanes: Lanes::default(),
-            routes: if follows_lanes { Some(Routes::read(path, net)?) } else { None },
+            routes,
             options: options.clone(),
             step_length,
             steps: 0,
+            vehicle_rows: 0,
+            unknown_lanes: 0,
             users: Vec::new(),
             vehicles: FxHashSet::default(),
             rows: Vec::new(),
@@ -140,8 +159,12 @@ impl Replay {
         self.step_length
     }
 
-    /// A line that names the types that no file defines, if there are any so far.
-    pub fn remark(&self) -> Option<String> {
+    /// What may make the result differ from that of the simulation, a line each.
+    pub fn remarks(&self) -> Vec<String> {
+        [self.undefined_types(), self.unknown_lanes(), self.unknown_routes()].into_iter().flatten().collect()
+    }
+
+    fn undefined_types(&self) -> Option<String> {
         let quoted = |name: &String| if name.is_empty() { "(none)".to_owned() } else { format!("\"{name}\"") };
         let names = self.undefined.iter().take(NAMED_TYPES).map(quoted).collect::<Vec<_>>().join(", ");
         let more = match self.undefined.len().saturating_sub(NAMED_TYPES) {
@@ -153,6 +176,25 @@ impl Replay {
         })
     }
 
+    fn unknown_lanes(&self) -> Option<String> {
+        let share = 100.0 * self.unknown_lanes as f64 / self.vehicle_rows.max(1) as f64;
+        // As little as rounds to 0 is not none.
+        let share = if share < 0.1 { "less than 0.1".to_owned() } else { format!("{share:.1}") };
+        (self.unknown_lanes > 0)
+            .then(|| format!("lanes: {share} % of the vehicle-steps are on no lane of the net (--net)"))
+    }
+
+    fn unknown_routes(&self) -> Option<String> {
+        let gaps = self.routes.as_ref().map_or(0, |routes| routes.gaps);
+        let places = if gaps == 1 { "place" } else { "places" };
+        (gaps > 0).then(|| {
+            format!(
+                "routes: at {gaps} {places} no step shows which edges were driven, and neither a route file nor a shortest \
+                 connection tells (--route-files)"
+            )
+        })
+    }
+
     /// The number of road users in the step.
     pub fn road_users(&self) -> usize {
         self.step.rows().len()
@@ -160,6 +202,9 @@ impl Replay {
 
     /// Fills the run's frame with the rows of the step.
     fn fill(&mut self, run: &mut Run) -> Result<()> {
+        if let Some(projection) = &self.projection {
+            projection.project(&mut self.step).map_err(|message| Error::content(&self.path, message))?;
+        }
         self.vehicles.clear();
         if self.step.persons() > 0 {
             self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(exact_state));
@@ -169,26 +214,19 @@ impl Replay {
         for index in 0..self.step.rows().len() {
             let row = self.step.rows()[index];
             let user = match self.users.get_mut(row.user as usize) {
-                Some(Some(user)) => {
-                    // On each new lane, whether or not the placement is needed: a route may use an edge twice.
-                    if user.lane != row.lane && user.route.is_some() {
-                        user.lane = row.lane;
-                        if let Some(net) = run.net()
-                            && let Some(lane) = self.lanes.lane(row.lane, &self.recording, net)
-                        {
-                            user.advance_to(net, lane);
-                        }
-                    }
-                    user.index
-                }
+                Some(Some(user)) => user.index,
                 _ => self.enter(&row, run)?,
             };
+            if let (false, Some(net)) = (row.person, run.net()) {
+                self.vehicle_rows += 1;
+                self.unknown_lanes += u64::from(self.lanes.lane(row.lane, &self.recording, net).is_none());
+            }
             // SUMO gives a person that rides in a vehicle the vehicle's position; it is not a road user of its own.
             if row.person && self.vehicles.contains(&exact_state(&row)) {
                 continue;
             }
-            let heading = (90.0 - row.angle).to_radians();
-            if run.frame.push(user, State { x: row.x, y: row.y, z: row.z, heading, speed: row.speed }) {
+            let state = State { x: row.x, y: row.y, z: row.z, heading: heading(&row), speed: row.speed };
+            if run.frame.push(user, state) {
                 self.rows.push(index as u32);
             }
         }
@@ -238,49 +276,24 @@ impl Replay {
         let (Some(recorded), Some(net)) = (self.step.rows().get(index as usize), run.net()) else { return Ok(()) };
         let Some(Some(user)) = self.users.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
-        if !self.is_on_net {
-            if !is_near(recorded, &net.lanes[lane.0 as usize].shape) {
-                return Err(self.on_another_net(recorded));
-            }
-            self.is_on_net = true;
+        if user.route.is_none()
+            && let (Some(routes), Some(number)) = (&mut self.routes, user.number)
+        {
+            user.route = Some(routes.of(number)?);
         }
-        let route = match (&user.route, &mut self.routes, user.number) {
-            (Some(route), ..) => route.clone(),
-            (None, Some(routes), Some(number)) => routes.of(number)?,
-            _ => Arc::new([]),
-        };
-        user.route = Some(route.clone());
-        user.advance_to(net, lane);
+        // The recording's steps are numbered from 0 where its routes are read.
+        user.advance_to(self.steps - 1);
         let is_new = !run.knows_route(user.index, user.route_position);
         let placement = Placement {
             lane,
             position: recorded.position,
-            route: is_new.then_some(route),
+            route: is_new.then(|| user.edges()),
             route_position: user.route_position,
             lateral_speed: recorded.lateral_speed,
         };
         run.set_placement(row, &placement);
         Ok(())
     }
-
-    fn on_another_net(&self, row: &RecordedRow) -> Error {
-        let id = self.recording.id(row.user);
-        let lane = self.recording.lane(row.lane);
-        let (x, y) = (row.x, row.y);
-        let message = format!(
-            "\"{id}\" is on lane {lane} at ({x}, {y}), but the net has that lane elsewhere: recorded on another net, or in \
-             degrees (--fcd-output.geo)?"
-        );
-        Error::content(&self.path, message)
-    }
-}
-
-/// Whether a road user is near the shape of its lane.
-fn is_near(row: &RecordedRow, lane: &[Point]) -> bool {
-    let mut reach = Bounds::EMPTY;
-    lane.iter().for_each(|point| reach.include(*point));
-    let place = Point::new(row.x, row.y);
-    reach.grown(ELSEWHERE).meet(&Bounds { low: place, high: place })
 }
 
 /// Position, angle and speed as bits.

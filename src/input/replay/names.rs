@@ -121,6 +121,13 @@ impl Users {
         Ok(Numbers { user: index, type_name: user.type_name, lane: user.lane, keeps_lane: user.lane == lane_before })
     }
 
+    /// Forgets the lane of a road user, so that it does not keep it in the next step.
+    pub fn forget_lane(&mut self, user: u32) {
+        if let Some(user) = self.users.get_mut(user as usize) {
+            user.lane = u32::MAX;
+        }
+    }
+
     #[inline]
     fn find(&mut self, id: &[u8], person: bool) -> Result<u32, String> {
         // If it is not the expected one, that one has probably left, and this is the next.

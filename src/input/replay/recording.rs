@@ -1,10 +1,12 @@
-//! SUMO's fcd-output, step by step: XML or CSV, plain or gzipped. Its memory does not grow with the file.
+//! SUMO's fcd-output, step by step: XML, CSV or Parquet, plain or gzipped. Its memory does not grow with the file.
 
-use std::io::BufRead;
+use std::fs::File;
+use std::io::{BufRead, Read};
 use std::path::Path;
 
 use super::csv::CsvRecording;
 use super::names::Users;
+use super::parquet::ParquetRecording;
 use super::rows::{RecordedRow, RecordedStep, Scope};
 use super::source::ByteWindow;
 use super::xml::XmlRecording;
@@ -19,21 +21,25 @@ pub struct Recording {
 enum Format {
     Xml(Box<XmlRecording>),
     Csv(Box<CsvRecording>),
+    Parquet(Box<ParquetRecording>),
 }
 
+/// The first bytes of a Parquet file.
+const PARQUET: &[u8; 4] = b"PAR1";
+
 impl Recording {
-    /// Opens a recording; its first bytes decide whether it is XML or CSV.
+    /// Opens a recording; its first bytes decide whether it is XML, CSV or Parquet.
     ///
     /// # Errors
     /// [`Error::File`] if it cannot be read, [`Error::Content`] if it is empty, not an fcd-output, or lacks a column.
     pub fn open(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::util::input_file::open(path)?, Scope::All)
+        Self::from_file(path, Scope::All)
     }
 
     /// Opens a recording for its lanes only. A step then has rows only for road users that entered the scene or changed
-    /// lanes, with empty types and numbers.
+    /// lanes, with empty types, and no numbers but the place and the angle.
     pub(super) fn open_for_lanes(path: &Path) -> Result<Self> {
-        Self::from_source(path, crate::util::input_file::open(path)?, Scope::Lanes)
+        Self::from_file(path, Scope::Lanes)
     }
 
     /// Opens a recording in memory; errors call it `path`.
@@ -44,6 +50,18 @@ impl Recording {
         Self::from_source(path, Box::new(std::io::Cursor::new(text.into())), Scope::All)
     }
 
+    fn from_file(path: &Path, scope: Scope) -> Result<Self> {
+        let reader = crate::util::input_file::open(path)?;
+        let unusable = |error| Error::file(path, error);
+        let mut file = File::open(path).map_err(unusable)?;
+        let mut first = [0; PARQUET.len()];
+        if file.read(&mut first).map_err(unusable)? == first.len() && first == *PARQUET {
+            let format = Format::Parquet(Box::new(ParquetRecording::new(path, file, scope)?));
+            return Ok(Self { format, users: Users::default() });
+        }
+        Self::from_source(path, reader, scope)
+    }
+
     fn from_source(path: &Path, reader: Box<dyn BufRead>, scope: Scope) -> Result<Self> {
         const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
         let mut source = ByteWindow::new(reader);
@@ -51,7 +69,7 @@ impl Recording {
             let rest = source.rest();
             let text = rest.strip_prefix(BYTE_ORDER_MARK).unwrap_or(rest);
             let first = text.iter().copied().find(|byte| !byte.is_ascii_whitespace());
-            if first.is_some() && rest.len() >= BYTE_ORDER_MARK.len() {
+            if first.is_some() && rest.len() >= PARQUET.len() {
                 break first;
             }
             if !source.more().map_err(|error| Error::file(path, error))? {
@@ -64,6 +82,11 @@ impl Recording {
         let format = match first {
             None => return Err(Error::content(path, "the file is empty")),
             Some(b'<') => Format::Xml(Box::new(XmlRecording::new(path, source, scope)?)),
+            // Parquet is not read from front to back.
+            Some(_) if source.rest().starts_with(PARQUET) => {
+                let file = source.into_file().map_err(|error| Error::file(path, error))?;
+                Format::Parquet(Box::new(ParquetRecording::new(path, file, scope)?))
+            }
             Some(_) => Format::Csv(Box::new(CsvRecording::new(path, source, scope)?)),
         };
         Ok(Self { format, users: Users::default() })
@@ -77,7 +100,13 @@ impl Recording {
         match &mut self.format {
             Format::Xml(recording) => recording.next_step(step, &mut self.users),
             Format::Csv(recording) => recording.next_step(step, &mut self.users),
+            Format::Parquet(recording) => recording.next_step(step, &mut self.users),
         }
+    }
+
+    /// Lets the next row of a road user be read although it stays on its lane, if only the lanes are read.
+    pub(super) fn forget_lane(&mut self, user: u32) {
+        self.users.forget_lane(user);
     }
 
     /// SUMO's id of a road user that is in the last step read or had just left in it.

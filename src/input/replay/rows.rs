@@ -28,7 +28,7 @@ pub struct RecordedRow {
     pub angle: f64,
     /// Speed in m/s.
     pub speed: MetrePerSecond,
-    /// Distance from the lane's beginning, in m.
+    /// Distance from the lane's beginning, in m; NaN if it is not given.
     pub position: Metre,
     /// Speed to the left, in m/s; 0 if it is not given.
     pub lateral_speed: MetrePerSecond,
@@ -60,6 +60,10 @@ impl RecordedStep {
         &self.gone
     }
 
+    pub(super) fn rows_mut(&mut self) -> &mut [RecordedRow] {
+        &mut self.rows
+    }
+
     pub(super) fn begin(&mut self, time: Second, users: &mut Users) {
         self.time = time;
         self.rows.clear();
@@ -76,13 +80,20 @@ impl RecordedStep {
     #[inline]
     pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, holder: &str) -> std::result::Result<(), String> {
         let [id, type_name, lane, _] = fields.texts;
-        let [x, y, angle, speed, z, position, lateral_speed] = fields.numbers;
-        if id.is_empty() || (x + y + angle + speed).is_nan() {
-            fields.check(holder)?;
+        if id.is_empty() {
+            fields.check(&fields.numbers, holder)?;
         }
         let numbers = users.number(id, fields.person, type_name, lane)?;
-        if fields.scope == Scope::Lanes && numbers.keeps_lane {
-            return Ok(());
+        let mut values = fields.numbers;
+        if fields.scope == Scope::Lanes {
+            if numbers.keeps_lane {
+                return Ok(());
+            }
+            fields.parse(&mut values)?;
+        }
+        let [x, y, angle, speed, z, position, lateral_speed] = values;
+        if (x + y + angle + speed).is_nan() {
+            fields.check(&values, holder)?;
         }
         let Numbers { user, type_name, lane, .. } = numbers;
         let person = fields.person;
@@ -106,11 +117,14 @@ const TEXTS: [&str; 4] = ["id", "type", "lane", "edge"];
 /// The first four are required.
 const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
 
+/// The first of [`NUMBERS`] tell where a road user is and where it heads.
+const PLACE: usize = 3;
+
 /// How much of every row is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
     All,
-    /// Only the id and the lane, and only for road users that entered the scene or changed lanes.
+    /// Only the id, the lane, the place and the angle, and only for road users that entered the scene or changed lanes.
     Lanes,
 }
 
@@ -122,13 +136,23 @@ impl Scope {
     pub fn attribute(self, name: &[u8]) -> Option<Attribute> {
         let place = |names: &[&str]| names.iter().position(|known| known.as_bytes() == name).map(|place| place as u8);
         let attribute = place(&TEXTS).map(Attribute::Text).or_else(|| place(&NUMBERS).map(Attribute::Number));
-        attribute.filter(|attribute| self == Self::All || [Self::ID, Self::LANE, Self::EDGE].contains(attribute))
+        attribute.filter(|attribute| match attribute {
+            _ if self == Self::All => true,
+            Attribute::Text(_) => [Self::ID, Self::LANE, Self::EDGE].contains(attribute),
+            Attribute::Number(number) => usize::from(*number) < PLACE,
+        })
     }
 
     #[inline]
     pub fn fields<'a>(self) -> Fields<'a> {
-        let given = if self == Self::All { f64::NAN } else { 0.0 };
-        Fields { scope: self, person: false, texts: [b""; 4], numbers: [given, given, given, given, 0.0, 0.0, 0.0] }
+        let speed = if self == Self::All { f64::NAN } else { 0.0 };
+        Fields {
+            scope: self,
+            person: false,
+            texts: [b""; 4],
+            numbers: [f64::NAN, f64::NAN, f64::NAN, speed, 0.0, f64::NAN, 0.0],
+            unparsed: [b""; PLACE],
+        }
     }
 }
 
@@ -150,6 +174,8 @@ pub(super) struct Fields<'a> {
     pub person: bool,
     texts: [&'a [u8]; 4],
     numbers: [f64; 7],
+    /// The place in [`Scope::Lanes`]: it is parsed only in the few rows that are returned.
+    unparsed: [&'a [u8]; PLACE],
 }
 
 impl<'a> Fields<'a> {
@@ -157,12 +183,29 @@ impl<'a> Fields<'a> {
     pub fn set(&mut self, attribute: Attribute, value: &'a [u8]) -> std::result::Result<(), String> {
         match attribute {
             Attribute::Text(text) => self.texts[usize::from(text)] = value,
-            Attribute::Number(place) => match number(value) {
-                Some(number) => self.numbers[usize::from(place)] = number,
-                None => return Err(not_a_number(NUMBERS[usize::from(place)], value)),
-            },
+            Attribute::Number(place) if self.scope == Scope::Lanes => self.unparsed[usize::from(place)] = value,
+            Attribute::Number(place) => self.numbers[usize::from(place)] = parse(usize::from(place), value)?,
         }
         Ok(())
+    }
+
+    /// Sets a field that is a number in the file.
+    #[cfg_attr(not(feature = "parquet"), allow(dead_code))]
+    pub fn set_number(&mut self, attribute: Attribute, value: f64) -> std::result::Result<(), String> {
+        match attribute {
+            Attribute::Number(place) if value.is_finite() => self.numbers[usize::from(place)] = value,
+            Attribute::Number(place) => {
+                return Err(not_a_number(NUMBERS[usize::from(place)], value.to_string().as_bytes()));
+            }
+            Attribute::Text(place) => return Err(format!("{} is a number", TEXTS[usize::from(place)])),
+        }
+        Ok(())
+    }
+
+    /// Parses the place.
+    fn parse(&self, numbers: &mut [f64; 7]) -> std::result::Result<(), String> {
+        let given = self.unparsed.iter().enumerate().filter(|(_, text)| !text.is_empty());
+        given.map(|(place, text)| parse(place, text).map(|number| numbers[place] = number)).collect()
     }
 
     /// Decides whether the row is a person's: SUMO gives vehicles a lane and persons an edge.
@@ -180,8 +223,8 @@ impl<'a> Fields<'a> {
 
     /// Checks that the required values are given.
     #[cold]
-    fn check(&self, holder: &str) -> std::result::Result<(), String> {
-        let missing = NUMBERS.iter().zip(&self.numbers).take(4).find(|(_, number)| number.is_nan());
+    fn check(&self, numbers: &[f64; 7], holder: &str) -> std::result::Result<(), String> {
+        let missing = NUMBERS.iter().zip(numbers).take(4).find(|(_, number)| number.is_nan());
         match missing.map(|(name, _)| *name).filter(|_| self.has_id()) {
             None if self.has_id() => Ok(()),
             missing => {
@@ -190,6 +233,11 @@ impl<'a> Fields<'a> {
             }
         }
     }
+}
+
+#[inline]
+fn parse(place: usize, text: &[u8]) -> std::result::Result<f64, String> {
+    number(text).ok_or_else(|| not_a_number(NUMBERS[place], text))
 }
 
 #[cold]

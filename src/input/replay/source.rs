@@ -1,6 +1,7 @@
 //! A file's bytes in large blocks, so that a recording is read in place without copying.
 
-use std::io::{self, BufRead, Read};
+use std::fs::File;
+use std::io::{self, BufRead, Read, Write};
 
 /// The number of bytes read at once: they fit into a core's own cache.
 const BLOCK: usize = 1 << 18;
@@ -57,6 +58,18 @@ impl ByteWindow {
         self.marked = self.marked || memchr::memchr(self.mark, read).is_some();
         self.end += length;
         Ok(length > 0)
+    }
+
+    /// All that is not consumed, in a temporary file.
+    pub fn into_file(mut self) -> io::Result<File> {
+        let mut file = tempfile::tempfile()?;
+        loop {
+            file.write_all(self.rest())?;
+            self.consume(self.rest().len());
+            if !self.more()? {
+                return Ok(file);
+            }
+        }
     }
 
     /// Sets the byte that [`ByteWindow::is_marked`] reports.

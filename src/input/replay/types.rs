@@ -1,15 +1,10 @@
 //! Vehicle types for a replay, from route and additional files and SUMO's defaults: an fcd-output only names them.
 
-use std::path::{Path, PathBuf};
-
-use quick_xml::Reader;
-use quick_xml::events::{BytesStart, Event};
+use quick_xml::events::BytesStart;
 use rustc_hash::FxHashMap;
 
 use crate::traffic::profile::origins;
 use crate::traffic::sumo_type::SumoType;
-use crate::util::input_file::LineCounter;
-use crate::{Error, Result};
 
 /// VehicleTypes by their id.
 #[derive(Clone, Debug, Default)]
@@ -18,32 +13,9 @@ pub struct VehicleTypes {
 }
 
 impl VehicleTypes {
-    /// Reads the `<vType>` elements of route and additional files.
-    ///
-    /// # Errors
-    /// An error that names the file, the line and what is wrong.
-    pub fn read(paths: &[PathBuf]) -> Result<Self> {
-        let mut types = Self::default();
-        paths.iter().try_for_each(|path| types.add(path))?;
-        Ok(types)
-    }
-
-    fn add(&mut self, path: &Path) -> Result<()> {
-        let mut reader = Reader::from_reader(LineCounter::new(crate::util::input_file::open(path)?));
-        let mut buffer = Vec::new();
-        loop {
-            buffer.clear();
-            let line = reader.get_ref().line();
-            let wrong = |message: String| Error::line(path, line, message.replace('\n', " "));
-            match reader.read_event_into(&mut buffer).map_err(|error| wrong(error.to_string()))? {
-                Event::Start(tag) | Event::Empty(tag) if tag.name().as_ref() == "vType" => {
-                    let found = vehicle_type(&tag).map_err(wrong)?;
-                    self.known.insert(found.name.clone(), found);
-                }
-                Event::Eof => return Ok(()),
-                _ => {}
-            }
-        }
+    /// Adds a type.
+    pub fn insert(&mut self, found: SumoType) {
+        self.known.insert(found.name.clone(), found);
     }
 
     /// Whether a file or SUMO itself defines this type or the type from which it was made.
@@ -65,11 +37,9 @@ impl VehicleTypes {
     }
 }
 
-fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
-    let text = |name: &str| -> std::result::Result<Option<String>, String> {
-        let found = tag.try_get_attribute(name).map_err(|error| error.to_string())?;
-        found.map(|found| unescaped(&found.value)).transpose()
-    };
+/// The type that a `<vType>` defines.
+pub(super) fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
+    let text = |name: &str| text(tag, name);
     let number = |name: &str| -> std::result::Result<Option<f64>, String> {
         let parse = |text: String| text.parse().map_err(|_| format!("{name} is \"{text}\", not a number"));
         text(name)?.map(parse).transpose()
@@ -86,8 +56,11 @@ fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
     Ok(found)
 }
 
-fn unescaped(text: &str) -> std::result::Result<String, String> {
-    quick_xml::escape::unescape(text).map(std::borrow::Cow::into_owned).map_err(|error| error.to_string())
+/// The value of an attribute, if the element has it.
+pub(super) fn text(tag: &BytesStart, name: &str) -> std::result::Result<Option<String>, String> {
+    let Some(found) = tag.try_get_attribute(name).map_err(|error| error.to_string())? else { return Ok(None) };
+    let value = quick_xml::escape::unescape(&found.value).map_err(|error| error.to_string())?;
+    Ok(Some(value.into_owned()))
 }
 
 /// SUMO's own types, with the vehicle class of each.

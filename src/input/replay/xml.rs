@@ -5,8 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::clock;
 use super::names::Users;
-use super::number::number;
 use super::rows::{Attribute, RecordedStep, Scope, cut_short, in_order};
 use super::source::{ByteWindow, find};
 use super::tags::{Tag, next_tag};
@@ -108,7 +108,7 @@ fn time(attributes: &[u8]) -> std::result::Result<Second, String> {
     let mut rest = attributes;
     while let Some((_, name, value, further)) = attribute(rest)? {
         if name == b"time" {
-            return number(value).ok_or_else(|| format!("time is \"{}\"", String::from_utf8_lossy(value)));
+            return clock::time(value).ok_or_else(|| format!("time is \"{}\"", String::from_utf8_lossy(value)));
         }
         rest = further;
     }

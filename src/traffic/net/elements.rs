@@ -2,7 +2,7 @@
 
 use nalgebra::Point2;
 
-use crate::geometry::Bounds;
+use crate::geometry::{Bounds, Vector};
 use crate::util::units::Metre;
 
 /// SUMO's default width of a lane in m.
@@ -113,4 +113,13 @@ impl Junction {
         };
         is_foe(one, other) || is_foe(other, one)
     }
+}
+
+/// How the net's metres follow from degrees of longitude and latitude.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Location {
+    /// Added to what the projection gives, in m.
+    pub offset: Vector,
+    /// SUMO's `projParameter`: a PROJ string, "-" for its simple projection, "!" for none.
+    pub projection: String,
 }

@@ -11,7 +11,7 @@ mod overlaps;
 mod quality;
 mod reader;
 
-pub use elements::{EdgeFunction, EdgeIndex, Lane, LaneIndex, Link};
+pub use elements::{EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Location};
 pub use network::Net;
 pub use overlaps::{Overlap, Overlaps};
 

@@ -3,7 +3,7 @@
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex};
+use super::elements::{Edge, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location};
 use super::finder::Finder;
 use crate::geometry::Bounds;
 use crate::geometry::polylines::{Lines, stretch};
@@ -20,6 +20,8 @@ pub struct Net {
     pub junctions: Vec<Junction>,
     /// The lanes' centre lines, by lane; their distances are SUMO's where a lane is longer or shorter than it is drawn.
     pub lines: Lines,
+    /// How its metres follow from degrees, if the file tells.
+    pub location: Option<Location>,
     pub(super) lane_ids: FxHashMap<String, LaneIndex>,
     pub(super) edge_ids: FxHashMap<String, EdgeIndex>,
     pub(super) finder: Finder,

@@ -10,11 +10,13 @@ use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, LANE_WIDTH, Lane, LaneIndex, Link};
+use super::elements::{
+    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, LANE_WIDTH, Lane, LaneIndex, Link, Location,
+};
 use super::finder::Finder;
 use super::network::Net;
 use crate::geometry::polylines::stretch;
-use crate::geometry::{Bounds, Point};
+use crate::geometry::{Bounds, Point, Vector};
 use crate::util::input_file::{LineCounter, open, xml_message};
 use crate::{Error, Result};
 
@@ -104,6 +106,7 @@ impl NetReader<'_> {
             "junction" => self.junction(&self.attributes(tag)?),
             "request" => self.request(&self.attributes(tag)?),
             "connection" => self.connection(&self.attributes(tag)?),
+            "location" => self.location(&self.attributes(tag)?),
             _ => Ok(()),
         }
     }
@@ -206,6 +209,18 @@ impl NetReader<'_> {
             via: attributes.get("via").map(str::to_owned),
         };
         self.connections.push(connection);
+        Ok(())
+    }
+
+    fn location(&mut self, attributes: &ElementAttributes) -> Result<()> {
+        let text = attributes.get("netOffset").unwrap_or("0,0");
+        let mut values =
+            text.split(',').map(|value| value.trim().parse::<f64>().ok().filter(|value| value.is_finite()));
+        let (Some(Some(x)), Some(Some(y))) = (values.next(), values.next()) else {
+            return Err(self.wrong(format!("netOffset is \"{text}\", not x,y")));
+        };
+        let projection = attributes.get("projParameter").unwrap_or("!").to_owned();
+        self.net.location = Some(Location { offset: Vector::new(x, y), projection });
         Ok(())
     }
 

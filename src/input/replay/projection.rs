@@ -1,0 +1,118 @@
+//! From degrees (`--fcd-output.geo`) to the net's metres.
+//!
+//! As in SUMO, only the net's projection is applied, without a shift between datums: the degrees are those of the
+//! projection's own ellipsoid.
+
+use proj4rs::Proj;
+use proj4rs::transform::transform;
+
+use super::rows::RecordedStep;
+use crate::geometry::{Point, Vector};
+use crate::traffic::net::{Location, Net};
+use crate::util::units::Metre;
+
+/// Parameters of a projection that describe its ellipsoid.
+const ELLIPSOID: [&str; 9] = ["+ellps=", "+datum=", "+a=", "+b=", "+rf=", "+f=", "+R=", "+towgs84=", "+nadgrids="];
+/// netconvert's simple projection (`--simple-projection`): metres per degree of longitude at the equator and of latitude.
+const SIMPLE: [Metre; 2] = [111_320.0, 111_136.0];
+
+/// The projection of a net.
+pub struct Projection {
+    plane: Plane,
+    offset: Vector,
+}
+
+enum Plane {
+    Simple,
+    Proj { degrees: Box<Proj>, metres: Box<Proj> },
+}
+
+impl Projection {
+    /// The projection of a net, if it has one.
+    ///
+    /// # Errors
+    /// A message if it is not supported.
+    pub fn of(net: &Net) -> Result<Option<Self>, String> {
+        let Some(Location { offset, projection }) = &net.location else { return Ok(None) };
+        let plane = match projection.as_str() {
+            "!" => return Ok(None),
+            "-" => Plane::Simple,
+            text => {
+                let read = |text: &str| {
+                    let proj = Proj::from_proj_string(text).map(Box::new);
+                    proj.map_err(|error| format!("the net's projection \"{projection}\" is not supported: {error}"))
+                };
+                let ellipsoid =
+                    text.split_whitespace().filter(|word| ELLIPSOID.iter().any(|name| word.starts_with(name)));
+                let degrees = std::iter::once("+proj=longlat").chain(ellipsoid).collect::<Vec<_>>().join(" ");
+                Plane::Proj { degrees: read(&degrees)?, metres: read(text)? }
+            }
+        };
+        Ok(Some(Self { plane, offset: *offset }))
+    }
+
+    /// The place in the net of degrees of longitude and latitude; none where the projection has none.
+    pub fn place(&self, longitude: f64, latitude: f64) -> Option<Point> {
+        let place = match &self.plane {
+            Plane::Simple => Point::new(longitude * SIMPLE[0] * latitude.to_radians().cos(), latitude * SIMPLE[1]),
+            Plane::Proj { degrees, metres } => {
+                let mut place = (longitude.to_radians(), latitude.to_radians(), 0.0);
+                transform(degrees, metres, &mut place).ok()?;
+                Point::new(place.0, place.1)
+            }
+        };
+        Some(place + self.offset).filter(|place| (place.x + place.y).is_finite())
+    }
+
+    /// Moves all road users of a step from degrees to metres.
+    ///
+    /// # Errors
+    /// A message that names a position without a place in the net.
+    pub(super) fn project(&self, step: &mut RecordedStep) -> Result<(), String> {
+        for row in step.rows_mut() {
+            let place = self.place(row.x, row.y);
+            let place =
+                place.ok_or_else(|| format!("({}, {}) are not degrees of longitude and latitude", row.x, row.y))?;
+            (row.x, row.y) = (place.x, place.y);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::input::replay::projection::*;
+
+    fn projection(parameters: &str) -> Result<Option<Projection>, String> {
+        let text = format!(
+            r#"<net><location netOffset="-385000.00,-5819000.00" projParameter="{parameters}"/>
+            <edge id="a"><lane id="a_0" length="9" shape="0,0 9,0"/></edge></net>"#
+        );
+        Projection::of(&Net::parse(Path::new("net"), text).unwrap())
+    }
+
+    /// The places are sumolib's, by pyproj.
+    #[test]
+    fn degrees_become_the_metres_of_the_projection() {
+        for (parameters, place) in [
+            ("+proj=utm +zone=33 +ellps=WGS84 +datum=WGS84 +units=m +no_defs", (4404.6735, 1125.2065)),
+            (
+                "+proj=tmerc +lat_0=0 +lon_0=12 +k=1 +x_0=4500000 +y_0=0 +ellps=bessel +datum=potsdam +units=m +no_defs",
+                (4_207_981.1287, 2487.8557),
+            ),
+            ("-", (520_636.8715, 17_862.72)),
+        ] {
+            let found = projection(parameters).unwrap().unwrap().place(13.37, 52.52).unwrap();
+            assert!((found - Point::new(place.0, place.1)).norm() < 1e-3, "{parameters}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_net_without_a_projection_or_with_an_unknown_one_is_told() {
+        assert!(projection("!").unwrap().is_none());
+        let message = projection("+proj=nonsense").err().unwrap();
+        assert!(message.contains("\"+proj=nonsense\" is not supported"), "{message}");
+    }
+}

@@ -1,0 +1,47 @@
+//! A column of a Parquet file, batch by batch.
+
+use std::path::Path;
+
+use parquet::column::reader::ColumnReaderImpl;
+use parquet::data_type::DataType;
+use parquet::errors::ParquetError;
+
+use crate::Error;
+
+/// The values of a batch; none where the file has null.
+pub struct Batch<T: DataType> {
+    reader: ColumnReaderImpl<T>,
+    values: Vec<Option<T::T>>,
+}
+
+impl<T: DataType> Batch<T> {
+    /// The column that the reader reads; no batch is read yet.
+    pub fn new(reader: ColumnReaderImpl<T>) -> Self {
+        Self { reader, values: Vec::new() }
+    }
+
+    /// Reads the next rows; returns how many were read.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn read(&mut self, rows: usize) -> Result<usize, ParquetError> {
+        let mut values = Vec::with_capacity(rows);
+        let mut levels = Vec::with_capacity(rows);
+        let (read, ..) = self.reader.read_records(rows, Some(&mut levels), None, &mut values)?;
+        let mut values = values.into_iter();
+        self.values.clear();
+        // A column that cannot be null has no levels.
+        self.values.extend((0..read).map(|row| if levels.get(row) == Some(&0) { None } else { values.next() }));
+        Ok(read)
+    }
+
+    /// The value in a row of the batch.
+    pub fn get(&self, row: usize) -> Option<&T::T> {
+        self.values.get(row)?.as_ref()
+    }
+}
+
+/// The library's error in one line.
+pub fn unreadable(path: &Path, error: &ParquetError) -> Error {
+    Error::content(path, error.to_string().lines().map(str::trim).collect::<Vec<_>>().join(" "))
+}
