@@ -16,11 +16,11 @@ Copy = Callable[[str], Path]
 
 
 def refused(config: Path, *words: str, names: str, usage: bool = False) -> None:
-    """Run the configuration and expect that closecall refuses it, in one line or with the usage."""
+    """Run the configuration and expect that closecall refuses it, in one line or as clap does."""
     done = closecall("run", config, *words)
     assert done.returncode == 2, (done.returncode, done.stderr)
     assert done.stdout == ""
-    assert is_one_message(done.stderr) and ("Usage: " in done.stderr) == usage, done.stderr
+    assert is_one_message(done.stderr) and ("try '--help'" in done.stderr) == usage, done.stderr
     assert re.search(names, done.stderr), done.stderr
     assert not (config.parent / "closecall-out").exists()
 
@@ -38,7 +38,7 @@ def test_a_missing_configuration_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_misspelt_option_gets_a_suggestion(scenario: Copy) -> None:
-    found = r"unexpected argument '--modus' found\n\n  tip: a similar argument exists: '--mode'\n(.*\n)*\nUsage: closecall run "
+    found = r"'--modus' found\n\n  tip: a similar argument exists: '--mode'\n(.*\n)*\nUsage: closecall run "
     refused(scenario("rear_end"), "--modus", "paper", names=found, usage=True)
 
 

@@ -250,7 +250,10 @@ def test_a_row_that_is_not_finite_is_ignored() -> None:
         ({"x": [0.0, 9.0], "lenght": [5.0, 5.0]}, 'there is no column "lenght"; did you mean "length"'),
         ({"x": [0.0, 9.0], "category": ["car", "person"]}, 'category is "car": vehicle, bicycle, person or obstacle'),
         ({"x": [0.0, 9.0], "category": ["person"]}, '"category" has 1 values, "id" has 2'),
-        ({"x": [0.0, 9.0], "category": ["vehicle", "obstacle"]}, '"b" is an obstacle, which needs "length" and "width"'),
+        (
+            {"x": [0.0, 9.0], "category": ["vehicle", "obstacle"]},
+            '"b" is an obstacle, which needs "length" and "width"',
+        ),
         ({}, 'there is no "x"'),
         ({"x": [0.0, 9.0], "id": ["a", "a"]}, '"a" is there twice'),
     ],
@@ -266,7 +269,13 @@ def encounter(category: str, **foe: Any) -> list[cc.Conflict]:
         for step in range(10):
             sizes = {name: [5.0 if name == "length" else 1.8, size] for name, size in foe.items()}
             front = 15.0 * step / 10
-            frame = {"id": ["car", "foe"], "x": [front, 30.0], "y": [0.0, 0.0], "heading": [0.0, 0.0], "speed": [15.0, 0.0]}
+            frame = {
+                "id": ["car", "foe"],
+                "x": [front, 30.0],
+                "y": [0.0, 0.0],
+                "heading": [0.0, 0.0],
+                "speed": [15.0, 0.0],
+            }
             checker.step(step / 10, {**frame, "category": ["vehicle", category], **sizes})
         return checker.conflicts
 

@@ -45,7 +45,9 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
     let logs = log_folders(folders)?;
     let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
     let runs = records.iter().map(logs::run).collect::<Vec<_>>();
-    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?))).collect::<Vec<_>>();
+    // A run without a result belongs to no variant.
+    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
+    let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
     for (run, log) in (0..).zip(&logs) {

@@ -288,11 +288,9 @@ mod tests {
             // One that brakes a little too little touches a leader after 2 TTC; one that turns may come by twice.
             let soon = if kind == Kind::Side { 1.2 } else { 2.5 };
             let until = if curvature == 0.0 { 2.0 * HORIZON } else { soon * ttc };
-            // Alone or both, as one of the two cannot do.
+            let both_brake = drac < alone_of(&ego, &foe, ttc);
             let touch = |part: f64, further, until| {
-                let both = kind == Kind::Frontal || alone_of(&ego, &foe, ttc).is_infinite();
-                touch(&ego, &foe, [drac * part, 0.0], further, until)
-                    && (!both || touch(&ego, &foe, [drac * part; 2], further, until))
+                touch(&ego, &foe, [drac * part, if both_brake { drac * part } else { 0.0 }], further, until)
             };
             all += 1;
             let accuracy = if curvature == 0.0 { BRAKING_ACCURACY } else { ACCURACY };

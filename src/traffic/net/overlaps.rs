@@ -21,6 +21,8 @@ use crate::util::units::Metre;
 
 /// The width of SUMO's default vehicle in m. On a narrower lane a vehicle is as wide as the lane.
 const VEHICLE_WIDTH: Metre = 1.8;
+/// Two lanes that overlap by less than this lie beside each other, in m; by more, they lie on each other or cross.
+const BESIDE: Metre = VEHICLE_WIDTH / 2.0;
 /// Less is due to shapes that are rounded to a centimetre, in m.
 const ROUNDING: Metre = 0.02;
 /// Lanes of which one leads to the other within this distance follow each other, in m.
@@ -81,11 +83,12 @@ impl Overlaps {
         self.places.is_empty()
     }
 
-    /// By how much two vehicles of these widths overlap as drawn where each is on one of these lanes.
+    /// By how much two vehicles of these widths overlap as drawn where each is on one of these lanes, if the lanes are drawn
+    /// too near each other; 0 if they lie on each other or cross, where an overlap may be a crash.
     pub fn drawn_overlap_of(&self, lanes: [&[LaneIndex]; 2], widths: [Metre; 2]) -> Metre {
         let [ones, others] = lanes;
         let pairs = ones.iter().flat_map(|one| others.iter().map(|other| self.drawn_overlap(*one, *other)));
-        let deepest = pairs.fold(0.0, f64::max);
+        let deepest = pairs.filter(|depth| *depth < BESIDE).fold(0.0, f64::max);
         let wider = widths.iter().sum::<Metre>() / 2.0 - VEHICLE_WIDTH;
         if deepest > 0.0 { (deepest + wider).max(0.0) } else { 0.0 }
     }
