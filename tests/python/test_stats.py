@@ -250,7 +250,7 @@ def simulated(folder: Path, conflicts: int, seed: int, *words: str, **options: A
     """A log folder as of a run of SUMO."""
     versions = {"closecall": "0.1.0", "sumo": "SUMO 1.28.0"}
     sumo_words = ["-c", "plan.sumocfg", "--seed", str(seed), *words]
-    more = {"versions": versions, "seed": str(seed), "sumo_words": sumo_words, "options": options}
+    more: dict[str, Any] = {"versions": versions, "seed": str(seed), "sumo_words": sumo_words, "options": options}
     return made(folder, [1.0] * conflicts, **more)
 
 
