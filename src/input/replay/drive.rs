@@ -62,6 +62,10 @@ impl Drive {
 
     /// Its heading is against its lane, which is on this edge, or in the junction between this edge and `ahead`.
     pub fn against(&mut self, edge: EdgeIndex, ahead: Option<EdgeIndex>, moment: &Moment) {
+        // In a junction it is in a sharp turn if it came from there; an overtaker would be on the way of oncoming traffic.
+        if ahead.is_some() && self.reached.last().is_some_and(|last| last.edge == edge) {
+            return self.along(edge, ahead, moment);
+        }
         if self.against.is_none_or(|(known, _)| known != edge) {
             self.against = Some((edge, moment.step));
         }
@@ -104,8 +108,9 @@ mod tests {
         Along(EdgeIndex),
         Between(EdgeIndex, EdgeIndex),
         Against(EdgeIndex),
+        AgainstBetween(EdgeIndex, EdgeIndex),
     }
-    use Seen::{Against, Along, Between};
+    use Seen::{Against, AgainstBetween, Along, Between};
 
     fn reached(seen: &[Seen]) -> Vec<(EdgeIndex, u32)> {
         let mut drive = Drive::default();
@@ -115,6 +120,7 @@ mod tests {
                 Along(edge) => drive.along(edge, None, &moment),
                 Between(edge, ahead) => drive.along(edge, Some(ahead), &moment),
                 Against(edge) => drive.against(edge, None, &moment),
+                AgainstBetween(edge, ahead) => drive.against(edge, Some(ahead), &moment),
             }
         }
         drive.finish().iter().map(|reached| (reached.edge, reached.step)).collect()
@@ -138,6 +144,12 @@ mod tests {
             [(A, 0), (B, 2)],
             "turned, then overtakes"
         );
+        assert_eq!(
+            reached(&[Along(A), AgainstBetween(A, B), Against(A), Along(C)]),
+            [(A, 0), (B, 2), (C, 3)],
+            "across"
+        );
+        assert_eq!(reached(&[Along(A), AgainstBetween(C, B), Along(A)]), [(A, 0)], "overtakes through a junction");
         assert_eq!(reached(&[Between(A, B), Against(C), Along(B)]), [(A, 0), (B, 1)], "overtakes beside B");
         assert_eq!(reached(&[Between(A, B), Against(B), Along(B)]), [(A, 0), (B, 1)], "a sharp turn");
     }
