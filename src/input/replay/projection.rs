@@ -100,9 +100,9 @@ mod tests {
             ("+proj=utm +zone=33 +ellps=WGS84 +datum=WGS84 +units=m +no_defs", (4404.6735, 1125.2065)),
             (
                 "+proj=tmerc +lat_0=0 +lon_0=12 +k=1 +x_0=4500000 +y_0=0 +ellps=bessel +datum=potsdam +units=m +no_defs",
-                (4_207_981.1287, 2487.8557),
+                (4207981.1287, 2487.8557),
             ),
-            ("-", (520_636.8715, 17_862.72)),
+            ("-", (520636.8715, 17862.72)),
         ] {
             let found = projection(parameters).unwrap().unwrap().place(13.37, 52.52).unwrap();
             assert!((found - Point::new(place.0, place.1)).norm() < 1e-3, "{parameters}: {found}");

@@ -204,8 +204,8 @@ impl<'a> Fields<'a> {
 
     /// Parses the place.
     fn parse(&self, numbers: &mut [f64; 7]) -> std::result::Result<(), String> {
-        let given = self.unparsed.iter().enumerate().filter(|(_, text)| !text.is_empty());
-        given.map(|(place, text)| parse(place, text).map(|number| numbers[place] = number)).collect()
+        let mut given = self.unparsed.iter().enumerate().filter(|(_, text)| !text.is_empty());
+        given.try_for_each(|(place, text)| parse(place, text).map(|number| numbers[place] = number))
     }
 
     /// Decides whether the row is a person's: SUMO gives vehicles a lane and persons an edge.
