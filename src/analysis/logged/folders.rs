@@ -99,8 +99,8 @@ mod tests {
             fs::create_dir_all(&folder).unwrap();
             fs::write(folder.join(CONFLICTS), "").unwrap();
         }
-        assert_eq!(log_folders(&[top.path().to_owned()]).unwrap(), [log.clone()]);
+        assert_eq!(log_folders(&[top.path().to_owned()]).unwrap(), std::slice::from_ref(&log));
         let earlier = log.join("earlier");
-        assert_eq!(log_folders(&[earlier.clone()]).unwrap(), [earlier.join("1"), earlier.join("2")]);
+        assert_eq!(log_folders(std::slice::from_ref(&earlier)).unwrap(), [earlier.join("1"), earlier.join("2")]);
     }
 }
