@@ -52,7 +52,7 @@ pub struct Nearness {
     pub clearance: Metre,
     /// Time to collision at the current speeds, along the paths; none if the two never touch.
     pub ttc: Option<Second>,
-    /// Deceleration that just avoids contact, at most [`super::measures::drac::LIMIT`]; none if the two touch now or, at
+    /// Deceleration that just avoids contact, at most 12.68 m/s²; none if the two touch now or, at
     /// the current speeds, never.
     pub drac: Option<MetrePerSecondSquared>,
     /// Whether neither that limit nor the ego's brakes avoid contact.
