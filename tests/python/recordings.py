@@ -20,10 +20,13 @@ def record(config: Path, name: str, *words: str, sumo: tuple[str, ...] = ()) -> 
 
 
 def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, str]:
-    """Exit status and messages of a replay."""
+    """Exit status and messages of a replay, without those on how the net is drawn and how long the steps are."""
     net, routes = config.with_suffix(".net.xml"), config.with_suffix(".rou.xml")
     done = closecall("replay", recording, "--net", net, "--route-files", routes, "--out", out, *words)
-    return done.returncode, done.stderr
+    opening = ("drawn", "steps of")
+    return done.returncode, "".join(
+        line for line in done.stderr.splitlines() if not any(part in line for part in opening)
+    )
 
 
 def same(live: list[Row], again: list[Row], within: float = 2e-6) -> None:

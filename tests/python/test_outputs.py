@@ -152,7 +152,7 @@ def test_trajectories_do_not_depend_on_what_is_left_out(scenario: Copy, tmp_path
 def test_a_file_that_cannot_be_written_is_named(option: str, scenario: Copy) -> None:
     config = scenario("side")
     done = closecall("run", config, option, "/proc/closecall/file")
-    assert done.returncode == 2 and "/proc/closecall/file: " in done.stderr
+    assert done.returncode == 2 and "closecall: /proc/closecall: " in done.stderr
     assert not (config.parent / "closecall-out").exists()
 
 
