@@ -25,7 +25,7 @@ def replay(config: Path, recording: Path, out: Path, *words: str) -> tuple[int, 
     done = closecall("replay", recording, "--net", net, "--route-files", routes, "--out", out, *words)
     opening = ("drawn", "steps of")
     return done.returncode, "".join(
-        line for line in done.stderr.splitlines() if not any(part in line for part in opening)
+        line for line in done.stderr.splitlines(keepends=True) if not any(part in line for part in opening)
     )
 
 
