@@ -8,7 +8,7 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Radian, Second};
 
-/// So many past steps are kept, at least [`APART`] from one another: 5 s, in which a vehicle crosses a junction.
+/// The number of past steps kept, at least [`APART`] from one another: 5 s, in which a vehicle crosses a junction.
 const STEPS: usize = 10;
 /// The time between two of them, in s: half a second, in which a path bends by centimetres, less what sums of steps differ
 /// from it by rounding.
@@ -23,7 +23,7 @@ pub(super) struct Past {
     steps: VecDeque<PastStep>,
 }
 
-/// Where everyone was at a time.
+/// Where the road users were at a time.
 #[derive(Debug, Default)]
 struct PastStep {
     time: Second,

@@ -1,7 +1,7 @@
-//! The earlier log in a run's folder: it is moved aside, so that nobody loses a log by running a command again.
+//! The earlier log in a run's folder: it is moved aside, so that running a command again loses no log.
 //!
-//! It goes into the folder itself, because the folder above may belong to somebody else and its other files may be the
-//! user's own.
+//! It goes into the folder itself, because the folder above may not be writable, and its other files may be the user's
+//! own.
 
 use std::fs;
 use std::path::{Path, PathBuf};

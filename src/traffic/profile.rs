@@ -77,7 +77,7 @@ impl Profile {
     ///
     /// # Errors
     /// [`Error::Value`] where a dimension, mass or brake value is not finite or negative, or where the mass, the
-    /// deceleration, or a dimension of what is no obstacle is 0.
+    /// deceleration, or a dimension is 0 (an obstacle's dimensions may be).
     pub fn check(&self) -> Result<()> {
         let checks = [
             ("length", self.length, self.category != Category::Obstacle),

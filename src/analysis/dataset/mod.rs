@@ -36,7 +36,7 @@ pub struct Conflicts {
 }
 
 /// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
-/// first log. `progress` is told how far the logs are read.
+/// first log. It reports to `progress` how far it has read.
 ///
 /// # Errors
 /// [`crate::Error::File`] where a folder cannot be read, [`crate::Error::Content`] where a folder holds no log,

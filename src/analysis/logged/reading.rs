@@ -1,4 +1,4 @@
-//! How far the logs are read, for whoever waits.
+//! How far the logs are read, for a progress bar.
 
 /// Takes how many of how many conflicts are read.
 pub type Progress<'a> = dyn FnMut(u64, u64) + 'a;

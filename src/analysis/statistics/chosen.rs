@@ -63,7 +63,7 @@ fn records(runs: &[(Arc<Path>, LoggedRun)]) -> Vec<&LoggedRun> {
     runs.iter().map(|(_, run)| run).collect()
 }
 
-/// Whether each run counts. Of two with the same settings and seed, which found the same, one does: the other adds nothing.
+/// Whether each run counts. A run that repeats another's settings and seed does not: it found the same.
 fn without_repetitions(runs: &[(Arc<Path>, LoggedRun)], left_out: &mut Vec<LeftOutLog>) -> Vec<bool> {
     let mut counts = vec![true; runs.len()];
     for variant in Variants::of(&records(runs)).all {

@@ -108,7 +108,7 @@ pub struct Collection {
 }
 
 impl Collection {
-    /// Reads the logs in and below these folders. `progress` is told now and then how many conflicts of how many are read.
+    /// Reads the logs in and below these folders. It reports to `progress` how many conflicts it has read.
     ///
     /// # Errors
     /// An error that names the folder, or the file and its line: missing, not a log, empty, cut short, with other columns

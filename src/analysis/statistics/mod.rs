@@ -86,7 +86,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Reads the logs and computes their statistics. `progress` is told how far the logs are read.
+    /// Reads the logs and computes their statistics. It reports to `progress` how far it has read.
     ///
     /// # Errors
     /// Those of [`Collection::read`]; [`Error::Value`] if no folder is named, or if runs of one set that is compared with

@@ -21,7 +21,7 @@ pub(super) fn time(text: &[u8]) -> Option<Second> {
         total = total.checked_add(digits(part)?.checked_mul(*units.next()?)?)?;
     }
     digits(fraction)?;
-    // Joined as text, it has the bits that the same time in seconds has. Minutes and seconds alone are no time of SUMO's.
+    // Joined as text, it has the bits that the same time in seconds has. SUMO writes no time of minutes and seconds alone.
     if units.len() > 1 { None } else { number(format!("{total}.{fraction}").as_bytes()) }
 }
 

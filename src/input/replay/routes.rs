@@ -26,7 +26,7 @@ use crate::{Error, Result};
 /// The size of an entry of `places`, in bytes: where the route begins and its length.
 const ENTRY: u64 = 16;
 
-/// The edges that each vehicle drove and, as far as that is known, those that it was to drive.
+/// The edges that each vehicle drove, and those that it was to drive where they are known.
 pub struct Routes {
     recording: PathBuf,
     /// All routes, one after the other: the edges, then the step in which each was reached.

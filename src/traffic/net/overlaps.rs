@@ -277,7 +277,7 @@ mod tests {
         let junction = net(JUNCTION);
         assert!((overlap(&junction, ":j_0_0", ":j_1_0") - 0.6).abs() < 1e-9);
         assert_eq!(overlap(&junction, ":j_1_0", ":j_2_0"), 0.0, "they follow each other");
-        // The first junction lane of a link is no foe either, although only the last is among the junction's lanes.
+        // The first junction lane of a link is not a foe either, although only the last is among the junction's lanes.
         for foes in [r#"index="1" response="00" foes="01""#, r#"index="0" response="00" foes="10""#] {
             let number = &foes[..9];
             let junction = net(&JUNCTION.replace(&format!(r#"{number} response="00" foes="00""#), foes));
