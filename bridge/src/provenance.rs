@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use closecall::internals::output::{Input, Versions};
-use closecall::{Options, Run, RunRecord, Summary};
+use closecall::{Options, Run, RunRecord};
 use pyo3::prelude::*;
 
 use crate::error::exception;
@@ -52,16 +52,10 @@ pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options
     let step_length = |sumo: &Bound<PyAny>| sumo.getattr("simulation")?.call_method0("getDeltaT")?.extract::<f64>();
     Ok(RunRecord {
         versions: Versions::with_sumo(sumo.map(version).transpose()?),
-        scenario,
         seed: sumo.and_then(seed),
         step_length: sumo.map(step_length).transpose()?,
         sublane: run.sublane(),
-        options: options.clone(),
-        sumo_words: Vec::new(),
-        inputs: Vec::new(),
-        complete: false,
-        error: None,
-        summary: Summary::default(),
+        ..RunRecord::new(scenario, options.clone())
     })
 }
 

@@ -11,8 +11,7 @@ use super::sumo::Sumo;
 use crate::input::replay::Replay;
 use crate::options::Options;
 use crate::output::input_hash::Input;
-use crate::output::record::{RunRecord, Versions};
-use crate::output::summary::Summary;
+use crate::output::record::RunRecord;
 use crate::run::Run;
 use crate::run::recorded::{Ending, RecordedRun};
 use crate::traffic::net::Net;
@@ -76,17 +75,9 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
 fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
     let files = [&arguments.recording, &arguments.net].into_iter().chain(&arguments.route_files);
     Ok(RunRecord {
-        versions: Versions::with_sumo(None),
-        scenario: arguments.recording.clone(),
-        seed: None,
-        step_length: None,
         sublane: arguments.sublane,
-        options,
-        sumo_words: Vec::new(),
         inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,
-        complete: false,
-        error: None,
-        summary: Summary::default(),
+        ..RunRecord::new(arguments.recording.clone(), options)
     })
 }
 

@@ -36,6 +36,25 @@ pub struct RunRecord {
     pub summary: Summary,
 }
 
+impl RunRecord {
+    /// The record of a run that begins, without SUMO and without inputs.
+    pub fn new(scenario: PathBuf, options: Options) -> Self {
+        Self {
+            versions: Versions::with_sumo(None),
+            scenario,
+            seed: None,
+            step_length: None,
+            sublane: false,
+            options,
+            sumo_words: Vec::new(),
+            inputs: Vec::new(),
+            complete: false,
+            error: None,
+            summary: Summary::default(),
+        }
+    }
+}
+
 /// The versions that a run was made with.
 #[derive(Clone, Debug, Serialize)]
 pub struct Versions {

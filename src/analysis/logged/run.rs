@@ -85,7 +85,7 @@ mod tests {
     use super::*;
     use crate::options::Options;
     use crate::output::formats::OutputFiles;
-    use crate::output::record::{RunRecord, Versions};
+    use crate::output::record::RunRecord;
     use crate::run::Run;
     use crate::run::recorded::{Ending, RecordedRun};
     use crate::traffic::frame::State;
@@ -96,19 +96,7 @@ mod tests {
     fn logged(times: &[Second], step_length: Option<Second>) -> LoggedRun {
         let folder = tempfile::tempdir().unwrap();
         let options = Options::default();
-        let record = RunRecord {
-            versions: Versions::with_sumo(None),
-            scenario: PathBuf::new(),
-            seed: None,
-            step_length,
-            sublane: false,
-            options: options.clone(),
-            sumo_words: Vec::new(),
-            inputs: Vec::new(),
-            complete: false,
-            error: None,
-            summary: Summary::default(),
-        };
+        let record = RunRecord { step_length, ..RunRecord::new(PathBuf::new(), options.clone()) };
         let run = Run::new(&options, None).unwrap();
         let mut recorded = RecordedRun::open(run, record, folder.path(), &OutputFiles::default()).unwrap();
         let run = &mut recorded.run;
