@@ -45,9 +45,14 @@ class Opened:
         self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
         self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
         self.page.on("request", lambda request: self.requests.append(request.url))
+        session = context.new_cdp_session(self.page)
+        session.send("Performance.enable", {"timeDomain": "threadTicks"})
         self.page.goto(path.as_uri())
         self.page.wait_for_selector("html[data-ready]", state="attached")
         self.milliseconds = int(self.page.evaluate("document.documentElement.dataset.ready"))
+        metrics = session.send("Performance.getMetrics")["metrics"]
+        # The processor time of the page's main thread until then, in s.
+        self.busy = float(next(metric["value"] for metric in metrics if metric["name"] == "ThreadTime"))
 
     def text(self, selector: str) -> str:
         """The text of an element."""
@@ -234,15 +239,12 @@ def test_ids_are_shown_verbatim_and_never_run(browser: Any, tmp_path: Path) -> N
 def test_100_000_conflicts_open_within_3_seconds(browser: Any, tmp_path: Path) -> None:
     log = made_up(tmp_path / "log", 100_000)
     assert closecall("report", log, "-o", tmp_path / "r.html").returncode == 0
-    # Other tests run beside this one and may slow down one opening.
-    for _ in range(5):
-        opened = Opened(browser, tmp_path / "r.html")
-        assert opened.text("#shown") == "100,000 of 100,000 conflicts"
-        print(f"open after {opened.milliseconds} ms, {(tmp_path / 'r.html').stat().st_size / 1e6:.1f} MB")
-        assert opened.complaints == []
-        if opened.milliseconds < 3000:
-            break
-    assert opened.milliseconds < 3000
+    opened = Opened(browser, tmp_path / "r.html")
+    assert opened.text("#shown") == "100,000 of 100,000 conflicts"
+    assert opened.complaints == []
+    print(f"open after {opened.milliseconds} ms, {opened.busy:.2f} s of them busy")
+    # The busy time, as other tests that run beside this one delay the page without making it busier.
+    assert opened.busy < 3
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
