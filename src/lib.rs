@@ -73,7 +73,7 @@ mod study;
 mod traffic;
 mod util;
 
-pub use braking::{Brakes, Braking, MuModel, mu};
+pub use braking::{Brakes, Braking, MuModel, mu, response_left};
 pub use detection::detector::Detector;
 pub use detection::encounter::{Encounter, Nearness};
 pub use detection::kind::{Kind, Severity};

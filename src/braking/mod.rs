@@ -9,6 +9,8 @@
 //! ([`crate::util::double_double`]).
 
 mod brakes;
+mod late;
+mod left;
 mod narrowest;
 mod needed;
 
@@ -17,6 +19,8 @@ use crate::util::units::{Metre, MetrePerSecond};
 use needed::Needed;
 
 pub use brakes::{Brakes, Braking, MuModel};
+pub use late::{LateBraking, Leader};
+pub use left::response_left;
 
 /// The stopping distance in m, exactly, with V₃ = V − a·t3/2:
 ///
