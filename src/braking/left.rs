@@ -18,7 +18,7 @@ use crate::util::units::{Metre, Second};
 /// ```
 pub fn response_left(model: MuModel, ego: Braking, foe: Braking, sigma: f64, epsilon: Metre, gap: Metre) -> Second {
     let brakes = ego.brakes;
-    let left = match (model, room_behind(foe, sigma, gap - epsilon)) {
+    let left = match (model, leader(foe, sigma, gap - epsilon)) {
         (MuModel::Paper, _) => {
             let needed = stopping_distance_paper(ego.speed, &super::Brakes { response: 0.0, ..*brakes });
             let others = foe.speed / (2.0 * foe.brakes.deceleration) * foe.speed;
@@ -44,7 +44,7 @@ pub fn response_left(model: MuModel, ego: Braking, foe: Braking, sigma: f64, eps
 
 /// The foe as μ sees it, in line with the ego: for σ > 0 it brakes at once and fully, with the share σ of its speed; for
 /// σ ≤ 0 its whole way takes room away.
-pub fn room_behind(foe: Braking, sigma: f64, room: Metre) -> Leader {
+pub fn leader(foe: Braking, sigma: f64, room: Metre) -> Leader {
     if sigma > 0.0 {
         Leader { room, speed: sigma * foe.speed, deceleration: sigma * foe.brakes.deceleration }
     } else {

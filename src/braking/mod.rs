@@ -20,7 +20,7 @@ use needed::Needed;
 
 pub use brakes::{Brakes, Braking, MuModel};
 pub use late::{LateBraking, Leader};
-pub use left::response_left;
+pub use left::{leader, response_left};
 
 /// The stopping distance in m, exactly, with V₃ = V − a·t3/2:
 ///

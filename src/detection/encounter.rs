@@ -3,7 +3,7 @@
 use super::kind::{Kind, Severity};
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;
-use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// A pair with a conflict point, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,6 +57,17 @@ pub struct Nearness {
     pub drac: Option<MetrePerSecondSquared>,
     /// Whether neither that limit nor the ego's brakes avoid contact.
     pub unavoidable: bool,
+    /// Longest response time with which the ego keeps clear of a foe that brakes now; none if the ego stands.
+    pub response_left: Option<Second>,
+    /// Time to brake: the longest wait before full braking avoids contact with a foe that goes on as now; 0 if even
+    /// braking at once is too late, none if the two would not touch.
+    pub ttb: Option<Second>,
+    /// Probability that the driver does not brake in time if the foe goes on as now.
+    pub crash_probability: f64,
+    /// The same if the foe brakes fully now.
+    pub crash_probability_braking: f64,
+    /// The larger ΔV of both if each brakes until they touch; none if the two would not touch.
+    pub extended_delta_v: Option<MetrePerSecond>,
     /// Severity by the values above.
     pub severity: Severity,
 }

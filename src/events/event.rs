@@ -8,15 +8,16 @@ use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
 use super::pet::Pet;
 use crate::detection::kind::{Kind, Severity};
-use crate::detection::measures;
+use crate::detection::measures::{self, injury};
 use crate::traffic::net::LaneIndex;
+use crate::traffic::profile::Profile;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// One conflict: a pair and a run of steps with margin < 0.
 ///
-/// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes
-/// `clearance`, `ttc`, `drac` and `pet`. The columns of a log follow from it: `output::schema`.
+/// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes, from
+/// `clearance` to `pet`. The columns of a log follow from it: `output::schema`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Conflict {
@@ -54,6 +55,19 @@ pub struct Conflict {
     pub drac: Option<MetrePerSecondSquared>,
     /// Whether in any step before contact no deceleration would have avoided it.
     pub unavoidable: bool,
+    /// Smallest of all steps of the longest response time with which the ego keeps clear of a foe that brakes now, in s; none
+    /// if the ego stood in all of them.
+    pub response_left: Option<Second>,
+    /// Smallest time to brake, in s; none if the two would not touch in any step.
+    pub ttb: Option<Second>,
+    /// Largest probability of all steps that the driver does not brake in time if the foe goes on as now.
+    pub crash_probability: f64,
+    /// The same if the foe brakes fully.
+    pub crash_probability_braking: f64,
+    /// Probability of a fatal injury of the one worse off, at the ΔV below.
+    pub injury_probability: f64,
+    /// Largest of all steps of the larger ΔV of both if each brakes until they touch, in m/s.
+    pub extended_delta_v: Option<MetrePerSecond>,
     /// Post-encroachment time, in s; side and frontal only.
     pub pet: Option<Second>,
     /// Speed change of the ego in a fully inelastic collision, in m/s.
@@ -105,6 +119,11 @@ impl Conflict {
             ttc,
             drac,
             unavoidable,
+            response_left,
+            ttb,
+            crash_probability,
+            crash_probability_braking,
+            extended_delta_v,
             ref found,
             ref worst,
         } = *extremes;
@@ -115,6 +134,9 @@ impl Conflict {
         let [ego_snapshot, foe_snapshot] = worst.snapshots.clone();
         let [ego_delta_v, foe_delta_v] =
             measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle);
+        let body = |delta_v, of: &Profile| injury::Body { delta_v, unprotected: of.unprotected };
+        let injury_probability =
+            injury::injury_probability(kind, body(ego_delta_v, ego_type), body(foe_delta_v, foe_type));
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),
@@ -133,6 +155,12 @@ impl Conflict {
             ttc,
             drac,
             unavoidable,
+            response_left,
+            ttb,
+            crash_probability,
+            crash_probability_braking,
+            injury_probability,
+            extended_delta_v,
             pet: pet.map(|pet| pet.lasts),
             ego_delta_v,
             foe_delta_v,

@@ -35,6 +35,11 @@ pub(super) struct Extremes {
     pub ttc: Option<Second>,
     pub drac: Option<MetrePerSecondSquared>,
     pub unavoidable: bool,
+    pub response_left: Option<Second>,
+    pub ttb: Option<Second>,
+    pub crash_probability: f64,
+    pub crash_probability_braking: f64,
+    pub extended_delta_v: Option<MetrePerSecond>,
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
@@ -82,6 +87,26 @@ impl Observation<'_> {
         self.found.nearness.is_some_and(|near| near.unavoidable)
     }
 
+    fn response_left(&self) -> Option<Second> {
+        self.found.nearness?.response_left
+    }
+
+    fn ttb(&self) -> Option<Second> {
+        self.found.nearness?.ttb
+    }
+
+    fn crash_probability(&self) -> f64 {
+        self.found.nearness.map_or(0.0, |near| near.crash_probability)
+    }
+
+    fn crash_probability_braking(&self) -> f64 {
+        self.found.nearness.map_or(0.0, |near| near.crash_probability_braking)
+    }
+
+    fn extended_delta_v(&self) -> Option<MetrePerSecond> {
+        self.found.nearness?.extended_delta_v
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -114,6 +139,11 @@ impl Extremes {
             ttc: seen.ttc(),
             drac: seen.drac(),
             unavoidable: seen.is_unavoidable(),
+            response_left: seen.response_left(),
+            ttb: seen.ttb(),
+            crash_probability: seen.crash_probability(),
+            crash_probability_braking: seen.crash_probability_braking(),
+            extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
         }
@@ -131,6 +161,11 @@ impl Extremes {
         self.collision |= seen.found.collision;
         self.overlap = self.overlap.max(seen.found.overlap);
         self.unavoidable |= seen.is_unavoidable();
+        take_if(&mut self.response_left, seen.response_left(), f64::lt);
+        take_if(&mut self.ttb, seen.ttb(), f64::lt);
+        self.crash_probability = self.crash_probability.max(seen.crash_probability());
+        self.crash_probability_braking = self.crash_probability_braking.max(seen.crash_probability_braking());
+        take_if(&mut self.extended_delta_v, seen.extended_delta_v(), f64::gt);
         let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
         for (found, taken) in self.found.iter_mut().zip(taken) {
             if taken {

@@ -3,6 +3,7 @@
 //! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
+mod driver;
 #[cfg(feature = "cli")]
 mod settings;
 pub mod shortcut;
@@ -23,12 +24,14 @@ use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 use shortcut::Shortcut;
+use thresholds::SeverityRule;
 
+pub use driver::{DriverModel, DriverOptions};
 #[cfg(feature = "cli")]
 pub use toml_file::OptionsFile;
 pub use type_options::{BrakeSystem, TypeOptions};
 #[cfg(feature = "cli")]
-pub(crate) use values::{angle, not_negative, positive};
+pub(crate) use values::{angle, not_negative, positive, probability};
 
 /// The method that finds the conflicts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -86,6 +89,8 @@ const CONTACT_TOLERANCE: Metre = 0.25;
 const REAR_END_BELOW: Radian = FRAC_PI_6;
 /// Default bound of frontal conflicts: 150°, in rad.
 const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
+/// Default crash probability from which a conflict is serious (docs/model.md has the figures).
+const SERIOUS_PROBABILITY: f64 = 0.1;
 /// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
 const SERIOUS_TTC: Second = 1.5;
 /// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
@@ -133,12 +138,21 @@ pub struct Options {
     /// A conflict is frontal if the angle at the conflict point is above this, in rad (default 150°).
     #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = FRONTAL_ABOVE, value_parser = angle))]
     pub frontal_above: Radian,
-    /// A conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
+    /// Rule of the severity: time left and crash probability, or thresholds of TTC and DRAC.
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
+    pub severity: SeverityRule,
+    /// With `--severity time-left`, a conflict is serious from this crash probability on.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "P", default_value_t = SERIOUS_PROBABILITY, value_parser = probability))]
+    pub serious_probability: f64,
+    /// With `--severity fhwa`, a conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = not_negative))]
     pub serious_ttc: Second,
-    /// A conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
+    /// With `--severity fhwa`, a conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = not_negative))]
     pub serious_drac: MetrePerSecondSquared,
+    /// Driver that crash probabilities assume.
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
+    pub driver: DriverModel,
     /// Types of the SUMO polygons that are static obstacles.
     #[cfg_attr(feature = "cli", arg(long, value_name = "TYPE,…", value_delimiter = ','))]
     pub obstacles: Vec<String>,
@@ -158,6 +172,9 @@ pub struct Options {
     /// Settings of vehicle types (`[type.NAME]` in the TOML file).
     #[cfg_attr(feature = "cli", arg(skip))]
     pub types: FxHashMap<String, TypeOptions>,
+    /// Values of all drivers (`[driver]` in the TOML file).
+    #[cfg_attr(feature = "cli", arg(skip))]
+    pub driver_options: DriverOptions,
 }
 
 impl Default for Options {
@@ -175,14 +192,18 @@ impl Default for Options {
             contact_tolerance: CONTACT_TOLERANCE,
             rear_end_below: REAR_END_BELOW,
             frontal_above: FRONTAL_ABOVE,
+            severity: SeverityRule::default(),
+            serious_probability: SERIOUS_PROBABILITY,
             serious_ttc: SERIOUS_TTC,
             serious_drac: SERIOUS_DRAC,
+            driver: DriverModel::default(),
             obstacles: Vec::new(),
             filter: None,
             log_encounters: false,
             keep_all: false,
             keep: Vec::new(),
             types: FxHashMap::default(),
+            driver_options: DriverOptions::default(),
         }
     }
 }

@@ -1,5 +1,7 @@
 //! The bounds between the kinds and the severities of conflicts.
 
+use serde::Serialize;
+
 use super::Options;
 use crate::util::units::{MetrePerSecondSquared, Radian, Second};
 
@@ -12,13 +14,33 @@ pub struct KindBounds {
     pub frontal_above: Radian,
 }
 
-/// The values beyond which a conflict is serious.
+/// How the severity of a conflict is determined.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum SeverityRule {
+    /// By the time that is left and the probability of a crash.
+    #[default]
+    TimeLeft,
+    /// By TTC (FHWA-HRT-08-051) and DRAC (Archer 2005), with settable thresholds.
+    Fhwa,
+    /// By the default thresholds of SUMO's device.ssm: TTC 3 s, DRAC 3 m/s².
+    Ssm,
+}
+
+/// When a conflict is serious or critical.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SeverityThresholds {
-    /// Serious below this TTC.
-    pub serious_ttc: Second,
-    /// Serious above this DRAC.
-    pub serious_drac: MetrePerSecondSquared,
+pub enum SeverityThresholds {
+    /// Serious from this crash probability on; critical if even braking at once is too late.
+    Probability(f64),
+    /// Serious beyond thresholds; critical if DRAC is above the ego's braking deceleration.
+    Measures {
+        /// Serious below this TTC.
+        ttc: Second,
+        /// Serious above this DRAC.
+        drac: MetrePerSecondSquared,
+    },
 }
 
 impl Options {
@@ -29,6 +51,10 @@ impl Options {
 
     /// The thresholds of severity.
     pub fn severity_thresholds(&self) -> SeverityThresholds {
-        SeverityThresholds { serious_ttc: self.serious_ttc, serious_drac: self.serious_drac }
+        match self.severity {
+            SeverityRule::TimeLeft => SeverityThresholds::Probability(self.serious_probability),
+            SeverityRule::Fhwa => SeverityThresholds::Measures { ttc: self.serious_ttc, drac: self.serious_drac },
+            SeverityRule::Ssm => SeverityThresholds::Measures { ttc: 3.0, drac: 3.0 },
+        }
     }
 }

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
+use super::Options;
+use super::driver::DriverOptions;
 use super::type_options::TypeOptions;
 use super::values::word;
 use crate::{Error, Result};
@@ -15,6 +17,8 @@ pub struct OptionsFile {
     pub words: Vec<String>,
     /// The `[type.NAME]` tables.
     pub types: FxHashMap<String, TypeOptions>,
+    /// The `[driver]` table.
+    pub driver: DriverOptions,
     /// The `[regress]` table, for the command of that name.
     pub regress: Option<toml::Table>,
 }
@@ -40,11 +44,18 @@ impl OptionsFile {
             match (key.as_str(), value) {
                 ("type", toml::Value::Table(types)) => {
                     for (name, settings) in types {
-                        let parsed = settings.try_into().map_err(|error: toml::de::Error| {
-                            Error::content(path, format!("[type.{name}]: {}", error.message()))
-                        })?;
+                        let table = format!("type.{name}");
+                        let parsed: TypeOptions = parse_table(path, &table, settings)?;
+                        parsed
+                            .driver
+                            .check()
+                            .map_err(|why| Error::content(path, format!("[{table}.driver]: {why}")))?;
                         file.types.insert(name, parsed);
                     }
+                }
+                ("driver", settings @ toml::Value::Table(_)) => {
+                    file.driver = parse_table(path, "driver", settings)?;
+                    file.driver.check().map_err(|why| Error::content(path, format!("[driver]: {why}")))?;
                 }
                 ("regress", toml::Value::Table(regress)) => file.regress = Some(regress),
                 (name, value) => {
@@ -58,6 +69,17 @@ impl OptionsFile {
         }
         Ok(file)
     }
+
+    /// Adds the tables that have no command-line form to options.
+    pub fn add_tables(self, options: &mut Options) {
+        options.types = self.types;
+        options.driver_options = self.driver;
+    }
+}
+
+/// The settings of a table that is not a list of command-line options.
+fn parse_table<T: serde::de::DeserializeOwned>(path: &Path, name: &str, table: toml::Value) -> Result<T> {
+    table.try_into().map_err(|error: toml::de::Error| Error::content(path, format!("[{name}]: {}", error.message())))
 }
 
 fn plain_value(path: &Path, name: &str, value: &toml::Value) -> Result<String> {

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::driver::DriverOptions;
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 
 /// The brake system of a vehicle.
@@ -34,4 +35,7 @@ pub struct TypeOptions {
     pub width: Option<Metre>,
     /// Mass in kg.
     pub mass: Option<Kilogram>,
+    /// Its drivers.
+    #[serde(default)]
+    pub driver: DriverOptions,
 }

@@ -16,6 +16,14 @@ pub(crate) fn positive(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+/// A probability, 0 to 1.
+pub(crate) fn probability(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
+        _ => Err("it must be a probability, 0 to 1".to_owned()),
+    }
+}
+
 /// An angle in rad, 0 to π.
 pub(crate) fn angle(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {

@@ -8,22 +8,30 @@ use crate::events::Conflict;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// How bad a conflict is; the larger, the worse. A collision is worst; of two, the one with the larger ΔV. Of others the
-/// severity decides, then the TTC, then the margin.
+/// severity decides, then the crash probability, then the TTC, then the margin.
 #[derive(Clone, Copy, Debug)]
 pub struct Badness {
     collision: bool,
     severity: Severity,
     /// The larger of both in a collision, otherwise 0.
     delta_v: MetrePerSecond,
+    /// 0 where it is not known.
+    crash_probability: f64,
     /// Infinite where there is none.
     ttc: Second,
     margin: Metre,
 }
 
 impl Badness {
-    fn new(collision: bool, severity: Severity, delta_v: MetrePerSecond, ttc: Option<Second>, margin: Metre) -> Self {
+    fn new(
+        (collision, severity): (bool, Severity),
+        delta_v: MetrePerSecond,
+        crash_probability: f64,
+        ttc: Option<Second>,
+        margin: Metre,
+    ) -> Self {
         let delta_v = if collision { delta_v } else { 0.0 };
-        Self { collision, severity, delta_v, ttc: ttc.unwrap_or(Second::INFINITY), margin }
+        Self { collision, severity, delta_v, crash_probability, ttc: ttc.unwrap_or(Second::INFINITY), margin }
     }
 }
 
@@ -32,6 +40,7 @@ impl Ord for Badness {
         (self.collision, self.severity)
             .cmp(&(other.collision, other.severity))
             .then_with(|| self.delta_v.total_cmp(&other.delta_v))
+            .then_with(|| self.crash_probability.total_cmp(&other.crash_probability))
             .then_with(|| other.ttc.total_cmp(&self.ttc))
             .then_with(|| other.margin.total_cmp(&self.margin))
     }
@@ -53,15 +62,15 @@ impl Eq for Badness {}
 
 impl From<&Conflict> for Badness {
     fn from(conflict: &Conflict) -> Self {
-        let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, .. } = *conflict;
-        Self::new(collision, severity, ego_delta_v.max(foe_delta_v), ttc, margin)
+        let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, crash_probability, .. } = *conflict;
+        Self::new((collision, severity), ego_delta_v.max(foe_delta_v), crash_probability, ttc, margin)
     }
 }
 
 impl From<&LoggedConflict> for Badness {
     fn from(conflict: &LoggedConflict) -> Self {
-        let LoggedConflict { collision, severity, ttc, margin, .. } = *conflict;
-        Self::new(collision, severity, conflict.delta_v(), ttc, margin)
+        let LoggedConflict { collision, severity, ttc, margin, crash_probability, .. } = *conflict;
+        Self::new((collision, severity), conflict.delta_v(), crash_probability.unwrap_or_default(), ttc, margin)
     }
 }
 
@@ -70,15 +79,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn collisions_are_worst_then_severity_then_ttc_then_margin() {
+    fn collisions_are_worst_then_severity_then_probability_then_ttc() {
+        let [caution, serious, critical] = Severity::ALL.map(|severity| (false, severity));
+        let collision = (true, Severity::Critical);
         let milder_first = [
-            Badness::new(false, Severity::Caution, 9.0, None, -9.0),
-            Badness::new(false, Severity::Serious, 9.0, Some(1.0), -1.0),
-            Badness::new(false, Severity::Serious, 1.0, Some(0.5), -1.0),
-            Badness::new(false, Severity::Serious, 0.0, Some(0.5), -2.0),
-            Badness::new(false, Severity::Critical, 0.0, Some(2.0), 0.0),
-            Badness::new(true, Severity::Critical, 1.0, Some(0.0), -9.0),
-            Badness::new(true, Severity::Critical, 8.0, Some(0.0), 0.0),
+            Badness::new(caution, 9.0, 0.0, None, -9.0),
+            Badness::new(serious, 9.0, 0.2, Some(1.0), -1.0),
+            Badness::new(serious, 1.0, 0.2, Some(0.5), -1.0),
+            Badness::new(serious, 0.0, 0.2, Some(0.5), -2.0),
+            Badness::new(serious, 0.0, 0.3, Some(2.0), 0.0),
+            Badness::new(critical, 0.0, 0.1, Some(2.0), 0.0),
+            Badness::new(collision, 1.0, 1.0, Some(0.0), -9.0),
+            Badness::new(collision, 8.0, 1.0, Some(0.0), 0.0),
         ];
         assert!(milder_first.is_sorted_by(|a, b| a < b));
     }

@@ -13,7 +13,7 @@ use crate::events::{Conflict, Snapshot};
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::decimal;
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Probability, Radian, Second};
 
 pub use super::value::{ColumnType, Value};
 
@@ -83,15 +83,15 @@ columns! { |conflict, context|
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `caution`: margin < 0; `serious`: TTC < 1.5 s or DRAC > 3.4 m/s²; `critical`: DRAC above the ego's braking
-    /// deceleration, or a collision; the worst of all steps
+    /// `critical`: a collision, or even braking fully at once is too late; `serious`: `crash_probability` of at least 0.1;
+    /// `caution`: neither; the worst of all steps ([other rules](model.md#kind-and-severity))
     [Required] severity: Severity = conflict.severity;
     /// first step with margin < 0
     [Required] begin: Second = conflict.begin;
     /// last step with margin < 0
     [Required] end: Second = conflict.end;
-    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and the four
-    /// extremes `clearance`, `ttc`, `drac`, `pet`
+    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and those that
+    /// say that they are an extreme of all steps
     [Required] time: Second = conflict.time;
     /// the room that is left
     [Required] gap: Metre = conflict.gap;
@@ -99,9 +99,9 @@ columns! { |conflict, context|
     [Required] mu: Metre = conflict.mu;
     /// `gap` − `mu`
     [Required] margin: Metre = conflict.margin;
-    /// smallest distance between the two rectangles
+    /// smallest distance between the two rectangles in any step
     [Required] clearance: Metre = conflict.clearance;
-    /// smallest time to collision, if both keep their speed along their paths
+    /// smallest time to collision of all steps, if both keep their speed along their paths
     [Required] ttc: Option<Second> = conflict.ttc;
     /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
     /// foe comes towards it; at most 12.68 m/s²
@@ -165,6 +165,21 @@ columns! { |conflict, context|
     /// deepest overlap of the two rectangles in any step: the shortest displacement that parts them; 0 if they never
     /// overlapped
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
+    /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
+    /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood
+    [Optional] response_left: Option<Second> = conflict.response_left;
+    /// time to brake: smallest of all steps of the longest wait before full braking with which contact is avoided, if the foe
+    /// goes on as now; 0 if even braking at once is too late; empty if the two would not touch
+    [Optional] ttb: Option<Second> = conflict.ttb;
+    /// largest of all steps of the probability that the driver does not brake in time, if the foe goes on as now
+    [Optional] crash_probability: Option<Probability> = Some(conflict.crash_probability);
+    /// the same if the foe brakes fully now
+    [Optional] crash_probability_braking: Option<Probability> = Some(conflict.crash_probability_braking);
+    /// probability of a fatal injury of the one worse off, at `ego_delta_v` and `foe_delta_v`
+    [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
+    /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
+    /// would not touch
+    [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
 }
 
 impl LoggedConflict {
@@ -224,6 +239,7 @@ impl Column {
             "MetrePerSecond" => "m/s",
             "MetrePerSecondSquared" => "m/s²",
             "Radian" => "rad",
+            "Probability" => "1",
             _ => "",
         }
     }

@@ -25,6 +25,9 @@ pub struct Summary {
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
+    /// The sum of all crash probabilities: an index for comparing plans, not a forecast.
+    #[serde(default)]
+    pub expected_crashes: f64,
     /// The collisions that SUMO itself reported; none where it was not asked.
     #[serde(default)]
     pub collisions_sumo: Option<SumoCollisions>,
@@ -174,6 +177,7 @@ impl Summary {
     /// Counts a conflict.
     pub fn add(&mut self, conflict: &Conflict) {
         self.collisions += u64::from(conflict.collision);
+        self.expected_crashes += conflict.crash_probability;
         if let Some(of_sumo) = &mut self.collisions_sumo {
             of_sumo.in_conflict += u64::from(conflict.collision_sumo == Some(true));
         }
@@ -204,17 +208,22 @@ impl fmt::Display for Summary {
     /// The table of conflicts, the amount of traffic, and the remarks.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         write!(f, "{:<10}", "conflicts")?;
-        for severity in Severity::ALL {
+        for severity in Severity::ALL.iter().rev() {
             write!(f, "{:>10}", severity.name())?;
         }
         writeln!(f, "{:>10}", "all")?;
         for kind in Kind::ALL.map(Some).into_iter().chain([None]) {
             write!(f, "{:<10}", kind.map_or("all", Kind::name))?;
-            for severity in Severity::ALL {
+            for severity in Severity::ALL.into_iter().rev() {
                 write!(f, "{:>10}", self.count(kind, Some(severity)))?;
             }
             writeln!(f, "{:>10}", self.count(kind, None))?;
         }
+        writeln!(
+            f,
+            "expected crashes {:.2}: the sum of all crash probabilities, to compare plans with, not a forecast",
+            self.expected_crashes
+        )?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
         write!(f, "collisions {}", self.collisions)?;
         match self.collisions_sumo {

@@ -41,7 +41,7 @@ impl StraightCar {
     }
 
     fn course(&self) -> SteadyMotion<'_> {
-        SteadyMotion { poses: &self.pose, speed: self.speed, length: LENGTH, width: WIDTH }
+        SteadyMotion { poses: &self.pose, speed: self.speed, deceleration: 0.0, length: LENGTH, width: WIDTH }
     }
 }
 

@@ -1,5 +1,6 @@
 //! The road users of a scene, step by step, and the net on which they move.
 
+pub mod driver;
 pub mod frame;
 pub mod net;
 pub mod placement;

@@ -1,5 +1,6 @@
 //! The properties that all road users of a type share, from SUMO's type and the options.
 
+use super::driver::Driver;
 use super::sumo_type::SumoType;
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
@@ -39,10 +40,20 @@ pub struct Profile {
     pub mass: Kilogram,
     /// How it brakes.
     pub brakes: Brakes,
+    /// Its drivers.
+    pub driver: Driver,
+    /// Whether nothing protects its occupants: a person, a bicycle, a motorcycle.
+    pub unprotected: bool,
 }
 
 /// Classes whose vehicles have air brakes.
 const PNEUMATIC_CLASSES: [&str; 6] = ["truck", "trailer", "bus", "coach", "army", "delivery_truck"];
+
+/// Classes that do not protect those who ride them.
+const UNPROTECTED_CLASSES: [&str; 6] = ["bicycle", "scooter", "moped", "motorcycle", "wheelchair", "pedestrian"];
+
+/// SUMO's default `emergencyDecel` of passenger cars, which the default drivers' decelerations belong to.
+const PASSENGER_CAR_BRAKES: MetrePerSecondSquared = 9.0;
 
 /// A person walks on for the current step and then stops; at this deceleration, within millimetres.
 const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
@@ -130,6 +141,13 @@ impl Profile {
                 build_up: set.build_up.unwrap_or(options.build_up),
                 deceleration,
             },
+            driver: Driver::new(
+                options.driver,
+                &options.driver_options,
+                &set.driver,
+                sumo.emergency_decel / PASSENGER_CAR_BRAKES,
+            ),
+            unprotected: UNPROTECTED_CLASSES.contains(&sumo.vehicle_class.as_str()),
         }
     }
 
@@ -144,6 +162,8 @@ impl Profile {
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or(sumo.mass),
             brakes: Brakes { response: step_length, build_up: 0.0, deceleration: PERSON_DECELERATION },
+            driver: Driver::certain(step_length, PERSON_DECELERATION),
+            unprotected: true,
         }
     }
 
@@ -157,6 +177,8 @@ impl Profile {
             width: 0.0,
             mass: f64::MAX,
             brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },
+            driver: Driver::certain(0.0, 1.0),
+            unprotected: false,
         }
     }
 }

@@ -10,6 +10,8 @@ pub type MetrePerSecond = f64;
 pub type MetrePerSecondSquared = f64;
 /// An angle in rad, counter-clockwise from +x.
 pub type Radian = f64;
+/// A probability, 0 to 1.
+pub type Probability = f64;
 /// A mass in kg.
 pub type Kilogram = f64;
 

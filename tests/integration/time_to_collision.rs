@@ -50,7 +50,7 @@ impl RoadUser {
     }
 
     fn motion<'a>(&self, poses: &'a [Pose]) -> SteadyMotion<'a> {
-        SteadyMotion { poses, speed: self.speed, length: self.length, width: self.width }
+        SteadyMotion { poses, speed: self.speed, deceleration: 0.0, length: self.length, width: self.width }
     }
 
     fn parry(&self) -> (ParryPose, Vector, Cuboid) {

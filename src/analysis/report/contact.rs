@@ -73,7 +73,13 @@ impl Body {
     }
 
     fn motion(&self) -> SteadyMotion<'_> {
-        SteadyMotion { poses: &self.poses, speed: self.speed, length: self.length, width: self.width }
+        SteadyMotion {
+            poses: &self.poses,
+            speed: self.speed,
+            deceleration: 0.0,
+            length: self.length,
+            width: self.width,
+        }
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::Detector;
-use super::reach::{Motion, PathSource, Paths, Reach, StepView, lines_of};
+use super::reach::{PathSource, Paths, Reach, StepView, lines_of};
+use super::{Detector, LastSpeed};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
 use crate::geometry::Point;
@@ -67,7 +67,7 @@ impl Detector {
     fn update_areas(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, moved: &self.moved, paths };
+        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, speeds: &self.speeds, paths };
         let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
         let this_step = (roster.changes(), frame.len());
         let are_same = std::mem::replace(&mut self.last_step, this_step) == this_step;
@@ -82,8 +82,11 @@ impl Detector {
                 reach.area_of(user, &seen.row.state)
             },
         );
-        self.moved.resize(self.paths.len(), false);
-        self.search.slots().iter().for_each(|user| self.moved[user.index.0 as usize] = user.motion == Motion::Moves);
+        self.speeds.resize(self.paths.len(), LastSpeed::default());
+        let after = frame.time - std::mem::replace(&mut self.last_time, frame.time);
+        for Row { user, state } in frame.rows() {
+            self.speeds[user.0 as usize].take(state.speed, after);
+        }
     }
 
     /// Updates the curvature of the paths, where they are arcs.

@@ -407,7 +407,7 @@ impl StepInputs<'_> {
         narrow_phase::gap(meeting.ego_distance, foe_distance, sigma) < mu + TOLERANCE
     }
 
-    fn mu_model(&self) -> MuModel {
+    pub(super) fn mu_model(&self) -> MuModel {
         match self.options.mode {
             Mode::Closecall => self.options.mu,
             Mode::Paper => MuModel::Paper,

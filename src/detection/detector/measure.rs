@@ -1,16 +1,21 @@
-//! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the clearance, TTC, DRAC and
-//! severity of a pair in conflict.
+//! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the measures of a pair in
+//! conflict.
 
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
+use crate::braking::{self, LateBraking, Leader};
 use crate::detection::encounter::{Encounter, Nearness};
-use crate::detection::measures;
+use crate::detection::kind::Kind;
+use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::drac;
+use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
+use crate::detection::measures::{self, SeverityInputs};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
+use crate::traffic::driver::Driver;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 impl StepInputs<'_> {
@@ -69,43 +74,134 @@ impl StepInputs<'_> {
         } else {
             polygon::distance(foe.shape, &ego.rectangle)
         };
-        let (ttc, drac) =
-            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, pair, met, encounter) };
-        let brakes = ego.brakes.deceleration;
-        let unavoidable = drac.is_some_and(|drac| drac > brakes.max(drac::LIMIT));
-        let severity = measures::severity(ttc, drac, brakes, encounter.collision, self.options.severity_thresholds());
-        Nearness { clearance, ttc, drac: drac.map(|drac| drac.min(drac::LIMIT)), unavoidable, severity }
+        let timely = if encounter.collision { Timely::COLLISION } else { self.timely(scratch, pair, met, encounter) };
+        let Timely { ttc, drac, ttb, crash_probability } = timely;
+        let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
+        let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
+        let inputs = SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, collision };
+        Nearness {
+            clearance,
+            ttc,
+            drac: drac.map(|drac| drac.min(drac::LIMIT)),
+            unavoidable,
+            response_left: self.response_left(pair, met.sigma, encounter),
+            ttb,
+            crash_probability,
+            crash_probability_braking: self.crash_probability_braking(pair, met, encounter),
+            extended_delta_v: ttc.map(|left| {
+                let [ego, foe] =
+                    met.slots.map(|slot| (self.state(self.user(slot)).speed, self.profile(self.user(slot)).mass));
+                measures::extended_delta_v(ego, foe, encounter.angle, left)
+            }),
+            severity: measures::severity(&inputs, self.options.severity_thresholds()),
+        }
     }
 
-    /// The time to collision and, where there is one, the deceleration that avoids it; infinite where none does.
-    fn ttc_and_drac(
-        &self,
-        scratch: &mut Scratch,
-        pair: [&Participant; 2],
-        met: &Met,
-        encounter: &Encounter,
-    ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
+    /// The ego's longest response time with which μ still fits into the gap; none if the ego stands. It is below the ego's
+    /// response time exactly if the margin is below 0.
+    fn response_left(&self, [ego, foe]: [&Participant; 2], sigma: f64, encounter: &Encounter) -> Option<Second> {
+        if encounter.collision {
+            return Some(0.0);
+        }
+        let (model, epsilon) = (self.mu_model(), self.options.epsilon);
+        let left = braking::response_left(model, ego.braking(), foe.braking(), sigma, epsilon, encounter.gap);
+        let response = ego.brakes.response;
+        let left = if encounter.margin < 0.0 { left.min(response.next_down()).max(0.0) } else { left.max(response) };
+        Some(left).filter(|left| left.is_finite())
+    }
+
+    /// The probability that the ego's driver does not brake in time for contact, if the foe brakes fully now.
+    fn crash_probability_braking(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> f64 {
+        if encounter.collision {
+            return 1.0;
+        }
+        let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
+        let braking = self.late_braking(met.slots[0], ego);
+        let wait = |deceleration| LateBraking { deceleration, ..braking }.longest_wait_behind(&leader);
+        crash_probability(&self.profile(self.user(met.slots[0])).driver, wait)
+    }
+
+    /// How a road user brakes if it goes on as now for a while.
+    fn late_braking(&self, slot: u32, of: &Participant) -> LateBraking {
+        let present = self.deceleration(self.user(slot));
+        LateBraking { speed: of.speed, present, build_up: of.brakes.build_up, deceleration: of.brakes.deceleration }
+    }
+
+    /// The measures that follow from the courses of both.
+    fn timely(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Timely {
         let users = met.slots.map(|slot| self.user(slot));
         for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
             poses.clear();
             self.course(user, &[self.state(user).speed * ttc::HORIZON], true, poses);
             poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
         }
-        let course =
-            |of: &Participant, poses| SteadyMotion { poses, speed: of.speed, length: of.length(), width: of.width() };
-        let (ego, foe) = (course(pair[0], &scratch.courses[0][..]), course(pair[1], &scratch.courses[1][..]));
-        let is_obstacle = self.is_obstacle(met.slots[1]);
-        let ttc = if is_obstacle {
-            ttc::time_to_fixed(&mut scratch.halves, &ego, self.roster.shape(encounter.foe))
-        } else {
-            ttc::time_to_collision(&ego, &foe)
+        let Scratch { courses, halves, limits } = scratch;
+        let course = |of: &Participant, poses, deceleration| SteadyMotion {
+            poses,
+            speed: of.speed,
+            deceleration,
+            length: of.length(),
+            width: of.width(),
         };
-        let Some(time) = ttc else { return (None, None) };
-        let drac = if is_obstacle {
-            ego.speed / (2.0 * time)
-        } else {
-            drac::drac(&mut scratch.halves, &ego, &foe, time, encounter.kind)
+        let courses_with = |decelerations: [MetrePerSecondSquared; 2]| {
+            [0, 1].map(|one| course(pair[one], &courses[one][..], decelerations[one]))
         };
-        (ttc, Some(drac).filter(|drac| *drac > 0.0))
+        let [ego, foe] = courses_with([0.0; 2]);
+        let driver = |slot| &self.profile(self.user(slot)).driver;
+        let braking = self.late_braking(met.slots[0], pair[0]);
+        if self.is_obstacle(met.slots[1]) {
+            let ttc = ttc::time_to_fixed(halves, &ego, self.roster.shape(encounter.foe));
+            let Some(time) = ttc else { return Timely::APART };
+            let evasion = Evasion::Behind(Leader { room: ego.speed * time, speed: 0.0, deceleration: 0.0 });
+            let drac = Some(ego.speed / (2.0 * time)).filter(|drac| *drac > 0.0);
+            return Timely { ttc, drac, ..Timely::APART }.with(&evasion, &braking, driver(met.slots[0]));
+        }
+        let ttc = ttc::time_to_collision(&ego, &foe);
+        let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
+        let timely = Timely { ttc, drac, ..Timely::APART };
+        let decelerations = users.map(|user| self.deceleration(user));
+        let [ego, foe] = courses_with(decelerations);
+        let meets = if decelerations == [0.0; 2] { ttc } else { ttc::time_to_collision(&ego, &foe) };
+        let Some(meets) = meets else { return timely };
+        let foe_braking = self.late_braking(met.slots[1], pair[1]);
+        let alone = ttb::to_stay_behind(halves, limits, [&ego, &foe], &braking, meets);
+        if encounter.kind == Kind::Frontal {
+            let or_at = if let Some(Evasion::At(limits)) = alone { Some(limits) } else { None };
+            let (share, room) = (-met.sigma.min(0.0), encounter.gap);
+            let evasion = Evasion::Towards { foe: foe_braking, share, room, or_at };
+            return timely.with(&evasion, &braking, driver(met.slots[0]));
+        }
+        if let Some(evasion) = alone {
+            return timely.with(&evasion, &braking, driver(met.slots[0]));
+        }
+        // The foe comes to where the ego is now: only the foe can avoid contact.
+        let of_foe = ttb::to_stay_behind(halves, limits, [&foe, &ego], &foe_braking, meets);
+        timely.with(&of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
+    }
+}
+
+/// The measures of a pair that follow from the courses of both.
+#[derive(Clone, Copy)]
+struct Timely {
+    ttc: Option<Second>,
+    /// Infinite where no deceleration avoids contact.
+    drac: Option<MetrePerSecondSquared>,
+    ttb: Option<Second>,
+    crash_probability: f64,
+}
+
+impl Timely {
+    /// Of a pair that would never touch.
+    const APART: Self = Self { ttc: None, drac: None, ttb: None, crash_probability: 0.0 };
+    /// Of one that collides now.
+    const COLLISION: Self = Self { ttc: Some(0.0), drac: None, ttb: Some(0.0), crash_probability: 1.0 };
+
+    /// With what follows from the evasion that is left, of the one of both that has to brake.
+    fn with(self, evasion: &Evasion, braking: &LateBraking, driver: &Driver) -> Self {
+        let wait = evasion.longest_wait(braking);
+        let ttb = Some(wait.max(0.0)).filter(|wait| wait.is_finite());
+        let probability =
+            crash_probability(driver, |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking }));
+        Self { ttb, crash_probability: if ttb.is_some() { probability } else { 0.0 }, ..self }
     }
 }

@@ -34,7 +34,7 @@ use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
-use crate::util::units::Metre;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
 use shortcuts::Shortcuts;
@@ -46,6 +46,29 @@ const LEVEL: Metre = 2.5;
 
 pub use left_out::LeftOut;
 pub use work::Work;
+
+/// The speed of a road user in a step, and how it brakes. By default it is not known, and the road user does not brake.
+#[derive(Clone, Copy)]
+struct LastSpeed {
+    /// Not a number where it is not known.
+    speed: MetrePerSecond,
+    deceleration: MetrePerSecondSquared,
+}
+
+impl Default for LastSpeed {
+    fn default() -> Self {
+        Self { speed: f64::NAN, deceleration: 0.0 }
+    }
+}
+
+impl LastSpeed {
+    /// The speed of this step, `after` s after the last.
+    fn take(&mut self, speed: MetrePerSecond, after: Second) {
+        let slower = self.speed - speed;
+        self.deceleration = if slower > 0.0 && after > 0.0 { slower / after } else { 0.0 };
+        self.speed = speed;
+    }
+}
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {
@@ -64,8 +87,10 @@ pub struct Detector {
     turnings: Vec<Turning>,
     /// By row of the frame, whether the road user is on its path along lanes.
     on_lanes: Vec<bool>,
-    /// By [`UserIndex`], whether the road user moved in the last step that it was in.
-    moved: Vec<bool>,
+    /// By [`UserIndex`], the speed in the last step that the road user was in, and the deceleration since the one before.
+    speeds: Vec<LastSpeed>,
+    /// The time of the last step.
+    last_time: Second,
     /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
     /// The roster's changes until the last step, and the number of road users in that step.
@@ -93,7 +118,8 @@ impl Detector {
             paths: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
-            moved: Vec::new(),
+            speeds: Vec::new(),
+            last_time: 0.0,
             search: Search::default(),
             last_step: (0, 0),
             order: RowOrder::default(),
@@ -177,8 +203,8 @@ impl Detector {
         if let Some(path) = self.paths.get_mut(user.0 as usize) {
             path.clear();
         }
-        if let Some(moved) = self.moved.get_mut(user.0 as usize) {
-            *moved = false;
+        if let Some(speed) = self.speeds.get_mut(user.0 as usize) {
+            *speed = LastSpeed::default();
         }
         if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
             turning.clear();
@@ -294,7 +320,7 @@ impl Detector {
             turns,
             epsilon,
             on_lanes: &self.on_lanes,
-            moved: &self.moved,
+            speeds: &self.speeds,
             paths: self.all_paths(),
         }
     }
@@ -314,6 +340,7 @@ impl Detector {
             overlaps: &self.overlaps,
             paths: self.all_paths(),
             turnings: &self.turnings,
+            speeds: &self.speeds,
             reach: Reach::new(frame, roster, &self.options, self.shortcuts, self.all_paths()),
             users: self.search.slots(),
         }

@@ -1,5 +1,6 @@
 //! The data that both phases share for each road user of a step, and how far it reaches until it stands.
 
+use super::LastSpeed;
 use super::shortcuts::Shortcuts;
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::detection::broad_phase::{Area, Circle, Slot};
@@ -117,8 +118,8 @@ pub(super) struct StepView<'a> {
     pub turns: PathSource,
     pub epsilon: Metre,
     pub on_lanes: &'a [bool],
-    /// By [`UserIndex`], whether the road user moved in the last step that it was in.
-    pub moved: &'a [bool],
+    /// By [`UserIndex`], the speed in the last step that the road user was in.
+    pub speeds: &'a [LastSpeed],
     pub paths: Paths<'a>,
 }
 
@@ -159,7 +160,7 @@ impl StepView<'_> {
             category: profile.category,
             motion: match moves {
                 true => Motion::Moves,
-                false if self.moved.get(index.0 as usize) == Some(&true) => Motion::HasStopped,
+                false if self.speeds.get(index.0 as usize).is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
                 false => Motion::Rests,
             },
             ahead: match self.turns {

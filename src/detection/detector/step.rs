@@ -1,5 +1,6 @@
 //! What the narrow phase reads of the current step.
 
+use super::LastSpeed;
 use super::reach;
 use super::reach::{Paths, Reach, User};
 use super::shortcuts::Shortcuts;
@@ -9,7 +10,7 @@ use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::Roster;
-use crate::util::units::Metre;
+use crate::util::units::{Metre, MetrePerSecondSquared};
 
 /// The inputs of the narrow phase in the current step.
 #[derive(Clone, Copy)]
@@ -25,6 +26,7 @@ pub(super) struct StepInputs<'a> {
     pub overlaps: &'a Overlaps,
     pub paths: Paths<'a>,
     pub turnings: &'a [Turning],
+    pub speeds: &'a [LastSpeed],
     pub reach: Reach<'a>,
     pub users: &'a [User],
 }
@@ -57,6 +59,11 @@ impl StepInputs<'_> {
 
     pub fn is_obstacle(&self, slot: u32) -> bool {
         self.user(slot).category == Category::Obstacle
+    }
+
+    /// Its deceleration since the last step, 0 or more.
+    pub fn deceleration(&self, user: &User) -> MetrePerSecondSquared {
+        self.speeds[user.index.0 as usize].deceleration
     }
 
     pub fn profile(&self, user: &User) -> &Profile {

@@ -3,10 +3,11 @@
 use super::occupancy::{MOST_POSES, OccupancyCache};
 use super::work::Work;
 use crate::detection::encounter::Encounter;
+use crate::detection::measures::MOST_TIMES;
 use crate::detection::narrow_phase::ConflictPoint;
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
-use crate::util::units::Metre;
+use crate::util::units::{Metre, Second};
 
 /// One thread's state, and what it finds among its pairs.
 #[derive(Default)]
@@ -30,11 +31,17 @@ pub(super) struct Scratch {
     /// Poses further ahead than the paths of the step: the ego's and the foe's.
     pub courses: [Vec<Pose>; 2],
     pub halves: Bisection,
+    /// How far an ego may be at which times.
+    pub limits: Vec<(Second, Metre)>,
 }
 
 impl Default for Scratch {
     fn default() -> Self {
-        Self { courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)), halves: Bisection::to_keep() }
+        Self {
+            courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)),
+            halves: Bisection::to_keep(),
+            limits: Vec::with_capacity(MOST_TIMES),
+        }
     }
 }
 

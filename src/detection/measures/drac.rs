@@ -9,30 +9,16 @@
 //! DRAC = (V² + Vᵢ²) / (2 room)
 //! ```
 
+use super::blocked_path::{PARALLEL, contact_distance, largest_need};
 use super::drac_straight::{straight, to_stay_behind};
 use super::ttc::{HORIZON, SteadyMotion, touch_while_braking};
 use crate::detection::kind::Kind;
 use crate::geometry::bisection::Bisection;
-use crate::geometry::rectangle::Rectangle;
-use crate::geometry::separating_axes::Contact;
-use crate::geometry::sweep::TOLERANCE;
-use crate::util::golden_section::golden_section;
-use crate::util::units::{Metre, MetrePerSecondSquared, Second};
+use crate::util::units::{MetrePerSecondSquared, Second};
 
 /// No road user brakes harder, in m/s²: the upper end of the distribution of the maximum available deceleration rate of
 /// cars (Cunto and Saccomanno 2008: 8.45 ± 1.4, from 4.23 to 12.68). A larger DRAC is cut to it.
 pub const LIMIT: MetrePerSecondSquared = 12.68;
-
-/// Two directions are the same if the cosine of the angle between them is this near to 1.
-const PARALLEL: f64 = 1e-12;
-
-/// Number of times at which the needed deceleration is sampled before the contact.
-const BEFORE: i32 = 6;
-/// Number of times at which it is sampled after the contact.
-const AFTER: i32 = 14;
-
-/// Steps of the golden-section search about the largest sample. Each leaves 0.62 of the interval: 1 s becomes 1 ms.
-const SEARCH_STEPS: u32 = 14;
 
 /// Halvings of [`LIMIT`] in the search for the deceleration of both: it is known to 1 mm/s².
 const HALVINGS: u32 = 14;
@@ -87,59 +73,9 @@ fn together(ego: &SteadyMotion, foe: &SteadyMotion) -> MetrePerSecondSquared {
 /// [`alone`] if one of the two turns: sampled at several times, then searched about the largest sample.
 fn by_search(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, ttc: Second) -> MetrePerSecondSquared {
     bisection.clear();
-    let mut needed =
-        |time| to_stay_behind(ego.speed, time, contact_distance(bisection, ego, &foe.at(time), ego.speed * time));
-    // Braking to a stand, or to the leader's speed, takes twice as long as to the contact. The samples are dense about
-    // the contact, because a foe that crosses may block the path only briefly.
-    let time = |number: i32| {
-        let part = f64::from(number) / f64::from(if number < 0 { BEFORE } else { AFTER });
-        if number < 0 { ttc * (1.0 - part * part) } else { ttc + (2.0 * HORIZON - ttc) * part.powi(3) }
-    };
-    let mut at = 0;
-    let mut most = 0.0;
-    // The time of the contact itself is left out: there rounding would decide.
-    for number in (1 - BEFORE..0).chain(1..=AFTER) {
-        let now = needed(time(number));
-        if now == 0.0 && most > 0.0 && number > 0 {
-            break;
-        }
-        if now > most {
-            (at, most) = (number, now);
-        }
-    }
-    if most.is_finite() { search_maximum(needed, time(at - 1), time(AFTER.min(at + 1)), most) } else { most }
-}
-
-/// The largest value between two times, at least `most`: the needed deceleration has one maximum there, or drops to 0 when
-/// the foe has left.
-fn search_maximum(mut needed: impl FnMut(Second) -> f64, from: Second, to: Second, most: f64) -> f64 {
-    let mut largest = most;
-    golden_section(
-        |time| {
-            let now = needed(time);
-            largest = largest.max(now);
-            now
-        },
-        from,
-        to,
-        SEARCH_STEPS,
-    );
-    largest
-}
-
-/// The distance at which the ego touches a standing rectangle; infinite if it does not within `furthest`.
-fn contact_distance(bisection: &mut Bisection, ego: &SteadyMotion, fixed: &Rectangle, furthest: Metre) -> Metre {
-    let bounds = fixed.bounds().grown(2.0 * TOLERANCE);
-    for (number, (from, to, movement)) in ego.movements(furthest).enumerate() {
-        let part = bisection.numbered(number, || movement);
-        if !bisection.bounds(part).meet(&bounds) {
-            continue;
-        }
-        if let Some(enter) = bisection.meet_rectangle((number, &movement), fixed, Contact::Entry) {
-            return from + (to - from) * enter;
-        }
-    }
-    f64::INFINITY
+    let needed =
+        |time| to_stay_behind(ego.speed, time, contact_distance(bisection, ego, &foe.at(time), ego.travel(time)));
+    largest_need(needed, ttc)
 }
 
 #[cfg(test)]
@@ -152,7 +88,7 @@ mod tests {
     use crate::geometry::exact::touches;
     use crate::geometry::rectangle::direction;
     use crate::options::Options;
-    use crate::util::units::MetrePerSecond;
+    use crate::util::units::{Metre, MetrePerSecond};
     use fastrand::Rng;
 
     /// A road user's poses and its speed.
@@ -166,7 +102,7 @@ mod tests {
     }
 
     fn motion((poses, speed): &Drive) -> SteadyMotion<'_> {
-        SteadyMotion { poses, speed: *speed, length: 5.0, width: 2.0 }
+        SteadyMotion { poses, speed: *speed, deceleration: 0.0, length: 5.0, width: 2.0 }
     }
 
     /// DRAC towards a foe of a kind, and the TTC, if both would touch.

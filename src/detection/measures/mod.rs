@@ -1,31 +1,54 @@
-//! Surrogate safety measures of a pair in one step: ΔV and severity. TTC is in [`ttc`], DRAC in [`drac`], PET in
+//! Surrogate safety measures of a pair in one step: ΔV and severity. The other measures have files of their own; PET is in
 //! [`crate::events`].
 
+mod blocked_path;
+pub mod crash_probability;
 pub mod drac;
 mod drac_straight;
 pub mod headway;
+pub mod injury;
+pub mod ttb;
 pub mod ttc;
+
+pub(crate) use blocked_path::MOST_TIMES;
 
 use super::kind::Severity;
 use crate::options::thresholds::SeverityThresholds;
 use crate::util::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
+/// What the severity of a step depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct SeverityInputs {
+    /// Time to collision.
+    pub ttc: Option<Second>,
+    /// Deceleration to avoid the collision.
+    pub drac: Option<MetrePerSecondSquared>,
+    /// The ego's braking deceleration.
+    pub ego_deceleration: MetrePerSecondSquared,
+    /// Time to brake.
+    pub ttb: Option<Second>,
+    /// Probability that the driver does not brake in time.
+    pub crash_probability: f64,
+    /// Whether the two collide.
+    pub collision: bool,
+}
+
 /// The severity of a conflict in one step.
-pub fn severity(
-    ttc: Option<Second>,
-    drac: Option<MetrePerSecondSquared>,
-    ego_deceleration: MetrePerSecondSquared,
-    collision: bool,
-    thresholds: SeverityThresholds,
-) -> Severity {
-    if collision || drac.is_some_and(|drac| drac > ego_deceleration) {
-        Severity::Critical
-    } else if ttc.is_some_and(|ttc| ttc < thresholds.serious_ttc)
-        || drac.is_some_and(|drac| drac > thresholds.serious_drac)
-    {
-        Severity::Serious
-    } else {
-        Severity::Caution
+pub fn severity(inputs: &SeverityInputs, thresholds: SeverityThresholds) -> Severity {
+    let SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, collision } = *inputs;
+    let (critical, serious) = match thresholds {
+        SeverityThresholds::Probability(serious) => {
+            (ttb == Some(0.0), crash_probability > 0.0 && crash_probability >= serious)
+        }
+        SeverityThresholds::Measures { ttc: serious_ttc, drac: serious_drac } => (
+            drac.is_some_and(|drac| drac > ego_deceleration),
+            ttc.is_some_and(|ttc| ttc < serious_ttc) || drac.is_some_and(|drac| drac > serious_drac),
+        ),
+    };
+    match (critical || collision, serious) {
+        (true, _) => Severity::Critical,
+        (false, true) => Severity::Serious,
+        (false, false) => Severity::Caution,
     }
 }
 
@@ -38,6 +61,22 @@ pub fn delta_v(ego: (MetrePerSecond, Kilogram), foe: (MetrePerSecond, Kilogram),
     [closing / (1.0 + ego.1 / foe.1), closing / (1.0 + foe.1 / ego.1)]
 }
 
+/// The deceleration of extended ΔV, in m/s²: the harder one of Laureshyn et al. 2017.
+const EXTENDED_BRAKING: MetrePerSecondSquared = 8.0;
+
+/// Extended ΔV in m/s (Laureshyn, De Ceunynck, Karlsson, Svensson and Daniels 2017): the larger ΔV of both if each brakes
+/// with 8 m/s² for the time that is left until they touch.
+pub fn extended_delta_v(
+    ego: (MetrePerSecond, Kilogram),
+    foe: (MetrePerSecond, Kilogram),
+    angle: Radian,
+    left: Second,
+) -> MetrePerSecond {
+    let braked = |(speed, mass)| (f64::max(speed - EXTENDED_BRAKING * left, 0.0), mass);
+    let [ego, foe] = delta_v(braked(ego), braked(foe), angle);
+    ego.max(foe)
+}
+
 #[cfg(test)]
 mod tests {
     use crate::detection::measures::*;
@@ -46,6 +85,33 @@ mod tests {
     fn equal_masses_share_the_speed_difference() {
         assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), 0.0), [5.0, 5.0]);
         assert_eq!(delta_v((20.0, 1500.0), (10.0, 1500.0), std::f64::consts::PI), [15.0, 15.0]);
+    }
+
+    #[test]
+    fn braking_until_contact_lowers_the_delta_v() {
+        let extended = |left| extended_delta_v((20.0, 1500.0), (0.0, 1500.0), 0.0, left);
+        assert_eq!([0.0, 1.0, 2.5, 9.0].map(extended), [10.0, 6.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn severity_follows_the_rule() {
+        let inputs = SeverityInputs {
+            ttc: Some(1.0),
+            drac: Some(4.0),
+            ego_deceleration: 8.0,
+            ttb: Some(0.9),
+            crash_probability: 0.2,
+            collision: false,
+        };
+        let fhwa = SeverityThresholds::Measures { ttc: 1.5, drac: 3.4 };
+        let by_probability = [0.2, 0.21].map(|serious| severity(&inputs, SeverityThresholds::Probability(serious)));
+        assert_eq!(by_probability, [Severity::Serious, Severity::Caution]);
+        assert_eq!(severity(&inputs, fhwa), Severity::Serious);
+        let too_late = SeverityInputs { ttb: Some(0.0), drac: Some(9.0), ..inputs };
+        assert_eq!(severity(&too_late, SeverityThresholds::Probability(1.0)), Severity::Critical);
+        assert_eq!(severity(&too_late, fhwa), Severity::Critical);
+        let apart = SeverityInputs { ttc: None, drac: None, ttb: None, crash_probability: 0.0, ..inputs };
+        assert_eq!(severity(&apart, SeverityThresholds::Probability(0.0)), Severity::Caution);
     }
 
     #[test]

@@ -15,13 +15,15 @@ pub const HORIZON: Second = 10.0;
 /// A relative difference between distances along a path and in the plane that is more than rounding.
 const STRETCHED: f64 = 1e-3;
 
-/// A road user that keeps its speed along its poses, which reach [`HORIZON`] ahead.
+/// A road user that keeps its speed, or its deceleration until it stands, along its poses, which reach [`HORIZON`] ahead.
 #[derive(Clone, Copy, Debug)]
 pub struct SteadyMotion<'a> {
     /// Poses from now on; beyond the last, straight on.
     pub poses: &'a [Pose],
     /// Speed in m/s.
     pub speed: MetrePerSecond,
+    /// Deceleration in m/s², 0 or more.
+    pub deceleration: MetrePerSecondSquared,
     /// Length in m.
     pub length: Metre,
     /// Width in m.
@@ -31,7 +33,16 @@ pub struct SteadyMotion<'a> {
 impl SteadyMotion<'_> {
     /// Its rectangle after a time.
     pub(crate) fn at(&self, time: Second) -> Rectangle {
-        self.at_distance(self.speed * time)
+        self.at_distance(self.travel(time))
+    }
+
+    /// The distance that it travels in a time.
+    pub(super) fn travel(&self, time: Second) -> Metre {
+        if self.deceleration == 0.0 {
+            return self.speed * time;
+        }
+        let brakes = time.min(self.speed / self.deceleration);
+        (self.speed - self.deceleration * brakes / 2.0) * brakes
     }
 
     /// Its rectangle after a time in which it has braked with this deceleration, or stands already.
@@ -66,10 +77,14 @@ impl SteadyMotion<'_> {
         known.map(move |pair| movement(&pair[0], &pair[1])).chain(beyond.map(move |[from, to]| movement(&from, &to)))
     }
 
-    /// Its rectangle now and its displacement in a time, if it goes straight on for so long. On a lane that is longer or
-    /// shorter than drawn, that displacement is not its speed's.
+    /// Its rectangle now and its displacement in a time, if it keeps its speed and goes straight on for so long.
     pub(crate) fn straight(&self, time: Second) -> Option<(Rectangle, Vector)> {
-        let distance = self.speed * time;
+        if self.deceleration == 0.0 { self.straight_for(self.speed * time) } else { None }
+    }
+
+    /// Its rectangle now and its displacement over a distance, if it goes straight on for so long. None on a lane that is
+    /// longer or shorter than drawn: the displacement is not the distance there.
+    pub(super) fn straight_for(&self, distance: Metre) -> Option<(Rectangle, Vector)> {
         let (first, by) = match self.poses {
             [only] => (only, only.axis * distance),
             [first, ..] => {
@@ -88,10 +103,17 @@ impl SteadyMotion<'_> {
 
     /// The next time at which it reaches a pose.
     fn next_pose(&self, time: Second) -> Second {
-        let distance = self.speed * time;
+        let distance = self.travel(time);
         let next = self.poses.partition_point(|pose| pose.distance <= distance * (1.0 + f64::EPSILON));
+        let left = |pose: &Pose| self.speed * self.speed - 2.0 * self.deceleration * pose.distance;
         match self.poses.get(next) {
-            Some(pose) if self.speed > 0.0 => pose.distance / self.speed,
+            Some(pose) if self.speed > 0.0 && left(pose) >= 0.0 => {
+                if self.deceleration > 0.0 {
+                    2.0 * pose.distance / (self.speed + left(pose).sqrt())
+                } else {
+                    pose.distance / self.speed
+                }
+            }
             _ => f64::INFINITY,
         }
     }
@@ -103,11 +125,12 @@ pub fn time_to_collision(a: &SteadyMotion, b: &SteadyMotion) -> Option<Second> {
         return slide(&a, &(by - foe_by), &b).map(|contact| contact.enter * HORIZON);
     }
     let both_at = |time| PairAt { time, a: a.at(time), b: b.at(time) };
+    let decelerations = a.deceleration + b.deceleration;
     let mut start = both_at(0.0);
     while start.time < HORIZON {
         let time = a.next_pose(start.time).min(b.next_pose(start.time)).min(HORIZON).max(start.time + 1e-6);
         let end = both_at(time);
-        let contact = contact_between(&both_at, &start, &end, 0);
+        let contact = contact_between(&both_at, decelerations, &start, &end, 0);
         if contact.is_some() {
             return contact;
         }
@@ -127,7 +150,7 @@ pub(super) fn touch_while_braking(a: &SteadyMotion, b: &SteadyMotion, decelerati
     (1..=PARTS).any(|part| {
         let end = both_at(stand * f64::from(part) / f64::from(PARTS));
         let start = std::mem::replace(&mut start, end);
-        contact_between(&both_at, &start, &end, 0).is_some()
+        contact_between(&both_at, 0.0, &start, &end, 0).is_some()
     })
 }
 
@@ -155,9 +178,15 @@ struct PairAt {
     b: Rectangle,
 }
 
-/// The first contact between two times. The interval is halved until both hardly turn; then the relative translation
-/// has a closed form.
-fn contact_between(at: &impl Fn(Second) -> PairAt, start: &PairAt, end: &PairAt, depth: u32) -> Option<Second> {
+/// The first contact between two times. The interval is halved until both hardly turn and, with these decelerations, hardly
+/// change their speeds; then the relative translation has a closed form.
+fn contact_between(
+    at: &impl Fn(Second) -> PairAt,
+    decelerations: MetrePerSecondSquared,
+    start: &PairAt,
+    end: &PairAt,
+    depth: u32,
+) -> Option<Second> {
     /// After this many halvings less than a millionth of the interval is left.
     const DEEPEST: u32 = 20;
     if !boxes_meet(start, end) {
@@ -165,13 +194,16 @@ fn contact_between(at: &impl Fn(Second) -> PairAt, start: &PairAt, end: &PairAt,
     }
     let bend =
         |first: &Rectangle, last: &Rectangle| (last.axis - first.axis).norm() * (first.half_length + first.half_width);
-    if depth < DEEPEST && bend(&start.a, &end.a) + bend(&start.b, &end.b) > TOLERANCE {
+    let time = end.time - start.time;
+    let sags = decelerations * time * time / 8.0;
+    if depth < DEEPEST && bend(&start.a, &end.a) + bend(&start.b, &end.b) + sags > TOLERANCE {
         let middle = at((start.time + end.time) / 2.0);
-        return contact_between(at, start, &middle, depth + 1).or_else(|| contact_between(at, &middle, end, depth + 1));
+        return contact_between(at, decelerations, start, &middle, depth + 1)
+            .or_else(|| contact_between(at, decelerations, &middle, end, depth + 1));
     }
     let by = (end.a.centre - start.a.centre) - (end.b.centre - start.b.centre);
     let contact = slide(&start.a, &by, &start.b)?;
-    Some(start.time + (end.time - start.time) * contact.enter)
+    Some(start.time + time * contact.enter)
 }
 
 /// Whether the boxes around the two movements meet.
@@ -196,6 +228,7 @@ mod tests {
         let motion = |(poses, speed): &(Vec<Pose>, f64)| SteadyMotion {
             poses: Box::leak(poses.clone().into()),
             speed: *speed,
+            deceleration: 0.0,
             length: 5.0,
             width: 2.0,
         };
@@ -212,6 +245,23 @@ mod tests {
     fn passing_behind_the_other_is_not_a_contact() {
         let crossing = straight(30.0, -9.0, std::f64::consts::FRAC_PI_2, 10.0);
         assert_eq!(ttc(straight(0.0, 0.0, 0.0, 10.0), crossing), None);
+    }
+
+    #[test]
+    fn a_leader_that_brakes_is_reached_sooner() {
+        let [ego, leader] = [straight(0.0, 0.0, 0.0, 20.0), straight(25.0, 0.0, 0.0, 20.0)];
+        let motion = |(poses, speed): &(Vec<Pose>, f64), deceleration| SteadyMotion {
+            poses: Box::leak(poses.clone().into()),
+            speed: *speed,
+            deceleration,
+            length: 5.0,
+            width: 2.0,
+        };
+        // 20 m of room are used up when 5/2 t² = 20.
+        let found = time_to_collision(&motion(&ego, 0.0), &motion(&leader, 5.0)).unwrap();
+        assert!((found - 8.0_f64.sqrt()).abs() < 1e-3, "{found}");
+        // Both brake alike.
+        assert_eq!(time_to_collision(&motion(&ego, 5.0), &motion(&leader, 5.0)), None);
     }
 
     #[test]

@@ -8,6 +8,7 @@ use crate::detection::encounter::Encounter;
 use crate::events::Conflict;
 use crate::options::Options;
 use crate::run::Run;
+use crate::traffic::driver::Driver;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
@@ -25,6 +26,8 @@ pub fn car() -> Profile {
         chord: 5.0,
         mass: 1500.0,
         brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
+        driver: Driver::certain(1.0, 8.0),
+        unprotected: false,
     }
 }
 

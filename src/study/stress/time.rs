@@ -114,7 +114,7 @@ fn check(a: &SteadyCar, b: &SteadyCar, tally: &mut Tally) {
     let poses = |moving: &SteadyCar| [Pose { distance: 0.0, front: moving.front, axis: direction(moving.heading) }];
     let a_poses = poses(a);
     let b_poses = poses(b);
-    let course = |poses, speed| SteadyMotion { poses, speed, length: LENGTH, width: WIDTH };
+    let course = |poses, speed| SteadyMotion { poses, speed, deceleration: 0.0, length: LENGTH, width: WIDTH };
     let found = time_to_collision(&course(&a_poses, a.speed), &course(&b_poses, b.speed));
     tally.holds(LATE, found.is_none_or(|time| time.is_finite() && (0.0..=HORIZON).contains(&time)), &inputs);
     let velocity = direction(a.heading) * a.speed - direction(b.heading) * b.speed;

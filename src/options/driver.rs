@@ -1,0 +1,108 @@
+//! The drivers that crash probabilities assume.
+
+use serde::{Deserialize, Serialize};
+
+use crate::util::units::{MetrePerSecondSquared, Second};
+
+/// A driver: the response time and the largest deceleration of its vehicle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum DriverModel {
+    /// Looks ahead: response time 0.92 s (Triggs and Harris 1982), SD 0.28 s; deceleration 8.45 ± 1.42 m/s² within 4.23 to
+    /// 12.68 (Cunto and Saccomanno 2008).
+    #[default]
+    Attentive,
+    /// Is surprised: response time 1.5 s (Green 2000), with the same relative SD; decelerations of the attentive driver.
+    Distracted,
+    /// The competent and careful driver of UN R157, annex 3: 0.4 s to evaluate the risk and 0.75 s until it brakes; 0.774 g.
+    Competent,
+    /// The automated lane keeping system of UN R157, 5.2.5.2: 0.35 s, 6 m/s².
+    Automated,
+}
+
+/// Standard gravity.
+const G: MetrePerSecondSquared = 9.806_65;
+
+/// Values of a driver that the TOML file sets, in the table `[driver]` or `[type.NAME.driver]`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DriverOptions {
+    /// Mean of the response time in s, lognormal.
+    pub response_mean: Option<Second>,
+    /// Its standard deviation in s; 0 for a fixed time.
+    pub response_sd: Option<Second>,
+    /// Mean of the largest deceleration in m/s², normal before it is truncated.
+    pub deceleration_mean: Option<MetrePerSecondSquared>,
+    /// Its standard deviation in m/s²; 0 for a fixed deceleration.
+    pub deceleration_sd: Option<MetrePerSecondSquared>,
+    /// The least deceleration in m/s².
+    pub deceleration_min: Option<MetrePerSecondSquared>,
+    /// The largest deceleration in m/s².
+    pub deceleration_max: Option<MetrePerSecondSquared>,
+}
+
+impl DriverModel {
+    /// Its values, all of them.
+    pub fn values(self) -> DriverOptions {
+        let fixed = |response, deceleration| DriverOptions {
+            response_mean: Some(response),
+            response_sd: Some(0.0),
+            deceleration_mean: Some(deceleration),
+            deceleration_sd: Some(0.0),
+            deceleration_min: Some(deceleration),
+            deceleration_max: Some(deceleration),
+        };
+        let attentive = DriverOptions {
+            response_mean: Some(0.92),
+            response_sd: Some(0.28),
+            deceleration_mean: Some(8.45),
+            deceleration_sd: Some(1.42),
+            deceleration_min: Some(4.23),
+            deceleration_max: Some(12.68),
+        };
+        match self {
+            Self::Attentive => attentive,
+            Self::Distracted => {
+                DriverOptions { response_mean: Some(1.5), response_sd: Some(1.5 * 0.28 / 0.92), ..attentive }
+            }
+            Self::Competent => fixed(0.4 + 0.75, 0.774 * G),
+            Self::Automated => fixed(0.35, 6.0),
+        }
+    }
+}
+
+impl DriverOptions {
+    /// Checks the values that are set.
+    ///
+    /// # Errors
+    /// A text that names the value and what it must be.
+    pub fn check(&self) -> Result<(), String> {
+        let above_zero = [
+            ("response_mean", self.response_mean),
+            ("deceleration_mean", self.deceleration_mean),
+            ("deceleration_min", self.deceleration_min),
+            ("deceleration_max", self.deceleration_max),
+        ];
+        let deviations = [("response_sd", self.response_sd), ("deceleration_sd", self.deceleration_sd)];
+        let wrong = |value: f64, must_be_positive: bool| {
+            !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0)
+        };
+        for (values, must_be_positive, wanted) in
+            [(&above_zero[..], true, "above 0"), (&deviations[..], false, "0 or more")]
+        {
+            for (name, value) in values {
+                if let Some(value) = value.filter(|value| wrong(*value, must_be_positive)) {
+                    return Err(format!("{name} is {value}, it must be finite and {wanted}"));
+                }
+            }
+        }
+        match (self.deceleration_min, self.deceleration_max) {
+            (Some(least), Some(most)) if least > most => {
+                Err(format!("deceleration_min ({least}) must not be above deceleration_max ({most})"))
+            }
+            _ => Ok(()),
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! The driver of a type of road users: how its response time and the deceleration that it reaches are distributed.
+
+use std::f64::consts::SQRT_2;
+use std::sync::Arc;
+
+use crate::options::{DriverModel, DriverOptions};
+use crate::util::units::{MetrePerSecondSquared, Second};
+
+/// Half of the nodes in −1 to 1 and weights of the Gauss–Legendre quadrature with 16 nodes (Abramowitz and Stegun 1964,
+/// table 25.4); the others are their negatives.
+const NODES: [(f64, f64); 8] = [
+    (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
+    (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
+    (0.458_016_777_657_227_4, 0.169_156_519_395_002_5),
+    (0.617_876_244_402_643_8, 0.149_595_988_816_576_7),
+    (0.755_404_408_355_003, 0.124_628_971_255_533_9),
+    (0.865_631_202_387_831_7, 0.095_158_511_682_492_8),
+    (0.944_575_023_073_232_6, 0.062_253_523_938_647_9),
+    (0.989_400_934_991_649_9, 0.027_152_459_411_754_1),
+];
+
+/// The distributions of a driver's response time (lognormal) and of its largest deceleration (normal, truncated).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Driver {
+    /// Mean and standard deviation of the response time's logarithm.
+    response: [f64; 2],
+    /// Decelerations and their weights, whose sum is 1.
+    decelerations: Arc<[(MetrePerSecondSquared, f64)]>,
+}
+
+impl Driver {
+    /// The driver of a model. `general` changes its values, and `of_type` those of a type. What is not of the type is scaled by
+    /// `brakes`, its braking deceleration relative to a passenger car's.
+    pub fn new(model: DriverModel, general: &DriverOptions, of_type: &DriverOptions, brakes: f64) -> Self {
+        let preset = model.values();
+        let value =
+            |of: fn(&DriverOptions) -> Option<f64>| of(of_type).or(of(general)).or(of(&preset)).unwrap_or_default();
+        let braking = |of: fn(&DriverOptions) -> Option<f64>| {
+            of(of_type).unwrap_or_else(|| brakes * of(general).or(of(&preset)).unwrap_or_default())
+        };
+        let (mean, deviation) = (value(|of| of.response_mean), value(|of| of.response_sd));
+        // A lognormal distribution from its own mean and standard deviation.
+        let spread = if deviation > 0.0 { (deviation / mean).powi(2).ln_1p() } else { 0.0 };
+        Self {
+            response: [mean.ln() - spread / 2.0, spread.sqrt()],
+            decelerations: decelerations(
+                braking(|of| of.deceleration_mean),
+                braking(|of| of.deceleration_sd),
+                braking(|of| of.deceleration_min),
+                braking(|of| of.deceleration_max),
+            ),
+        }
+    }
+
+    /// One that stops within a known time at a known deceleration: a person on foot.
+    pub fn certain(response: Second, deceleration: MetrePerSecondSquared) -> Self {
+        Self { response: [response.ln(), 0.0], decelerations: Arc::new([(deceleration, 1.0)]) }
+    }
+
+    /// The probability that it responds later than this.
+    pub fn responds_later_than(&self, time: Second) -> f64 {
+        if time <= 0.0 {
+            return 1.0;
+        }
+        let [mean, deviation] = self.response;
+        let above = time.ln() - mean;
+        if deviation > 0.0 { libm::erfc(above / (deviation * SQRT_2)) / 2.0 } else { f64::from(above < 0.0) }
+    }
+
+    /// The decelerations that stand for the distribution, with their weights.
+    pub fn decelerations(&self) -> impl Iterator<Item = (MetrePerSecondSquared, f64)> {
+        self.decelerations.iter().copied()
+    }
+}
+
+fn decelerations(
+    mean: MetrePerSecondSquared,
+    deviation: MetrePerSecondSquared,
+    low: MetrePerSecondSquared,
+    high: MetrePerSecondSquared,
+) -> Arc<[(MetrePerSecondSquared, f64)]> {
+    if deviation <= 0.0 || high <= low {
+        return Arc::new([(mean, 1.0)]);
+    }
+    let density = |value: f64| (-((value - mean) / deviation).powi(2) / 2.0).exp();
+    let nodes = NODES.iter().flat_map(|(node, weight)| [(-node, *weight), (*node, *weight)]);
+    let values = nodes.map(|(node, weight)| (low + (high - low) * (1.0 + node) / 2.0, weight));
+    let weighted = values.map(|(value, weight)| (value, weight * density(value))).collect::<Vec<_>>();
+    let sum = weighted.iter().map(|(_, weight)| weight).sum::<f64>();
+    weighted.into_iter().map(|(value, weight)| (value, weight / sum)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mean_response_of_an_attentive_driver_is_early_to_half_of_them() {
+        let driver = Driver::new(DriverModel::Attentive, &DriverOptions::default(), &DriverOptions::default(), 1.0);
+        // Of a lognormal distribution, the median is mean²/√(mean² + SD²).
+        let median = 0.92 * 0.92 / 0.92_f64.hypot(0.28);
+        assert!((driver.responds_later_than(median) - 0.5).abs() < 1e-12);
+        assert_eq!(driver.responds_later_than(-1.0), 1.0);
+        assert_eq!(driver.responds_later_than(f64::INFINITY), 0.0);
+    }
+
+    #[test]
+    fn a_fixed_response_is_late_or_not() {
+        let driver = Driver::new(DriverModel::Competent, &DriverOptions::default(), &DriverOptions::default(), 1.0);
+        assert_eq!([1.14, 1.16].map(|time| driver.responds_later_than(time)), [1.0, 0.0]);
+        assert_eq!(driver.decelerations().collect::<Vec<_>>(), [(0.774 * 9.806_65, 1.0)]);
+    }
+
+    #[test]
+    fn weaker_brakes_scale_what_is_not_set_for_the_type() {
+        let mean = |driver: &Driver| driver.decelerations().map(|(value, weight)| value * weight).sum::<f64>();
+        let none = DriverOptions::default();
+        let truck = Driver::new(DriverModel::Attentive, &none, &none, 7.0 / 9.0);
+        assert!((mean(&truck) - 8.45 * 7.0 / 9.0).abs() < 1e-2, "{}", mean(&truck));
+        let set = DriverOptions { deceleration_mean: Some(5.0), deceleration_sd: Some(0.0), ..none.clone() };
+        assert_eq!(mean(&Driver::new(DriverModel::Attentive, &none, &set, 7.0 / 9.0)), 5.0);
+    }
+}
