@@ -205,13 +205,18 @@ impl StepInputs<'_> {
             return Overlap::default();
         }
         let depth = side::overlap_now(first, second);
-        let tolerance = match self.options.contact_tolerance {
-            0.0 => 0.0,
-            tolerance => tolerance + self.drawn_overlap(slots),
-        };
+        let tolerance = self.tolerance(slots);
         // Both shrink by half of it, which parts them; an obstacle does not shrink.
         let shrinks = if second.shape.is_empty() { tolerance / 2.0 } else { tolerance };
         Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks }
+    }
+
+    /// How deep two may overlap without colliding: where their lanes overlap as drawn, by more.
+    pub(super) fn tolerance(&self, slots: [u32; 2]) -> Metre {
+        match self.options.contact_tolerance {
+            0.0 => 0.0,
+            tolerance => tolerance + self.drawn_overlap(slots),
+        }
     }
 
     /// By how much the lanes under two vehicles overlap as drawn.

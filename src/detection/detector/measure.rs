@@ -118,7 +118,7 @@ impl StepInputs<'_> {
         let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
         let braking = self.late_braking(met.slots[0], ego);
         let wait = |deceleration| LateBraking { deceleration, ..braking }.longest_wait_behind(&leader);
-        crash_probability(&self.profile(self.user(met.slots[0])).driver, wait)
+        crash_probability(&self.profile(self.user(met.slots[0])).driver, braking.present >= BRAKES, wait)
     }
 
     /// How a road user brakes if it goes on as now for a while.
@@ -136,17 +136,14 @@ impl StepInputs<'_> {
             poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
         }
         let Scratch { courses, halves, limits } = scratch;
-        let course = |of: &Participant, poses, deceleration| SteadyMotion {
+        let course = |of: &Participant, poses| SteadyMotion {
             poses,
             speed: of.speed,
-            deceleration,
+            deceleration: 0.0,
             length: of.length(),
             width: of.width(),
         };
-        let courses_with = |decelerations: [MetrePerSecondSquared; 2]| {
-            [0, 1].map(|one| course(pair[one], &courses[one][..], decelerations[one]))
-        };
-        let [ego, foe] = courses_with([0.0; 2]);
+        let [ego, foe] = [0, 1].map(|one| course(pair[one], &courses[one][..]));
         let driver = |slot| &self.profile(self.user(slot)).driver;
         let braking = self.late_braking(met.slots[0], pair[0]);
         if self.is_obstacle(met.slots[1]) {
@@ -159,10 +156,14 @@ impl StepInputs<'_> {
         let ttc = ttc::time_to_collision(&ego, &foe);
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely { ttc, drac, ..Timely::APART };
-        let decelerations = users.map(|user| self.deceleration(user));
-        let [ego, foe] = courses_with(decelerations);
-        let meets = if decelerations == [0.0; 2] { ttc } else { ttc::time_to_collision(&ego, &foe) };
-        let Some(meets) = meets else { return timely };
+        // As they go on, and narrower by the tolerance: what would only graze is no crash.
+        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots) };
+        let [mut ego, mut foe] = [ego, foe];
+        for (user, course) in users.into_iter().zip([&mut ego, &mut foe]) {
+            course.deceleration = self.deceleration(user);
+            course.width = (course.width - narrower).max(course.width / 2.0);
+        }
+        let Some(meets) = ttc::time_to_collision(&ego, &foe) else { return timely };
         let foe_braking = self.late_braking(met.slots[1], pair[1]);
         let alone = ttb::to_stay_behind(halves, limits, [&ego, &foe], &braking, meets);
         if encounter.kind == Kind::Frontal {
@@ -179,6 +180,10 @@ impl StepInputs<'_> {
         timely.with(&of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
     }
 }
+
+/// A driver that slows down by more than this, in m/s², has responded: from here on, a vehicle has to light its brake lamps
+/// (UN R13-H, 5.2.22.4).
+const BRAKES: MetrePerSecondSquared = 1.3;
 
 /// The measures of a pair that follow from the courses of both.
 #[derive(Clone, Copy)]
@@ -200,8 +205,8 @@ impl Timely {
     fn with(self, evasion: &Evasion, braking: &LateBraking, driver: &Driver) -> Self {
         let wait = evasion.longest_wait(braking);
         let ttb = Some(wait.max(0.0)).filter(|wait| wait.is_finite());
-        let probability =
-            crash_probability(driver, |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking }));
+        let wait_with = |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking });
+        let probability = crash_probability(driver, braking.present >= BRAKES, wait_with);
         Self { ttb, crash_probability: if ttb.is_some() { probability } else { 0.0 }, ..self }
     }
 }

@@ -9,15 +9,17 @@
 //! Stamatiadis 2013) and the aggregated crash index (Kuang, Qu and Wang 2015).
 
 use crate::traffic::driver::Driver;
-use crate::util::units::{MetrePerSecondSquared, Second};
+use crate::util::units::{MetrePerSecondSquared, Probability, Second};
 
 /// The probability that a driver responds later than its longest wait, which depends on the deceleration that its vehicle
-/// turns out to reach.
-pub fn crash_probability(driver: &Driver, longest_wait: impl Fn(MetrePerSecondSquared) -> Second) -> f64 {
-    let sum = driver
-        .decelerations()
-        .map(|(value, weight)| weight * driver.responds_later_than(longest_wait(value)))
-        .sum::<f64>();
+/// turns out to reach. A driver that has `responded` already needs no more time for it.
+pub fn crash_probability(
+    driver: &Driver,
+    has_responded: bool,
+    longest_wait: impl Fn(MetrePerSecondSquared) -> Second,
+) -> Probability {
+    let is_late = |wait| if has_responded { f64::from(wait < 0.0) } else { driver.responds_later_than(wait) };
+    let sum = driver.decelerations().map(|(value, weight)| weight * is_late(longest_wait(value))).sum::<f64>();
     sum.clamp(0.0, 1.0)
 }
 
@@ -43,7 +45,7 @@ mod tests {
                     deceleration: 0.0,
                 })
             };
-            let found = crash_probability(&driver, wait);
+            let found = crash_probability(&driver, false, wait);
             let spread = (1.0 + (0.28_f64 / 0.92).powi(2)).ln();
             let mut crashes = 0;
             for _ in 0..DRAWS {
