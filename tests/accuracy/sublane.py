@@ -18,6 +18,14 @@ TYPES = """
         <vType id="truck" vClass="truck" probability="0.05"/>
     </vTypeDistribution>
 """
+NET = {
+    "grid.number": 3,
+    "grid.length": 130,
+    "grid.attach-length": 130,
+    "default.lanenumber": 2,
+    "default.speed": 13.9,
+    "default-junction-type": "priority",
+}
 FRINGE = [f"{side}{place}" for side in ("left", "right", "top", "bottom") for place in range(3)]
 NODES = {"left": "A{}", "right": "C{}", "bottom": "{}0", "top": "{}2"}
 
@@ -31,9 +39,8 @@ def node(fringe: str) -> str:
 def write(folder: Path, name: str, resolution: float, options: list[str]) -> None:
     """Write the scenario `name`."""
     net = folder / f"{name}.net.xml"
-    grid = "--grid --grid.number 3 --grid.length 130 --grid.attach-length 130 --default.lanenumber 2".split()
-    grid += "--default.speed 13.9 --default-junction-type priority".split()
-    subprocess.run(["netgenerate", *grid, *options, "--output-file", net], check=True, stdout=subprocess.DEVNULL)
+    words = ["--grid", *(f"--{option}={value}" for option, value in NET.items()), *options, f"--output-file={net}"]
+    subprocess.run(["netgenerate", *words], check=True, stdout=subprocess.DEVNULL)
     flows = [
         f'    <flow id="{begin}_{end}" type="mix" begin="{k}" end="400" period="50" from="{begin}{node(begin)}" '
         f'to="{node(end)}{end}" departLane="random" departSpeed="max" departPosLat="random"/>'

@@ -20,7 +20,7 @@ use crate::util::golden_section::golden_section;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 /// No road user brakes harder, in m/s²: the upper end of the distribution of the maximum available deceleration rate of
-/// cars (Cunto and Saccomanno 2008: 8.45 ± 1.4, from 4.23 to 12.68). A larger DRAC is cut to it.
+/// cars (Cunto and Saccomanno 2008, Fu and Sayed 2021: 8.45 ± 1.4, from 4.23 to 12.68). A larger DRAC is cut to it.
 pub const LIMIT: MetrePerSecondSquared = 12.68;
 
 /// Two directions are the same if the cosine of the angle between them is this near to 1.

@@ -19,7 +19,7 @@ use crate::geometry::polylines::{Lines, Vertex};
 use crate::geometry::{Point, Vector};
 use crate::traffic::net::{EdgeIndex, LaneIndex, Net};
 use crate::traffic::placement::Placement;
-use crate::util::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// A path is built this much longer than needed, in m, so that it is not extended in every step.
 const SPARE: Metre = 30.0;
@@ -53,6 +53,8 @@ pub struct PathStart {
     pub speed: MetrePerSecond,
     /// Whether it may move to the side without changing lanes (SUMO's sublane model).
     pub sublane: bool,
+    /// How long a step takes, in s.
+    pub step: Second,
 }
 
 impl LanePath {
@@ -236,6 +238,7 @@ fn offset(
         lane_width: net.lanes[placement.lane.0 as usize].width,
         leads_to_a_lane: leads_to_a_lane(net, placement.lane, placement.lateral_speed),
         sublane: start.sublane,
+        step: start.step,
     })
 }
 

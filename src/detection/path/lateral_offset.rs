@@ -2,7 +2,7 @@
 
 use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector, left_of};
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// A vehicle with a lower speed keeps its offset, and lateral speeds that differ by less are the same, in m/s.
 const KEEPS_OFFSET: MetrePerSecond = 0.01;
@@ -30,6 +30,8 @@ pub(super) struct Movement {
     pub leads_to_a_lane: bool,
     /// Whether it may move without changing lanes (SUMO's sublane model).
     pub sublane: bool,
+    /// How long a step takes, in s: SUMO changes speeds at its beginning.
+    pub step: Second,
 }
 
 /// Lateral offset from the centre line, positive to the left: `now` at distance 0, changing evenly to `target` over a
@@ -46,13 +48,14 @@ impl Offset {
     /// The current offset, and where a movement leads: to the centre of this lane or the next one, or (sublane model) to
     /// where it comes to rest or to the border of this lane.
     pub fn of(movement: &Movement) -> Self {
-        let Movement { now, speed, before, sublane, .. } = *movement;
+        let Movement { now, speed, before, sublane, step, .. } = *movement;
         if speed.abs() < KEEPS_OFFSET || movement.ahead < KEEPS_OFFSET {
             return Self { now, target: now, over: 0.0, speed: 0.0 };
         }
         // Offsets in the direction of the movement: now, and where it can end at the earliest.
         let at = now * speed.signum();
-        let rest = at + if sublane { speed * speed / (2.0 * SLOWS_DOWN) } else { 0.0 };
+        let slowing_down = (speed * speed / (2.0 * SLOWS_DOWN) - speed.abs() * step / 2.0).max(0.0);
+        let rest = at + if sublane { slowing_down } else { 0.0 };
         // The largest offset within the lane: two that drift towards each other in adjacent lanes do not touch.
         let inside = ((movement.lane_width - movement.width) / 2.0 - OFF_THE_BORDER).max(0.0);
         let slows_down = before * speed > 0.0 && speed.abs() < before.abs() - KEEPS_OFFSET;
@@ -179,6 +182,7 @@ mod tests {
         lane_width: 3.2,
         leads_to_a_lane: true,
         sublane: true,
+        step: 0.0,
     };
     /// The largest offset within the lane.
     const INSIDE: Metre = 1.1;
@@ -200,6 +204,14 @@ mod tests {
         for before in [0.5, 0.6, -0.7] {
             assert_eq!(leads_to(0.0, 0.6, before, MOTORCYCLE), INSIDE);
         }
+    }
+
+    #[test]
+    fn a_movement_in_steps_comes_to_rest_sooner() {
+        // 0.4 m/s and 0.2 m/s for 0.2 s each.
+        assert_eq!(leads_to(0.0, 0.6, 0.8, Movement { step: 0.2, ..MOTORCYCLE }), 0.12);
+        assert_eq!(leads_to(-0.16, 0.6, 0.4, Movement { step: 0.2, ..MOTORCYCLE }), 0.0);
+        assert_eq!(leads_to(0.0, 0.6, 0.8, Movement { step: 1.0, ..MOTORCYCLE }), 0.0);
     }
 
     #[test]
