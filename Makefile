@@ -58,6 +58,9 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 		$(foreach net,$(NETS),sumo_nets/$(net)/$(net).sumocfg) target/game/cross.sumocfg
 	$(BIN)/python tests/accuracy/accuracy.py --at-least 98 --end 60 --every 2 \
 		sumo_nets/town/town.sumocfg target/game/ramp.sumocfg target/game/corridor.sumocfg
+	PATH=$(CURDIR)/$(BIN):$$PATH $(BIN)/python tests/accuracy/sublane.py target/sublane
+	$(BIN)/python tests/accuracy/accuracy.py --at-least 90 --end 150 \
+		target/sublane/left_hand.sumocfg target/sublane/right_hand.sumocfg
 
 PARTS := target/bench/parts
 

@@ -16,6 +16,7 @@ pub struct Placement {
     pub route: Option<Arc<[EdgeIndex]>>,
     /// The edge of the route that it is on; within a junction, the edge that it left last.
     pub route_position: usize,
-    /// Speed to the left across the lane, in m/s; other than 0 while a lane change is under way.
+    /// SUMO's speed across the lane, in m/s, positive towards lanes of a higher index: to the left, in a left-hand net to
+    /// the right. Other than 0 while a lane change is under way.
     pub lateral_speed: MetrePerSecond,
 }

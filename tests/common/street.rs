@@ -13,3 +13,13 @@ const STREET: &str = r#"<net>
 pub fn street() -> Arc<Net> {
     Arc::new(Net::parse(Path::new("street.net.xml"), STREET).unwrap())
 }
+
+/// The same where traffic keeps to the left.
+pub fn left_hand_street() -> Arc<Net> {
+    let mirrored = STREET
+        .replace("<net>", r#"<net lefthand="true">"#)
+        .replace(",-1.6", ",?")
+        .replace(",1.6", ",-1.6")
+        .replace(",?", ",1.6");
+    Arc::new(Net::parse(Path::new("street.net.xml"), mirrored).unwrap())
+}

@@ -23,6 +23,8 @@ impl Detector {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
         }
+        self.step = (frame.time - self.time).max(0.0);
+        self.time = frame.time;
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
         self.on_lanes.clear();

@@ -81,6 +81,10 @@ pub struct Detector {
     routes_may_change: bool,
     sublane: bool,
     conflicts_only: bool,
+    /// The time of the step, in s; infinite before the first.
+    time: Second,
+    /// How long the step before took; 0 before the second.
+    step: Second,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: Vec<LanePath>,
     /// By [`UserIndex`]; empty unless paths are arcs.
@@ -115,6 +119,8 @@ impl Detector {
             routes_may_change: true,
             sublane: false,
             conflicts_only: false,
+            time: f64::INFINITY,
+            step: 0.0,
             paths: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
@@ -237,6 +243,7 @@ impl Detector {
             width: profile.width,
             speed: state.speed,
             sublane: self.sublane,
+            step: self.step,
         };
         path.build(net, &start, placement);
         self.on_lanes[row as usize] = !path.track.is_empty();

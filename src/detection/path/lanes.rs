@@ -10,7 +10,7 @@ use std::sync::Arc;
 use smallvec::SmallVec;
 
 use super::foot::Foot;
-use super::lateral_offset::{Offset, OffsetLine};
+use super::lateral_offset::{Movement, Offset, OffsetLine};
 use super::next_lane::{edge_of, is_on_route, next_link};
 use super::own_line::OwnLine;
 use super::route::RouteAhead;
@@ -19,17 +19,12 @@ use crate::geometry::polylines::{Lines, Vertex};
 use crate::geometry::{Point, Vector};
 use crate::traffic::net::{EdgeIndex, LaneIndex, Net};
 use crate::traffic::placement::Placement;
-use crate::util::units::{Metre, MetrePerSecond};
+use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// A path is built this much longer than needed, in m, so that it is not extended in every step.
 const SPARE: Metre = 30.0;
 /// Lanes further behind the rear bumper than this are removed, in m.
 const KEPT_BEHIND: Metre = 5.0;
-/// A vehicle with a lower lateral speed keeps its offset, in m/s.
-const KEEPS_OFFSET: MetrePerSecond = 0.01;
-/// A vehicle that drifts within its lane stays this far off the border, in m: more than the error of sweeping.
-const OFF_THE_BORDER: Metre = 0.05;
-
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
 pub struct LanePath {
@@ -58,6 +53,8 @@ pub struct PathStart {
     pub speed: MetrePerSecond,
     /// Whether it may move to the side without changing lanes (SUMO's sublane model).
     pub sublane: bool,
+    /// How long a step takes, in s.
+    pub step: Second,
 }
 
 impl LanePath {
@@ -100,7 +97,8 @@ impl LanePath {
         // On a lane of its route a road user drives along the lane whatever its heading: after a sharp turn the rear
         // still stands across, and the heading with it.
         let against = foot.direction.dot(&start.axis) < 0.0 && !is_on_route(net, lane, self.route.edges());
-        let beside = OffsetLine::new(offset(net, start, placement, &foot, against));
+        let before = self.own.as_ref().map_or(0.0, |own| own.lateral_speed());
+        let beside = OffsetLine::new(offset(net, start, placement, before, &foot, against));
         let before = if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start) };
         let joins =
             before.iter().try_fold(placement.lane.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
@@ -220,34 +218,35 @@ impl LanePath {
     }
 }
 
-/// The current offset, and where a lateral movement leads: to the centre of this lane or the next one, or (sublane
-/// model) to the border of this one.
-fn offset(net: &Net, start: &PathStart, placement: &Placement, foot: &Foot, against: bool) -> Offset {
+/// The current offset, and where a lateral movement leads; `before` is the lateral speed that it had before.
+fn offset(
+    net: &Net,
+    start: &PathStart,
+    placement: &Placement,
+    before: MetrePerSecond,
+    foot: &Foot,
+    against: bool,
+) -> Offset {
     let sign = if against { -1.0 } else { 1.0 };
-    let now = sign * if foot.aside.abs() < 1e-3 { 0.0 } else { foot.aside };
-    let speed = sign * placement.lateral_speed;
-    if speed.abs() < KEEPS_OFFSET || start.speed < KEEPS_OFFSET {
-        return Offset { now, target: now, over: 0.0 };
-    }
-    let width = net.lanes[placement.lane.0 as usize].width;
-    // The largest offset within the lane: two that drift towards each other in adjacent lanes do not touch.
-    let inside = ((width - start.width) / 2.0 - OFF_THE_BORDER).max(0.0);
-    let target = if now * speed < 0.0 {
-        0.0
-    } else if start.sublane && (now.abs() < inside || !leads_to_a_lane(net, placement.lane, placement.lateral_speed)) {
-        // At a border without a lane beyond, the vehicle goes no further.
-        inside.max(now.abs()).copysign(speed)
-    } else {
-        width.copysign(speed)
-    };
-    Offset { now, target, over: (target - now).abs() / speed.abs() * start.speed / net.stretch(placement.lane) }
+    let towards_higher_lanes = if net.left_hand { -1.0 } else { 1.0 };
+    Offset::of(&Movement {
+        now: sign * if foot.aside.abs() < 1e-3 { 0.0 } else { foot.aside },
+        speed: sign * towards_higher_lanes * placement.lateral_speed,
+        before,
+        ahead: start.speed / net.stretch(placement.lane),
+        width: start.width,
+        lane_width: net.lanes[placement.lane.0 as usize].width,
+        leads_to_a_lane: leads_to_a_lane(net, placement.lane, placement.lateral_speed),
+        sublane: start.sublane,
+        step: start.step,
+    })
 }
 
 /// Whether the edge has another lane on that side.
-fn leads_to_a_lane(net: &Net, lane: LaneIndex, to_the_left: MetrePerSecond) -> bool {
+fn leads_to_a_lane(net: &Net, lane: LaneIndex, towards_higher_lanes: MetrePerSecond) -> bool {
     let lane = &net.lanes[lane.0 as usize];
     let last = net.edges[lane.edge.0 as usize].lanes.len() as u32;
-    if to_the_left > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
+    if towards_higher_lanes > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
 /// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper.

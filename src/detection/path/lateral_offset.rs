@@ -2,18 +2,76 @@
 
 use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector, left_of};
-use crate::util::units::Metre;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+
+/// A vehicle with a lower speed keeps its offset, and lateral speeds that differ by less are the same, in m/s.
+const KEEPS_OFFSET: MetrePerSecond = 0.01;
+/// A vehicle that moves within its lane stays this far off the border, in m: more than the error of sweeping.
+const OFF_THE_BORDER: Metre = 0.05;
+/// Lateral acceleration in m/s², SUMO's default `lcAccelLat`: no lateral movement ends sooner.
+const SLOWS_DOWN: MetrePerSecondSquared = 1.0;
+
+/// How a road user moves across its lane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Movement {
+    /// Its offset from the centre line, positive to the left.
+    pub now: Metre,
+    /// Its lateral speed, positive to the left.
+    pub speed: MetrePerSecond,
+    /// The lateral speed that it had when its path was last built.
+    pub before: MetrePerSecond,
+    /// How fast it drives along the lane.
+    pub ahead: MetrePerSecond,
+    /// Its width.
+    pub width: Metre,
+    /// Width of the lane.
+    pub lane_width: Metre,
+    /// Whether there is another lane on the side to which it moves.
+    pub leads_to_a_lane: bool,
+    /// Whether it may move without changing lanes (SUMO's sublane model).
+    pub sublane: bool,
+    /// How long a step takes, in s: SUMO changes speeds at its beginning.
+    pub step: Second,
+}
 
 /// Lateral offset from the centre line, positive to the left: `now` at distance 0, changing evenly to `target` over a
-/// distance of `over`.
+/// distance of `over`. `speed` is the lateral speed now.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Offset {
     pub now: Metre,
     pub target: Metre,
     pub over: Metre,
+    pub speed: MetrePerSecond,
 }
 
 impl Offset {
+    /// The current offset, and where a movement leads: to the centre of this lane or the next one, or (sublane model) to
+    /// where it comes to rest or to the border of this lane.
+    pub fn of(movement: &Movement) -> Self {
+        let Movement { now, speed, before, sublane, step, .. } = *movement;
+        if speed.abs() < KEEPS_OFFSET || movement.ahead < KEEPS_OFFSET {
+            return Self { now, target: now, over: 0.0, speed: 0.0 };
+        }
+        // Offsets in the direction of the movement: now, and where it can end at the earliest.
+        let at = now * speed.signum();
+        let slowing_down = (speed * speed / (2.0 * SLOWS_DOWN) - speed.abs() * step / 2.0).max(0.0);
+        let rest = at + if sublane { slowing_down } else { 0.0 };
+        // The largest offset within the lane: two that drift towards each other in adjacent lanes do not touch.
+        let inside = ((movement.lane_width - movement.width) / 2.0 - OFF_THE_BORDER).max(0.0);
+        let slows_down = before * speed > 0.0 && speed.abs() < before.abs() - KEEPS_OFFSET;
+        let target = if sublane && slows_down {
+            rest
+        } else if at < 0.0 && rest <= 0.0 {
+            0.0
+        } else if sublane && (rest < inside || !movement.leads_to_a_lane) {
+            // At a border without a lane beyond, the vehicle goes no further.
+            inside.max(at)
+        } else {
+            movement.lane_width
+        };
+        Self { now, target: target * speed.signum(), over: (target - at) / speed.abs() * movement.ahead, speed }
+    }
+
     fn at(&self, distance: Metre) -> Metre {
         if distance <= 0.0 || self.over <= 0.0 {
             self.now
@@ -44,6 +102,11 @@ impl OffsetLine {
     /// The offset where the line was begun.
     pub fn aside(&self) -> Metre {
         self.offset.now
+    }
+
+    /// The lateral speed where the line was begun, positive to the left.
+    pub fn speed(&self) -> MetrePerSecond {
+        self.offset.speed
     }
 
     /// Adds the next point of the centre line behind the front bumper.
@@ -103,4 +166,71 @@ fn miter(before: &Vector, after: &Vector) -> Vector {
     let sum = a + b;
     let length = 2.0 / sum.norm_squared().max(1e-12);
     (sum * length).cap_magnitude(LONGEST)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::detection::path::lateral_offset::*;
+
+    /// A motorcycle that drives 10 m/s in a lane of 3.2 m.
+    const MOTORCYCLE: Movement = Movement {
+        now: 0.0,
+        speed: 0.0,
+        before: 0.0,
+        ahead: 10.0,
+        width: 0.9,
+        lane_width: 3.2,
+        leads_to_a_lane: true,
+        sublane: true,
+        step: 0.0,
+    };
+    /// The largest offset within the lane.
+    const INSIDE: Metre = 1.1;
+
+    /// Where a movement leads, to the micrometre; to the right as to the left.
+    fn leads_to(now: Metre, speed: MetrePerSecond, before: MetrePerSecond, rest: Movement) -> Metre {
+        let left = Offset::of(&Movement { now, speed, before, ..rest });
+        let right = Offset::of(&Movement { now: -now, speed: -speed, before: -before, ..rest });
+        assert_eq!((left.target, left.over), (-right.target, right.over));
+        assert!(left.over >= 0.0 && (left.over - (left.target - now) / speed * 10.0).abs() < 1e-9);
+        (left.target * 1e6).round() / 1e6
+    }
+
+    #[test]
+    fn a_movement_that_slows_down_ends_where_it_comes_to_rest() {
+        assert_eq!(leads_to(0.0, 0.6, 0.7, MOTORCYCLE), 0.18);
+        assert_eq!(leads_to(-1.0, 0.6, 0.7, MOTORCYCLE), -0.82);
+        // It has not slowed down: it was slower before, as fast, or moved to the other side.
+        for before in [0.5, 0.6, -0.7] {
+            assert_eq!(leads_to(0.0, 0.6, before, MOTORCYCLE), INSIDE);
+        }
+    }
+
+    #[test]
+    fn a_movement_in_steps_comes_to_rest_sooner() {
+        // 0.4 m/s and 0.2 m/s for 0.2 s each.
+        assert_eq!(leads_to(0.0, 0.6, 0.8, Movement { step: 0.2, ..MOTORCYCLE }), 0.12);
+        assert_eq!(leads_to(-0.16, 0.6, 0.4, Movement { step: 0.2, ..MOTORCYCLE }), 0.0);
+        assert_eq!(leads_to(0.0, 0.6, 0.8, Movement { step: 1.0, ..MOTORCYCLE }), 0.0);
+    }
+
+    #[test]
+    fn a_movement_passes_the_centre_once_it_cannot_stop_there() {
+        assert_eq!(leads_to(-0.6, 1.0, 1.0, MOTORCYCLE), 0.0);
+        assert_eq!(leads_to(-0.4, 1.0, 1.0, MOTORCYCLE), INSIDE);
+    }
+
+    #[test]
+    fn a_movement_leaves_the_lane_once_it_cannot_stop_inside() {
+        assert_eq!(leads_to(0.5, 1.0, 1.0, MOTORCYCLE), INSIDE);
+        assert_eq!(leads_to(0.7, 1.0, 1.0, MOTORCYCLE), 3.2);
+        assert_eq!(leads_to(0.7, 1.0, 1.0, Movement { leads_to_a_lane: false, ..MOTORCYCLE }), INSIDE);
+    }
+
+    #[test]
+    fn without_the_sublane_model_a_movement_is_a_lane_change() {
+        let lanes = Movement { sublane: false, ..MOTORCYCLE };
+        assert_eq!(leads_to(0.0, 0.6, 0.7, lanes), 3.2);
+        assert_eq!(leads_to(-0.4, 1.0, 1.0, lanes), 0.0);
+    }
 }

@@ -6,7 +6,7 @@ use super::track::Track;
 use crate::geometry::Point;
 use crate::geometry::polylines::{Lines, Vertex};
 use crate::traffic::net::{LaneIndex, Net};
-use crate::util::units::Metre;
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// One line, and the lanes that it follows.
 #[derive(Clone, Debug, Default)]
@@ -113,6 +113,11 @@ impl OwnLine {
     /// How far beside the centre line the front bumper was when the line was begun, positive to the left.
     pub fn aside(&self) -> Metre {
         self.beside.as_ref().map_or(0.0, OffsetLine::aside)
+    }
+
+    /// The lateral speed when the line was begun, positive to the left.
+    pub fn lateral_speed(&self) -> MetrePerSecond {
+        self.beside.as_ref().map_or(0.0, OffsetLine::speed)
     }
 
     /// The lane at a vertex.

@@ -20,6 +20,8 @@ pub struct Net {
     pub junctions: Vec<Junction>,
     /// The lanes' centre lines, by lane; their distances are SUMO's where a lane is longer or shorter than it is drawn.
     pub lines: Lines,
+    /// Whether traffic keeps to the left, so that lanes are counted from the left: lane 0 is the leftmost.
+    pub left_hand: bool,
     /// How its metres follow from degrees, if the file tells.
     pub location: Option<Location>,
     pub(super) lane_ids: FxHashMap<String, LaneIndex>,

@@ -101,6 +101,10 @@ impl NetReader<'_> {
 
     fn element(&mut self, tag: &BytesStart) -> Result<()> {
         match tag.name().as_ref() {
+            "net" => {
+                self.net.left_hand = matches!(self.attributes(tag)?.get("lefthand"), Some("true" | "1"));
+                Ok(())
+            }
             "edge" => self.edge(&self.attributes(tag)?),
             "lane" => self.lane(&self.attributes(tag)?),
             "junction" => self.junction(&self.attributes(tag)?),
