@@ -1,6 +1,7 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the clearance, TTC, DRAC and
 //! severity of a pair in conflict.
 
+use super::occupancy::Carriages;
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
@@ -23,22 +24,25 @@ impl StepInputs<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let [ego, foe] = met.slots.map(|slot| self.mover(slot).shrunk(met.shrinks));
-            self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
+            self.measure(scratch, met, &mut encounters[*index as usize]);
         }
     }
 
     /// Completes the encounter of a pair that would meet: the ego and its foe.
-    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &mut Encounter) {
+    pub(super) fn measure(&self, scratch: &mut Scratch, met: &Met, encounter: &mut Encounter) {
+        let pair = met.slots.map(|slot| {
+            let carriages = self.movers(slot).into_iter();
+            carriages.map(|carriage| carriage.shrunk(met.shrinks)).collect::<Carriages>()
+        });
         if met.leaves {
-            encounter.foe_distance = self.way_out(scratch, pair[1], met);
+            encounter.foe_distance = self.way_out(scratch, &pair[1], met);
             if self.options.mode == Mode::Closecall {
                 encounter.gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
         if encounter.in_conflict() {
-            encounter.nearness = Some(self.nearness(scratch, pair, met, encounter));
+            encounter.nearness = Some(self.nearness(scratch, &pair, met, encounter));
         }
     }
 
@@ -52,32 +56,61 @@ impl StepInputs<'_> {
             + (2.0 * (rectangle.half_length + rectangle.half_width) + profile.width) / self.paths.scale(foe.index)
     }
 
-    /// The foe's distance until it has left the ego's conflict point.
-    fn way_out(&self, scratch: &mut Scratch, foe: &Participant, met: &Met) -> Metre {
-        let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
-        poses.clear();
-        self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
-        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego_rectangle, met.meeting.foe_distance)
+    /// The foe's distance until it, and so each of its carriages, has left the ego's conflict point.
+    fn way_out(&self, scratch: &mut Scratch, foe: &[Participant], met: &Met) -> Metre {
+        let (poses, user, meeting) = (&mut scratch.courses[1], self.user(met.slots[1]), &met.meeting);
+        let rectangle = &meeting.ego_rectangle;
+        let left = foe.iter().filter_map(|carriage| {
+            poses.clear();
+            self.course(user, carriage.carriage, &[self.furthest_way_out(user, meeting)], true, poses);
+            match foe {
+                [_] => Some(side::departure(&mut scratch.halves, poses, carriage, rectangle, meeting.foe_distance)),
+                _ => side::carriage_departure(&mut scratch.halves, poses, carriage, rectangle),
+            }
+        });
+        left.fold(meeting.foe_distance, f64::max)
     }
 
-    fn nearness(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Nearness {
-        let [ego, foe] = pair;
+    fn nearness(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> Nearness {
+        let clearance = |[ego, foe]: [&Participant; 2]| match foe.shape {
+            [] => contact::room(&ego.rectangle, &foe.rectangle),
+            shape => polygon::distance(shape, &ego.rectangle),
+        };
         let clearance = if encounter.overlap > 0.0 || encounter.collision {
             0.0
-        } else if foe.shape.is_empty() {
-            contact::room(&ego.rectangle, &foe.rectangle)
         } else {
-            polygon::distance(foe.shape, &ego.rectangle)
+            pairs(pair).map(clearance).fold(f64::INFINITY, f64::min)
         };
-        let (ttc, drac) =
-            if encounter.collision { (Some(0.0), None) } else { self.ttc_and_drac(scratch, pair, met, encounter) };
-        let brakes = ego.brakes.deceleration;
+        let (ttc, drac) = if encounter.collision {
+            (Some(0.0), None)
+        } else {
+            self.first_ttc_and_drac(scratch, pair, met, encounter)
+        };
+        let brakes = self.profile(self.user(met.slots[0])).brakes.deceleration;
         let unavoidable = drac.is_some_and(|drac| drac > brakes.max(drac::LIMIT));
         let severity = measures::severity(ttc, drac, brakes, encounter.collision, self.options.severity_thresholds());
         Nearness { clearance, ttc, drac: drac.map(|drac| drac.min(drac::LIMIT)), unavoidable, severity }
     }
 
-    /// The time to collision and, where there is one, the deceleration that avoids it; infinite where none does.
+    /// The time to collision and, where there is one, the deceleration that avoids it; infinite where none does. The first
+    /// two carriages to touch have the one, those that are hardest to keep apart the other.
+    fn first_ttc_and_drac(
+        &self,
+        scratch: &mut Scratch,
+        pair: &[Carriages; 2],
+        met: &Met,
+        encounter: &Encounter,
+    ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
+        let each = pairs(pair).map(|pair| self.ttc_and_drac(scratch, pair, met, encounter));
+        let one_of = |a: Option<f64>, b: Option<f64>, best: fn(f64, f64) -> f64| match (a, b) {
+            (Some(a), Some(b)) => Some(best(a, b)),
+            (one, other) => one.or(other),
+        };
+        let first = |(ttc, drac), (next, other)| (one_of(ttc, next, f64::min), one_of(drac, other, f64::max));
+        each.reduce(first).unwrap_or_default()
+    }
+
+    /// The same for a carriage of each of the two.
     fn ttc_and_drac(
         &self,
         scratch: &mut Scratch,
@@ -86,9 +119,9 @@ impl StepInputs<'_> {
         encounter: &Encounter,
     ) -> (Option<Second>, Option<MetrePerSecondSquared>) {
         let users = met.slots.map(|slot| self.user(slot));
-        for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
+        for ((user, of), poses) in users.into_iter().zip(pair).zip(scratch.courses.iter_mut()) {
             poses.clear();
-            self.course(user, &[self.state(user).speed * ttc::HORIZON], true, poses);
+            self.course(user, of.carriage, &[self.state(user).speed * ttc::HORIZON], true, poses);
             poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
         }
         let course =
@@ -108,4 +141,9 @@ impl StepInputs<'_> {
         };
         (ttc, Some(drac).filter(|drac| *drac > 0.0))
     }
+}
+
+/// Each carriage of the one with each of the other.
+fn pairs<'a, 'b>([ego, foe]: &'b [Carriages<'a>; 2]) -> impl Iterator<Item = [&'b Participant<'a>; 2]> {
+    ego.iter().flat_map(move |ego| foe.iter().map(move |foe| [ego, foe]))
 }
