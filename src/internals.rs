@@ -73,6 +73,7 @@ pub mod study {
 pub mod traffic {
     pub use crate::traffic::frame::SUMO_INVALID;
     pub use crate::traffic::net::EdgeFunction;
+    pub use crate::traffic::profile::Carriage;
 }
 
 pub mod util {

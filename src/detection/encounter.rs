@@ -30,9 +30,9 @@ pub struct Encounter {
     pub ego_distance: Metre,
     /// Distance of the foe until it reaches the conflict point or (cos α > 0) has left it.
     pub foe_distance: Metre,
-    /// Front-bumper centre of the ego at the conflict point, x.
+    /// Front-bumper centre of the ego at the conflict point, or the centre of the front of its carriage that touches, x.
     pub x: Metre,
-    /// Front-bumper centre of the ego at the conflict point, y.
+    /// The same, y.
     pub y: Metre,
     /// Lane of the conflict point, on the ego's path; none without a net.
     pub lane: Option<LaneIndex>,

@@ -32,7 +32,7 @@ pub const CLOSES_AFTER: Second = 1.0;
 const SAME_MOMENT: Second = 1e-6;
 
 /// The road users of an open event and its current severity, as painted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alarm {
     /// The ego of the last step in conflict.
     pub ego: UserIndex,
@@ -42,6 +42,8 @@ pub struct Alarm {
     pub severity: Severity,
     /// The kind in that step.
     pub kind: Kind,
+    /// The ego's front at the conflict point of that step, or that of its carriage that touches.
+    pub at: Point,
 }
 
 /// Follows the pairs in conflict over the steps.
@@ -154,8 +156,8 @@ impl Tracker {
     }
 
     fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
-        let Encounter { ego, foe, kind, .. } = *seen.found;
-        let alarm = Alarm { ego, foe, severity: seen.severity(), kind };
+        let Encounter { ego, foe, kind, x, y, .. } = *seen.found;
+        let alarm = Alarm { ego, foe, severity: seen.severity(), kind, at: Point::new(x, y) };
         let pair = [ego.min(foe), ego.max(foe)];
         let place = match self.events.binary_search_by_key(&pair, |(known, _)| *known) {
             Ok(place) => {

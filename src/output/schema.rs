@@ -121,9 +121,9 @@ columns! { |conflict, context|
     [Required] foe_speed: MetrePerSecond = conflict.foe_speed;
     /// between the headings at the conflict point, 0 to π
     [Required] angle: Radian = conflict.angle;
-    /// the ego's front bumper at the conflict point
+    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
     [Required] x: Metre = conflict.x;
-    /// the ego's front bumper at the conflict point
+    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
     [Required] lane: OptionalText = context.lane(conflict);

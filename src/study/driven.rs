@@ -20,6 +20,7 @@ use crate::input::replay::recording::Recording;
 use crate::input::replay::rows::RecordedStep;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, Row, State};
+use crate::traffic::profile::Carriage;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
@@ -179,6 +180,7 @@ impl<'a> DrivenUser<'a> {
         let reach = poses.last().map_or(0.0, |pose| pose.distance);
         Participant {
             rectangle,
+            carriage: Carriage { behind: 0.0, length: 2.0 * rectangle.half_length },
             setback: 0.0,
             shape: &[],
             poses,

@@ -36,6 +36,8 @@ pub struct Profile {
     pub width: Metre,
     /// Length in m of the part whose direction the heading is: the first carriage, or the whole vehicle.
     pub chord: Metre,
+    /// The number of carriages; 1 where the vehicle does not bend.
+    pub carriages: u32,
     /// Mass in kg.
     pub mass: Kilogram,
     /// How it brakes.
@@ -58,14 +60,39 @@ const PASSENGER_CAR_BRAKES: MetrePerSecondSquared = 9.0;
 /// A person walks on for the current step and then stops; at this deceleration, within millimetres.
 const PERSON_DECELERATION: MetrePerSecondSquared = 1e3;
 
-/// The length of the first carriage of SUMO's articulated shapes, in m: SUMO's heading is the chord from its rear to
-/// the front bumper, however long the rest. (Measured on a bend with SUMO 1.28.)
-const FIRST_CARRIAGES: [(&str, Metre); 3] =
-    [("truck/trailer", 9.25), ("truck/semitrailer", 2.5), ("bus/flexible", 8.25)];
+/// A part of an articulated vehicle that does not bend.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Carriage {
+    /// How far its front is behind the front bumper, along the vehicle, in m.
+    pub behind: Metre,
+    /// Its length in m.
+    pub length: Metre,
+}
 
-fn chord(shape: &str, length: Metre) -> Metre {
-    let carriage = FIRST_CARRIAGES.iter().find(|(known, _)| *known == shape);
-    carriage.map_or(length, |(_, carriage)| carriage.min(length))
+/// The lengths in m of the first carriage and of the others, and the gap before each of these, by SUMO's shape and class:
+/// SUMO's defaults (`SUMOVTypeParameter::initRailVisualizationParameters`; the first measured by the heading on a bend with
+/// SUMO 1.28). A shape's row without a class is that of all other classes.
+const CARRIAGES: [(&str, &str, [Metre; 3]); 10] = [
+    ("bus/flexible", "", [8.25, 8.25, 0.0]),
+    ("truck/semitrailer", "", [2.5, 13.5, 0.5]),
+    ("truck/trailer", "", [9.25, 6.75, 0.5]),
+    ("rail", "rail_electric", [19.1, 24.5, 1.0]),
+    ("rail", "rail_fast", [25.835, 24.775, 1.0]),
+    ("rail", "", [16.4, 24.5, 1.0]),
+    ("rail/railcar", "tram", [5.71, 5.71, 1.0]),
+    ("rail/railcar", "rail_urban", [18.4, 18.4, 1.0]),
+    ("rail/railcar", "", [16.85, 16.85, 1.0]),
+    ("rail/cargo", "", [13.86, 13.86, 1.0]),
+];
+
+/// The length of the first carriage of a vehicle, which SUMO's heading is the chord of, and the number of carriages: as
+/// many as sumo-gui draws.
+fn carriages(shape: &str, class: &str, length: Metre) -> (Metre, u32) {
+    let is_of = |known: &str| known == class || known.is_empty();
+    let known = CARRIAGES.iter().find(|(known, of, _)| *known == shape && is_of(of));
+    let Some((_, _, [first, other, gap])) = known else { return (length, 1) };
+    let others = ((length - first) / (other + gap)).round();
+    if others >= 1.0 { (*first, 1 + others as u32) } else { (length.min(*first), 1) }
 }
 
 /// The name of a type of polygons among the types of road users.
@@ -110,6 +137,16 @@ impl Profile {
         Ok(())
     }
 
+    /// Its carriages, front to back. The others share the length behind the first equally, couplings included.
+    pub fn carriages(&self) -> impl Iterator<Item = Carriage> + use<> {
+        let (first, count) = (self.chord, self.carriages);
+        let other = (self.length - first) / f64::from(count - 1).max(1.0);
+        (0..count).map(move |number| match number {
+            0 => Carriage { behind: 0.0, length: first },
+            _ => Carriage { behind: first + f64::from(number - 1) * other, length: other },
+        })
+    }
+
     /// The profile of a vehicle type: from `[type.NAME]` first, then the general settings, then SUMO.
     pub fn vehicle(sumo: &SumoType, options: &Options) -> Self {
         let set = settings(&sumo.name, options);
@@ -129,11 +166,13 @@ impl Profile {
             Deceleration::Decel => sumo.decel,
         });
         let length = set.length.unwrap_or(sumo.length);
+        let (chord, carriages) = carriages(&sumo.shape, &sumo.vehicle_class, length);
         Self {
             name: sumo.name.clone(),
             category: Category::Vehicle,
             length,
-            chord: chord(&sumo.shape, length),
+            chord,
+            carriages,
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or_else(|| sumo.mass_on_the_road()),
             brakes: Brakes {
@@ -159,6 +198,7 @@ impl Profile {
             category: Category::Person,
             length: set.length.unwrap_or(sumo.length),
             chord: set.length.unwrap_or(sumo.length),
+            carriages: 1,
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or(sumo.mass),
             brakes: Brakes { response: step_length, build_up: 0.0, deceleration: PERSON_DECELERATION },
@@ -174,6 +214,7 @@ impl Profile {
             category: Category::Obstacle,
             length: 0.0,
             chord: 0.0,
+            carriages: 1,
             width: 0.0,
             mass: f64::MAX,
             brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },
@@ -210,6 +251,34 @@ mod tests {
         // Masses that a type or the user sets are taken as they are.
         assert_eq!(mass(SumoType { mass: 95.0, ..SumoType::of_class("any", "bicycle") }), 95.0);
         assert_eq!(mass(SumoType::of_class("light", "bicycle")), 12.0);
+    }
+
+    #[test]
+    fn an_articulated_vehicle_has_the_carriages_that_sumo_gui_draws() {
+        let carriages = |shape: &str, class, length| {
+            let sumo = SumoType { length, shape: shape.to_owned(), ..SumoType::of_class("any", class) };
+            Profile::vehicle(&sumo, &Options::default()).carriages().map(|carriage| carriage.length).collect::<Vec<_>>()
+        };
+        assert_eq!(carriages("bus/flexible", "bus", 18.0), [8.25, 9.75]);
+        assert_eq!(carriages("truck/semitrailer", "truck", 16.5), [2.5, 14.0]);
+        assert_eq!(carriages("truck/trailer", "trailer", 16.5), [9.25, 7.25]);
+        assert_eq!(carriages("rail/railcar", "tram", 45.0).len(), 7);
+        assert_eq!(carriages("rail/railcar", "subway", 109.5).len(), 6);
+        assert_eq!(carriages("rail", "rail_fast", 200.0)[..2], [25.835, (200.0 - 25.835) / 7.0]);
+        for (shape, class, length) in [("bus", "bus", 12.0), ("bus/coach", "coach", 14.0), ("truck", "truck", 18.0)] {
+            assert_eq!(carriages(shape, class, length), [length], "a rigid vehicle does not bend");
+        }
+    }
+
+    #[test]
+    fn carriages_follow_each_other_over_the_whole_length() {
+        let tram =
+            Profile::vehicle(&SumoType { length: 45.0, ..SumoType::of_class("any", "tram") }, &Options::default());
+        let end = tram.carriages().fold(0.0, |end, carriage| {
+            assert!((carriage.behind - end).abs() < 1e-9);
+            carriage.behind + carriage.length
+        });
+        assert!((end - 45.0).abs() < 1e-9);
     }
 
     #[test]

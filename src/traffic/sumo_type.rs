@@ -28,11 +28,16 @@ impl SumoType {
     pub fn of_class(name: &str, class: &str) -> Self {
         let known = CLASSES.iter().find(|(known, ..)| *known == class).unwrap_or(&CLASSES[0]);
         let (_, length, width, mass, emergency_decel, decel) = *known;
-        let shape = if class == "trailer" { "truck/trailer" } else { class }.to_owned();
+        let shape = match class {
+            "trailer" => "truck/trailer",
+            "tram" | "rail_urban" | "subway" => "rail/railcar",
+            "rail" | "rail_electric" | "rail_fast" => "rail",
+            _ => class,
+        };
         Self {
             name: name.to_owned(),
             vehicle_class: class.to_owned(),
-            shape,
+            shape: shape.to_owned(),
             length,
             width,
             mass,

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
+mod articulated;
 mod bisection;
 mod command_line;
 mod contact;

@@ -3,6 +3,7 @@
 use closecall::Point;
 use closecall::internals::detection::Track;
 use closecall::internals::geometry::{Lines, Vector};
+use closecall::internals::traffic::Carriage;
 use proptest::prelude::*;
 
 /// A front bumper nearer than this to the line is on it, in m.
@@ -147,9 +148,9 @@ proptest! {
             let [one, several] = tracks.each_ref().map(|(track, lines)| {
                 let mut poses = Vec::new();
                 let asked = [(length / 2.0).min(ahead[0] / 2.0), ahead[0]];
-                track.poses(lines, axis, length, &asked, false, &mut poses);
+                track.poses(lines, axis, Carriage { behind: 0.0, length }, &asked, false, &mut poses);
                 let found = asked.map(|distance| *poses.iter().find(|pose| (pose.distance - distance).abs() < 1e-9).unwrap());
-                (found, track.bounds_ahead(lines, ahead[0] / 3.0))
+                (found, track.bounds(lines, 0.0, ahead[0] / 3.0))
             });
             for (one, several) in one.0.iter().zip(&several.0) {
                 prop_assert!((one.front - several.front).norm() < 1e-9, "{one:?} {several:?}");

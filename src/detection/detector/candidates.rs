@@ -31,13 +31,16 @@ impl Detector {
         self.on_lanes.resize(frame.len(), false);
         if self.turns() == PathSource::Lanes {
             for (row, Row { user, state }) in frame.rows().enumerate() {
-                if roster.profile_of(user).category != Category::Vehicle {
+                let profile = roster.profile_of(user);
+                if profile.category != Category::Vehicle {
                     continue;
                 }
                 if state.moves() {
                     self.keep_on_path(row, user, state.front());
                 } else {
                     self.stop_on_path(row, user, state.front());
+                    // It still bends along the path on which it came.
+                    self.on_lanes[row] = profile.carriages > 1 && !self.paths[user.0 as usize].track.is_empty();
                 }
             }
         }

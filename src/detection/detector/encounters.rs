@@ -1,9 +1,10 @@
 //! Narrow phase, first half: where a pair would meet, and the gap and μ there.
 
 use std::hint::black_box;
+use std::slice::from_ref;
 
 use super::LEVEL;
-use super::occupancy::OccupancyCache;
+use super::occupancy::{Carriages, OccupancyCache};
 use super::reach;
 use super::reach::{Motion, User};
 use super::step::StepInputs;
@@ -69,6 +70,11 @@ pub(super) struct Unsettled {
 }
 
 impl Unsettled {
+    /// The carriages of one of the two as they are swept.
+    fn all_shrunk<'a>(&self, carriages: Carriages<'a>) -> Carriages<'a> {
+        carriages.into_iter().map(|carriage| carriage.shrunk(self.overlap.shrinks)).collect()
+    }
+
     /// The two as they are swept.
     pub(super) fn shrunk<'a>(&self, pair: [Participant<'a>; 2]) -> [Participant<'a>; 2] {
         if self.overlap.shrinks > 0.0 { pair.map(|of| of.shrunk(self.overlap.shrinks)) } else { pair }
@@ -149,6 +155,9 @@ impl StepInputs<'_> {
         if !both_ahead && self.are_apart(occupancy, work, slots) {
             return;
         }
+        if slots.iter().any(|slot| self.user(*slot).bends) {
+            return self.meet_bent(occupancy, work, slots, found);
+        }
         // An obstacle is never the ego.
         let slots = if self.is_obstacle(a) { [b, a] } else { slots };
         let pair = slots.map(|slot| occupancy.mover(self, slot));
@@ -170,18 +179,7 @@ impl StepInputs<'_> {
     ) -> Option<Unsettled> {
         let overlap = self.overlap(slots, pair);
         if overlap.collision {
-            let [first, second] = [&pair[0], &pair[1]];
-            let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
-            let roles = Roles::new(ego, slots, [first, second]);
-            let foe_axis = roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis);
-            let conflict_point = ConflictPoint {
-                ego_distance: 0.0,
-                foe_distance: 0.0,
-                ego_rectangle: roles.ego.rectangle,
-                foe_axis,
-                foe_leads: true,
-            };
-            self.met(work, found, &roles, &conflict_point, overlap);
+            self.collide(work, slots, pair, overlap, found);
             return None;
         }
         let unsettled = Unsettled { in_line: narrow_phase::drive_in_line(&pair[0], &pair[1]), overlap };
@@ -197,6 +195,51 @@ impl StepInputs<'_> {
             self.met(work, found, &roles, &approach.conflict_point, overlap);
         }
         None
+    }
+
+    /// Adds a pair that collides now.
+    fn collide(
+        &self,
+        work: &mut Work,
+        slots: [u32; 2],
+        [first, second]: &[Participant; 2],
+        overlap: Overlap,
+        found: &mut Findings,
+    ) {
+        let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
+        let roles = Roles::new(ego, slots, [first, second]);
+        let conflict_point = ConflictPoint {
+            ego_distance: 0.0,
+            foe_distance: 0.0,
+            ego_rectangle: roles.ego.rectangle,
+            ego_behind: roles.ego.carriage.behind,
+            foe_axis: roles.foe.shape.is_empty().then_some(roles.foe.rectangle.axis),
+            foe_leads: true,
+        };
+        self.met(work, found, &roles, &conflict_point, overlap);
+    }
+
+    /// Finds where a pair meets of which one or both bend: any carriage of the one may touch any of the other.
+    fn meet_bent(&self, occupancy: &mut OccupancyCache, work: &mut Work, slots: [u32; 2], found: &mut Findings) {
+        let slots = if self.is_obstacle(slots[0]) { [slots[1], slots[0]] } else { slots };
+        slots.iter().for_each(|slot| occupancy.cover(self, *slot));
+        let [first, second] = slots.map(|slot| occupancy.carriages(self, slot));
+        let pairs = first.iter().flat_map(|a| second.iter().map(move |b| [*a, *b]));
+        let overlaps = pairs.map(|pair| (self.overlap(slots, &pair), pair));
+        let deepest = overlaps.reduce(|deepest, next| if next.0.depth > deepest.0.depth { next } else { deepest });
+        let Some((overlap, pair)) = deepest else { return };
+        if overlap.collision {
+            return self.collide(work, slots, &pair, overlap, found);
+        }
+        work.swept += 1;
+        let unsettled = Unsettled { in_line: false, overlap };
+        let [first, second] = [first, second].map(|carriages| unsettled.all_shrunk(carriages));
+        let has_smaller_id = || self.has_smaller_id(slots);
+        let approach = side::meet(&mut found.scratch.halves, &first, &second, &has_smaller_id);
+        if let (Some(approach), [first, ..], [second, ..]) = (approach, &first[..], &second[..]) {
+            let roles = Roles::new(approach.ego, slots, [first, second]);
+            self.met(work, found, &roles, &approach.conflict_point, overlap);
+        }
     }
 
     /// How deep a pair overlaps now.
@@ -246,7 +289,7 @@ impl StepInputs<'_> {
     ) {
         work.swept += 1;
         let has_smaller_id = || self.has_smaller_id(slots);
-        let swept = side::meet(&mut found.scratch.halves, first, second, &has_smaller_id);
+        let swept = side::meet(&mut found.scratch.halves, from_ref(first), from_ref(second), &has_smaller_id);
         let approach =
             if in_line { narrow_phase::meet_in_one_dimension(first, second, &has_smaller_id) } else { swept };
         if let Some(approach) = approach {
@@ -300,8 +343,7 @@ impl StepInputs<'_> {
     /// Whether the narrow boxes around both paths are apart.
     fn are_apart(&self, occupancy: &mut OccupancyCache, work: &mut Work, slots: [u32; 2]) -> bool {
         slots.iter().for_each(|slot| occupancy.cover(self, *slot));
-        let [a, b] = slots.map(|slot| occupancy.cover_of(slot));
-        let apart = !a.meets(b);
+        let apart = occupancy.are_apart(self, slots);
         work.paths_apart += u64::from(apart);
         apart
     }
@@ -380,7 +422,11 @@ impl StepInputs<'_> {
             foe_distance: meeting.foe_distance,
             x: at.x,
             y: at.y,
-            lane: if ego.on_lanes { self.paths.lane_at(ego.index, meeting.ego_distance) } else { None },
+            lane: if ego.on_lanes {
+                self.paths.lane_at(ego.index, meeting.ego_distance - meeting.ego_behind)
+            } else {
+                None
+            },
             overlap: depth,
             collision,
             nearness: None,
@@ -391,7 +437,7 @@ impl StepInputs<'_> {
         if leaves || encounter.in_conflict() {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks };
             if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
-                self.measure(scratch, [roles.ego, roles.foe], &met, encounter);
+                self.measure(scratch, &met, encounter);
                 if self.conflicts_only && !encounter.in_conflict() {
                     encounters.pop();
                 }

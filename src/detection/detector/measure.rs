@@ -1,6 +1,7 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the measures of a pair in
 //! conflict.
 
+use super::occupancy::Carriages;
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
@@ -28,22 +29,25 @@ impl StepInputs<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let [ego, foe] = met.slots.map(|slot| self.mover(slot).shrunk(met.shrinks));
-            self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
+            self.measure(scratch, met, &mut encounters[*index as usize]);
         }
     }
 
     /// Completes the encounter of a pair that would meet: the ego and its foe.
-    pub(super) fn measure(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &mut Encounter) {
+    pub(super) fn measure(&self, scratch: &mut Scratch, met: &Met, encounter: &mut Encounter) {
+        let pair = met.slots.map(|slot| {
+            let carriages = self.movers(slot).into_iter();
+            carriages.map(|carriage| carriage.shrunk(met.shrinks)).collect::<Carriages>()
+        });
         if met.leaves {
-            encounter.foe_distance = self.way_out(scratch, pair[1], met);
+            encounter.foe_distance = self.way_out(scratch, &pair[1], met);
             if self.options.mode == Mode::Closecall {
                 encounter.gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
         if encounter.in_conflict() {
-            encounter.nearness = Some(self.nearness(scratch, pair, met, encounter));
+            encounter.nearness = Some(self.nearness(scratch, &pair, met, encounter));
         }
     }
 
@@ -57,25 +61,34 @@ impl StepInputs<'_> {
             + (2.0 * (rectangle.half_length + rectangle.half_width) + profile.width) / self.paths.scale(foe.index)
     }
 
-    /// The foe's distance until it has left the ego's conflict point.
-    fn way_out(&self, scratch: &mut Scratch, foe: &Participant, met: &Met) -> Metre {
-        let (poses, user) = (&mut scratch.courses[1], self.user(met.slots[1]));
-        poses.clear();
-        self.course(user, &[self.furthest_way_out(user, &met.meeting)], true, poses);
-        side::departure(&mut scratch.halves, poses, foe, &met.meeting.ego_rectangle, met.meeting.foe_distance)
+    /// The foe's distance until it, and so each of its carriages, has left the ego's conflict point.
+    fn way_out(&self, scratch: &mut Scratch, foe: &[Participant], met: &Met) -> Metre {
+        let (poses, user, meeting) = (&mut scratch.courses[1], self.user(met.slots[1]), &met.meeting);
+        let rectangle = &meeting.ego_rectangle;
+        let left = foe.iter().filter_map(|carriage| {
+            poses.clear();
+            self.course(user, carriage.carriage, &[self.furthest_way_out(user, meeting)], true, poses);
+            match foe {
+                [_] => Some(side::departure(&mut scratch.halves, poses, carriage, rectangle, meeting.foe_distance)),
+                _ => side::carriage_departure(&mut scratch.halves, poses, carriage, rectangle),
+            }
+        });
+        left.fold(meeting.foe_distance, f64::max)
     }
 
-    fn nearness(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Nearness {
-        let [ego, foe] = pair;
+    fn nearness(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> Nearness {
+        let clearance = |[ego, foe]: [&Participant; 2]| match foe.shape {
+            [] => contact::room(&ego.rectangle, &foe.rectangle),
+            shape => polygon::distance(shape, &ego.rectangle),
+        };
         let clearance = if encounter.overlap > 0.0 || encounter.collision {
             0.0
-        } else if foe.shape.is_empty() {
-            contact::room(&ego.rectangle, &foe.rectangle)
         } else {
-            polygon::distance(foe.shape, &ego.rectangle)
+            pairs(pair).map(clearance).fold(f64::INFINITY, f64::min)
         };
         let timely = if encounter.collision { Timely::COLLISION } else { self.timely(scratch, pair, met, encounter) };
         let Timely { ttc, drac, ttb, crash_probability } = timely;
+        let [ego, foe] = [&pair[0][0], &pair[1][0]];
         let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
         let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
         let inputs = SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, collision };
@@ -84,10 +97,10 @@ impl StepInputs<'_> {
             ttc,
             drac: drac.map(|drac| drac.min(drac::LIMIT)),
             unavoidable,
-            response_left: self.response_left(pair, met.sigma, encounter),
+            response_left: self.response_left([ego, foe], met.sigma, encounter),
             ttb,
             crash_probability,
-            crash_probability_braking: self.crash_probability_braking(pair, met, encounter),
+            crash_probability_braking: self.crash_probability_braking([ego, foe], met, encounter),
             extended_delta_v: ttc.map(|left| {
                 let [ego, foe] =
                     met.slots.map(|slot| (self.state(self.user(slot)).speed, self.profile(self.user(slot)).mass));
@@ -127,12 +140,18 @@ impl StepInputs<'_> {
         LateBraking { speed: of.speed, present, build_up: of.brakes.build_up, deceleration: of.brakes.deceleration }
     }
 
-    /// The measures that follow from the courses of both.
-    fn timely(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Timely {
+    /// The measures that follow from the courses of both; of several carriages, those of the two that are worst.
+    fn timely(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> Timely {
+        let each = pairs(pair).map(|pair| self.timely_of(scratch, pair, met, encounter));
+        each.reduce(Timely::worse).unwrap_or(Timely::APART)
+    }
+
+    /// The same for a carriage of each of the two.
+    fn timely_of(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Timely {
         let users = met.slots.map(|slot| self.user(slot));
-        for (user, poses) in users.into_iter().zip(scratch.courses.iter_mut()) {
+        for ((user, of), poses) in users.into_iter().zip(pair).zip(scratch.courses.iter_mut()) {
             poses.clear();
-            self.course(user, &[self.state(user).speed * ttc::HORIZON], true, poses);
+            self.course(user, of.carriage, &[self.state(user).speed * ttc::HORIZON], true, poses);
             poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
         }
         let Scratch { courses, halves, limits } = scratch;
@@ -201,6 +220,20 @@ impl Timely {
     /// Of one that collides now.
     const COLLISION: Self = Self { ttc: Some(0.0), drac: None, ttb: Some(0.0), crash_probability: 1.0 };
 
+    /// The worst of each value.
+    fn worse(self, other: Self) -> Self {
+        let one_of = |a: Option<f64>, b: Option<f64>, worst: fn(f64, f64) -> f64| match (a, b) {
+            (Some(a), Some(b)) => Some(worst(a, b)),
+            (one, other) => one.or(other),
+        };
+        Self {
+            ttc: one_of(self.ttc, other.ttc, f64::min),
+            drac: one_of(self.drac, other.drac, f64::max),
+            ttb: one_of(self.ttb, other.ttb, f64::min),
+            crash_probability: self.crash_probability.max(other.crash_probability),
+        }
+    }
+
     /// With what follows from the evasion that is left, of the one of both that has to brake.
     fn with(self, evasion: &Evasion, braking: &LateBraking, driver: &Driver) -> Self {
         let wait = evasion.longest_wait(braking);
@@ -209,4 +242,9 @@ impl Timely {
         let probability = crash_probability(driver, braking.present >= BRAKES, wait_with);
         Self { ttb, crash_probability: if ttb.is_some() { probability } else { 0.0 }, ..self }
     }
+}
+
+/// Each carriage of the one with each of the other.
+fn pairs<'a, 'b>([ego, foe]: &'b [Carriages<'a>; 2]) -> impl Iterator<Item = [&'b Participant<'a>; 2]> {
+    ego.iter().flat_map(move |ego| foe.iter().map(move |foe| [ego, foe]))
 }

@@ -239,7 +239,8 @@ impl Detector {
         let start = PathStart {
             front: state.front(),
             axis: direction(state.heading),
-            length: profile.chord,
+            chord: profile.chord,
+            length: profile.length,
             width: profile.width,
             speed: state.speed,
             sublane: self.sublane,
@@ -307,7 +308,7 @@ impl Detector {
             if *on_lanes {
                 let profile = roster.profile_of(user);
                 let way = reach::reach(&state, profile, self.options.epsilon);
-                self.paths[user.0 as usize].extend(net, profile.chord, way);
+                self.paths[user.0 as usize].extend(net, profile.length, way);
             }
         }
     }
@@ -315,7 +316,7 @@ impl Detector {
     /// Extends a road user's path this far ahead, if its route reaches that far.
     fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
         if let Some(net) = &self.net {
-            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).chord, way);
+            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).length, way);
         }
     }
 
@@ -358,7 +359,9 @@ impl Detector {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
         let user = sight.user(row, &sight.see(row), &User::default());
         let scene = self.scene(frame, roster);
-        scene.course(&user, &[scene.stop(&user), scene.reach_of(&user)], false, &mut poses);
+        if let Some(first) = scene.carriages(&user).next() {
+            scene.course(&user, first, &[scene.stop(&user), scene.reach_of(&user)], false, &mut poses);
+        }
         poses.iter().map(|pose| pose.front).collect()
     }
 }

@@ -1,6 +1,8 @@
 //! Where the road users of a step will go: their poses, and the boxes around what they cover. Computed on demand and kept
 //! until the step ends.
 
+use smallvec::{SmallVec, smallvec};
+
 use super::reach::User;
 use super::step::StepInputs;
 use crate::detection::narrow_phase::{Participant, SweptBounds};
@@ -9,7 +11,7 @@ use crate::geometry::Bounds;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::TOLERANCE;
 use crate::options::{Mode, PathModel};
-use crate::traffic::profile::Category;
+use crate::traffic::profile::{Carriage, Category};
 use crate::util::units::Metre;
 
 /// Initial capacity: few paths have more poses.
@@ -21,7 +23,8 @@ const MOST_STRAIGHT: usize = 3;
 /// The paths of a step that were asked for, until the step ends.
 #[derive(Default)]
 pub(super) struct OccupancyCache {
-    /// By slot, which of `built` is its path; [`NOT_BUILT`] until it is asked for.
+    /// By slot, which of `built` is its path, or its first carriage's, which those of the others follow; [`NOT_BUILT`]
+    /// until it is asked for.
     numbers: Vec<u32>,
     built: Vec<BuiltPath>,
     poses: Vec<Pose>,
@@ -30,9 +33,10 @@ pub(super) struct OccupancyCache {
 
 const NOT_BUILT: u32 = u32::MAX;
 
-/// The path of the road user in a slot.
+/// The path of the road user in a slot, or of one of its carriages.
 #[derive(Clone, Copy)]
 struct BuiltPath {
+    carriage: Carriage,
     poses: (u32, u32),
     /// Index of its first cover: that of the whole path, then those between poses. None until asked for.
     covers: Option<u32>,
@@ -63,13 +67,18 @@ impl OccupancyCache {
         if self.find(slot).is_some() {
             return;
         }
+        self.numbers[slot as usize] = self.built.len() as u32;
         let user = scene.user(slot);
+        scene.carriages(user).for_each(|carriage| self.build_carriage(scene, user, carriage));
+    }
+
+    fn build_carriage(&mut self, scene: &StepInputs, user: &User, carriage: Carriage) {
         let all = &mut self.poses;
         let (profile, start) = (scene.profile(user), all.len());
-        scene.course(user, &[scene.stop(user), scene.reach_of(user)], false, all);
+        scene.course(user, carriage, &[scene.stop(user), scene.reach_of(user)], false, all);
         let poses = &all[start..];
         let axis = poses.first().map_or(user.axis, |pose| pose.axis);
-        let length = scene.drawn_length(user);
+        let length = scene.drawn_length_of(user, carriage);
         let straight = scene.paths.is_to_scale(poses) && poses.iter().all(|pose| pose.axis == axis);
         let bounds = if !scene.shortcuts.paths_apart {
             Bounds::EVERYTHING
@@ -83,21 +92,30 @@ impl OccupancyCache {
             }
             bounds.grown(TOLERANCE)
         };
-        self.numbers[slot as usize] = self.built.len() as u32;
-        self.built.push(BuiltPath { poses: (start as u32, all.len() as u32), covers: None, straight, bounds });
+        self.built.push(BuiltPath {
+            carriage,
+            poses: (start as u32, all.len() as u32),
+            covers: None,
+            straight,
+            bounds,
+        });
     }
 
     /// Computes the poses and the boxes around them.
     pub(super) fn cover(&mut self, scene: &StepInputs, slot: u32) {
         self.build(scene, slot);
-        let Self { numbers, built, poses, covers } = self;
-        let built = &mut built[numbers[slot as usize] as usize];
+        let (user, first) = (scene.user(slot), self.numbers[slot as usize]);
+        (first..first + scene.count_carriages(user)).for_each(|number| self.cover_carriage(scene, user, number));
+    }
+
+    fn cover_carriage(&mut self, scene: &StepInputs, user: &User, number: u32) {
+        let Self { built, poses, covers, .. } = self;
+        let built = &mut built[number as usize];
         if built.covers.is_some() {
             return;
         }
         built.covers = Some(covers.len() as u32);
-        let user = scene.user(slot);
-        let (length, width) = (scene.drawn_length(user), scene.profile(user).width);
+        let (length, width) = (scene.drawn_length_of(user, built.carriage), scene.profile(user).width);
         let poses = &poses[built.poses.0 as usize..built.poses.1 as usize];
         let of = |poses: &[Pose]| match scene.shortcuts.paths_apart {
             true => SweptBounds::of(poses, length, width).unwrap_or_else(|| built.bounds.into()),
@@ -117,15 +135,24 @@ impl OccupancyCache {
 
     /// The box around all that a road user covers on its path.
     pub(super) fn bounds(&self, scene: &StepInputs, slot: u32) -> Bounds {
-        match self.find(slot) {
-            Some(built) => built.bounds,
-            None => scene.reach.area(scene.user(slot)).bounds,
+        match self.all(scene, slot) {
+            [] => scene.reach.area(scene.user(slot)).bounds,
+            [only] => only.bounds,
+            carriages => carriages.iter().fold(Bounds::EMPTY, |mut all, carriage| {
+                all.join(&carriage.bounds);
+                all
+            }),
         }
     }
 
-    /// The boxes around all that a road user covers, if [`Self::cover`] was called for it.
-    pub(super) fn cover_of(&self, slot: u32) -> &SweptBounds {
-        let found = self.find(slot).and_then(|built| self.covers.get(built.covers? as usize));
+    /// Whether the boxes around all that two road users cover are apart, if [`Self::cover`] was called for both.
+    pub(super) fn are_apart(&self, scene: &StepInputs, slots: [u32; 2]) -> bool {
+        let [a, b] = slots.map(|slot| self.all(scene, slot));
+        !a.iter().any(|a| b.iter().any(|b| self.cover_of(a).meets(self.cover_of(b))))
+    }
+
+    fn cover_of(&self, built: &BuiltPath) -> &SweptBounds {
+        let found = built.covers.and_then(|cover| self.covers.get(cover as usize));
         found.unwrap_or(&SweptBounds::EVERYWHERE)
     }
 
@@ -136,16 +163,25 @@ impl OccupancyCache {
 
     /// The road user in a slot, after [`Self::cover`].
     pub(super) fn covered<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Participant<'a> {
-        let mut mover = scene.mover(slot);
-        if let Some(built) = self.find(slot) {
-            mover.poses = &self.poses[built.poses.0 as usize..built.poses.1 as usize];
-            mover.straight = built.straight;
-            mover.reach = mover.poses.last().map_or(0.0, |pose| pose.distance);
-            if let Some(start) = built.covers {
-                let steps = if built.straight { 0 } else { mover.poses.len().saturating_sub(1) };
-                mover.cover = &self.covers[start as usize];
-                mover.covers = &self.covers[start as usize + 1..][..steps];
-            }
+        let mover = scene.mover(slot);
+        self.find(slot).map_or(mover, |built| self.along(mover, built))
+    }
+
+    /// The carriages of the road user in a slot, after [`Self::cover`].
+    pub(super) fn carriages<'a>(&'a self, scene: &StepInputs<'a>, slot: u32) -> Carriages<'a> {
+        let carriages = scene.movers(slot).into_iter().zip(self.all(scene, slot));
+        carriages.map(|(mover, built)| self.along(mover, built)).collect()
+    }
+
+    /// A road user or a carriage with its path.
+    fn along<'a>(&'a self, mut mover: Participant<'a>, built: &BuiltPath) -> Participant<'a> {
+        mover.poses = &self.poses[built.poses.0 as usize..built.poses.1 as usize];
+        mover.straight = built.straight;
+        mover.reach = mover.poses.last().map_or(0.0, |pose| pose.distance);
+        if let Some(start) = built.covers {
+            let steps = if built.straight { 0 } else { mover.poses.len().saturating_sub(1) };
+            mover.cover = &self.covers[start as usize];
+            mover.covers = &self.covers[start as usize + 1..][..steps];
         }
         mover
     }
@@ -153,7 +189,17 @@ impl OccupancyCache {
     fn find(&self, slot: u32) -> Option<&BuiltPath> {
         self.built.get(self.numbers[slot as usize] as usize)
     }
+
+    /// The paths of all carriages of the road user in a slot; none until they are asked for.
+    fn all(&self, scene: &StepInputs, slot: u32) -> &[BuiltPath] {
+        let first = self.numbers[slot as usize] as usize;
+        let carriages = first..first.saturating_add(scene.count_carriages(scene.user(slot)) as usize);
+        self.built.get(carriages).unwrap_or_default()
+    }
 }
+
+/// The carriages of a road user: mostly it has one.
+pub(super) type Carriages<'a> = SmallVec<[Participant<'a>; 1]>;
 
 impl<'a> StepInputs<'a> {
     /// The road user in a slot, without its path.
@@ -163,6 +209,7 @@ impl<'a> StepInputs<'a> {
         let stop = self.stop(user);
         let mut mover = Participant {
             rectangle: Rectangle::behind(state.front(), user.axis, self.drawn_length(user), profile.width),
+            carriage: Carriage { behind: 0.0, length: profile.chord },
             setback: 0.0,
             shape: &[],
             poses: &[],
@@ -181,22 +228,46 @@ impl<'a> StepInputs<'a> {
         mover
     }
 
-    /// Adds a road user's poses at the given distances and between, as far as its path is known; `beyond` that straight
-    /// on.
-    pub(super) fn course(&self, user: &User, distances: &[Metre], beyond: bool, poses: &mut Vec<Pose>) {
+    /// The carriages of the road user in a slot, without their paths.
+    pub(super) fn movers(&self, slot: u32) -> Carriages<'a> {
+        let (user, mover) = (self.user(slot), self.mover(slot));
+        if !user.bends {
+            return smallvec![mover];
+        }
+        let mut poses = Vec::new();
+        let of = |carriage| {
+            poses.clear();
+            self.course(user, carriage, &[], false, &mut poses);
+            let length = self.drawn_length_of(user, carriage);
+            let behind = |pose: &Pose| Rectangle::behind(pose.front, pose.axis, length, mover.width());
+            let rectangle = poses.first().map_or(mover.rectangle, behind);
+            Participant { rectangle, carriage, ..mover }
+        };
+        self.carriages(user).map(of).collect()
+    }
+
+    /// Adds the poses of a road user's carriage at the given distances and between, as far as its path is known; `beyond`
+    /// that straight on.
+    pub(super) fn course(
+        &self,
+        user: &User,
+        carriage: Carriage,
+        distances: &[Metre],
+        beyond: bool,
+        poses: &mut Vec<Pose>,
+    ) {
         let (User { axis, category, on_lanes, .. }, front) = (*user, self.state(user).front());
         if category == Category::Obstacle {
             return;
         }
-        let chord = || self.profile(user).chord;
         if on_lanes {
             let (track, lines) = self.paths.track(user.index);
-            return track.poses(lines, axis, chord(), distances, beyond, poses);
+            return track.poses(lines, axis, carriage, distances, beyond, poses);
         }
         poses.push(Pose { distance: 0.0, front, axis });
         let distances = &distances[distances.partition_point(|distance| *distance <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, chord(), distances, poses);
+            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, carriage.length, distances, poses);
         } else {
             straight::poses(front, axis, distances, poses);
         }

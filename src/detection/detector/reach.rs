@@ -44,6 +44,8 @@ pub(super) struct User {
     /// Whether it goes straight on until it stands: without lanes or an arc, or on a lane that leads straight on.
     pub ahead: bool,
     pub on_lanes: bool,
+    /// Whether it is seen as its carriages, because they do not stand and stay in one line.
+    pub bends: bool,
 }
 
 /// Where paths come from.
@@ -149,7 +151,18 @@ impl StepView<'_> {
         let on_lanes = self.turns == PathSource::Lanes && self.on_lanes[row as usize];
         let goes_straight = || {
             let (track, lines) = self.paths.track(index);
-            track.goes_straight(lines, &axis, profile.chord, reach(state, profile, self.epsilon))
+            let length = if profile.carriages > 1 { profile.length } else { profile.chord };
+            track.goes_straight(lines, &axis, length, reach(state, profile, self.epsilon))
+        };
+        let ahead = match self.turns {
+            PathSource::Straight => true,
+            PathSource::Arcs => profile.category == Category::Obstacle,
+            PathSource::Lanes if on_lanes => goes_straight(),
+            PathSource::Lanes => !moves || profile.category != Category::Vehicle,
+        };
+        let bends = profile.carriages > 1 && on_lanes && !ahead && {
+            let (track, lines) = self.paths.track(index);
+            !track.is_straight(lines, profile.length, reach(state, profile, self.epsilon))
         };
         User {
             heading: state.heading,
@@ -163,13 +176,9 @@ impl StepView<'_> {
                 false if self.speeds.get(index.0 as usize).is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
                 false => Motion::Rests,
             },
-            ahead: match self.turns {
-                PathSource::Straight => true,
-                PathSource::Arcs => profile.category == Category::Obstacle,
-                PathSource::Lanes if on_lanes => goes_straight(),
-                PathSource::Lanes => !moves || profile.category != Category::Vehicle,
-            },
+            ahead,
             on_lanes,
+            bends,
         }
     }
 }
@@ -187,6 +196,7 @@ impl Default for User {
             motion: Motion::Rests,
             ahead: true,
             on_lanes: false,
+            bends: false,
         }
     }
 }
@@ -274,11 +284,12 @@ impl<'a> Reach<'a> {
             let bounds = Rectangle::behind(front, user.axis, length, profile.width).bounds();
             return bounds.grown(TOLERANCE + beside).into();
         }
-        if user.on_lanes && self.has_boxes {
-            // Its front is on the line ahead; no part of it is further from there than this.
-            let behind = drawn_length + profile.width / 2.0;
+        if user.bends || (user.on_lanes && self.has_boxes) {
+            // The front of each carriage is on the line; no part of it is further from there than this.
+            let beside = drawn_length + profile.width / 2.0;
+            let behind = if user.bends { profile.length } else { 0.0 };
             let (track, lines) = self.paths.track(user.index);
-            return track.bounds_ahead(lines, reach).grown(TOLERANCE + behind).into();
+            return track.bounds(lines, behind, reach).grown(TOLERANCE + beside).into();
         }
         if self.on_arcs {
             // Its tail swings out and may reach further than its front.

@@ -8,7 +8,7 @@ use crate::detection::path::turning::Turning;
 use crate::options::Options;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::{Net, Overlaps};
-use crate::traffic::profile::{Category, Profile};
+use crate::traffic::profile::{Carriage, Category, Profile};
 use crate::traffic::roster::Roster;
 use crate::util::units::{Metre, MetrePerSecondSquared};
 
@@ -55,6 +55,21 @@ impl StepInputs<'_> {
     /// Its length as SUMO draws it.
     pub fn drawn_length(&self, user: &User) -> Metre {
         self.profile(user).length * self.paths.scale(user.index)
+    }
+
+    /// The carriages that a road user is seen as: one, unless it bends.
+    pub fn carriages(&self, user: &User) -> impl Iterator<Item = Carriage> + use<> {
+        self.profile(user).carriages().take(self.count_carriages(user) as usize)
+    }
+
+    /// The number of carriages that a road user is seen as.
+    pub fn count_carriages(&self, user: &User) -> u32 {
+        if user.bends { self.profile(user).carriages } else { 1 }
+    }
+
+    /// The length of a carriage as SUMO draws it; that of the whole road user, unless it bends.
+    pub fn drawn_length_of(&self, user: &User, carriage: Carriage) -> Metre {
+        if user.bends { carriage.length * self.paths.scale(user.index) } else { self.drawn_length(user) }
     }
 
     pub fn is_obstacle(&self, slot: u32) -> bool {

@@ -13,8 +13,10 @@ pub struct ConflictPoint {
     pub ego_distance: Metre,
     /// Distance of the foe until it reaches the conflict point.
     pub foe_distance: Metre,
-    /// The ego's rectangle at the conflict point.
+    /// The ego's rectangle at the conflict point; that of the carriage that touches.
     pub ego_rectangle: Rectangle,
+    /// How far that carriage is behind the front bumper.
+    pub ego_behind: Metre,
     /// The foe's axis at the conflict point; none for an obstacle, which the ego hits with its front.
     pub foe_axis: Option<Vector>,
     /// Whether the foe leaves the conflict area as soon as it moves: a leader in the lane.
@@ -27,7 +29,7 @@ impl ConflictPoint {
         self.foe_axis.map_or(PI, |axis| angle_between(&self.ego_rectangle.axis, &axis))
     }
 
-    /// The ego's front-bumper centre.
+    /// The centre of that rectangle's front: of the front bumper, unless a carriage further behind touches.
     pub fn front(&self) -> Point {
         self.ego_rectangle.centre + self.ego_rectangle.axis * self.ego_rectangle.half_length
     }

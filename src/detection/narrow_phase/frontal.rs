@@ -32,6 +32,7 @@ pub(super) fn in_line(
         ego_distance,
         foe_distance: ahead.max(0.0) - ego_distance,
         ego_rectangle: Rectangle { centre, ..ego.rectangle },
+        ego_behind: 0.0,
         foe_axis: Some(foe.rectangle.axis),
         foe_leads: false,
     };

@@ -18,6 +18,8 @@ pub use conflict_point::ConflictPoint;
 pub use participant::Participant;
 pub use swept_bounds::SweptBounds;
 
+use std::slice::from_ref;
+
 use crate::braking::{self, MuModel};
 use crate::geometry::bisection::Bisection;
 use crate::geometry::{Vector, cross};
@@ -32,7 +34,7 @@ pub fn meet(a: &Participant, b: &Participant, a_has_smaller_id: &impl Fn() -> bo
     if drive_in_line(a, b) {
         meet_in_one_dimension(a, b, a_has_smaller_id)
     } else {
-        side::meet(&mut Bisection::default(), a, b, a_has_smaller_id)
+        side::meet(&mut Bisection::default(), from_ref(a), from_ref(b), a_has_smaller_id)
     }
 }
 

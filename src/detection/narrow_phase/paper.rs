@@ -49,6 +49,7 @@ pub fn measure(a: &Participant, b: &Participant, bounds: KindBounds) -> PaperRes
         }
     };
     let conflict_point = ConflictPoint {
+        ego_behind: 0.0,
         ego_distance: distance,
         foe_distance: 0.0,
         ego_rectangle: ego.rectangle,

@@ -1,4 +1,4 @@
-//! One road user of a pair, as the narrow phase needs it.
+//! One road user of a pair, or one carriage of it, as the narrow phase needs it.
 
 use super::SweptBounds;
 use crate::braking::{Brakes, Braking};
@@ -6,13 +6,16 @@ use crate::detection::path::Pose;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::sweep::Movement;
+use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, MetrePerSecond};
 
-/// One road user of a pair.
+/// One road user of a pair, or one carriage of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Participant<'a> {
     /// Its current rectangle.
     pub rectangle: Rectangle,
+    /// The carriage that its poses are those of: the first where all of the road user is one rectangle.
+    pub carriage: Carriage,
     /// How far the rectangle's front is behind the front bumper in m; 0 unless it is [`Self::shrunk`].
     pub setback: Metre,
     /// The convex parts of an obstacle; empty for other road users.

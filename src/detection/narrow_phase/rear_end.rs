@@ -13,6 +13,7 @@ pub(super) fn in_line(ego: &Participant, foe: &Participant, ahead: Metre) -> Opt
         ego_distance,
         foe_distance: 0.0,
         ego_rectangle: Rectangle { centre: ego.rectangle.centre + ego.rectangle.axis * ego_distance, ..ego.rectangle },
+        ego_behind: 0.0,
         foe_axis: Some(foe.rectangle.axis),
         foe_leads: true,
     })

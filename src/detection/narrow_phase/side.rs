@@ -16,27 +16,21 @@ use crate::util::units::Metre;
 /// How far apart two rectangles may be where the sweep of both finds contact, in m.
 const INEXACT: Metre = 2.0 * TOLERANCE;
 
-/// How a pair meets: at the first pose on the ego's path at which its rectangle touches the area that the foe covers
-/// now and still needs to stop. The ego is the one with the longer distance there; if equal, the one with the smaller
-/// id. An obstacle is never the ego.
+/// How a pair meets, each as its carriages, of which most have one: at the first pose on the ego's path at which its
+/// rectangle touches the area that the foe covers now and still needs to stop. The ego is the one with the longer distance
+/// there; if equal, the one with the smaller id. An obstacle is never the ego.
 pub fn meet(
     bisection: &mut Bisection,
-    a: &Participant,
-    b: &Participant,
+    a: &[Participant],
+    b: &[Participant],
     a_has_smaller_id: &impl Fn() -> bool,
 ) -> Option<Approach> {
     bisection.clear();
-    // The movements of both are numbered one after the other.
-    let numbers = [0, movement_count(a)];
-    let mut touch = |numbers, ego: &Participant, foe: &Participant| match one_rectangle(foe) {
-        _ if !ego.shape.is_empty() => None,
-        Some(covered) if ego.straight => first_slide(ego, &covered),
-        _ => first_touch(bisection, numbers, ego, foe),
-    };
-    let [of_a, of_b] = numbers;
-    let a_touches = touch([of_a, of_b], a, b);
-    let b_touches = touch([of_b, of_a], b, a);
-    let (roles, Touch { ego_distance, ego_rectangle }) = match (a_touches, b_touches) {
+    // The movements of all are numbered one after the other.
+    let [of_a, of_b] = [0, a.iter().map(movement_count).sum()];
+    let a_touches = touch(bisection, [of_a, of_b], a, b);
+    let b_touches = touch(bisection, [of_b, of_a], b, a);
+    let (roles, Touch { ego_distance, ego_rectangle, ego_behind }) = match (a_touches, b_touches) {
         (Some(a), Some(b)) => {
             let b_is_ego = b.ego_distance > a.ego_distance || (b.ego_distance == a.ego_distance && !a_has_smaller_id());
             if b_is_ego { (Ego::Second, b) } else { (Ego::First, a) }
@@ -45,22 +39,52 @@ pub fn meet(
         (None, b) => (Ego::Second, b?),
     };
     let [_, foe] = roles.then_foe([a, b]);
-    let [_, of_foe] = roles.then_foe(numbers);
-    let (foe_distance, foe_axis) = if foe.shape.is_empty() {
-        let (foe_distance, foe_axis) = arrival(bisection, of_foe, foe, &ego_rectangle);
-        (foe_distance, Some(foe_axis))
-    } else {
-        (0.0, None)
-    };
-    let conflict_point = ConflictPoint { ego_distance, foe_distance, ego_rectangle, foe_axis, foe_leads: false };
+    let [_, of_foe] = roles.then_foe([of_a, of_b]);
+    let (foe_distance, foe_axis) = arrival(bisection, of_foe, foe, &ego_rectangle)?;
+    let conflict_point =
+        ConflictPoint { ego_distance, foe_distance, ego_rectangle, ego_behind, foe_axis, foe_leads: false };
     Some(Approach { ego: roles, conflict_point })
+}
+
+/// The carriages, each with the number of its first movement, where those of the first are numbered from `begin` on.
+fn numbered<'a, 'b>(
+    carriages: &'b [Participant<'a>],
+    begin: usize,
+) -> impl Iterator<Item = (usize, &'b Participant<'a>)> {
+    carriages.iter().scan(begin, |next, carriage| {
+        let number = *next;
+        *next += movement_count(carriage);
+        Some((number, carriage))
+    })
+}
+
+/// Where the first of an ego's carriages touches the area of one of a foe's.
+fn touch(
+    bisection: &mut Bisection,
+    [of_ego, of_foe]: [usize; 2],
+    ego: &[Participant],
+    foe: &[Participant],
+) -> Option<Touch> {
+    let mut first: Option<Touch> = None;
+    for (of_ego, ego) in numbered(ego, of_ego).filter(|(_, ego)| ego.shape.is_empty()) {
+        for (of_foe, foe) in numbered(foe, of_foe) {
+            let found = match one_rectangle(foe) {
+                Some(covered) if ego.straight => first_slide(ego, &covered),
+                _ => first_touch(bisection, [of_ego, of_foe], ego, foe),
+            };
+            let is_first = |found: &Touch| first.as_ref().is_none_or(|first| found.ego_distance < first.ego_distance);
+            first = found.filter(is_first).or(first);
+        }
+    }
+    first
 }
 
 /// Where an ego first touches the area of a foe.
 struct Touch {
     ego_distance: Metre,
-    /// The ego's rectangle there.
+    /// The rectangle of its carriage there, and how far that is behind the front bumper.
     ego_rectangle: Rectangle,
+    ego_behind: Metre,
 }
 
 /// How many numbers the movements of a road user take; the last one stands for a road user that does not move.
@@ -88,7 +112,7 @@ fn first_slide(ego: &Participant, covered: &Rectangle) -> Option<Touch> {
         let movement = ego.movement(&pair[0], &pair[1]);
         let enter = movement.slide_to(covered)?.enter;
         let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-        Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter) })
+        Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter), ego_behind: ego.carriage.behind })
     })
 }
 
@@ -118,7 +142,8 @@ fn first_touch(
         }
         if enter <= 1.0 {
             let ego_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-            return Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter) });
+            let ego_behind = ego.carriage.behind;
+            return Some(Touch { ego_distance, ego_rectangle: movement.rectangle(enter), ego_behind });
         }
     }
     None
@@ -140,21 +165,74 @@ fn stands(of: &Participant) -> Movement {
     now.movement_to(&now, of.length(), of.width())
 }
 
-/// The foe's distance to the ego's rectangle at the conflict point, and its axis there.
+/// The foe's distance to the ego's rectangle at the conflict point, and its axis there, none for an obstacle.
+fn arrival(
+    bisection: &mut Bisection,
+    first_number: usize,
+    foe: &[Participant],
+    ego: &Rectangle,
+) -> Option<(Metre, Option<Vector>)> {
+    let [whole, ..] = foe else { return None };
+    if !whole.shape.is_empty() {
+        return Some((0.0, None));
+    }
+    let arrivals = numbered(foe, first_number).filter_map(|(number, carriage)| {
+        first_contact(bisection, number, carriage, carriage.poses, carriage.stop, ego)
+    });
+    let first = arrivals.reduce(|first, next| if next.0 < first.0 { next } else { first });
+    let (distance, axis) = first.unwrap_or_else(|| {
+        // It stands, or rounding keeps the two apart.
+        let touches = foe.iter().min_by(|a, b| {
+            let [a, b] = [a, b].map(|carriage| contact::distance(&at_the_end(carriage), ego));
+            a.total_cmp(&b)
+        });
+        (whole.stop.min(whole.reach), at_the_end(touches.unwrap_or(whole)).axis)
+    });
+    Some((distance, Some(axis)))
+}
+
+/// The rectangle at the last pose.
+fn at_the_end(of: &Participant) -> Rectangle {
+    of.poses.last().map_or(of.rectangle, |pose| of.movement(pose, pose).rectangle(0.0))
+}
+
+/// The distance along poses, up to the first beyond `furthest`, at which a foe reaches the ego's rectangle at the conflict
+/// point, and its axis there.
 ///
 /// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by [`INEXACT`].
-fn arrival(bisection: &mut Bisection, first_number: usize, foe: &Participant, ego: &Rectangle) -> (Metre, Vector) {
+fn first_contact(
+    bisection: &mut Bisection,
+    first_number: usize,
+    foe: &Participant,
+    poses: &[Pose],
+    furthest: Metre,
+    ego: &Rectangle,
+) -> Option<(Metre, Vector)> {
     let ego = grown(ego, INEXACT);
-    for (index, (pair, movement)) in foe.poses.windows(2).zip(movements(foe)).enumerate() {
+    for (index, pair) in poses.windows(2).enumerate() {
+        let movement = foe.movement(&pair[0], &pair[1]);
         if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
             let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-            return (foe_distance, movement.rectangle(enter).axis);
+            return Some((foe_distance, movement.rectangle(enter).axis));
         }
-        if pair[0].distance >= foe.stop {
+        if pair[0].distance >= furthest {
             break;
         }
     }
-    (foe.stop.min(foe.reach), foe.poses.last().map_or(foe.rectangle.axis, |pose| pose.axis))
+    None
+}
+
+/// The distance at which a carriage on these poses has left the ego's rectangle at the conflict point, if it ever comes
+/// there.
+pub fn carriage_departure(
+    bisection: &mut Bisection,
+    poses: &[Pose],
+    carriage: &Participant,
+    ego: &Rectangle,
+) -> Option<Metre> {
+    bisection.clear();
+    let (arrival, _) = first_contact(bisection, 0, carriage, poses, f64::INFINITY, ego)?;
+    Some(departure(bisection, poses, carriage, ego, arrival))
 }
 
 /// The distance at which a foe on these poses has left the ego's rectangle at the conflict point; `arrival` is the
@@ -222,7 +300,9 @@ mod tests {
     use crate::detection::narrow_phase::side::*;
     use crate::detection::path::arc;
     use crate::geometry::Point;
+    use crate::traffic::profile::Carriage;
     use proptest::prelude::*;
+    use std::slice::from_ref;
 
     const SIZE: (Metre, Metre) = (5.0, 2.0);
     const BRAKES: Brakes = Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 };
@@ -233,6 +313,7 @@ mod tests {
         let (stop, reach) = (poses[poses.len() - 2].distance, poses[poses.len() - 1].distance);
         Participant {
             rectangle,
+            carriage: Carriage { behind: 0.0, length },
             setback: 0.0,
             shape: &[],
             poses,
@@ -266,7 +347,7 @@ mod tests {
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
             let mut bisection = Bisection::default();
-            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, ego, foe, &|| true);
+            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, from_ref(ego), from_ref(foe), &|| true);
             let slow = meet(&participant(&ego, &all, &SweptBounds::EVERYWHERE), &participant(&foe, &all, &SweptBounds::EVERYWHERE));
             let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
             let (ego, foe) = (participant(&ego, &ego_parts, &ego_whole), participant(&foe, &foe_parts, &foe_whole));

@@ -45,6 +45,8 @@ pub struct PathStart {
     pub front: Point,
     /// Unit vector of the heading.
     pub axis: Vector,
+    /// Length in m of the part whose direction the heading is.
+    pub chord: Metre,
     /// Length of the road user in m.
     pub length: Metre,
     /// Its width in m.
@@ -99,7 +101,8 @@ impl LanePath {
         let against = foot.direction.dot(&start.axis) < 0.0 && !is_on_route(net, lane, self.route.edges());
         let before = self.own.as_ref().map_or(0.0, |own| own.lateral_speed());
         let beside = OffsetLine::new(offset(net, start, placement, before, &foot, against));
-        let before = if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start) };
+        let before =
+            if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start, &self.route) };
         let joins =
             before.iter().try_fold(placement.lane.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
         self.own = None;
@@ -249,17 +252,28 @@ fn leads_to_a_lane(net: &Net, lane: LaneIndex, towards_higher_lanes: MetrePerSec
     if towards_higher_lanes > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
-/// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper.
-fn lanes_behind(net: &Net, lane: LaneIndex, foot: &Foot, start: &PathStart) -> SmallVec<[LaneIndex; 4]> {
+/// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper. Of several
+/// that lead here, it came over the one that is nearest to the rear of the part whose heading is known; further behind, over
+/// the one that its route has passed.
+fn lanes_behind(
+    net: &Net,
+    lane: LaneIndex,
+    foot: &Foot,
+    start: &PathStart,
+    route: &RouteAhead,
+) -> SmallVec<[LaneIndex; 4]> {
     let needed = start.length + KEPT_BEHIND;
-    let rear = start.front - start.axis * start.length;
+    let rear = start.front - start.axis * start.chord;
     let mut lanes = SmallVec::new();
     let mut covered = foot.distance;
     let mut current = lane;
     while covered < needed {
         let before = net.lanes[current.0 as usize].from.iter().copied().min_by(|&a, &b| {
             let distance = |lane: LaneIndex| {
-                let distance = net.lines.length(lane.0) - (start.length - covered);
+                if covered >= start.chord {
+                    return if route.has_passed(net, lane) { 0.0 } else { 1.0 };
+                }
+                let distance = net.lines.length(lane.0) - (start.chord - covered);
                 (rear - Foot::of(net.lines.line(lane.0), rear, distance).point).norm()
             };
             distance(a).total_cmp(&distance(b))

@@ -1,17 +1,16 @@
 //! The poses of a road user whose front and rear bumpers are both on a polyline.
 
-use super::track::{Cursor, Track};
+use super::track::{Cursor, SAME_DIRECTION, Track};
 use super::{Pose, largest_turn, rotated, turn};
 use crate::geometry::polylines::{Lines, ON_THE_LINE};
 use crate::geometry::{Point, Vector, cross};
+use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, Radian};
 
 /// A heading that differs from the chord by less than this counts as the chord, in rad.
 const SAME_HEADING: Radian = 1e-6;
 /// Relative difference between a movement and the distance along a stretched line.
 const STRETCHED: f64 = 1e-3;
-/// Directions that differ by less than this are equal: poses between them add nothing.
-const SAME_DIRECTION: f64 = 1e-10;
 
 impl Track {
     /// Whether a road user of this length and heading drives straight on for a distance, within the segment that it is
@@ -35,21 +34,23 @@ impl Track {
     /// unless `beyond` is set: then they go straight on from there.
     ///
     /// `axis` is the current heading. Where it differs from the chord (a lane change, a rear on an unknown lane), the
-    /// difference fades out over the road user's length.
+    /// difference fades out over the road user's length. A carriage that begins further `behind` the front bumper has no
+    /// heading of its own: it stands along the chord. Distances are the front bumper's.
     pub fn poses(
         &self,
         lines: &Lines,
         axis: Vector,
-        length: Metre,
+        Carriage { behind, length }: Carriage,
         distances: &[Metre],
         beyond: bool,
         poses: &mut Vec<Pose>,
     ) {
         let limit = if beyond { f64::INFINITY } else { self.ahead() };
-        let mut front = self.cursor(lines);
+        let mut front = self.behind(lines, behind);
         let mut rear = front.back(length);
         let chord_now = chord(front.point(), rear.point(), axis);
-        let skew = if turns_less(&chord_now, &axis, SAME_HEADING) { 0.0 } else { turn(&chord_now, &axis) };
+        let along = behind > 0.0 || turns_less(&chord_now, &axis, SAME_HEADING);
+        let skew = if along { 0.0 } else { turn(&chord_now, &axis) };
         let skew = if skew.abs() < SAME_HEADING { 0.0 } else { skew };
         let widest = largest_turn(length);
         let start = poses.len();
@@ -167,13 +168,15 @@ mod tests {
     use crate::detection::path::poses::*;
     use crate::geometry::Bounds;
 
+    const CAR: Carriage = Carriage { behind: 0.0, length: 5.0 };
+
     fn poses((track, lines): &(Track, Lines), distances: &[f64]) -> Vec<Pose> {
         let mut found = Vec::new();
         let front = track.cursor(lines);
         track.poses(
             lines,
             chord(front.point(), front.back(5.0).point(), Vector::x()),
-            5.0,
+            CAR,
             distances,
             false,
             &mut found,
@@ -219,7 +222,7 @@ mod tests {
         for (front, distance) in [(2.0, 3.0), (8.0, 10.0), (8.0, 30.0), (12.0, 5.0), (8.0, 100.0)] {
             let (line, mut fronts) = (corner(front), Bounds::EMPTY);
             poses(&line, &[distance]).iter().for_each(|pose| fronts.include(pose.front));
-            assert_eq!(line.0.bounds_ahead(&line.1, distance), fronts, "{distance} m from {front} m on");
+            assert_eq!(line.0.bounds(&line.1, 0.0, distance), fronts, "{distance} m from {front} m on");
         }
     }
 
@@ -233,9 +236,30 @@ mod tests {
     fn another_heading_fades_out_over_the_length() {
         let (track, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 20.0);
         let mut found = Vec::new();
-        track.poses(&lines, rotated(&Vector::x(), 0.1), 5.0, &[30.0], false, &mut found);
+        track.poses(&lines, rotated(&Vector::x(), 0.1), CAR, &[30.0], false, &mut found);
         assert!((turn(&Vector::x(), &found[0].axis) - 0.1).abs() < 1e-12);
         assert!(found.iter().filter(|pose| pose.distance >= 5.0).all(|pose| pose.axis.y.abs() < 1e-12));
+    }
+
+    #[test]
+    fn a_carriage_goes_where_the_first_one_went() {
+        let corner = |front: f64| Track::through(&[(0.0, 0.0), (30.0, 0.0), (30.0, 20.0), (10.0, 40.0)], front);
+        let poses = |(track, lines): (Track, Lines), behind: f64| {
+            let (mut found, carriage) = (Vec::new(), Carriage { behind, length: 5.0 });
+            let front = track.cursor(&lines).back(behind);
+            let axis = chord(front.point(), front.back(5.0).point(), Vector::x());
+            track.poses(&lines, if behind > 0.0 { Vector::y() } else { axis }, carriage, &[20.0], false, &mut found);
+            found
+        };
+        let [first, later] = [poses(corner(22.0), 0.0), poses(corner(40.0), 18.0)];
+        assert_eq!(first.len(), later.len());
+        for (first, later) in first.iter().zip(&later) {
+            assert!((first.distance - later.distance).abs() < 1e-9);
+            assert!(
+                (first.front - later.front).norm() + (first.axis - later.axis).norm() < 1e-9,
+                "{first:?} {later:?}"
+            );
+        }
     }
 
     #[test]

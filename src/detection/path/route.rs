@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::traffic::net::{EdgeIndex, Net};
+use crate::traffic::net::{EdgeIndex, LaneIndex, Net};
 
 /// A route from one of its edges on, up to its end or to where the net has no link to its next edge.
 #[derive(Clone, Debug, Default)]
@@ -54,6 +54,15 @@ impl RouteAhead {
     /// The edges that are ahead; empty if no route is known.
     pub fn edges(&self) -> &[EdgeIndex] {
         self.from(self.begin)
+    }
+
+    /// Whether it has passed the edge of a lane, or the edges before and behind where the lane is within a junction.
+    pub fn has_passed(&self, net: &Net, lane: LaneIndex) -> bool {
+        let passed = self.edges.as_ref().and_then(|edges| edges.get(..=self.begin)).unwrap_or_default();
+        let lane = &net.lanes[lane.0 as usize];
+        let has_edge_of = |lane: &LaneIndex| passed.contains(&net.lanes[lane.0 as usize].edge);
+        passed.contains(&lane.edge)
+            || (lane.from.iter().any(has_edge_of) && lane.links.iter().any(|link| has_edge_of(&link.to)))
     }
 
     fn from(&self, position: usize) -> &[EdgeIndex] {

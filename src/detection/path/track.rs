@@ -14,6 +14,8 @@ use crate::util::units::Metre;
 const LONGEST_DETOUR: f64 = 4.0;
 /// A road user that moves back by more than this has left the line, in m: more than recordings round, to 1 cm.
 const BACKWARDS: Metre = 0.02;
+/// Directions that differ by less than this are equal: poses between them add nothing.
+pub(super) const SAME_DIRECTION: f64 = 1e-10;
 /// Inline capacity: few tracks have more lines; longer ones spill to the heap.
 const FEW: usize = 6;
 
@@ -118,12 +120,12 @@ impl Track {
         if self.is_empty() { 1.0 } else { lines.segment(self.vertex).scale() }
     }
 
-    /// The box around the lines from the front bumper to a distance ahead of it, or to their end.
-    pub fn bounds_ahead(&self, lines: &Lines, distance: Metre) -> Bounds {
-        let mut cursor = self.cursor(lines);
+    /// The box around the lines from a distance `behind` the front bumper to a distance ahead of it, or to their end.
+    pub fn bounds(&self, lines: &Lines, behind: Metre, ahead: Metre) -> Bounds {
+        let mut cursor = self.behind(lines, behind);
         let mut bounds = Bounds::EMPTY;
         bounds.include(cursor.point());
-        cursor.distance = (self.front + distance).min(self.end);
+        cursor.distance = (self.front + ahead).min(self.end) + (cursor.distance + behind - self.front);
         while cursor.room() < 0.0 {
             cursor.enter_next();
             bounds.include(cursor.under.start);
@@ -132,9 +134,24 @@ impl Track {
         bounds
     }
 
-    /// The last vertex up to a distance ahead of the front bumper, and the line that it is on.
+    /// Whether the lines are straight from a distance `behind` the front bumper to a distance ahead of it.
+    pub fn is_straight(&self, lines: &Lines, behind: Metre, ahead: Metre) -> bool {
+        let mut cursor = self.behind(lines, behind);
+        let direction = cursor.under.direction;
+        cursor.distance += behind + ahead.min(self.ahead());
+        while cursor.room() < 0.0 {
+            cursor.enter_next();
+            if (cursor.under.direction - direction).norm() > SAME_DIRECTION {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// The last vertex up to a distance ahead of the front bumper, or behind it if negative, and the line that it is on.
     pub(super) fn vertex_ahead(&self, lines: &Lines, distance: Metre) -> (u32, u32) {
-        let mut cursor = Cursor { distance: self.front + distance, ..self.cursor(lines) };
+        let mut cursor = self.behind(lines, (-distance).max(0.0));
+        cursor.distance += distance.max(0.0);
         while cursor.room() <= 0.0 {
             cursor.enter_next();
         }
@@ -167,6 +184,13 @@ impl Track {
     /// Whether the front bumper was here when the track was last followed.
     pub fn is_at(&self, lines: &Lines, front: Point) -> bool {
         !self.is_empty() && (lines.segment(self.vertex).at(self.front) - front).norm() <= ON_THE_LINE
+    }
+
+    /// A cursor at a distance behind the front bumper.
+    #[inline]
+    pub(super) fn behind<'a>(&'a self, lines: &'a Lines, distance: Metre) -> Cursor<'a> {
+        let front = self.cursor(lines);
+        if distance > 0.0 { front.back(distance) } else { front }
     }
 
     /// A cursor at the front bumper.
@@ -288,6 +312,15 @@ mod tests {
         assert!(track.follow(&lines, Point::new(10.0, 3.0)));
         assert_eq!(track.front(), 13.0);
         assert!(!track.follow(&lines, Point::new(11.0, 4.0)));
+    }
+
+    #[test]
+    fn it_is_straight_as_far_as_it_does_not_turn() {
+        let (track, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (40.0, 0.0), (40.0, 20.0)], 30.0);
+        let straight = |behind: f64, ahead: f64| track.is_straight(&lines, behind, ahead);
+        assert_eq!([straight(25.0, 10.0), straight(25.0, 10.1), straight(0.0, 10.0)], [true, false, true]);
+        let (track, lines) = Track::through(&[(0.0, 0.0), (40.0, 0.0), (40.0, 20.0)], 50.0);
+        assert_eq!([10.0, 10.1].map(|behind| track.is_straight(&lines, behind, 5.0)), [true, false]);
     }
 
     #[test]

@@ -24,6 +24,7 @@ pub fn car() -> Profile {
         length: 5.0,
         width: 2.0,
         chord: 5.0,
+        carriages: 1,
         mass: 1500.0,
         brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
         driver: Driver::certain(1.0, 8.0),

@@ -16,6 +16,7 @@ use crate::study::reference::nearest;
 use crate::traffic::frame::State;
 use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
+use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, MetrePerSecond};
 
 const UNIT: Property = Property::within("axis a unit vector", 1e-12, Unit::Metre);
@@ -124,7 +125,7 @@ fn check(chance: &mut Chance, points: &[Point], tally: &mut Tally) {
     let length = chance.between(0.5, 20.0);
     let distances = [room * chance.between(0.0, 1.0), room];
     let mut poses = Vec::new();
-    track.poses(&lines, Vector::x(), length, &distances, false, &mut poses);
+    track.poses(&lines, Vector::x(), Carriage { behind: 0.0, length }, &distances, false, &mut poses);
     let inputs = (points, track.front(), length, distances);
     let unit = poses.iter().map(|pose| (pose.axis.norm() - 1.0).abs()).fold(0.0, worse);
     tally.error(UNIT, unit, &inputs);

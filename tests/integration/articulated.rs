@@ -1,0 +1,266 @@
+//! A tram of several carriages on a bend.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::internals::geometry::{Rectangle, Vector, touches};
+use closecall::{Detector, Encounter, Frame, Kind, Net, Options, Placement, Point, Profile, Roster, State, SumoType};
+use proptest::prelude::*;
+
+/// A lane through these points.
+struct Way {
+    points: Vec<Point>,
+    net: Arc<Net>,
+}
+
+impl Way {
+    fn through(points: Vec<Point>) -> Self {
+        let shape = points.iter().map(|point| format!("{},{}", point.x, point.y)).collect::<Vec<_>>().join(" ");
+        let length = points.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();
+        let lane = format!(r#"<lane id="e_0" index="0" length="{length}" width="3.2" shape="{shape}"/>"#);
+        let text = format!(r#"<net><edge id="e" from="w" to="n">{lane}</edge></net>"#);
+        Self { points, net: Arc::new(Net::parse(Path::new("bend.net.xml"), text).unwrap()) }
+    }
+
+    /// 100 m to the east, a quarter circle of 20 m to the left, 100 m to the north.
+    fn bend() -> Self {
+        let on_circle = |degrees: i32| {
+            let (sine, cosine) = f64::from(degrees).to_radians().sin_cos();
+            Point::new(100.0 + 20.0 * sine, 20.0 - 20.0 * cosine)
+        };
+        let circle = (0..=90).step_by(5).map(on_circle);
+        Self::through([Point::origin()].into_iter().chain(circle).chain([Point::new(120.0, 120.0)]).collect())
+    }
+
+    fn turning(turns: &[(f64, f64)]) -> Self {
+        let (mut at, mut heading, mut points) = (Point::origin(), 0.0_f64, vec![Point::origin()]);
+        for (turn, length) in turns {
+            heading += turn;
+            at += Vector::new(heading.cos(), heading.sin()) * *length;
+            points.push(at);
+        }
+        Self::through(points)
+    }
+
+    fn at(&self, mut distance: f64) -> Point {
+        for ends in self.points.windows(2) {
+            let length = (ends[1] - ends[0]).norm();
+            if distance <= length {
+                return ends[0] + (ends[1] - ends[0]) * (distance / length);
+            }
+            distance -= length;
+        }
+        self.points[self.points.len() - 1]
+    }
+
+    /// A vehicle with its front bumper at a distance along it; SUMO's heading is the chord of the first carriage.
+    fn vehicle(&self, profile: &Profile, distance: f64, speed: f64) -> State {
+        let (front, rear) = (self.at(distance), self.at(distance - profile.chord));
+        let heading = (front.y - rear.y).atan2(front.x - rear.x);
+        State { x: front.x, y: front.y, z: 0.0, heading, speed }
+    }
+}
+
+fn articulated(shape: &str, class: &str, length: f64) -> Profile {
+    let sumo = SumoType { length, shape: shape.to_owned(), ..SumoType::of_class("long", class) };
+    Profile::vehicle(&sumo, &Options::default())
+}
+
+fn tram() -> Profile {
+    articulated("rail/railcar", "tram", 45.0)
+}
+
+/// What a long vehicle and a car meet; each step is where the front bumper of the one is and how fast it is, and the car.
+fn meet(way: &Way, profile: &Profile, steps: &[(f64, f64, State)], options: &Options) -> Vec<Encounter> {
+    let mut roster = Roster::default();
+    let types = [profile.clone(), Profile::vehicle(&SumoType::car("car"), options)];
+    let types = types.map(|profile| roster.profile(profile).unwrap());
+    let users = [roster.enter("a", types[0]), roster.enter("b", types[1])];
+    let mut detector = Detector::new(options, Some(way.net.clone()));
+    let mut frame = Frame::default();
+    for (time, (distance, speed, car)) in steps.iter().enumerate() {
+        frame.begin(time as f64);
+        frame.push(users[0], way.vehicle(profile, *distance, *speed));
+        frame.push(users[1], *car);
+        for row in detector.track_paths(&frame, &roster).to_vec().into_iter().filter(|row| *row == 0) {
+            let placement = Placement {
+                lane: way.net.lane("e_0").unwrap(),
+                position: *distance,
+                route: Some([way.net.edge("e").unwrap()].into()),
+                route_position: 0,
+                lateral_speed: 0.0,
+            };
+            detector.set_placement(&frame, &roster, row, &placement);
+        }
+        detector.broad_phase(&frame, &roster);
+        let _ = detector.narrow_phase(&frame, &roster);
+    }
+    detector.encounters().copied().collect()
+}
+
+/// A car that stands along the bend, this far from the circle's centre.
+fn stands(radius: f64, degrees: f64) -> State {
+    let (sine, cosine) = degrees.to_radians().sin_cos();
+    State { x: 100.0 + radius * sine, y: 20.0 - radius * cosine, z: 0.0, heading: degrees.to_radians(), speed: 0.0 }
+}
+
+fn inside() -> State {
+    stands(15.0, 55.0)
+}
+
+#[test]
+fn a_tram_passes_what_stands_beside_it_on_a_bend() {
+    let cars = [(16.5, 20.0), (15.0, 50.0), (16.5, 80.0), (23.0, 10.0), (23.0, 40.0), (23.0, 85.0)];
+    let way = Way::bend();
+    let times_met = |profile: &Profile| {
+        let places = cars.iter().flat_map(|car| (60..180).step_by(3).map(move |front| (car, f64::from(front))));
+        let met = places.filter(|((radius, degrees), front)| {
+            !meet(&way, profile, &[(*front, 8.0, stands(*radius, *degrees))], &Options::default()).is_empty()
+        });
+        met.count()
+    };
+    assert_eq!(times_met(&tram()), 0);
+    let stiff = Profile { carriages: 1, chord: 45.0, ..tram() };
+    assert!(times_met(&stiff) > 50, "a stiff one would cut the bend");
+}
+
+#[test]
+fn a_tram_runs_into_what_stands_in_its_way_on_a_bend() {
+    let (way, tram) = (Way::bend(), tram());
+    let stands = way.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 122.0, 0.0);
+    let [found] = meet(&way, &tram, &[(108.0, 8.0, stands)], &Options::default())[..] else { panic!() };
+    assert_eq!((found.kind, found.ego.0), (Kind::RearEnd, 0));
+    assert!((found.gap - 9.0).abs() < 0.3, "{found:?}");
+    let [found] = meet(&way, &tram, &[(150.0, 8.0, stands)], &Options::default())[..] else { panic!() };
+    assert!(found.collision && found.overlap > 1.5, "{found:?}");
+}
+
+#[test]
+fn a_conflict_with_the_tail_of_a_tram_is_where_its_tail_is() {
+    let (way, tram) = (Way::bend(), tram());
+    let behind = way.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 96.0, 12.0);
+    let [found] = meet(&way, &tram, &[(147.0, 4.0, behind)], &Options::default())[..] else { panic!() };
+    assert_eq!((found.kind, found.ego.0), (Kind::RearEnd, 1), "a car follows it round the bend");
+    assert!((found.gap - 6.0).abs() < 0.3, "{found:?}");
+    let across = State { x: 104.0, y: 1.0, z: 0.0, heading: -std::f64::consts::FRAC_PI_2, speed: 6.0 };
+    let [found] = meet(&way, &tram, &[(140.0, 8.0, across)], &Options::default())[..] else { panic!() };
+    assert!(found.collision && found.ego.0 == 0, "{found:?}");
+    assert!((Point::new(found.x, found.y) - Point::new(104.0, 1.0)).norm() < 6.0, "{found:?}");
+}
+
+#[test]
+fn a_tram_that_has_stopped_on_a_bend_still_bends() {
+    let passes = State { speed: 2.0, ..inside() };
+    let [before, stands] = [(147.5, 4.0, inside()), (148.0, 0.0, passes)];
+    assert_eq!(meet(&Way::bend(), &tram(), &[before, stands, stands], &Options::default()), []);
+    let across = State { x: 112.0, y: 10.0, z: 0.0, heading: -std::f64::consts::FRAC_PI_4, speed: 8.0 };
+    let [found] = meet(&Way::bend(), &tram(), &[before, (148.0, 0.0, across)], &Options::default())[..] else {
+        panic!()
+    };
+    assert_eq!((found.kind, found.ego.0), (Kind::Side, 1));
+    assert!((found.gap - 3.0).abs() < 0.3, "{found:?}");
+}
+
+#[test]
+fn on_a_straight_way_a_tram_is_one_rectangle() {
+    let (way, tram) = (Way::through(vec![Point::origin(), Point::new(300.0, 0.0)]), tram());
+    let rigid = Profile { carriages: 1, chord: tram.length, ..tram.clone() };
+    for y in [0.0, 2.0, 9.0] {
+        let car = State { x: 90.0, y, z: 0.0, heading: -0.4, speed: 9.0 };
+        let [bends, stiff] =
+            [&tram, &rigid].map(|profile| meet(&way, profile, &[(120.0, 9.0, car)], &Options::default()));
+        assert_eq!(bends, stiff);
+    }
+}
+
+/// Two roads that merge: from the west and from the south to the north-east.
+const MERGE: &str = r#"<net>
+    <edge id="a" from="w" to="m"><lane id="a_0" index="0" length="100" shape="0,100 100,100"/></edge>
+    <edge id="b" from="s" to="m"><lane id="b_0" index="0" length="100" shape="100,0 100,100"/></edge>
+    <edge id="c" from="m" to="n"><lane id="c_0" index="0" length="100" shape="100,100 180,160"/></edge>
+    <connection from="a" to="c" fromLane="0" toLane="0" dir="s" state="M"/>
+    <connection from="b" to="c" fromLane="0" toLane="0" dir="s" state="M"/>
+</net>"#;
+
+#[test]
+fn a_trailer_is_still_on_the_road_that_it_came_from() {
+    let net = Arc::new(Net::parse(Path::new("merge.net.xml"), MERGE).unwrap());
+    let [truck, car] = [articulated("truck/semitrailer", "truck", 16.5), articulated("passenger", "passenger", 5.0)];
+    for (from, route) in [(Point::new(96.0, 100.0), ["a", "c"]), (Point::new(100.0, 96.0), ["b", "c"])] {
+        let mut roster = Roster::default();
+        let users = [("a", &truck), ("b", &car)].map(|(id, profile)| {
+            let profile = roster.profile(profile.clone()).unwrap();
+            roster.enter(id, profile)
+        });
+        let (mut detector, mut frame) = (Detector::new(&Options::default(), Some(net.clone())), Frame::default());
+        frame.begin(0.0);
+        frame.push(users[0], State { x: 104.0, y: 103.0, z: 0.0, heading: 0.6_f64.atan2(0.8), speed: 5.0 });
+        // It stands on the western road.
+        frame.push(users[1], State { x: 94.0, y: 100.0, z: 0.0, heading: 0.0, speed: 0.0 });
+        detector.track_paths(&frame, &roster);
+        let placement = Placement {
+            lane: net.lane("c_0").unwrap(),
+            position: 5.0,
+            route: Some(route.iter().map(|edge| net.edge(edge).unwrap()).collect()),
+            route_position: 1,
+            lateral_speed: 0.0,
+        };
+        detector.set_placement(&frame, &roster, 0, &placement);
+        detector.broad_phase(&frame, &roster);
+        let collides = detector.narrow_phase(&frame, &roster).any(|found| found.collision);
+        assert_eq!(collides, from.y == 100.0, "it came from {from}");
+    }
+}
+
+fn shape() -> impl Strategy<Value = Profile> {
+    prop_oneof![
+        (25.0..60.0).prop_map(|length| articulated("rail/railcar", "tram", length)),
+        (60.0..120.0).prop_map(|length| articulated("rail", "rail", length)),
+        (16.0..19.0).prop_map(|length| articulated("bus/flexible", "bus", length)),
+        (14.0..19.0).prop_map(|length| articulated("truck/semitrailer", "truck", length)),
+        (14.0..19.0).prop_map(|length| articulated("truck/trailer", "trailer", length)),
+    ]
+}
+
+/// Turns and the distances after them.
+fn turns() -> impl Strategy<Value = Vec<(f64, f64)>> {
+    prop::collection::vec((-0.5..0.5, 3.0..15.0), 40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn leaving_out_keeps_every_pair_that_a_carriage_meets(
+        turns in turns(), profile in shape(), moves in prop::collection::vec(0.0..9.0, 1..4),
+        (x, y) in (-30.0..30.0, -30.0..30.0), behind in 0.0..60.0, heading in -3.2..3.2, speed in 0.0..15.0,
+    ) {
+        let (way, mut front) = (Way::turning(&turns), 125.0);
+        let near = way.at(front - behind);
+        let car = State { x: near.x + x, y: near.y + y, z: 0.0, heading, speed };
+        let steps = moves.iter().map(|speed| { front += speed; (front, *speed, car) }).collect::<Vec<_>>();
+        let steps = [(125.0, 5.0, car)].into_iter().chain(steps).chain([(front, 0.0, car)]).collect::<Vec<_>>();
+        for steps in [&steps[..steps.len() - 1], &steps] {
+            let [left_out, kept] = [false, true].map(|keep_all| {
+                meet(&way, &profile, steps, &Options { keep_all, ..Options::default() })
+            });
+            prop_assert_eq!(left_out, kept);
+        }
+    }
+
+    #[test]
+    fn a_vehicle_collides_with_what_one_of_its_carriages_touches(
+        turns in turns(), profile in shape(), (x, y) in (-4.0..4.0, -4.0..4.0), behind in 0.0..60.0, heading in -3.2..3.2,
+    ) {
+        let way = Way::turning(&turns);
+        let near = way.at(130.0 - behind);
+        let car = State { x: near.x + x, y: near.y + y, z: 0.0, heading, speed: 0.0 };
+        let of_car = Rectangle::behind(car.front(), Vector::new(heading.cos(), heading.sin()), 5.0, 1.8);
+        let touched = profile.carriages().any(|carriage| {
+            let [front, rear] = [0.0, carriage.length].map(|length| way.at(130.0 - carriage.behind - length));
+            touches(&Rectangle::behind(front, (front - rear).normalize(), carriage.length, profile.width), &of_car)
+        });
+        let found = meet(&way, &profile, &[(130.0, 5.0, car)], &Options { contact_tolerance: 0.0, ..Options::default() });
+        prop_assert_eq!(found.iter().any(|found| found.collision), touched);
+    }
+}
