@@ -248,29 +248,29 @@ impl StepInputs<'_> {
             return Overlap::default();
         }
         let depth = side::overlap_now(first, second);
-        let tolerance = self.tolerance(slots);
+        let tolerance = self.tolerance(slots, [0.0; 2]);
         // Both shrink by half of it, which parts them; an obstacle does not shrink.
         let shrinks = if second.shape.is_empty() { tolerance / 2.0 } else { tolerance };
         Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks }
     }
 
-    /// How deep two may overlap without colliding: where their lanes overlap as drawn, by more.
-    pub(super) fn tolerance(&self, slots: [u32; 2]) -> Metre {
+    /// How deep two may overlap without colliding: where the lanes under them, and so far ahead, overlap as drawn, by more.
+    pub(super) fn tolerance(&self, slots: [u32; 2], ahead: [Metre; 2]) -> Metre {
         match self.options.contact_tolerance {
             0.0 => 0.0,
-            tolerance => tolerance + self.drawn_overlap(slots),
+            tolerance => tolerance + self.drawn_overlap(slots, ahead),
         }
     }
 
-    /// By how much the lanes under two vehicles overlap as drawn.
-    fn drawn_overlap(&self, slots: [u32; 2]) -> Metre {
+    /// By how much the lanes under two vehicles, and so far ahead, overlap as drawn.
+    fn drawn_overlap(&self, slots: [u32; 2], ahead: [Metre; 2]) -> Metre {
         if self.overlaps.is_empty() {
             return 0.0;
         }
-        let lanes = slots.map(|slot| {
-            let user = self.user(slot);
+        let lanes = [0, 1].map(|one| {
+            let user = self.user(slots[one]);
             let path = self.paths.of(user.index).filter(|path| !path.track.is_empty());
-            path.map(|path| path.lanes_between(self.paths.of_net(), -self.profile(user).length, 0.0))
+            path.map(|path| path.lanes_between(self.paths.of_net(), -self.profile(user).length, ahead[one]))
                 .unwrap_or_default()
         });
         let widths = slots.map(|slot| self.profile(self.user(slot)).width);

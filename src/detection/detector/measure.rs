@@ -175,8 +175,9 @@ impl StepInputs<'_> {
         let ttc = ttc::time_to_collision(&ego, &foe);
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely { ttc, drac, ..Timely::APART };
+        let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
         // As they go on, and narrower by the tolerance: what would only graze is no crash.
-        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots) };
+        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
         let [mut ego, mut foe] = [ego, foe];
         for (user, course) in users.into_iter().zip([&mut ego, &mut foe]) {
             course.deceleration = self.deceleration(user);
