@@ -57,11 +57,11 @@ impl Kind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
-    /// Margin below 0.
+    /// None of the following.
     Caution,
-    /// TTC below 1.5 s or DRAC above 3.4 m/s².
+    /// The driver brakes too late with some probability, or thresholds are passed: by the rule of the options.
     Serious,
-    /// DRAC above the ego's deceleration, or a collision.
+    /// Even braking fully at once is too late, or a collision.
     Critical,
 }
 

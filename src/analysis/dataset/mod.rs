@@ -11,7 +11,6 @@ use super::variants::{Variant, Variants};
 use crate::Result;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
-use crate::options::Options;
 use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
 use crate::util::units::Second;
@@ -116,13 +115,18 @@ impl Conflicts {
 
     /// The threshold beyond which a measure makes a conflict serious, by the first run's options; none if it never does.
     pub fn threshold(&self, name: &str) -> Option<f64> {
-        let options = Options::default();
-        let (key, default) = match name {
-            "ttc" => ("serious_ttc", options.serious_ttc),
-            "drac" => ("serious_drac", options.serious_drac),
+        let option = |key| self.records.iter().find_map(|record| record.get("options")?.get(key));
+        let key = match name {
+            "ttc" => "serious_ttc",
+            "drac" => "serious_drac",
             _ => return None,
         };
-        let set = self.records.iter().find_map(|record| record.get("options")?.get(key)?.as_f64());
-        Some(set.unwrap_or(default)).filter(|threshold| *threshold > 0.0)
+        let threshold = match option("severity")?.as_str()? {
+            "fhwa" => option(key)?.as_f64()?,
+            // The same for TTC, in s, and DRAC, in m/s².
+            "ssm" => 3.0,
+            _ => return None,
+        };
+        Some(threshold).filter(|threshold| *threshold > 0.0)
     }
 }

@@ -108,12 +108,18 @@ const times = {
   },
 };
 
+/** The threshold of a measure by which conflicts are serious; none where crash probabilities decide. */
+function threshold(by_rule, text) {
+  const at = { fhwa: by_rule[0], ssm: by_rule[1] }[options.severity];
+  return at === undefined ? undefined : { at, text: text(at) };
+}
+
 /** The measures: column, heading, unit, the end of the axis that is 0, and a threshold with its label. */
 const MEASURES = [
   { name: "ttc", title: "Time to collision (TTC)", unit: "s", low: 0,
-    threshold: { at: options.serious_ttc, text: `serious below ${options.serious_ttc} s` } },
+    threshold: threshold([options.serious_ttc, 3], (at) => `serious below ${at} s`) },
   { name: "drac", title: "Deceleration to avoid it (DRAC)", unit: "m/s²", low: 0,
-    threshold: { at: options.serious_drac, text: `serious above ${options.serious_drac} m/s²` } },
+    threshold: threshold([options.serious_drac, 3], (at) => `serious above ${at} m/s²`) },
   { name: "pet", title: "Post-encroachment time (PET)", unit: "s", low: 0 },
   { name: "margin", title: "Margin: gap − μ", unit: "m", high: 0 },
   { name: "delta_v", title: "Largest speed change in a collision (ΔV)", unit: "m/s", low: 0 },

@@ -47,13 +47,13 @@ function shownRows(always) {
   return rows;
 }
 
-/** Order of rows, worst first: collision, severity, ΔV of collisions, TTC, margin. */
+/** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin. */
 function byBadness(a, b) {
-  const { severity, collision, delta_v, ttc, margin } = column;
+  const { severity, collision, delta_v, crash_probability, ttc, margin } = column;
   const or = (value) => (value === null ? Infinity : value);
   const less = (x, y) => (x < y ? -1 : x > y ? 1 : 0);
   return collision[b] - collision[a] || severity[b] - severity[a]
-    || collision[a] * (delta_v[b] - delta_v[a]) || less(or(ttc[a]), or(ttc[b]))
+    || collision[a] * (delta_v[b] - delta_v[a]) || crash_probability[b] - crash_probability[a] || less(or(ttc[a]), or(ttc[b]))
     || less(or(margin[a]), or(margin[b])) || a - b;
 }
 

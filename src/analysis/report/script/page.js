@@ -13,9 +13,10 @@ function showHeader() {
   const sum = (pick) => records.reduce((all, run) => all + pick(run.summary), 0);
   const of_severity = (severity) => column.severity.reduce((all, of_row) => all + (of_row === severity), 0);
   const kilometres = sum((summary) => summary.exposure.vehicle_kilometres);
-  const figures = [["conflicts", number(data.seen)]];
-  figures.push(["serious", number(of_severity(1))], ["critical", number(of_severity(2))]);
+  const figures = [["critical", number(of_severity(2))], ["serious", number(of_severity(1))]];
+  figures.push(["conflicts", number(data.seen)]);
   figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
+  figures.push(["expected crashes (to compare plans with, not a forecast)", number(sum((summary) => summary.expected_crashes || 0), 2)]);
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
     // A run that was killed has conflicts but no record of its traffic.

@@ -61,6 +61,10 @@ function describe(row) {
   } else {
     sentences.push("At constant speed they would not have touched.");
   }
+  if (!value("collision") && value("ttb") !== null) {
+    const wait = value("ttb") > 0 ? `Full braking had to begin within ${number(value("ttb"), 2)} s` : "Even full braking at once was too late";
+    sentences.push(`${wait}; a driver brakes too late with a probability of ${number(100 * value("crash_probability"), 1)} %.`);
+  }
   if (value("pet") !== null) sentences.push(`The second entered the conflict area ${number(value("pet"), 2)} s after the first had left it (PET).`);
   const of_foe = value("foe_delta_v") === null ? "" : ` and the foe’s by ${number(value("foe_delta_v"), 1)} m/s`;
   sentences.push(`A collision ${value("collision") ? "changes" : "would have changed"} the ego’s speed by ${number(value("ego_delta_v"), 1)} m/s${of_foe} (ΔV).`);
@@ -78,6 +82,7 @@ function tipOf(row) {
     `${KINDS[value("kind")]}, ${SEVERITIES[value("severity")]}${value("collision") ? ", collision" : ""}`,
     `${number(value("time"), 1)} s, ${conflicts.spots[spotOf(row)] || "no lane"}`,
     `gap ${maybe("gap", 2, "m")}, μ ${maybe("mu", 2, "m")}, margin ${maybe("margin", 2, "m")}`,
+    `time to brake ${maybe("ttb", 2, "s")}, crash probability ${maybe("crash_probability", 2, "")}`,
     `TTC ${maybe("ttc", 2, "s")}, DRAC ${maybe("drac", 1, "m/s²")}, PET ${maybe("pet", 2, "s")}`,
     `speeds ${number(value("ego_speed"), 1)} and ${number(value("foe_speed"), 1)} m/s, ΔV ${maybe("delta_v", 1, "m/s")}`,
   ];
