@@ -70,6 +70,11 @@ impl Lines {
         self.is_stretched |= stretch != 1.0;
     }
 
+    /// How many metres along the line a metre of the plane is, for the points that follow.
+    pub(crate) fn stretch(&self) -> f64 {
+        self.stretch
+    }
+
     /// Whether any of the lines is stretched.
     pub(crate) fn is_stretched(&self) -> bool {
         self.is_stretched

@@ -20,6 +20,11 @@ fn net(lengths: [f64; 2]) -> Arc<Net> {
 
 /// The encounter of two cars of 5 m at these distances along both lanes, in SUMO's metres, with these speeds.
 fn encounter(lengths: [f64; 2], cars: [(f64, f64); 2]) -> Option<Encounter> {
+    encounter_beside(lengths, cars, 0.0)
+}
+
+/// The same with both this far to the left of the centre line.
+fn encounter_beside(lengths: [f64; 2], cars: [(f64, f64); 2], y: f64) -> Option<Encounter> {
     let net = net(lengths);
     let mut roster = Roster::default();
     let profile = roster.profile(Profile::vehicle(&SumoType::car("car"), &Options::default())).unwrap();
@@ -32,7 +37,7 @@ fn encounter(lengths: [f64; 2], cars: [(f64, f64); 2]) -> Option<Encounter> {
             on_first if on_first <= first => ("a_0", on_first, on_first / first * 100.0),
             on_second => ("b_0", on_second - first, 100.0 + (on_second - first) / second * 100.0),
         };
-        frame.push(roster.enter(id, profile), State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
+        frame.push(roster.enter(id, profile), State { x, y, z: 0.0, heading: 0.0, speed });
         placements.push(Placement {
             lane: net.lane(lane).unwrap(),
             position,
@@ -84,4 +89,21 @@ fn two_that_stand_apart_on_the_lane_do_not_touch() {
     // 2.5 m are left; as drawn, with their full lengths, the two would overlap by 1.25 m.
     let found = encounter([400.0, 400.0], [(100.0, 0.1), (107.5, 0.0)]);
     assert!(found.is_none_or(|found| !found.collision && found.overlap == 0.0), "{found:?}");
+}
+
+#[test]
+fn a_vehicle_is_drawn_as_long_as_all_lanes_under_it() {
+    for beside in [0.0, 0.4] {
+        let clearance = |lengths, cars| {
+            let found = encounter_beside(lengths, cars, beside).unwrap();
+            assert!(!found.collision, "{found:?}");
+            found.nearness.unwrap().clearance
+        };
+        // The leader is 1 m beyond the end of the first lane; 4 m of it are on that lane, which is drawn at a quarter.
+        let shorter = clearance([400.0, 100.0], [(393.0, 4.0), (401.0, 3.0)]);
+        assert!((shorter - 0.75).abs() < 1e-9, "{shorter} at {beside} m");
+        // The first lane is drawn at four times its length.
+        let longer = clearance([25.0, 100.0], [(18.0, 4.0), (26.0, 3.0)]);
+        assert!((longer - 12.0).abs() < 1e-9, "{longer} at {beside} m");
+    }
 }

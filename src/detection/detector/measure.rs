@@ -56,9 +56,8 @@ impl StepInputs<'_> {
         let profile = self.profile(foe);
         let rectangle = &meeting.ego_rectangle;
         // The foe has left when its rear has passed the ego's whole rectangle, however that is turned.
-        meeting.foe_distance
-            + profile.length
-            + (2.0 * (rectangle.half_length + rectangle.half_width) + profile.width) / self.paths.scale(foe.index)
+        let passed = self.drawn_length(foe) + 2.0 * (rectangle.half_length + rectangle.half_width) + profile.width;
+        meeting.foe_distance + passed / self.paths.scale(foe.index)
     }
 
     /// The foe's distance until it, and so each of its carriages, has left the ego's conflict point.

@@ -94,11 +94,19 @@ impl<'a> Paths<'a> {
         }
     }
 
-    /// Metres of the plane per metre of the lane that a road user is on: SUMO draws it as much shorter or longer.
+    /// Metres of the plane per metre of the lane that a road user is on.
     pub(super) fn scale(&self, user: UserIndex) -> f64 {
         match self.of(user) {
             Some(path) if self.of_net.is_stretched() => path.track.scale(path.lines(self.of_net)),
             _ => 1.0,
+        }
+    }
+
+    /// How long a road user of this length is as SUMO draws the lanes that it is on.
+    pub(super) fn drawn_length(&self, user: UserIndex, length: Metre) -> Metre {
+        match self.of(user) {
+            Some(path) if self.of_net.is_stretched() => path.track.drawn_length(path.lines(self.of_net), length),
+            _ => length,
         }
     }
 
@@ -277,7 +285,7 @@ impl<'a> Reach<'a> {
             self.roster.shape(user.index).iter().for_each(|part| bounds.join(&part.bounds));
             return bounds.into();
         }
-        let drawn_length = profile.length * self.paths.scale(user.index);
+        let drawn_length = self.paths.drawn_length(user.index, profile.length);
         if user.ahead && self.has_boxes {
             let (front, length) = (front + user.axis * reach, drawn_length + reach);
             let beside = if user.on_lanes { Track::beside_heading(length) } else { 0.0 };

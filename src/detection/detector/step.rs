@@ -54,7 +54,7 @@ impl StepInputs<'_> {
 
     /// Its length as SUMO draws it.
     pub fn drawn_length(&self, user: &User) -> Metre {
-        self.profile(user).length * self.paths.scale(user.index)
+        self.paths.drawn_length(user.index, self.profile(user).length)
     }
 
     /// The carriages that a road user is seen as: one, unless it bends.

@@ -118,9 +118,13 @@ impl LanePath {
                 behind.reverse();
                 std::mem::swap(&mut behind, &mut ahead);
             }
-            let on_lane = (placement.lane, net.stretch(placement.lane));
-            let before = before.iter().rev().flat_map(|lane| points(net.lines.line(lane.0)));
-            let own = OwnLine::build(&mut self.track, before.chain(behind), foot.point, ahead, on_lane, beside);
+            let (lane, stretch) = (placement.lane, net.stretch(placement.lane));
+            let before = before.iter().rev().flat_map(|lane| {
+                let stretch = net.stretch(*lane);
+                points(net.lines.line(lane.0)).into_iter().map(move |point| (point, stretch))
+            });
+            let behind = before.chain(behind.into_iter().map(|point| (point, stretch)));
+            let own = OwnLine::build(&mut self.track, behind, foot.point, ahead, (lane, stretch), beside);
             self.own = Some(Box::new(own));
         }
         self.edge = (!against).then_some(0);

@@ -23,25 +23,28 @@ pub(super) struct OwnLine {
 const LINE: u32 = 0;
 
 impl OwnLine {
-    /// A line over points of the lanes' centre lines: those behind, the one beside the front bumper (`foot`), those
-    /// ahead.
+    /// A line over points of the lanes' centre lines: those behind, each with the stretch of its lane, the one beside the
+    /// front bumper (`foot`), those ahead.
     pub fn build(
         track: &mut Track,
-        behind: impl Iterator<Item = Point>,
+        behind: impl Iterator<Item = (Point, f64)>,
         foot: Point,
         ahead: Vec<Point>,
         (lane, stretch): (LaneIndex, f64),
         beside: Option<OffsetLine>,
     ) -> Self {
         let mut own = Self { lines: Lines::through([]), lanes: Vec::new(), beside };
-        own.lines.set_stretch(stretch);
-        let lines = &mut own.lines;
-        match &mut own.beside {
-            Some(beside) => {
-                behind.for_each(|point| beside.push_behind(lines, point));
-                beside.push_front(lines, foot);
+        for (point, stretch) in behind {
+            own.set_stretch(stretch);
+            match &mut own.beside {
+                Some(beside) => beside.push_behind(&mut own.lines, point),
+                None => own.lines.push(point),
             }
-            None => behind.chain([foot]).for_each(|point| lines.push(point)),
+        }
+        own.set_stretch(stretch);
+        match &mut own.beside {
+            Some(beside) => beside.push_front(&mut own.lines, foot),
+            None => own.lines.push(foot),
         }
         own.begin_lane(lane, stretch);
         let front = own.lines.length(LINE);
@@ -133,6 +136,17 @@ impl OwnLine {
         }
         self.lines.set_stretch(stretch);
         self.lanes.push((self.lines.len().saturating_sub(1) as u32, lane));
+    }
+
+    /// Sets how many metres of SUMO's a metre of the centre line is, for the points that follow.
+    fn set_stretch(&mut self, stretch: f64) {
+        if self.lines.stretch() == stretch {
+            return;
+        }
+        if let Some(beside) = &self.beside {
+            beside.flush(&mut self.lines);
+        }
+        self.lines.set_stretch(stretch);
     }
 
     /// Appends points of the centre line.

@@ -120,6 +120,26 @@ impl Track {
         if self.is_empty() { 1.0 } else { lines.segment(self.vertex).scale() }
     }
 
+    /// How long a road user is in the plane that is this long along the lines behind its front bumper.
+    pub fn drawn_length(&self, lines: &Lines, length: Metre) -> Metre {
+        if self.is_empty() {
+            return length;
+        }
+        let mut cursor = self.cursor(lines);
+        let (mut rest, mut longer) = (length, 0.0);
+        // On lines to scale nothing is added, so that the length stays the same to the last digit.
+        loop {
+            let begins = cursor.under.begins_at;
+            let here = (cursor.distance - begins).clamp(0.0, rest);
+            longer += (cursor.under.scale() - 1.0) * here;
+            rest -= here;
+            cursor.distance = begins.min(cursor.distance);
+            if rest == 0.0 || !cursor.enter_previous() {
+                return length + longer + (cursor.under.scale() - 1.0) * rest;
+            }
+        }
+    }
+
     /// The box around the lines from a distance `behind` the front bumper to a distance ahead of it, or to their end.
     pub fn bounds(&self, lines: &Lines, behind: Metre, ahead: Metre) -> Bounds {
         let mut cursor = self.behind(lines, behind);
@@ -272,21 +292,25 @@ impl Cursor<'_> {
     /// Moves back by a distance; before the beginning of the track it stays on the first segment.
     pub fn back(mut self, distance: Metre) -> Self {
         self.distance -= distance;
-        while self.distance < self.under.begins_at {
-            if self.vertex > self.range.0 {
-                self.vertex -= 1;
-                self.enter();
-            } else if self.at > 0 {
-                self.at -= 1;
-                self.range = self.lines.range(self.chain[self.at]);
-                self.vertex = self.range.1 - 2;
-                self.enter();
-                self.distance += self.under.ends_at;
-            } else {
-                break;
-            }
-        }
+        while self.distance < self.under.begins_at && self.enter_previous() {}
         self
+    }
+
+    /// Enters the previous segment of the track; `false` if there is none. The place does not change.
+    fn enter_previous(&mut self) -> bool {
+        if self.vertex > self.range.0 {
+            self.vertex -= 1;
+            self.enter();
+        } else if self.at > 0 {
+            self.at -= 1;
+            self.range = self.lines.range(self.chain[self.at]);
+            self.vertex = self.range.1 - 2;
+            self.enter();
+            self.distance += self.under.ends_at;
+        } else {
+            return false;
+        }
+        true
     }
 }
 
