@@ -88,9 +88,8 @@ impl Detector {
             },
         );
         self.speeds.resize(self.paths.len(), LastSpeed::default());
-        let after = frame.time - std::mem::replace(&mut self.last_time, frame.time);
         for Row { user, state } in frame.rows() {
-            self.speeds[user.0 as usize].take(state.speed, after);
+            self.speeds[user.0 as usize].take(state.speed, self.step);
         }
     }
 

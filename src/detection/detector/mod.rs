@@ -93,8 +93,6 @@ pub struct Detector {
     on_lanes: Vec<bool>,
     /// By [`UserIndex`], the speed in the last step that the road user was in, and the deceleration since the one before.
     speeds: Vec<LastSpeed>,
-    /// The time of the last step.
-    last_time: Second,
     /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
     /// The roster's changes until the last step, and the number of road users in that step.
@@ -125,7 +123,6 @@ impl Detector {
             turnings: Vec::new(),
             on_lanes: Vec::new(),
             speeds: Vec::new(),
-            last_time: 0.0,
             search: Search::default(),
             last_step: (0, 0),
             order: RowOrder::default(),
