@@ -1,6 +1,8 @@
 //! The time left to respond: the inverse of μ.
 
-use super::{Braking, LateBraking, Leader, MuModel, stopping_distance, stopping_distance_paper};
+use super::brakes::{Braking, MuModel};
+use super::late::{LateBraking, Leader};
+use super::narrowest;
 use crate::util::units::{Metre, Second};
 
 /// The longest response time T = t1 + t2 of the ego, in s, with which μ(T) is no larger than the gap: 0 where even an
@@ -20,7 +22,7 @@ pub fn response_left(model: MuModel, ego: Braking, foe: Braking, sigma: f64, eps
     let brakes = ego.brakes;
     let left = match (model, leader(foe, sigma, gap - epsilon)) {
         (MuModel::Paper, _) => {
-            let needed = stopping_distance_paper(ego.speed, &super::Brakes { response: 0.0, ..*brakes });
+            let needed = ego.speed * brakes.build_up + ego.speed / (2.0 * brakes.deceleration) * ego.speed;
             let others = foe.speed / (2.0 * foe.brakes.deceleration) * foe.speed;
             (gap - epsilon + others - needed) / ego.speed
         }
@@ -48,7 +50,8 @@ pub fn leader(foe: Braking, sigma: f64, room: Metre) -> Leader {
     if sigma > 0.0 {
         Leader { room, speed: sigma * foe.speed, deceleration: sigma * foe.brakes.deceleration }
     } else {
-        Leader { room: room + sigma * stopping_distance(foe.speed, foe.brakes), speed: 0.0, deceleration: 0.0 }
+        let way = narrowest::stopping_distance::<f64>(foe.speed, foe.brakes);
+        Leader { room: room + sigma * way, speed: 0.0, deceleration: 0.0 }
     }
 }
 

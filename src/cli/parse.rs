@@ -95,8 +95,8 @@ pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, ParseError
         before.iter().cloned().chain(file.words.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
     let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
     match &mut cli.command {
-        Command::Run(arguments) => file.add_tables(&mut arguments.check.options),
-        Command::Replay(arguments) => file.add_tables(&mut arguments.check.options),
+        Command::Run(arguments) => arguments.check.options.set_tables(file),
+        Command::Replay(arguments) => arguments.check.options.set_tables(file),
         _ => {}
     }
     Ok(cli)

@@ -6,6 +6,7 @@
 mod driver;
 #[cfg(feature = "cli")]
 mod settings;
+mod severity_rule;
 pub mod shortcut;
 pub mod thresholds;
 #[cfg(feature = "cli")]
@@ -24,9 +25,9 @@ use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 use shortcut::Shortcut;
-use thresholds::SeverityRule;
 
 pub use driver::{DriverModel, DriverOptions};
+pub use severity_rule::SeverityRule;
 #[cfg(feature = "cli")]
 pub use toml_file::OptionsFile;
 pub use type_options::{BrakeSystem, TypeOptions};
@@ -209,6 +210,13 @@ impl Default for Options {
 }
 
 impl Options {
+    /// Sets what only a TOML file can: its tables of types and drivers.
+    #[cfg(feature = "cli")]
+    pub fn set_tables(&mut self, file: OptionsFile) {
+        self.types = file.types;
+        self.driver_options = file.driver;
+    }
+
     /// Checks that the options are consistent.
     ///
     /// # Errors

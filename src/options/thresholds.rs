@@ -1,8 +1,7 @@
 //! The bounds between the kinds and the severities of conflicts.
 
-use serde::Serialize;
-
 use super::Options;
+use super::severity_rule::SeverityRule;
 use crate::util::units::{MetrePerSecondSquared, Radian, Second};
 
 /// The angles at the conflict point that separate the kinds.
@@ -12,21 +11,6 @@ pub struct KindBounds {
     pub rear_end_below: Radian,
     /// Frontal above this angle.
     pub frontal_above: Radian,
-}
-
-/// How the severity of a conflict is determined.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum SeverityRule {
-    /// By the time that is left and the probability of a crash.
-    #[default]
-    TimeLeft,
-    /// By TTC (FHWA-HRT-08-051) and DRAC (Archer 2005), with settable thresholds.
-    Fhwa,
-    /// By the default thresholds of SUMO's device.ssm: TTC 3 s, DRAC 3 m/s².
-    Ssm,
 }
 
 /// When a conflict is serious or critical.

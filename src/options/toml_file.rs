@@ -4,7 +4,6 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::Options;
 use super::driver::DriverOptions;
 use super::type_options::TypeOptions;
 use super::values::word;
@@ -68,12 +67,6 @@ impl OptionsFile {
             }
         }
         Ok(file)
-    }
-
-    /// Adds the tables that have no command-line form to options.
-    pub fn add_tables(self, options: &mut Options) {
-        options.types = self.types;
-        options.driver_options = self.driver;
     }
 }
 

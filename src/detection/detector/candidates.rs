@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::Detector;
+use super::last_speed::LastSpeed;
 use super::reach::{PathSource, Paths, Reach, StepView, lines_of};
-use super::{Detector, LastSpeed};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
 use crate::geometry::Point;

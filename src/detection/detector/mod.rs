@@ -7,6 +7,7 @@
 
 mod candidates;
 mod encounters;
+mod last_speed;
 mod left_out;
 mod level;
 mod measure;
@@ -34,7 +35,8 @@ use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+use crate::util::units::{Metre, Second};
+use last_speed::LastSpeed;
 use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
 use shortcuts::Shortcuts;
@@ -46,29 +48,6 @@ const LEVEL: Metre = 2.5;
 
 pub use left_out::LeftOut;
 pub use work::Work;
-
-/// The speed of a road user in a step, and how it brakes. By default it is not known, and the road user does not brake.
-#[derive(Clone, Copy)]
-struct LastSpeed {
-    /// Not a number where it is not known.
-    speed: MetrePerSecond,
-    deceleration: MetrePerSecondSquared,
-}
-
-impl Default for LastSpeed {
-    fn default() -> Self {
-        Self { speed: f64::NAN, deceleration: 0.0 }
-    }
-}
-
-impl LastSpeed {
-    /// The speed of this step, `after` s after the last.
-    fn take(&mut self, speed: MetrePerSecond, after: Second) {
-        let slower = self.speed - speed;
-        self.deceleration = if slower > 0.0 && after > 0.0 { slower / after } else { 0.0 };
-        self.speed = speed;
-    }
-}
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {

@@ -1,6 +1,6 @@
 //! The data that both phases share for each road user of a step, and how far it reaches until it stands.
 
-use super::LastSpeed;
+use super::last_speed::LastSpeed;
 use super::shortcuts::Shortcuts;
 use crate::braking::{stopping_distance, stopping_distance_paper};
 use crate::detection::broad_phase::{Area, Circle, Slot};

@@ -1,6 +1,6 @@
 //! What the narrow phase reads of the current step.
 
-use super::LastSpeed;
+use super::last_speed::LastSpeed;
 use super::reach;
 use super::reach::{Paths, Reach, User};
 use super::shortcuts::Shortcuts;
