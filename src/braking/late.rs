@@ -196,7 +196,7 @@ impl Closing {
 
     /// Whether it still moves when the deceleration has built up.
     fn is_built_up(&self, speed: MetrePerSecond) -> bool {
-        speed >= self.lost_in_build_up()
+        self.build_up == 0.0 || speed >= self.lost_in_build_up()
     }
 
     fn lost_in_build_up(&self) -> MetrePerSecond {

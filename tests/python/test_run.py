@@ -17,7 +17,7 @@ CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
     "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,collision_sumo,ego_type,foe_type,"
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
-    "headway,overlap"
+    "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v"
 )
 ENCOUNTER_COLUMNS = "time,ego,foe,kind,gap,mu,margin,ttc,drac,severity"
 
