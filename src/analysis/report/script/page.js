@@ -16,7 +16,7 @@ function showHeader() {
   const figures = [["critical", number(of_severity(2))], ["serious", number(of_severity(1))]];
   figures.push(["conflicts", number(data.seen)]);
   figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
-  figures.push(["expected crashes (to compare plans with, not a forecast)", number(sum((summary) => summary.expected_crashes || 0), 2)]);
+  figures.push(["expected crashes (an index, not a forecast)", number(sum((summary) => summary.expected_crashes || 0), 2)]);
   if (records.length) {
     figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
     // A run that was killed has conflicts but no record of its traffic.
