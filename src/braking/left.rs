@@ -63,16 +63,9 @@ fn stands_after(leader: &Leader) -> Metre {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::braking::tests::brakes;
     use crate::braking::{Brakes, mu};
     use proptest::prelude::*;
-
-    fn brakes() -> impl Strategy<Value = Brakes> {
-        (0.0..2.0, prop_oneof![Just(0.0), 0.0..3.0], 0.5..12.0).prop_map(|(response, build_up, deceleration)| Brakes {
-            response,
-            build_up,
-            deceleration,
-        })
-    }
 
     proptest! {
         #[test]

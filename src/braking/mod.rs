@@ -114,7 +114,8 @@ mod tests {
         distance
     }
 
-    fn brakes() -> impl Strategy<Value = Brakes> {
+    /// Any brakes, some of them without a build-up.
+    pub(super) fn brakes() -> impl Strategy<Value = Brakes> {
         (0.0..2.0, prop_oneof![Just(0.0), 0.0..3.0], 0.5..12.0).prop_map(|(response, build_up, deceleration)| Brakes {
             response,
             build_up,

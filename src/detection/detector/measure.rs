@@ -175,7 +175,7 @@ impl StepInputs<'_> {
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely { ttc, drac, ..Timely::APART };
         let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
-        // As they go on, and narrower by the tolerance: what would only graze is no crash.
+        // Both go on as now. They are narrower by the tolerance, so that a graze does not count as a crash.
         let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
         let [mut ego, mut foe] = [ego, foe];
         for (user, course) in users.into_iter().zip([&mut ego, &mut foe]) {
@@ -200,7 +200,7 @@ impl StepInputs<'_> {
     }
 }
 
-/// A driver that slows down by more than this, in m/s², has responded: from here on, a vehicle has to light its brake lamps
+/// A driver that slows down by at least this, in m/s², has responded: from here on, a vehicle has to light its brake lamps
 /// (UN R13-H, 5.2.22.4).
 const BRAKES: MetrePerSecondSquared = 1.3;
 

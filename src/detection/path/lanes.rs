@@ -70,7 +70,7 @@ impl LanePath {
         self.own.as_ref().map_or(of_net, |own| &own.lines)
     }
 
-    /// Updates the place of the front bumper; `false` if it is no longer on the path.
+    /// Updates the place of the front bumper; `false` if it has left the path.
     pub fn follow(&mut self, of_net: &Lines, front: Point) -> bool {
         self.track.follow(self.own.as_ref().map_or(of_net, |own| &own.lines), front)
     }

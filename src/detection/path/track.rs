@@ -86,7 +86,7 @@ impl Track {
         self.end - self.front
     }
 
-    /// Updates the place of the front bumper; `false` if it is no longer on the lines ahead.
+    /// Updates the place of the front bumper; `false` if it has left the lines ahead.
     pub fn follow(&mut self, lines: &Lines, front: Point) -> bool {
         if self.is_empty() {
             return false;

@@ -55,7 +55,7 @@ impl Net {
         line.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
     }
 
-    /// How many metres of SUMO's a metre of a lane's shape is; 1 for a lane that is as long as it is drawn.
+    /// How many metres of SUMO's a metre of a lane's shape is; 1 for a lane whose length is that of its shape.
     pub fn stretch(&self, lane: LaneIndex) -> f64 {
         if self.lines.is_stretched() { stretch(self.lines.length(lane.0), self.drawn_length(lane)) } else { 1.0 }
     }
