@@ -3,6 +3,7 @@
 //! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
+pub mod condition;
 #[cfg(feature = "cli")]
 mod settings;
 pub mod shortcut;
@@ -22,6 +23,7 @@ use serde::Serialize;
 use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
+use condition::Condition;
 use shortcut::Shortcut;
 
 #[cfg(feature = "cli")]
@@ -90,6 +92,8 @@ const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
 const SERIOUS_TTC: Second = 1.5;
 /// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
 const SERIOUS_DRAC: MetrePerSecondSquared = 3.4;
+/// How long after an event its PET is waited for, in s: no condition may ask for a later one.
+pub const LONGEST_PET: Second = 5.0;
 /// Default of t1 + t2 with hydraulic brakes, in s.
 pub const RESPONSE: Second = RESPONSE_TIME + HYDRAULIC_DELAY;
 
@@ -145,9 +149,16 @@ pub struct Options {
     /// Report only conflicts on the edges, lanes and junctions of this SUMO selection file.
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub filter: Option<PathBuf>,
-    /// Also write encounters.csv, with a row per step of each pair in conflict.
+    /// Log a pair in steps that meet this: `ssm`, `ssam`, `paper`, or comparisons of per-step columns and of the PET, as
+    /// `ttc < 3 or pet < 2 or margin < 0`.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "CONDITION", default_value_t))]
+    pub log: Condition,
+    /// Count traffic and log conflicts only after this time from the begin, in s.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative))]
+    pub warmup: Second,
+    /// Also write series.csv, with a row per step of each logged conflict.
     #[cfg_attr(feature = "cli", arg(long))]
-    pub log_encounters: bool,
+    pub log_series: bool,
     /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_all: bool,
@@ -179,7 +190,9 @@ impl Default for Options {
             serious_drac: SERIOUS_DRAC,
             obstacles: Vec::new(),
             filter: None,
-            log_encounters: false,
+            log: Condition::default(),
+            warmup: 0.0,
+            log_series: false,
             keep_all: false,
             keep: Vec::new(),
             types: FxHashMap::default(),
@@ -191,12 +204,18 @@ impl Options {
     /// Checks that the options are consistent.
     ///
     /// # Errors
-    /// [`Error::Value`] if the bounds of the kinds overlap.
+    /// [`Error::Value`] if the bounds of the kinds overlap, or the paper's flow chart would have to look further.
     pub fn checked(self) -> Result<Self> {
         if self.rear_end_below > self.frontal_above {
             return Err(Error::Value(format!(
                 "rear_end_below ({} rad) must not be above frontal_above ({} rad)",
                 self.rear_end_below, self.frontal_above
+            )));
+        }
+        if self.mode == Mode::Paper && !self.log.look_ahead().is_none() {
+            return Err(Error::Value(format!(
+                "log: \"{}\" needs pairs beyond the paper's detection radius, within which --mode paper finds them",
+                self.log
             )));
         }
         Ok(self)
