@@ -1,14 +1,17 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the clearance, TTC, DRAC and
 //! severity of a pair in conflict.
 
+use super::cover;
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::detection::encounter::{Encounter, Nearness};
+use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::drac;
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
+use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
@@ -23,8 +26,9 @@ impl StepInputs<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            let [ego, foe] = met.slots.map(|slot| self.mover(slot).shrunk(met.shrinks));
-            self.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
+            let scene = self.as_met(met.further);
+            let [ego, foe] = met.slots.map(|slot| scene.mover(slot).shrunk(met.shrinks));
+            scene.measure(scratch, [&ego, &foe], met, &mut encounters[*index as usize]);
         }
     }
 
@@ -33,13 +37,48 @@ impl StepInputs<'_> {
         if met.leaves {
             encounter.foe_distance = self.way_out(scratch, pair[1], met);
             if self.options.mode == Mode::Closecall {
-                encounter.gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
+                let gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
+                encounter.gap = self.gap_beyond(gap, encounter.mu, met.slots, &met.meeting);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
-        if encounter.in_conflict() {
+        if self.measures(encounter) {
             encounter.nearness = Some(self.nearness(scratch, pair, met, encounter));
+            encounter.pet_below = self.pet_below(met.slots, encounter);
         }
+    }
+
+    /// Whether a pair that would meet is measured: if it is in conflict, or the log asks for more than that.
+    pub(super) fn measures(&self, encounter: &Encounter) -> bool {
+        encounter.in_conflict() || !self.options.log.is_default()
+    }
+
+    /// The PET that its event has to be below so that the step is logged. A collision always is.
+    fn pet_below(&self, slots: [u32; 2], encounter: &Encounter) -> Second {
+        if encounter.collision || (self.options.log.is_default() && encounter.in_conflict()) {
+            return Second::INFINITY;
+        }
+        let users = slots.map(|slot| self.user(slot));
+        let values = StepValues {
+            found: encounter,
+            speeds: users.map(|user| self.state(user).speed),
+            masses: users.map(|user| self.profile(user).mass),
+        };
+        let may_have_pet = encounter.kind != Kind::RearEnd && !self.is_obstacle(slots[1]);
+        self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
+    }
+
+    /// The gap of a pair. One that meets only beyond where both stand has a margin of at least the distance by which one
+    /// would have to go on for that; its gap is as large.
+    pub(super) fn gap_beyond(&self, gap: Metre, mu: Metre, slots: [u32; 2], meeting: &ConflictPoint) -> Metre {
+        if !self.is_further() {
+            return gap;
+        }
+        let [(ego, of_ego), (foe, of_foe)] =
+            slots.map(|slot| self.user(slot)).map(|user| (self.state(user), self.profile(user)));
+        let ego_beyond = meeting.ego_distance - cover::reach(ego, of_ego, self.options.epsilon);
+        let foe_beyond = meeting.foe_distance - cover::stop(foe, of_foe);
+        gap.max(mu + ego_beyond.max(foe_beyond).max(0.0))
     }
 
     /// A distance along the path at which the foe has surely left the conflict point.
