@@ -14,7 +14,7 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector, angle_between};
-use crate::options::LONGEST_PET;
+use crate::options::condition::LONGEST_PET;
 use crate::util::units::{Metre, Radian, Second};
 
 /// How long after a conflict closed its PET is waited for, in s.

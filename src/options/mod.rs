@@ -92,8 +92,6 @@ const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
 const SERIOUS_TTC: Second = 1.5;
 /// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
 const SERIOUS_DRAC: MetrePerSecondSquared = 3.4;
-/// How long after an event its PET is waited for, in s: no condition may ask for a later one.
-pub const LONGEST_PET: Second = 5.0;
 /// Default of t1 + t2 with hydraulic brakes, in s.
 pub const RESPONSE: Second = RESPONSE_TIME + HYDRAULIC_DELAY;
 
@@ -159,6 +157,10 @@ pub struct Options {
     /// Also write series.csv, with a row per step of each logged conflict.
     #[cfg_attr(feature = "cli", arg(long))]
     pub log_series: bool,
+    /// The former name of `log_series`; the file is then called encounters.csv.
+    #[cfg_attr(feature = "cli", arg(long, hide = true))]
+    #[serde(skip)]
+    pub log_encounters: bool,
     /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_all: bool,
@@ -193,6 +195,7 @@ impl Default for Options {
             log: Condition::default(),
             warmup: 0.0,
             log_series: false,
+            log_encounters: false,
             keep_all: false,
             keep: Vec::new(),
             types: FxHashMap::default(),
@@ -200,7 +203,18 @@ impl Default for Options {
     }
 }
 
+/// The name of the file with each step of each conflict.
+pub const SERIES: &str = "series.csv";
+/// Its name where it is asked for by the option's former name.
+pub const ENCOUNTERS: &str = "encounters.csv";
+
 impl Options {
+    /// The name of the file with each step of each conflict; none where it is not wanted.
+    pub fn series_file(&self) -> Option<&'static str> {
+        let by_former_name = self.log_encounters.then_some(ENCOUNTERS);
+        self.log_series.then_some(SERIES).or(by_former_name)
+    }
+
     /// Checks that the options are consistent.
     ///
     /// # Errors

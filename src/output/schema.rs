@@ -83,12 +83,12 @@ columns! { |conflict, context|
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `caution`: margin < 0; `serious`: TTC < 1.5 s or DRAC > 3.4 m/s²; `critical`: DRAC above the ego's braking
+    /// `caution`: no more than that it is logged; `serious`: TTC < 1.5 s or DRAC > 3.4 m/s²; `critical`: DRAC above the ego's braking
     /// deceleration, or a collision; the worst of all steps
     [Required] severity: Severity = conflict.severity;
-    /// first step with margin < 0
+    /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
-    /// last step with margin < 0
+    /// last step that meets the log's condition
     [Required] end: Second = conflict.end;
     /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and the four
     /// extremes `clearance`, `ttc`, `drac`, `pet`

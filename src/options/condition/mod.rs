@@ -4,9 +4,11 @@
 //! that a pair lacks in a step meets no comparison. The PET is known only at the end of an event, so a step is given the
 //! value that the PET has to be below for the step to meet the condition.
 
+mod comparison;
 mod look_ahead;
 mod measure;
 mod parse;
+mod tree;
 
 use std::fmt;
 use std::str::FromStr;
@@ -14,9 +16,11 @@ use std::str::FromStr;
 use serde::{Serialize, Serializer};
 
 use crate::util::units::Second;
+use comparison::Comparison;
 use parse::Parser;
+use tree::Tree;
 
-pub use look_ahead::LookAhead;
+pub use look_ahead::{LONGEST_PET, LookAhead};
 pub use measure::Measure;
 
 /// Names of conditions: FHWA's SSAM (Gettman et al. 2008), SUMO's device.ssm, and the paper's.
@@ -29,54 +33,6 @@ pub struct Condition {
     tree: Tree,
     look_ahead: LookAhead,
     is_default: bool,
-}
-
-/// Comparisons, and how they are joined.
-#[derive(Clone, Debug, PartialEq)]
-enum Tree {
-    Compare(Comparison),
-    And(Vec<Tree>),
-    Or(Vec<Tree>),
-}
-
-/// A measure compared with a number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Comparison {
-    measure: Measure,
-    operator: Operator,
-    value: f64,
-}
-
-/// How a measure is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Operator {
-    Below,
-    AtMost,
-    Above,
-    AtLeast,
-}
-
-impl Operator {
-    /// With how each is written; the longer first.
-    const ALL: [(&str, Self); 4] =
-        [("<=", Self::AtMost), (">=", Self::AtLeast), ("<", Self::Below), (">", Self::Above)];
-
-    fn text(self) -> &'static str {
-        Self::ALL.iter().find(|(_, operator)| *operator == self).map_or("", |(text, _)| text)
-    }
-
-    fn is_upper_bound(self) -> bool {
-        matches!(self, Self::Below | Self::AtMost)
-    }
-
-    fn holds(self, measured: f64, value: f64) -> bool {
-        match self {
-            Self::Below => measured < value,
-            Self::AtMost => measured <= value,
-            Self::Above => measured > value,
-            Self::AtLeast => measured >= value,
-        }
-    }
 }
 
 impl Condition {
@@ -108,60 +64,6 @@ impl Condition {
     }
 }
 
-impl Comparison {
-    /// That of the default.
-    const MARGIN: Self = Self { measure: Measure::Margin, operator: Operator::Below, value: 0.0 };
-}
-
-impl Tree {
-    fn pet_below(&self, measure: &impl Fn(Measure) -> Option<f64>, may_have_pet: bool) -> Second {
-        match self {
-            Self::Compare(Comparison { measure: Measure::Pet, operator, value }) if may_have_pet => match operator {
-                Operator::AtMost => value.next_up(),
-                _ => *value,
-            },
-            Self::Compare(Comparison { measure: of, operator, value }) => {
-                if measure(*of).is_some_and(|measured| operator.holds(measured, *value)) {
-                    Second::INFINITY
-                } else {
-                    Second::NEG_INFINITY
-                }
-            }
-            Self::And(parts) => {
-                parts.iter().map(|part| part.pet_below(measure, may_have_pet)).fold(Second::INFINITY, Second::min)
-            }
-            Self::Or(parts) => {
-                parts.iter().map(|part| part.pet_below(measure, may_have_pet)).fold(Second::NEG_INFINITY, Second::max)
-            }
-        }
-    }
-
-    fn needs_pet(&self) -> bool {
-        match self {
-            Self::Compare(comparison) => comparison.measure == Measure::Pet,
-            Self::And(parts) | Self::Or(parts) => parts.iter().any(Self::needs_pet),
-        }
-    }
-
-    /// Of parts that all have to hold, the one that looks least far is enough.
-    fn look_ahead(&self) -> Result<LookAhead, String> {
-        match self {
-            Self::Compare(comparison) => comparison.look_ahead().map_err(|why| format!("\"{self}\" {why}")),
-            Self::Or(parts) => {
-                parts.iter().try_fold(LookAhead::NONE, |furthest, part| Ok(furthest.or(part.look_ahead()?)))
-            }
-            Self::And(parts) => {
-                let mut bounded = parts.iter().map(Self::look_ahead);
-                let first = bounded.next().unwrap_or(Ok(LookAhead::NONE));
-                bounded.fold(first, |least, part| match (least, part) {
-                    (Ok(least), Ok(part)) => Ok(least.nearer(part)),
-                    (least, part) => least.or(part),
-                })
-            }
-        }
-    }
-}
-
 impl Default for Condition {
     fn default() -> Self {
         Self { tree: Tree::Compare(Comparison::MARGIN), look_ahead: LookAhead::NONE, is_default: true }
@@ -181,27 +83,6 @@ impl FromStr for Condition {
 impl fmt::Display for Condition {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         self.tree.fmt(f)
-    }
-}
-
-impl fmt::Display for Tree {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let joined = |f: &mut fmt::Formatter, parts: &[Self], word: &str| {
-            parts.iter().enumerate().try_for_each(|(number, part)| {
-                let word = if number > 0 { word } else { "" };
-                match part {
-                    Self::Compare(_) => write!(f, "{word}{part}"),
-                    _ => write!(f, "{word}({part})"),
-                }
-            })
-        };
-        match self {
-            Self::Compare(Comparison { measure, operator, value }) => {
-                write!(f, "{} {} {value}", measure.name(), operator.text())
-            }
-            Self::And(parts) => joined(f, parts, " and "),
-            Self::Or(parts) => joined(f, parts, " or "),
-        }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Reads a condition: recursive descent over its text.
 
-use super::{Comparison, Measure, Operator, Tree};
+use super::comparison::{Comparison, Operator};
+use super::measure::Measure;
+use super::tree::Tree;
 
 /// Parentheses within parentheses; more are refused before the stack ends.
 const DEEPEST: usize = 64;
