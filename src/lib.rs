@@ -81,6 +81,7 @@ pub use error::{Error, Result};
 pub use events::{Alarm, Conflict, Snapshot, Tracker};
 pub use geometry::Point;
 pub use input::replay::Replay;
+pub use options::condition::Condition;
 pub use options::shortcut::Shortcut;
 pub use options::{BrakeSystem, Deceleration, Mode, Options, PathModel, TypeOptions};
 pub use output::formats::OutputFiles;

@@ -7,6 +7,7 @@
 mod obstacles;
 pub mod recorded;
 pub mod step;
+mod warm_up;
 
 use std::sync::Arc;
 
@@ -29,6 +30,7 @@ use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
 use crate::{Error, Result};
+use warm_up::WarmUp;
 
 /// Steps longer than this are worth a remark, in s: a vehicle at 50 km/h moves by more than its own length.
 const LONG_STEP: Second = 0.5;
@@ -43,6 +45,7 @@ pub struct Run {
     net: Option<Arc<Net>>,
     filter: Option<Filter>,
     tracker: Tracker,
+    warm_up: WarmUp,
     log: Option<Log>,
     outputs: Outputs,
     keeps_conflicts: bool,
@@ -83,7 +86,8 @@ impl Run {
             detector,
             net,
             filter,
-            tracker: Tracker::new(options.kind_bounds().rear_end_below),
+            tracker: Tracker::new(options),
+            warm_up: WarmUp::new(options.warmup),
             log: None,
             outputs: Outputs::default(),
             keeps_conflicts: true,
@@ -173,29 +177,32 @@ impl Run {
     /// A vehicle or person enters the scene; the roster has its profile.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
         let user = self.roster.enter(id, profile);
-        match self.roster.profile_of(user).category {
-            Category::Vehicle => self.summary.exposure.vehicles += 1,
-            Category::Person => self.summary.exposure.persons += 1,
-            Category::Obstacle => {}
-        }
+        self.warm_up.enter(self.roster.profile_of(user).category, &mut self.summary.exposure);
         user
+    }
+
+    /// The numbers of vehicles and persons that ever were in the scene, in the warm-up too.
+    pub fn entered(&self) -> [u64; 2] {
+        self.warm_up.entered()
     }
 
     /// A road user leaves the scene; it must not be in a later frame.
     pub fn leave(&mut self, user: UserIndex) {
+        self.warm_up.leave(self.roster.profile_of(user).category);
         self.leaving.push(user);
     }
 
     /// Begins the step at `time`, with an empty frame.
     pub fn begin_step(&mut self, time: Second) {
-        match self.time() {
-            None => self.summary.begin = time,
-            Some(last) => {
-                self.step_length.get_or_insert(time - last);
-                self.count_exposure(time - last);
-            }
+        if let Some(last) = self.time() {
+            self.step_length.get_or_insert(time - last);
+            self.count_exposure(time - last);
         }
-        self.summary.steps += 1;
+        if self.summary.steps == 0 {
+            self.summary.begin = time;
+        }
+        self.warm_up.begin_step(time);
+        self.summary.steps += u64::from(self.warm_up.is_over());
         self.summary.end = time;
         self.frame.begin(time);
         for &(user, corner) in &self.obstacles {
@@ -205,7 +212,8 @@ impl Run {
 
     /// States the pairs of ids of which SUMO reports a collision in the step under way.
     pub fn set_collisions_of_sumo(&mut self, collided: Vec<[String; 2]>) {
-        self.collided_so_far.extend(collided.iter().cloned().map(|mut pair| {
+        let counted = collided.iter().filter(|_| self.warm_up.is_over()).cloned();
+        self.collided_so_far.extend(counted.map(|mut pair| {
             pair.sort_unstable();
             pair
         }));
@@ -215,11 +223,14 @@ impl Run {
 
     /// The time of the step under way, if one has begun.
     pub fn time(&self) -> Option<Second> {
-        (self.summary.steps > 0).then_some(self.frame.time)
+        self.warm_up.has_begun().then_some(self.frame.time)
     }
 
-    /// Counts the traffic of the frame's step, which lasted this long.
+    /// Counts the traffic of the frame's step, which lasted this long, unless it was a step of the warm-up.
     fn count_exposure(&mut self, lasted: Second) {
+        if !self.warm_up.is_over() {
+            return;
+        }
         let exposure = &mut self.summary.exposure;
         for Row { user, state } in self.frame.rows() {
             if self.roster.profile_of(user).category == Category::Vehicle {
@@ -246,7 +257,7 @@ impl Run {
         self.outputs.place(row, placement);
     }
 
-    /// The pairs that were in conflict in the last step.
+    /// The pairs that met the log's condition in the last step, or will with the PET of their events.
     pub fn in_conflict(&self) -> impl ExactSizeIterator<Item = &Encounter> {
         self.detector.encounters()
     }
@@ -297,7 +308,7 @@ impl Run {
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
         let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
         let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
-        self.summary.remarks = remarks.collect();
+        self.summary.remarks = remarks.chain(self.warm_up.remark()).collect();
         Ok(self.summary.clone())
     }
 }

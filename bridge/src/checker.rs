@@ -21,7 +21,7 @@ use crate::pull::{self, Source};
 ///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None if `step`
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
-///     out: a folder for the log (conflicts.csv, run.json, and encounters.csv with `log_encounters=True`); by default
+///     out: a folder for the log (conflicts.csv, run.json, and series.csv with `log_series=True`); by default
 ///         no log is written. An earlier log is kept in its folder `earlier`.
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.

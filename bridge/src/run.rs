@@ -116,8 +116,8 @@ fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult
 
 /// Closes the log, or removes it if the scenario could not be used.
 fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spent: &StepTimes) -> Result<Summary> {
-    let exposure = recorded.run.summary().exposure;
-    let is_empty = ended.is_ok() && exposure.vehicles + exposure.persons == 0;
+    let [vehicles, persons] = recorded.run.entered();
+    let is_empty = ended.is_ok() && vehicles + persons == 0;
     let unusable = match &ended {
         Ok(()) if is_empty => Some("the scenario is empty: no road user ever enters it"),
         Err(Error::Value(message)) => Some(&**message),
@@ -129,7 +129,7 @@ fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spe
     }
     let summary = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
-        left_out: left_out(request, exposure.persons),
+        left_out: left_out(request, persons),
         spent: spent.seconds(),
         ..Ending::default()
     })?;

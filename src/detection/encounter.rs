@@ -40,11 +40,14 @@ pub struct Encounter {
     pub overlap: Metre,
     /// Whether they overlap by more than the contact tolerance.
     pub collision: bool,
-    /// Measures of a pair in conflict; none if margin ≥ 0.
+    /// Measures of a pair in conflict, or of one that the log's condition asks for; none of others.
     pub nearness: Option<Nearness>,
+    /// The step meets the log's condition if its event's PET is below this: infinite where it does whatever the PET is, minus
+    /// infinite where it does not.
+    pub pet_below: Second,
 }
 
-/// Measures of a pair in conflict, in one step.
+/// Measures of a pair, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Nearness {
@@ -76,5 +79,15 @@ impl Encounter {
     /// Whether the gap is smaller than μ, or there is none left.
     pub fn in_conflict(&self) -> bool {
         self.margin < 0.0 || self.collision
+    }
+
+    /// Whether it meets the log's condition, if its event has the PET for it.
+    pub fn may_be_logged(&self) -> bool {
+        self.pet_below > Second::NEG_INFINITY
+    }
+
+    /// Whether it meets the log's condition whatever the PET of its event is.
+    pub fn is_logged(&self) -> bool {
+        self.pet_below == Second::INFINITY
     }
 }

@@ -10,3 +10,4 @@ pub mod kind;
 pub mod measures;
 pub mod narrow_phase;
 pub mod path;
+mod step_values;

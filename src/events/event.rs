@@ -14,7 +14,7 @@ use crate::traffic::profile::Profile;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
-/// One conflict: a pair and a run of steps with margin < 0.
+/// One conflict: a pair and a run of steps that meet the log's condition.
 ///
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes, from
 /// `clearance` to `pet`. The columns of a log follow from it: `output::schema`.
@@ -35,9 +35,9 @@ pub struct Conflict {
     pub kind: Kind,
     /// The worst over the event.
     pub severity: Severity,
-    /// First step with margin < 0, in s.
+    /// First step that meets the log's condition, in s.
     pub begin: Second,
-    /// Last step with margin < 0, in s.
+    /// Last step that meets it, in s.
     pub end: Second,
     /// The step with the smallest margin, in s.
     pub time: Second,
@@ -103,6 +103,9 @@ pub struct Conflict {
     /// When and where `ttc`, `drac` and `pet` were found.
     #[serde(skip)]
     pub found: [Option<Moment>; 3],
+    /// Each of its steps as a conflict of its own, without paths and PET, where a series is wanted.
+    #[serde(skip)]
+    pub steps: Vec<Self>,
 }
 
 impl Conflict {
@@ -176,6 +179,7 @@ impl Conflict {
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],
+            steps: Vec::new(),
         }
     }
 }

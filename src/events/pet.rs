@@ -14,10 +14,11 @@ use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector, angle_between};
+use crate::options::condition::LONGEST_PET;
 use crate::util::units::{Metre, Radian, Second};
 
 /// How long after a conflict closed its PET is waited for, in s.
-pub const WAIT: Second = 5.0;
+pub const WAIT: Second = LONGEST_PET;
 
 /// The path that one road user drove: its rectangle at each time.
 #[derive(Clone, Debug, Default)]

@@ -3,6 +3,7 @@
 //! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
+pub mod condition;
 mod driver;
 #[cfg(feature = "cli")]
 mod settings;
@@ -24,6 +25,7 @@ use serde::Serialize;
 use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
+use condition::Condition;
 use shortcut::Shortcut;
 
 pub use driver::{DriverModel, DriverOptions};
@@ -160,8 +162,19 @@ pub struct Options {
     /// Report only conflicts on the edges, lanes and junctions of this SUMO selection file.
     #[cfg_attr(feature = "cli", arg(long, value_name = "FILE"))]
     pub filter: Option<PathBuf>,
-    /// Also write encounters.csv, with a row per step of each pair in conflict.
+    /// Log a pair in steps that meet this: `ssm`, `ssam`, `paper`, or comparisons of per-step columns and of the PET, as
+    /// `ttc < 3 or pet < 2 or margin < 0`.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "CONDITION", default_value_t))]
+    pub log: Condition,
+    /// Count traffic and log conflicts only after this time from the begin, in s.
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative))]
+    pub warmup: Second,
+    /// Also write series.csv, with a row per step of each logged conflict.
     #[cfg_attr(feature = "cli", arg(long))]
+    pub log_series: bool,
+    /// The former name of `log_series`; the file is then called encounters.csv.
+    #[cfg_attr(feature = "cli", arg(long, hide = true))]
+    #[serde(skip)]
     pub log_encounters: bool,
     /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
     #[cfg_attr(feature = "cli", arg(long))]
@@ -200,6 +213,9 @@ impl Default for Options {
             driver: DriverModel::default(),
             obstacles: Vec::new(),
             filter: None,
+            log: Condition::default(),
+            warmup: 0.0,
+            log_series: false,
             log_encounters: false,
             keep_all: false,
             keep: Vec::new(),
@@ -209,6 +225,11 @@ impl Default for Options {
     }
 }
 
+/// The name of the file with each step of each conflict.
+pub const SERIES: &str = "series.csv";
+/// Its name where it is asked for by the option's former name.
+pub const ENCOUNTERS: &str = "encounters.csv";
+
 impl Options {
     /// Sets what only a TOML file can: its tables of types and drivers.
     #[cfg(feature = "cli")]
@@ -217,15 +238,27 @@ impl Options {
         self.driver_options = file.driver;
     }
 
+    /// The name of the file with each step of each conflict; none where it is not wanted.
+    pub fn series_file(&self) -> Option<&'static str> {
+        let by_former_name = self.log_encounters.then_some(ENCOUNTERS);
+        self.log_series.then_some(SERIES).or(by_former_name)
+    }
+
     /// Checks that the options are consistent.
     ///
     /// # Errors
-    /// [`Error::Value`] if the bounds of the kinds overlap.
+    /// [`Error::Value`] if the bounds of the kinds overlap, or the paper's flow chart would have to look further.
     pub fn checked(self) -> Result<Self> {
         if self.rear_end_below > self.frontal_above {
             return Err(Error::Value(format!(
                 "rear_end_below ({} rad) must not be above frontal_above ({} rad)",
                 self.rear_end_below, self.frontal_above
+            )));
+        }
+        if self.mode == Mode::Paper && !self.log.look_ahead().is_none() {
+            return Err(Error::Value(format!(
+                "log: \"{}\" needs pairs beyond the paper's detection radius, within which --mode paper finds them",
+                self.log
             )));
         }
         Ok(self)

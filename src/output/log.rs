@@ -1,4 +1,4 @@
-//! The log of a run: `conflicts.csv`, `encounters.csv` on request, `run.json`.
+//! The log of a run: `conflicts.csv`, `series.csv` on request, `run.json`.
 //!
 //! Rows are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had closed. A
 //! kill during that call may cut the last row short (Linux then ends a write between two pages);
@@ -10,28 +10,22 @@ use std::path::{Path, PathBuf};
 
 use super::record::RunRecord;
 use super::schema::{COLUMNS, Context, LoggedConflict, Value};
-use crate::detection::encounter::Encounter;
+use super::series;
 use crate::events::Conflict;
+use crate::options::{ENCOUNTERS, SERIES};
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
-use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// The name of the conflicts' file.
 pub const CONFLICTS: &str = "conflicts.csv";
-/// The name of the encounters' file.
-pub const ENCOUNTERS: &str = "encounters.csv";
 /// The name of the file that records how the run was made.
 pub const RUN: &str = "run.json";
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    [CONFLICTS, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
+    [CONFLICTS, SERIES, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
 }
-
-/// The columns of [`ENCOUNTERS`].
-pub const ENCOUNTER_COLUMNS: [&str; 10] =
-    ["time", "ego", "foe", "kind", "gap", "mu", "margin", "ttc", "drac", "severity"];
 
 /// The log of one run.
 #[derive(Debug)]
@@ -39,7 +33,7 @@ pub struct Log {
     folder: PathBuf,
     made_folder: bool,
     conflicts: CsvFile,
-    encounters: Option<CsvFile>,
+    series: Option<CsvFile>,
     written: u64,
 }
 
@@ -48,28 +42,26 @@ impl Log {
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
-    pub fn create(folder: &Path, with_encounters: bool) -> Result<Self> {
+    pub fn create(folder: &Path, series: Option<&str>) -> Result<Self> {
         let made_folder = !folder.exists();
         fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
-        let encounters = folder.join(ENCOUNTERS);
         // An earlier run's files would be taken for this run's.
-        let stale = if with_encounters { vec![RUN] } else { vec![RUN, ENCOUNTERS] };
-        for name in stale {
+        for name in [RUN, SERIES, ENCOUNTERS] {
             let path = folder.join(name);
             if path.is_file() {
                 fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
             }
         }
         Ok(Self {
-            conflicts: CsvFile::create(folder.join(CONFLICTS), COLUMNS.map(|column| column.name))?,
-            encounters: with_encounters.then(|| CsvFile::create(encounters, ENCOUNTER_COLUMNS)).transpose()?,
+            conflicts: CsvFile::create(folder.join(CONFLICTS), COLUMNS.iter().map(|column| column.name))?,
+            series: series.map(|name| CsvFile::create(folder.join(name), series::names())).transpose()?,
             folder: folder.to_owned(),
             made_folder,
             written: 0,
         })
     }
 
-    /// Appends conflicts that have closed.
+    /// Appends conflicts that have closed, and their steps if the log has a series.
     ///
     /// # Errors
     /// [`Error::File`] where the file cannot be written, as on a full disk.
@@ -78,38 +70,15 @@ impl Log {
             self.written += 1;
             let logged = LoggedConflict::new(conflict, Context { number: self.written, net, roster });
             self.conflicts.write_row(COLUMNS.iter().map(|column| (column.get)(&logged)))?;
+            if let Some(series) = &mut self.series {
+                for step in &conflict.steps {
+                    let logged = LoggedConflict::new(step, Context { number: self.written, net, roster });
+                    series.write_row(series::values(&logged))?;
+                }
+            }
         }
+        self.series.as_mut().map_or(Ok(()), CsvFile::flush)?;
         self.conflicts.flush()
-    }
-
-    /// Appends the pairs in conflict of one step, if the log has encounters.
-    ///
-    /// # Errors
-    /// [`Error::File`] where the file cannot be written, as on a full disk.
-    pub fn append_encounters<'a>(
-        &mut self,
-        time: Second,
-        encounters: impl Iterator<Item = &'a Encounter>,
-        roster: &Roster,
-    ) -> Result<()> {
-        let Some(table) = &mut self.encounters else { return Ok(()) };
-        for found in encounters {
-            let Some(near) = &found.nearness else { continue };
-            let maybe = |value: Option<f64>| value.map_or(Value::Missing, Value::Number);
-            table.write_row([
-                Value::Number(time),
-                Value::Text(roster.id(found.ego)),
-                Value::Text(roster.id(found.foe)),
-                Value::Text(found.kind.name()),
-                Value::Number(found.gap),
-                Value::Number(found.mu),
-                Value::Number(found.margin),
-                maybe(near.ttc),
-                maybe(near.drac),
-                Value::Text(near.severity.name()),
-            ])?;
-        }
-        table.flush()
     }
 
     /// Writes `run.json`, whole or not at all.
@@ -127,9 +96,7 @@ impl Log {
     /// Removes what was written: the input could not be used after all.
     pub fn discard(self) {
         // A file that cannot be removed stays: the error to report is the one that led here.
-        for path in
-            [Some(&self.conflicts.path), self.encounters.as_ref().map(|table| &table.path)].into_iter().flatten()
-        {
+        for path in [Some(&self.conflicts.path), self.series.as_ref().map(|table| &table.path)].into_iter().flatten() {
             let _ = fs::remove_file(path);
         }
         let _ = fs::remove_file(self.folder.join(RUN));
@@ -149,7 +116,7 @@ struct CsvFile {
 }
 
 impl CsvFile {
-    fn create<const N: usize>(path: PathBuf, columns: [&str; N]) -> Result<Self> {
+    fn create<'a>(path: PathBuf, columns: impl Iterator<Item = &'a str>) -> Result<Self> {
         let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
         let rows = WholeRows { file, written: 0, waiting: Vec::new() };
         let mut table = Self { path, rows: csv::Writer::from_writer(rows), text: String::new() };
@@ -229,7 +196,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {
-        let message = Log::create(Path::new("/proc/closecall"), false).unwrap_err().to_string();
+        let message = Log::create(Path::new("/proc/closecall"), None).unwrap_err().to_string();
         assert!(message.starts_with("/proc/closecall: "), "{message}");
     }
 }

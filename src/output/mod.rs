@@ -7,5 +7,6 @@ pub mod input_hash;
 pub mod log;
 pub mod record;
 pub mod schema;
+mod series;
 pub mod summary;
 mod value;

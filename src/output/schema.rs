@@ -86,9 +86,9 @@ columns! { |conflict, context|
     /// `critical`: a collision, or even braking fully at once is too late; `serious`: `crash_probability` of at least 0.1;
     /// `caution`: neither; the worst of all steps ([other rules](model.md#kind-and-severity))
     [Required] severity: Severity = conflict.severity;
-    /// first step with margin < 0
+    /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
-    /// last step with margin < 0
+    /// last step that meets the log's condition
     [Required] end: Second = conflict.end;
     /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and those that
     /// say that they are an extreme of all steps

@@ -45,7 +45,7 @@ impl RecordedRun {
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
-        let log = Log::create(folder, record.options.log_encounters)?;
+        let log = Log::create(folder, record.options.series_file())?;
         log.write_record(&record)?;
         run.set_log(log);
         run.set_outputs(outputs);

@@ -54,6 +54,7 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names an output that cannot be written.
     pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
+        self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
         ended(StepPart::BroadPhase);
         self.narrow_phase();
@@ -75,15 +76,16 @@ impl Run {
         self.detector.broad_phase(&self.frame, &self.roster);
     }
 
-    /// Tests these pairs and keeps those in conflict, on the filter's lanes if there is a filter.
+    /// Tests these pairs and keeps those that may be logged, on the filter's lanes if there is a filter.
     fn narrow_phase(&mut self) {
-        let Self { detector, net, filter, .. } = self;
+        let Self { detector, net, filter, warm_up, .. } = self;
         _ = detector.narrow_phase(&self.frame, &self.roster);
         detector.retain(|found| {
-            if let (true, None, Some(net)) = (found.in_conflict(), found.lane, &net) {
+            let is_wanted = warm_up.is_over() && found.may_be_logged();
+            if let (true, None, Some(net)) = (is_wanted, found.lane, &net) {
                 found.lane = net.lane_at(Point::new(found.x, found.y));
             }
-            found.in_conflict() && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
+            is_wanted && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
         });
     }
 
@@ -101,11 +103,8 @@ impl Run {
     /// [`Error::File`] that names what cannot be written.
     fn write(&mut self) -> Result<()> {
         let closed = self.tracker.closed();
-        if let Some(log) = &mut self.log {
-            if !closed.is_empty() {
-                log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
-            }
-            log.append_encounters(self.frame.time, self.detector.encounters(), &self.roster)?;
+        if let (Some(log), false) = (&mut self.log, closed.is_empty()) {
+            log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
         self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.write_conflicts(closed)?;

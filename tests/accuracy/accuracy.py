@@ -23,9 +23,9 @@ def reported(words: list[str], options: list[str]) -> dict[tuple[int, frozenset[
     """closecall's encounters, by time in ms and pair."""
     with tempfile.TemporaryDirectory() as folder:
         config, rest = words[1], words[2:]
-        command = [sys.executable, "-m", "closecall", "run", config, "--quiet", "--log-encounters", "--out", folder]
+        command = [sys.executable, "-m", "closecall", "run", config, "--quiet", "--log-series", "--out", folder]
         subprocess.run([*command, *options, "--", *rest, "--no-warnings"], stdout=subprocess.DEVNULL, check=True)
-        with (Path(folder) / "encounters.csv").open(newline="") as file:
+        with (Path(folder) / "series.csv").open(newline="") as file:
             rows = list(csv.DictReader(file))
     return {(round(float(row["time"]) * 1000), frozenset((row["ego"], row["foe"]))): row for row in rows}
 

@@ -323,3 +323,69 @@ proptest! {
         prop_assert_eq!(left_out, kept);
     }
 }
+
+/// [`options`] with this condition.
+fn logging(condition: &str) -> Options {
+    Options { log: condition.parse().unwrap(), ..options() }
+}
+
+#[test]
+fn a_foe_that_slows_down_far_ahead_is_found_by_its_ttc() {
+    // The ego stands after 22 + 30.25 m. The foe's rear is 70 m ahead and comes nearer by 20 m/s.
+    let cars = [(0.0, 0.0, 0.0, 22.0), (75.0, 0.0, 0.0, 2.0)];
+    assert!(encounters(&cars).is_empty());
+    let options = logging("ttc < 4");
+    let [(found, ego)] = &look_at(&mut Detector::new(&options, None), &options, &cars)[..] else { panic!() };
+    assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
+    assert!((found.nearness.unwrap().ttc.unwrap() - 3.5).abs() < 1e-9 && found.is_logged());
+    assert!((found.gap - 70.0).abs() < 1e-9 && found.margin > 0.0);
+}
+
+#[test]
+fn a_pair_that_would_stand_before_it_meets_is_in_no_conflict() {
+    // The foe stands after 16.25 m, 7.75 m before the ego's path. The ego needs 29.6 m and has 29.
+    let cars = [(-10.0, 0.0, 0.0, 15.0), (20.0, -25.0, NORTH, 10.0)];
+    let options = logging("pet < 5 or gap < 40");
+    let [(found, _)] = &look_at(&mut Detector::new(&options, None), &options, &cars)[..] else { panic!() };
+    assert!((found.margin - 7.75).abs() < 0.1 && !found.in_conflict(), "{found:?}");
+    assert!((found.gap - found.mu - found.margin).abs() < 1e-9);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn looking_further_changes_no_pair_that_meets_before_both_stand(cars in some_cars()) {
+        let wide = logging("ttc < 8 or gap < 9 or pet < 4");
+        let known = |(found, ego): (Encounter, String)| {
+            (Encounter { nearness: None, pet_below: 0.0, ..found }, ego)
+        };
+        let near = encounters(&cars).into_iter().map(known).collect::<Vec<_>>();
+        let far = look_at(&mut Detector::new(&wide, None), &wide, &cars).into_iter().map(known).collect::<Vec<_>>();
+        prop_assert!(near.iter().all(|found| far.contains(found)));
+        let is_new = |found: &&(Encounter, String)| !near.contains(found);
+        prop_assert!(far.iter().filter(is_new).all(|(found, _)| !found.in_conflict()));
+    }
+
+    #[test]
+    fn looking_further_leaves_nothing_out(cars in some_cars(), arcs: bool) {
+        let [left_out, kept] = [false, true].map(|keep_all| {
+            let path = if arcs { PathModel::Arc } else { PathModel::Straight };
+            let options = Options { keep_all, path, ..logging("ttc < 4 or drac > 2 or pet < 2") };
+            look_at(&mut Detector::new(&options, None), &options, &cars)
+        });
+        prop_assert_eq!(left_out, kept);
+    }
+
+    #[test]
+    fn no_contact_within_the_ttc_is_missed(cars in some_cars()) {
+        let (near, all) = (logging("ttc < 3"), logging("ttc < 10"));
+        let [near, all] = [near, all].map(|options| {
+            let found = look_at(&mut Detector::new(&options, None), &options, &cars);
+            let is_near = |found: &Encounter| found.nearness.is_some_and(|near| near.ttc.is_some_and(|ttc| ttc < 3.0));
+            let found = found.into_iter().map(|(found, _)| found).filter(is_near);
+            found.map(|found| [found.ego.min(found.foe), found.ego.max(found.foe)]).collect::<Vec<_>>()
+        });
+        prop_assert_eq!(near, all);
+    }
+}

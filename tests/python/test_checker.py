@@ -380,10 +380,10 @@ def test_a_failed_scripts_log_records_the_error(tmp_path: Path) -> None:
 
 
 def test_the_log_is_written_on_request(tmp_path: Path) -> None:
-    with cc.Checker(out=tmp_path, log_encounters=True) as checker:
+    with cc.Checker(out=tmp_path, log_series=True) as checker:
         checker.step(0.0, {**CAR, "x": [0.0, 20.0]})
     assert [row["ego"] for row in rows(tmp_path / "conflicts.csv")] == ["a"]
-    assert len(rows(tmp_path / "encounters.csv")) == 1
+    assert len(rows(tmp_path / "series.csv")) == 1
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["complete"] and record["summary"]["steps"] == 1
     assert record["summary"]["conflicts"] == checker.summary["conflicts"] != []

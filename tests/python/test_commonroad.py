@@ -63,7 +63,7 @@ def their_ttc(ego: tuple[float, float], foe: tuple[float, float]) -> float:
 
 def test_a_followers_ttc_equals_commonroad_crimes(tmp_path: Path) -> None:
     fcd = tmp_path / "fcd.xml"
-    words = ("--log-encounters", "--", "--no-warnings", "--fcd-output", fcd, "--precision", "6")
+    words = ("--log-series", "--", "--no-warnings", "--fcd-output", fcd, "--precision", "6")
     done = closecall("run", NETS / "rear_end" / "rear_end.sumocfg", "--out", tmp_path, *words)
     assert done.returncode == 0, done.stderr
     driven: dict[tuple[float, str], tuple[float, float]] = {}
@@ -71,7 +71,7 @@ def test_a_followers_ttc_equals_commonroad_crimes(tmp_path: Path) -> None:
         for vehicle in step.findall("vehicle"):
             x, speed = (float(vehicle.get(name, "nan")) for name in ("x", "speed"))
             driven[float(step.get("time", "nan")), vehicle.get("id", "")] = x, speed
-    compared = [row for row in rows(tmp_path / "encounters.csv") if row["ttc"]][::6]
+    compared = [row for row in rows(tmp_path / "series.csv") if row["ttc"]][::6]
     assert len(compared) > 10
     for row in compared:
         ego, foe = (driven[float(row["time"]), row[name]] for name in ("ego", "foe"))

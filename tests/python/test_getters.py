@@ -44,7 +44,7 @@ if change == "nowhere":
 if change == "unknown":
     _libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
 libsumo.start(["sumo", "-c", config, "--no-warnings", *more])
-checker = closecall.Checker(libsumo, out=out, log_encounters=True, epsilon=10.0)
+checker = closecall.Checker(libsumo, out=out, log_series=True, epsilon=10.0)
 entered, steps, teleports, rides = collections.Counter(), collections.Counter(), 0, 0
 domains = {"vehicle": libsumo.vehicle, "person": libsumo.person}
 while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < float(end):
@@ -88,7 +88,7 @@ def checked(scene: str, end: int, out: Path, change: str = "none", *more: str) -
 
 def logged(out: Path) -> list[bytes]:
     """The files of a log."""
-    return [(out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")]
+    return [(out / name).read_bytes() for name in ("conflicts.csv", "series.csv")]
 
 
 needs_compiled = pytest.mark.skipif(

@@ -20,12 +20,12 @@ def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dic
     end = ["--end", str(ENDS[config.stem])] if config.stem in ENDS else []
     seed = ["--seed", str(SEEDS[config.stem])] if config.stem in SEEDS else []
     more = ["--config", str(config.parent / "closecall.toml"), *end, *seed, *words]
-    done = closecall("run", config, *more, "--log-encounters", "--quiet", "--out", out)
+    done = closecall("run", config, *more, "--log-series", "--quiet", "--out", out)
     assert done.returncode == 0, done.stderr
     record = json.loads((out / "run.json").read_text())
     assert record["options"].pop("keep_all") is ("--keep-all" in words)
     record["left_out"] = record["summary"].pop("left_out")
-    return {name: (out / name).read_bytes() for name in ("conflicts.csv", "encounters.csv")}, record
+    return {name: (out / name).read_bytes() for name in ("conflicts.csv", "series.csv")}, record
 
 
 @pytest.mark.parametrize("method", ["--path lanes", "--path arc", "--mode paper"])
@@ -41,3 +41,13 @@ def test_leaving_out_changes_no_result(config: Path, method: str, tmp_path: Path
     assert {entry["why"] for entry in kept} <= by_definition | of_the_scene
     # Paper mode leaves out only pairs that are too far apart, and a small scene has none.
     assert method == "--mode paper" or len(left_out) > len(kept)
+
+
+@pytest.mark.parametrize("net", ["left_turn", "reckless"])
+def test_leaving_out_changes_no_result_of_a_wider_condition(net: str, tmp_path: Path) -> None:
+    config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "100")
+    log, record = checked(config, tmp_path / "left_out", *wider)
+    whole_log, whole_record = checked(config, tmp_path / "kept", *wider, "--keep-all")
+    assert log == whole_log and log["conflicts.csv"].count(b"\n") > 10
+    assert len(record.pop("left_out")) > len(whole_record.pop("left_out"))
+    assert record == whole_record

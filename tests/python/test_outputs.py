@@ -17,11 +17,11 @@ Copy = Callable[[str], Path]
 def test_the_ssm_file_holds_the_conflicts_of_the_log(tmp_path: Path) -> None:
     file = tmp_path / "ssm.xml"
     config = NETS / "left_turn" / "left_turn.sumocfg"
-    done = closecall("run", config, "--out", tmp_path, "--log-encounters", "--ssm-output", file, "--", "--no-warnings")
+    done = closecall("run", config, "--out", tmp_path, "--log-series", "--ssm-output", file, "--", "--no-warnings")
     assert done.returncode == 0, done.stderr
     root = ET.parse(file).getroot()
     assert root.tag == "SSMLog"
-    logged, steps = rows(tmp_path / "conflicts.csv"), rows(tmp_path / "encounters.csv")
+    logged, steps = rows(tmp_path / "conflicts.csv"), rows(tmp_path / "series.csv")
     assert len(root) == len(logged) > 20
     for conflict, row in zip(root, logged):
         assert conflict.tag == "conflict"
@@ -48,7 +48,7 @@ def test_the_ssm_file_holds_the_conflicts_of_the_log(tmp_path: Path) -> None:
                 assert (x, y) == (float(row["x"]), float(row["y"])) and child.get("type") == "17"
                 assert time > float(row["begin"])
             else:
-                # encounters.csv has this extreme in the same step.
+                # series.csv has this extreme in the same step.
                 assert float(row[name]) in [float(step[name]) for step in own if float(step["time"]) == time]
                 assert child.get("type") == {"rear_end": "2", "side": "11", "frontal": "20"}[row["kind"]]
 

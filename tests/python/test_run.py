@@ -19,7 +19,10 @@ CONFLICT_COLUMNS = (
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
     "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v"
 )
-ENCOUNTER_COLUMNS = "time,ego,foe,kind,gap,mu,margin,ttc,drac,severity"
+SERIES_COLUMNS = (
+    "conflict,ego,foe,kind,severity,time,gap,mu,margin,clearance,ttc,drac,unavoidable,ego_delta_v,foe_delta_v,ego_speed,foe_speed,"
+    "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap"
+)
 
 Copy = Callable[[str], Path]
 
@@ -38,10 +41,10 @@ def test_each_kind_is_found_in_its_own_scene(kind: str, scenario: Copy) -> None:
 def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("rear_end")
     out = tmp_path / "log"
-    done = closecall("run", "-c", config, "--out", out, "--log-encounters", "--quiet", "-e", "8")
+    done = closecall("run", "-c", config, "--out", out, "--log-series", "--quiet", "-e", "8")
     assert (done.returncode, done.stdout) == (0, ""), done.stderr
     assert (out / "conflicts.csv").read_text().splitlines()[0] == CONFLICT_COLUMNS
-    assert (out / "encounters.csv").read_text().splitlines()[0] == ENCOUNTER_COLUMNS
+    assert (out / "series.csv").read_text().splitlines()[0] == SERIES_COLUMNS
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is True
     assert record["options"]["epsilon"] == 0.5
@@ -52,7 +55,7 @@ def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: P
         "rear_end.rou.xml",
     }
     assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
-    steps = rows(out / "encounters.csv")
+    steps = rows(out / "series.csv")
     assert all(float(row["margin"]) < 0 for row in steps)
     conflict = rows(out / "conflicts.csv")[0]
     assert float(conflict["margin"]) == min(float(row["margin"]) for row in steps)

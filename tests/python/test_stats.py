@@ -49,7 +49,7 @@ def plans(once: Once) -> Path:
 
 def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None:
     fcd = tmp_path / "fcd.xml"
-    words = ("--end", "120", "--log-encounters")
+    words = ("--end", "120", "--log-series")
     stops = tmp_path / "stops.xml"
     unfinished = ("--stop-output", stops, "--stop-output.write-unfinished")
     record = ("--fcd-output", fcd, "--precision", "6", *unfinished)
@@ -98,9 +98,9 @@ def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None
         assert group["per_hour"]["method"] == "poisson_exact"
         assert group["per_hour"]["low"] == pytest.approx(low / traffic["hours"], rel=1e-6)
         assert group["per_hour"]["high"] == pytest.approx(high / traffic["hours"], rel=1e-6)
-    # Smallest margin and TTC of each conflict from the steps in encounters.csv.
+    # Smallest margin and TTC of each conflict from the steps in series.csv.
     steps: dict[frozenset[str], list[dict[str, str]]] = {}
-    for row in rows(log / "encounters.csv"):
+    for row in rows(log / "series.csv"):
         steps.setdefault(frozenset((row["ego"], row["foe"])), []).append(row)
     margins, nearest = [], []
     for row in logged:

@@ -251,13 +251,13 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
     assert "choose another --out" in other.stderr and other.stderr.count("\n") == 1
 
 
-def test_repeating_a_run_removes_its_old_encounters(tmp_path: Path) -> None:
+def test_repeating_a_run_removes_its_old_series(tmp_path: Path) -> None:
     words = ("--seeds", "1", "--out", tmp_path, "--workers", "1")
-    assert sweep(LEFT_TURN, *words, "--log-encounters", *SHORT).stdout.startswith("1 run in ")
-    encounters = tmp_path / "encounters" / "run=seed-1" / "encounters.csv"
-    assert encounters.is_file()
+    assert sweep(LEFT_TURN, *words, "--log-series", *SHORT).stdout.startswith("1 run in ")
+    series = tmp_path / "series" / "run=seed-1" / "series.csv"
+    assert series.is_file()
     sweep(LEFT_TURN, *words, *SHORT)
-    assert files(tmp_path) and not encounters.exists()
+    assert files(tmp_path) and not series.exists()
 
 
 def test_a_sweep_refuses_the_folder_of_a_log(tmp_path: Path) -> None:
@@ -383,8 +383,8 @@ def test_help_lists_the_sweep_and_its_options() -> None:
         assert word in text
 
 
-def test_encounters_are_written_beside_the_conflicts(scenario: Copy, tmp_path: Path) -> None:
+def test_a_series_is_written_beside_the_conflicts(scenario: Copy, tmp_path: Path) -> None:
     out = tmp_path / "out"
-    sweep(scenario("side"), "--seeds", "5", "--log-encounters", "--out", out, "--workers", "1", *SHORT)
-    with (out / "encounters" / "run=seed-5" / "encounters.csv").open(newline="") as file:
-        assert next(csv.reader(file))[0] == "time"
+    sweep(scenario("side"), "--seeds", "5", "--log-series", "--out", out, "--workers", "1", *SHORT)
+    with (out / "series" / "run=seed-5" / "series.csv").open(newline="") as file:
+        assert next(csv.reader(file))[0] == "conflict"

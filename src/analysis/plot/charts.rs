@@ -99,7 +99,10 @@ impl Chart for Distribution {
         // The width is chosen so that a threshold lies between two bars.
         let width = threshold.map_or(furthest / BARS, |at| at / (at * BARS / furthest).round().max(1.0));
         let reach = (furthest / width - 1e-9).ceil() * width;
-        let (low, high) = if self.0.name == "margin" { (-reach, 0.0) } else { (0.0, reach) };
+        // Only a log of a wider condition has margins above 0.
+        let has_positive = || found.numbers(self.0.of).any(|(_, value)| value > 0.0);
+        let high = if self.0.name != "margin" || has_positive() { reach } else { 0.0 };
+        let low = if self.0.name == "margin" { -reach } else { 0.0 };
         let mut bars = Bars::new(low, high, width);
         found.numbers(self.0.of).for_each(|(severity, value)| bars.add(value, severity));
         let words = if self.0.name == "ttc" { "serious below" } else { "serious above" };

@@ -77,9 +77,9 @@ pub struct SeedConflict {
     pub kind: Kind,
     /// The severity.
     pub severity: Severity,
-    /// First step with margin < 0, in s.
+    /// First step that meets the log's condition, in s.
     pub begin: Second,
-    /// Last step with margin < 0, in s.
+    /// Last step that meets it, in s.
     pub end: Second,
     /// The cells of the row, the seed first.
     cells: csv::StringRecord,

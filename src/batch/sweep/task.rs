@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::logged::{self, Label, LoggedRun, PARQUET};
-use crate::output::log::ENCOUNTERS;
+use crate::options::{ENCOUNTERS, SERIES};
 use crate::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.
@@ -31,7 +31,7 @@ pub struct Task {
 }
 
 impl Task {
-    /// Adds the run's log to the data set; encounters, if there are any, go to a folder beside it.
+    /// Adds the run's log to the data set; its series, if there is one, goes to a folder beside it.
     ///
     /// # Errors
     /// [`Error::Content`] if the run did not reach its end; those of [`logged::pack`].
@@ -39,16 +39,15 @@ impl Task {
         if !LoggedRun::read(log)?.complete {
             return Err(Error::content(log, "the run did not reach its end"));
         }
-        let encounters = log.join(ENCOUNTERS);
-        let folder = self.out.join("encounters").join(format!("{RUN}{}", self.name));
+        let folder = self.out.join("series").join(format!("{RUN}{}", self.name));
         let fault = |source| Error::file(&folder, source);
         if folder.exists() {
-            // The encounters of the run that this one replaces.
+            // The series of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;
         }
-        if encounters.is_file() {
+        for name in [SERIES, ENCOUNTERS].into_iter().filter(|name| log.join(name).is_file()) {
             fs::create_dir_all(&folder).map_err(fault)?;
-            fs::rename(encounters, folder.join(ENCOUNTERS)).map_err(fault)?;
+            fs::rename(log.join(name), folder.join(name)).map_err(fault)?;
         }
         logged::pack(log, &self.labels, &self.fingerprint, &self.file())
     }

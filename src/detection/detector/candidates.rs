@@ -74,8 +74,8 @@ impl Detector {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
         let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, speeds: &self.speeds, paths };
-        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
-        let this_step = (roster.changes(), frame.len());
+        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths).with(self.cover());
+        let (this_step, look) = ((roster.changes(), frame.len()), self.look);
         let are_same = std::mem::replace(&mut self.last_step, this_step) == this_step;
         self.search.update(
             frame.len(),
@@ -85,9 +85,16 @@ impl Detector {
             |row| sight.see(row),
             |seen, user| {
                 *user = sight.user(user.row, seen, user);
-                reach.area_of(user, &seen.row.state)
+                match look {
+                    None => reach.area_of(user, &seen.row.state),
+                    Some(_) => reach.area_of(&sight.further(user), &seen.row.state),
+                }
             },
         );
+        self.users_further.clear();
+        if self.look.is_some() {
+            self.users_further.extend(self.search.slots().iter().map(|user| sight.further(user)));
+        }
         self.speeds.resize(self.paths.len(), LastSpeed::default());
         for Row { user, state } in frame.rows() {
             self.speeds[user.0 as usize].take(state.speed, self.step);
@@ -105,7 +112,8 @@ impl Detector {
     /// Finds the pairs whose areas meet, each thread its part.
     fn find_pairs(&mut self, frame: &Frame, roster: &Roster) {
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths);
+        let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths).with(self.cover());
+        let users = if self.look.is_some() { &self.users_further } else { self.search.slots() };
         let (search, count, all) = (&self.search, self.search.slots().len(), !self.shortcuts.areas_apart);
         let busy = self.team.busy(count);
         let share = share(busy, count);
@@ -113,7 +121,7 @@ impl Detector {
         self.pairs.iter_mut().for_each(Vec::clear);
         self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
             let mut found = |a: u32, b: u32| pairs.push((a, b));
-            let area = |slot: u32| reach.area(&search.slots()[slot as usize]);
+            let area = |slot: u32| reach.area(&users[slot as usize]);
             match (all, search.has_round()) {
                 (true, _) => every_pair(part, &mut found),
                 (false, false) => search.sweep(part, &mut found),

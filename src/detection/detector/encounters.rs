@@ -4,8 +4,8 @@ use std::hint::black_box;
 use std::slice::from_ref;
 
 use super::LEVEL;
+use super::cover;
 use super::occupancy::{Carriages, OccupancyCache};
-use super::reach;
 use super::reach::{Motion, User};
 use super::step::StepInputs;
 use super::work::Work;
@@ -103,7 +103,8 @@ fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work:
 impl StepInputs<'_> {
     /// Finds which of these pairs would meet.
     pub(super) fn meet_all(&self, worker: &mut Worker, pairs: &[(u32, u32)]) {
-        let Worker { work, occupancy, found } = worker;
+        let Worker { work, occupancy, further: further_occupancy, found } = worker;
+        let further = self.further();
         for block in pairs.chunks(BLOCK) {
             self.fetch(block);
             for &(a, b) in block {
@@ -113,7 +114,13 @@ impl StepInputs<'_> {
                 }
                 let slots = if users[0].row < users[1].row { [a, b] } else { [b, a] };
                 match self.options.mode {
-                    Mode::Closecall => self.meet(occupancy, work, slots, found),
+                    Mode::Closecall => {
+                        found.meets = false;
+                        self.meet(occupancy, work, slots, found);
+                        if let (Some(further), false) = (&further, found.meets) {
+                            further.meet(further_occupancy, work, slots, found);
+                        }
+                    }
                     Mode::Paper => self.meet_on_paper(work, slots, found),
                 }
             }
@@ -138,8 +145,9 @@ impl StepInputs<'_> {
         let [a, b] = slots;
         let both_ahead = self.user(a).ahead && self.user(b).ahead;
         // The broad phase has already compared the boxes of two road users that can only go straight on.
-        let is_known = self.shortcuts.areas_apart && both_ahead;
-        if is_known && self.shortcuts.in_line && self.conflicts_only && self.keeps_distance(slots) {
+        let is_known = self.areas_are_compared() && both_ahead;
+        let only_margins = self.conflicts_only && self.options.log.is_default();
+        if is_known && self.shortcuts.in_line && only_margins && self.keeps_distance(slots) {
             work.in_line += 1;
             return;
         }
@@ -319,7 +327,7 @@ impl StepInputs<'_> {
             return false;
         }
         let (state_a, state_b) = (self.state(a), self.state(b));
-        let stops = [reach::stop(state_a, of_a), reach::stop(state_b, of_b)];
+        let stops = [cover::stop(state_a, of_a), cover::stop(state_b, of_b)];
         if !lead_alike([stops[0] + of_a.length, stops[1] + of_b.length]) {
             return false;
         }
@@ -389,13 +397,16 @@ impl StepInputs<'_> {
 
     /// Adds a pair that would meet and measures it. Where a path has to be extended for that, it is measured later.
     fn add(&self, work: &mut Work, found: &mut Findings, roles: &Roles, meeting: &ConflictPoint, how: How) {
+        found.meets = true;
         let How { kind, angle, sigma, gap, overlap } = how;
         let Overlap { depth, collision, shrinks } = overlap;
         let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
+        let gap = self.gap_beyond(gap, mu, roles.slots, meeting);
         let margin = gap - mu;
         // The gap is not known yet where the foe first has to arrive and leave.
         let leaves = !meeting.foe_leads && meeting.foe_axis.is_some() && sigma > 0.0;
         if self.conflicts_only
+            && self.options.log.is_default()
             && margin >= 0.0
             && !collision
             && !(leaves && self.may_leave_late(roles, meeting, sigma, mu))
@@ -430,15 +441,16 @@ impl StepInputs<'_> {
             overlap: depth,
             collision,
             nearness: None,
+            pet_below: f64::NEG_INFINITY,
         };
         found.encounters.push(encounter);
         let Findings { encounters, unmeasured, scratch, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
-        if leaves || encounter.in_conflict() {
-            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks };
+        if leaves || self.measures(encounter) {
+            let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks, further: self.is_further() };
             if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
                 self.measure(scratch, &met, encounter);
-                if self.conflicts_only && !encounter.in_conflict() {
+                if self.conflicts_only && !encounter.may_be_logged() {
                     encounters.pop();
                 }
             } else {

@@ -1,6 +1,7 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the measures of a pair in
 //! conflict.
 
+use super::cover;
 use super::occupancy::Carriages;
 use super::reach::User;
 use super::step::StepInputs;
@@ -14,6 +15,7 @@ use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::measures::{self, SeverityInputs};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
+use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::traffic::driver::Driver;
@@ -29,7 +31,7 @@ impl StepInputs<'_> {
     pub(super) fn measure_all(&self, worker: &mut Worker) {
         let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            self.measure(scratch, met, &mut encounters[*index as usize]);
+            self.as_met(met.further).measure(scratch, met, &mut encounters[*index as usize]);
         }
     }
 
@@ -42,13 +44,54 @@ impl StepInputs<'_> {
         if met.leaves {
             encounter.foe_distance = self.way_out(scratch, &pair[1], met);
             if self.options.mode == Mode::Closecall {
-                encounter.gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
+                let gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
+                encounter.gap = self.gap_beyond(gap, encounter.mu, met.slots, &met.meeting);
                 encounter.margin = encounter.gap - encounter.mu;
             }
         }
-        if encounter.in_conflict() {
+        if self.measures(encounter) {
             encounter.nearness = Some(self.nearness(scratch, &pair, met, encounter));
+            encounter.pet_below = self.pet_below(met.slots, encounter);
         }
+    }
+
+    /// Whether a pair that would meet is measured: if it is in conflict, or the log asks for more than that.
+    pub(super) fn measures(&self, encounter: &Encounter) -> bool {
+        encounter.in_conflict() || !self.options.log.is_default()
+    }
+
+    /// The PET that its event has to be below so that the step is logged. A collision always is.
+    fn pet_below(&self, slots: [u32; 2], encounter: &Encounter) -> Second {
+        if encounter.collision || (self.options.log.is_default() && encounter.in_conflict()) {
+            return Second::INFINITY;
+        }
+        let users = slots.map(|slot| self.user(slot));
+        let values = StepValues {
+            found: encounter,
+            speeds: users.map(|user| self.state(user).speed),
+            types: users.map(|user| self.profile(user)),
+        };
+        let may_have_pet = encounter.kind != Kind::RearEnd && !self.is_obstacle(slots[1]);
+        self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
+    }
+
+    /// The gap of a pair. One that meets only beyond where both stand has a margin of at least the distance by which one
+    /// would have to go on for that; its gap is as large.
+    pub(super) fn gap_beyond(&self, gap: Metre, mu: Metre, slots: [u32; 2], meeting: &ConflictPoint) -> Metre {
+        if !self.is_further() {
+            return gap;
+        }
+        let [(ego, of_ego), (foe, of_foe)] =
+            slots.map(|slot| self.user(slot)).map(|user| (self.state(user), self.profile(user)));
+        let ego_beyond = meeting.ego_distance - cover::reach(ego, of_ego, self.options.epsilon);
+        let foe_beyond = meeting.foe_distance - cover::stop(foe, of_foe);
+        gap.max(mu + ego_beyond.max(foe_beyond).max(0.0))
+    }
+
+    /// Whether a foe that brakes fully now stands before it gets to the conflict point.
+    fn stops_before(&self, met: &Met) -> bool {
+        let foe = self.user(met.slots[1]);
+        met.further && met.meeting.foe_distance > cover::stop(self.state(foe), self.profile(foe))
     }
 
     /// A distance along the path at which the foe has surely left the conflict point.
@@ -96,7 +139,7 @@ impl StepInputs<'_> {
             ttc,
             drac: drac.map(|drac| drac.min(drac::LIMIT)),
             unavoidable,
-            response_left: self.response_left([ego, foe], met.sigma, encounter),
+            response_left: self.response_left([ego, foe], met, encounter),
             ttb,
             crash_probability,
             crash_probability_braking: self.crash_probability_braking([ego, foe], met, encounter),
@@ -109,14 +152,18 @@ impl StepInputs<'_> {
         }
     }
 
-    /// The ego's longest response time with which μ still fits into the gap; none if the ego stands. It is below the ego's
+    /// The ego's longest response time with which μ still fits into the gap; none if the ego stands, or if a foe that brakes
+    /// now is never in the way. It is below the ego's
     /// response time exactly if the margin is below 0.
-    fn response_left(&self, [ego, foe]: [&Participant; 2], sigma: f64, encounter: &Encounter) -> Option<Second> {
+    fn response_left(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> Option<Second> {
         if encounter.collision {
             return Some(0.0);
         }
+        if self.stops_before(met) {
+            return None;
+        }
         let (model, epsilon) = (self.mu_model(), self.options.epsilon);
-        let left = braking::response_left(model, ego.braking(), foe.braking(), sigma, epsilon, encounter.gap);
+        let left = braking::response_left(model, ego.braking(), foe.braking(), met.sigma, epsilon, encounter.gap);
         let response = ego.brakes.response;
         let left = if encounter.margin < 0.0 { left.min(response.next_down()).max(0.0) } else { left.max(response) };
         Some(left).filter(|left| left.is_finite())
@@ -126,6 +173,9 @@ impl StepInputs<'_> {
     fn crash_probability_braking(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> f64 {
         if encounter.collision {
             return 1.0;
+        }
+        if self.stops_before(met) {
+            return 0.0;
         }
         let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
         let braking = self.late_braking(met.slots[0], ego);

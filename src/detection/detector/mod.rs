@@ -6,6 +6,7 @@
 //! the same for any number of threads.
 
 mod candidates;
+mod cover;
 mod encounters;
 mod last_speed;
 mod left_out;
@@ -29,13 +30,15 @@ use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
-use crate::options::Options;
+use crate::options::condition::LookAhead;
+use crate::options::{Mode, Options};
 use crate::traffic::frame::{Frame, Row};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::{Team, share};
 use crate::util::units::{Metre, Second};
+use cover::Cover;
 use last_speed::LastSpeed;
 use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
@@ -64,6 +67,10 @@ pub struct Detector {
     time: Second,
     /// How long the step before took; 0 before the second.
     step: Second,
+    /// How far the log's condition looks beyond where both stand; none where it does not.
+    look: Option<LookAhead>,
+    /// By slot, the road users as they are met that far ahead; empty where that is none.
+    users_further: Vec<User>,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: Vec<LanePath>,
     /// By [`UserIndex`]; empty unless paths are arcs.
@@ -98,6 +105,8 @@ impl Detector {
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
+            look: Some(options.log.look_ahead()).filter(|look| !look.is_none() && options.mode == Mode::Closecall),
+            users_further: Vec::new(),
             paths: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
@@ -140,7 +149,7 @@ impl Detector {
         self.sublane
     }
 
-    /// Sets whether [`Detector::narrow_phase`] may leave out encounters that are not conflicts.
+    /// Sets whether [`Detector::narrow_phase`] may leave out encounters that no condition asks for.
     pub fn set_conflicts_only(&mut self, only: bool) {
         self.conflicts_only = only;
     }
@@ -237,6 +246,7 @@ impl Detector {
         for worker in &mut workers {
             worker.found.clear();
             worker.occupancy.begin(self.search.slots().len());
+            worker.further.begin(self.users_further.len());
         }
         let scene = self.scene(frame, roster);
         let busy = self.team.busy(frame.len());
@@ -245,9 +255,10 @@ impl Detector {
         self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs));
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
-                let user = self.search.slots()[slot as usize];
+                let scene = self.scene(frame, roster).as_met(met.further);
+                let user = *scene.user(slot);
                 if user.on_lanes {
-                    let way = self.scene(frame, roster).way_to_measure(&user, &met.meeting);
+                    let way = scene.way_to_measure(&user, &met.meeting);
                     self.lengthen(roster, &user, way);
                 }
             }
@@ -280,10 +291,11 @@ impl Detector {
     /// get another one.
     fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
         let Some(net) = &self.net else { return };
+        let cover = self.cover();
         for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
-            if *on_lanes {
+            if *on_lanes || self.look.is_some() {
                 let profile = roster.profile_of(user);
-                let way = reach::reach(&state, profile, self.options.epsilon);
+                let way = cover.reach(&state, profile, self.options.epsilon);
                 self.paths[user.0 as usize].extend(net, profile.length, way);
             }
         }
@@ -327,7 +339,15 @@ impl Detector {
             speeds: &self.speeds,
             reach: Reach::new(frame, roster, &self.options, self.shortcuts, self.all_paths()),
             users: self.search.slots(),
+            cover: Cover::UntilTheyStand,
+            look: self.look,
+            users_further: &self.users_further,
         }
+    }
+
+    /// The furthest that pairs are met.
+    fn cover(&self) -> Cover {
+        self.look.map_or(Cover::UntilTheyStand, Cover::Further)
     }
 
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.

@@ -1,8 +1,9 @@
 //! The data that both phases share for each road user of a step, and how far it reaches until it stands.
 
+use super::cover::{Cover, reach};
 use super::last_speed::LastSpeed;
 use super::shortcuts::Shortcuts;
-use crate::braking::{stopping_distance, stopping_distance_paper};
+use crate::braking::stopping_distance_paper;
 use crate::detection::broad_phase::{Area, Circle, Slot};
 use crate::detection::path::Pose;
 use crate::detection::path::lanes::LanePath;
@@ -14,7 +15,7 @@ use crate::geometry::{Bounds, Vector};
 use crate::options::{Mode, Options, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::net::{LaneIndex, Net};
-use crate::traffic::profile::{Category, Profile};
+use crate::traffic::profile::Category;
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, Radian};
 
@@ -189,6 +190,17 @@ impl StepView<'_> {
             bends,
         }
     }
+
+    /// A road user that is met further ahead than where it stands, so that it may turn on the way: on its lanes, also
+    /// where it stands on them.
+    pub fn further(&self, user: &User) -> User {
+        let has_path = || self.paths.of(user.index).is_some_and(|path| !path.track.is_empty());
+        let may_have = self.turns == PathSource::Lanes && user.category == Category::Vehicle;
+        let on_lanes = user.on_lanes || (may_have && has_path());
+        let ahead = user.ahead && !on_lanes;
+        let bends = on_lanes && !ahead && self.roster.profile_at(user.profile).carriages > 1;
+        User { on_lanes, ahead, bends, ..*user }
+    }
 }
 
 impl Default for User {
@@ -223,26 +235,14 @@ impl Slot for User {
     }
 }
 
-/// The distance until a road user of this type stands.
-#[inline(always)]
-pub(super) fn stop(state: &State, profile: &Profile) -> Metre {
-    if state.moves() { stopping_distance(state.speed, &profile.brakes) } else { 0.0 }
-}
-
-/// The distance until a road user of this type stands, and ε further. ε is a reserve for braking: one that stands already
-/// reaches no further than its own rectangle.
-#[inline(always)]
-pub(super) fn reach(state: &State, profile: &Profile, epsilon: Metre) -> Metre {
-    if state.moves() { stopping_distance(state.speed, &profile.brakes) + epsilon } else { 0.0 }
-}
-
-/// How far road users reach until they stand.
+/// How far road users reach until they stand, or further.
 #[derive(Clone, Copy)]
 pub(super) struct Reach<'a> {
     frame: &'a Frame,
     roster: &'a Roster,
     paths: Paths<'a>,
     epsilon: Metre,
+    cover: Cover,
     /// Whether a known path is searched by the box around it, not by a circle.
     has_boxes: bool,
     /// Whether the paper's circle and stopping distance apply.
@@ -262,10 +262,16 @@ impl<'a> Reach<'a> {
         let on_paper = options.mode == Mode::Paper;
         let has_boxes = shortcuts.paths_apart && !on_paper;
         let on_arcs = options.path == PathModel::Arc && !on_paper;
-        Self { frame, roster, paths, epsilon: options.epsilon, has_boxes, on_paper, on_arcs }
+        let cover = Cover::UntilTheyStand;
+        Self { frame, roster, paths, epsilon: options.epsilon, cover, has_boxes, on_paper, on_arcs }
     }
 
-    /// The area that a road user may cover until it stands and ε further.
+    /// The same with another cover.
+    pub(super) fn with(self, cover: Cover) -> Self {
+        Self { cover, ..self }
+    }
+
+    /// The area that a road user may cover within the cover and ε further.
     pub(super) fn area(&self, user: &User) -> Area {
         self.area_of(user, self.frame.state(user.row))
     }
@@ -278,7 +284,7 @@ impl<'a> Reach<'a> {
         let reach = if self.on_paper {
             stopping_distance_paper(state.speed, &profile.brakes) + self.epsilon
         } else {
-            reach(state, profile, self.epsilon)
+            self.cover.reach(state, profile, self.epsilon)
         };
         if user.category == Category::Obstacle {
             let mut bounds = Bounds::EMPTY;

@@ -1,11 +1,12 @@
 //! What the narrow phase reads of the current step.
 
+use super::cover::Cover;
 use super::last_speed::LastSpeed;
-use super::reach;
 use super::reach::{Paths, Reach, User};
 use super::shortcuts::Shortcuts;
 use crate::detection::path::turning::Turning;
 use crate::options::Options;
+use crate::options::condition::LookAhead;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::profile::{Carriage, Category, Profile};
@@ -29,9 +30,36 @@ pub(super) struct StepInputs<'a> {
     pub speeds: &'a [LastSpeed],
     pub reach: Reach<'a>,
     pub users: &'a [User],
+    /// How far ahead pairs are met.
+    pub cover: Cover,
+    /// How far the log's condition looks beyond where both stand; none where it does not.
+    pub look: Option<LookAhead>,
+    /// The road users as they are met that far ahead; empty where that is none.
+    pub users_further: &'a [User],
 }
 
 impl StepInputs<'_> {
+    /// The same, with pairs met as far ahead as the log's condition looks; none where that is not further.
+    pub fn further(&self) -> Option<Self> {
+        let cover = Cover::Further(self.look?);
+        Some(Self { cover, reach: self.reach.with(cover), users: self.users_further, ..*self })
+    }
+
+    /// Whether pairs are met further ahead than where both stand.
+    pub fn is_further(&self) -> bool {
+        self.cover != Cover::UntilTheyStand
+    }
+
+    /// The inputs with which a pair was met.
+    pub fn as_met(self, further: bool) -> Self {
+        if further { self.further().unwrap_or(self) } else { self }
+    }
+
+    /// Whether the broad phase has compared the areas that pairs are met in.
+    pub fn areas_are_compared(&self) -> bool {
+        self.shortcuts.areas_apart && (self.look.is_none() || self.is_further())
+    }
+
     pub fn user(&self, slot: u32) -> &User {
         &self.users[slot as usize]
     }
@@ -40,16 +68,16 @@ impl StepInputs<'_> {
         self.frame.state(user.row)
     }
 
-    /// The distance until a road user stands.
+    /// The distance until a road user stands, or within which it is met.
     #[inline(always)]
     pub fn stop(&self, user: &User) -> Metre {
-        reach::stop(self.state(user), self.profile(user))
+        self.cover.stop(self.state(user), self.profile(user))
     }
 
-    /// The distance until a road user stands, and ε further; 0 if it stands.
+    /// The same and ε further; 0 if it stands.
     #[inline(always)]
     pub fn reach_of(&self, user: &User) -> Metre {
-        reach::reach(self.state(user), self.profile(user), self.options.epsilon)
+        self.cover.reach(self.state(user), self.profile(user), self.options.epsilon)
     }
 
     /// Its length as SUMO draws it.

@@ -38,7 +38,7 @@ impl StraightPoses {
 }
 
 impl StepInputs<'_> {
-    /// Whether both go straight on, and the broad phase has compared the boxes around all that they cover.
+    /// Whether both go straight on, so that the boxes around all that they cover need not be kept.
     pub(super) fn go_straight(&self, slots: [u32; 2]) -> bool {
         let goes_straight = |user: &User| user.ahead && !user.on_lanes && user.category != Category::Obstacle;
         self.shortcuts.areas_apart

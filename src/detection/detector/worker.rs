@@ -14,6 +14,8 @@ use crate::util::units::{Metre, Second};
 pub(super) struct Worker {
     pub work: Work,
     pub occupancy: OccupancyCache,
+    /// The paths of pairs that are met further ahead than where both stand.
+    pub further: OccupancyCache,
     pub found: Findings,
 }
 
@@ -21,6 +23,8 @@ pub(super) struct Worker {
 #[derive(Default)]
 pub(super) struct Findings {
     pub encounters: Vec<Encounter>,
+    /// Whether the pair under test would meet.
+    pub meets: bool,
     /// Which of them are not measured yet.
     pub unmeasured: Vec<(u32, Met)>,
     pub scratch: Scratch,
@@ -57,6 +61,8 @@ pub(super) struct Met {
     pub leaves: bool,
     /// How much smaller both are taken to be on every side, in m, because they graze.
     pub shrinks: Metre,
+    /// Whether they meet further ahead than where both stand.
+    pub further: bool,
 }
 
 impl Findings {

@@ -114,7 +114,7 @@ function threshold(by_rule, text) {
   return at === undefined ? undefined : { at, text: text(at) };
 }
 
-/** The measures: column, heading, unit, the end of the axis that is 0, and a threshold with its label. */
+/** The measures: column, heading, unit, the end of the axis that is usually 0, and a threshold with its label. */
 const MEASURES = [
   { name: "ttc", title: "Time to collision (TTC)", unit: "s", low: 0,
     threshold: threshold([options.serious_ttc, 3], (at) => `serious below ${at} s`) },
@@ -149,7 +149,9 @@ function range(measure) {
   const wanted = furthest / DISTRIBUTION_BINS;
   const width = measure.threshold ? measure.threshold.at / Math.max(1, Math.round(measure.threshold.at / wanted)) : wanted;
   const length = Math.ceil(furthest / width - 1e-9) * width;
-  return measure.high === 0 ? [-length, 0, width] : [0, length, width];
+  if (measure.high !== 0) return [0, length, width];
+  // Only a log of a wider condition has margins above 0.
+  return [-length, column[measure.name].some((value) => value > 0) ? length : 0, width];
 }
 
 const distributions = {
@@ -184,7 +186,7 @@ const distributions = {
     const place = (row) => Math.max(0, Math.floor((values[row] - low) / width));
     const counts = histogram(known, place, bins);
     const centres = Array.from({ length: bins }, (_, bin) => low + (bin + 0.5) * width);
-    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === bins - 1 && measure.low === 0 ? "or more" : "");
+    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === bins - 1 && high > 0 ? "or more" : "");
     const says = (bin) => {
       const [from, to] = [low + bin * width, low + (bin + 1) * width].map((value) => number(value, 2));
       return beyond(bin) ? `${beyond(bin) === "or less" ? to : from} ${measure.unit} ${beyond(bin)}` : `${from} to ${to} ${measure.unit}`;

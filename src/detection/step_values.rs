@@ -1,0 +1,53 @@
+//! The values of a pair in a step that a condition compares.
+
+use super::encounter::Encounter;
+use super::measures;
+use super::measures::headway::headway;
+use super::measures::injury::{self, Body};
+use crate::options::condition::Measure;
+use crate::traffic::profile::Profile;
+use crate::util::units::MetrePerSecond;
+
+/// A pair in a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StepValues<'a> {
+    pub found: &'a Encounter,
+    /// The ego's and the foe's.
+    pub speeds: [MetrePerSecond; 2],
+    /// The ego's and the foe's.
+    pub types: [&'a Profile; 2],
+}
+
+impl StepValues<'_> {
+    /// The value of a measure, if the pair has it in this step.
+    pub fn of(&self, measure: Measure) -> Option<f64> {
+        let &Self { found, speeds: [ego_speed, foe_speed], types: [ego, foe] } = self;
+        let delta_v = || measures::delta_v((ego_speed, ego.mass), (foe_speed, foe.mass), found.angle);
+        match measure {
+            Measure::Gap => Some(found.gap),
+            Measure::Mu => Some(found.mu),
+            Measure::Margin => Some(found.margin),
+            Measure::Clearance => found.nearness.map(|near| near.clearance),
+            Measure::Ttc => found.nearness?.ttc,
+            Measure::Drac => found.nearness?.drac,
+            Measure::Pet => None,
+            Measure::Headway => headway(found.kind, found.gap, ego_speed),
+            Measure::Overlap => Some(found.overlap),
+            Measure::Angle => Some(found.angle),
+            Measure::EgoSpeed => Some(ego_speed),
+            Measure::FoeSpeed => Some(foe_speed),
+            Measure::EgoDeltaV => Some(delta_v()[0]),
+            Measure::FoeDeltaV => Some(delta_v()[1]),
+            Measure::ResponseLeft => found.nearness?.response_left,
+            Measure::Ttb => found.nearness?.ttb,
+            Measure::CrashProbability => found.nearness.map(|near| near.crash_probability),
+            Measure::CrashProbabilityBraking => found.nearness.map(|near| near.crash_probability_braking),
+            Measure::InjuryProbability => {
+                let [of_ego, of_foe] = delta_v();
+                let body = |delta_v, of: &Profile| Body { delta_v, unprotected: of.unprotected };
+                Some(injury::injury_probability(found.kind, body(of_ego, ego), body(of_foe, foe)))
+            }
+            Measure::ExtendedDeltaV => found.nearness?.extended_delta_v,
+        }
+    }
+}
