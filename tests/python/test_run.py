@@ -21,7 +21,8 @@ CONFLICT_COLUMNS = (
 )
 SERIES_COLUMNS = (
     "conflict,ego,foe,kind,severity,time,gap,mu,margin,clearance,ttc,drac,unavoidable,ego_delta_v,foe_delta_v,ego_speed,foe_speed,"
-    "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap"
+    "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap,response_left,ttb,"
+    "crash_probability,crash_probability_braking,injury_probability,extended_delta_v"
 )
 
 Copy = Callable[[str], Path]
