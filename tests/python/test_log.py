@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Callable
 
 import closecall as cc
 import pytest
@@ -108,15 +109,19 @@ def test_warm_up_counts_the_vehicles_that_are_there_when_it_ends() -> None:
     assert checker.summary["exposure"]["vehicle_hours"] == pytest.approx(2 / 3600)
 
 
+BEYOND: dict[str, Callable[[float], bool]] = {
+    "minTTC": lambda ttc: ttc < 3,
+    "maxDRAC": lambda drac: drac > 3,
+    "PET": lambda pet: pet < 2,
+}
+"""The device's measures, and when each is beyond its default threshold."""
+
+
 def beyond_its_thresholds(file: Path) -> dict[frozenset[str], set[str]]:
     """The pairs that device.ssm reports, with its encounter types of the measures that are beyond its thresholds."""
     found: dict[frozenset[str], set[str]] = {}
     for conflict in ET.parse(file).getroot():
-        for name, is_beyond in (
-            ("minTTC", lambda ttc: ttc < 3),
-            ("maxDRAC", lambda drac: drac > 3),
-            ("PET", lambda pet: pet < 2),
-        ):
+        for name, is_beyond in BEYOND.items():
             extreme = conflict.find(name)
             value = "NA" if extreme is None else extreme.get("value", "NA")
             if extreme is not None and value not in ("NA", "") and is_beyond(float(value)):
