@@ -164,23 +164,29 @@ impl StepInputs<'_> {
         let [ego, foe] = [0, 1].map(|one| course(pair[one], &courses[one][..]));
         let driver = |slot| &self.profile(self.user(slot)).driver;
         let braking = self.late_braking(met.slots[0], pair[0]);
+        // A contact that only grazes is none, so that of two that are narrower by the tolerance decides whether there is one.
+        let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
+        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
+        let narrow = |of: SteadyMotion, by: Metre| (of.width - by).max(of.width / 2.0);
         if self.is_obstacle(met.slots[1]) {
-            let ttc = ttc::time_to_fixed(halves, &ego, self.roster.shape(encounter.foe));
+            let shape = self.roster.shape(encounter.foe);
+            let narrow_ego = SteadyMotion { width: narrow(ego, 2.0 * narrower), ..ego };
+            let meets = ttc::time_to_fixed(halves, &narrow_ego, shape);
+            let ttc = meets.and_then(|_| ttc::time_to_fixed(halves, &ego, shape));
             let Some(time) = ttc else { return Timely::APART };
             let evasion = Evasion::Behind(Leader { room: ego.speed * time, speed: 0.0, deceleration: 0.0 });
             let drac = Some(ego.speed / (2.0 * time)).filter(|drac| *drac > 0.0);
             return Timely { ttc, drac, ..Timely::APART }.with(&evasion, &braking, driver(met.slots[0]));
         }
-        let ttc = ttc::time_to_collision(&ego, &foe);
+        let [narrow_ego, narrow_foe] = [ego, foe].map(|of| SteadyMotion { width: narrow(of, narrower), ..of });
+        let meets = ttc::time_to_collision(&narrow_ego, &narrow_foe);
+        let ttc = meets.and_then(|_| ttc::time_to_collision(&ego, &foe));
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely { ttc, drac, ..Timely::APART };
-        let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
-        // Both go on as now. They are narrower by the tolerance, so that a graze does not count as a crash.
-        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
-        let [mut ego, mut foe] = [ego, foe];
+        // Both go on as now.
+        let [mut ego, mut foe] = [narrow_ego, narrow_foe];
         for (user, course) in users.into_iter().zip([&mut ego, &mut foe]) {
             course.deceleration = self.deceleration(user);
-            course.width = (course.width - narrower).max(course.width / 2.0);
         }
         let Some(meets) = ttc::time_to_collision(&ego, &foe) else { return timely };
         let foe_braking = self.late_braking(met.slots[1], pair[1]);
