@@ -121,7 +121,7 @@ fn one_whose_corner_will_only_graze_has_no_ttc() {
     // The ego passes behind a foe that crosses: that leaves just before, or just after.
     let crossing = |behind: f64| encounter([(0.0, 0.0, 0.0, 10.0), (10.0, 6.0 + behind, NORTH, 10.0)]);
     let ttc = |behind: f64| crossing(behind).and_then(|found| found.nearness?.ttc);
-    assert_eq!([ttc(-9.2), ttc(-9.3)].map(|ttc| ttc.is_some()), [false, true]);
+    assert_eq!([ttc(-9.4), ttc(-9.6)].map(|ttc| ttc.is_some()), [false, true]);
 }
 
 #[test]
