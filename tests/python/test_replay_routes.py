@@ -25,7 +25,7 @@ TYPES = """
 
 
 def drawn(folder: Path) -> None:
-    """A net drawn at random, with two-way overtaking and lengths unlike the shapes, and vehicles that turn at random."""
+    """A net drawn at random, with two-way overtaking and lengths unlike shapes, and vehicles that turn at random."""
     net = folder / "drawn.net.xml"
     netgenerate = Path(sys.executable).with_name("netgenerate")
     subprocess.run([netgenerate, *NET, "--opposites.guess", "-o", net], check=True, capture_output=True)
