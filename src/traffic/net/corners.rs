@@ -28,7 +28,8 @@ pub(super) fn cut_corners(net: &Net) -> Vec<Overlap> {
     for (area, junction) in areas {
         for other in driven.get(junction).into_iter().flatten() {
             let depth = reach(&net.lanes[area.0 as usize].shape, &net.lanes[other.0 as usize]);
-            if depth > ROUNDING {
+            // Deeper, the area lies across the road: persons cross there.
+            if depth > ROUNDING && depth <= VEHICLE_WIDTH {
                 places.push(Overlap { lanes: (area, *other), depth });
             }
         }
@@ -93,7 +94,8 @@ mod tests {
             ("-5,-0.5 9,-0.5", Some(0.4)),
             ("-5,-0.5 5,-0.7 9,-3", Some(0.3)),
             ("-5,-1 9,-1", None),
-            ("-5,1 1,1 2,-9", Some(1.9)),
+            ("-5,0.5 1,0.5 2,-9", Some(1.4)),
+            ("-5,2 2,2 9,2", None),
             ("-3,0 -0.3,-0.4 0,-3", Some(0.4)),
         ] {
             let found = cut(shape, "");
