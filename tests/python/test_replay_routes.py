@@ -1,4 +1,5 @@
-"""A replay knows the routes of the live run: with turnarounds, short edges, long steps, and beyond the recording."""
+"""A replay knows the routes of the live run: with turnarounds, short edges, lengths unlike
+shapes, long steps, and beyond the recording."""
 
 from __future__ import annotations
 
@@ -24,11 +25,18 @@ TYPES = """
 
 
 def drawn(folder: Path) -> None:
-    """A net drawn at random, with two-way overtaking, and vehicles that turn at random at every junction."""
+    """A net drawn at random, with two-way overtaking and lengths unlike shapes, and vehicles that turn at random."""
     net = folder / "drawn.net.xml"
     netgenerate = Path(sys.executable).with_name("netgenerate")
     subprocess.run([netgenerate, *NET, "--opposites.guess", "-o", net], check=True, capture_output=True)
-    root = ET.parse(net).getroot()
+    tree = ET.parse(net)
+    root = tree.getroot()
+    for edge in root.iter("edge"):
+        # Both directions of a road have to be equally long.
+        stretch = random.Random("".join(sorted([edge.get("from", ""), edge.get("to", "")]))).choice([0.7, 1, 1, 1.4])
+        for lane in edge if edge.get("function") is None else ():
+            lane.set("length", f"{float(lane.get('length', '')) * stretch:.2f}")
+    tree.write(net)
     ahead: dict[str, set[str]] = {}
     for link in root.iter("connection"):
         ahead.setdefault(link.get("from", ""), set()).add(link.get("to", ""))

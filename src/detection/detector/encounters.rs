@@ -81,6 +81,12 @@ impl Unsettled {
     }
 }
 
+/// How much smaller both of a pair are taken to be on every side, so that an overlap of this depth parts: an obstacle does
+/// not shrink.
+pub(super) fn shrinks(tolerance: Metre, second: &Participant) -> Metre {
+    if second.shape.is_empty() { tolerance / 2.0 } else { tolerance }
+}
+
 /// Whether two road users can be a pair at all. Two that stand are one only in the step in which one of them stops: what
 /// it ran into on its last metre is a collision.
 fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
@@ -257,9 +263,7 @@ impl StepInputs<'_> {
         }
         let depth = side::overlap_now(first, second);
         let tolerance = self.tolerance(slots, [0.0; 2]);
-        // Both shrink by half of it, which parts them; an obstacle does not shrink.
-        let shrinks = if second.shape.is_empty() { tolerance / 2.0 } else { tolerance };
-        Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks }
+        Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks: shrinks(tolerance, second) }
     }
 
     /// How deep two may overlap without colliding: where the lanes under them, and so far ahead, overlap as drawn, by more.

@@ -2,6 +2,7 @@
 //! conflict.
 
 use super::cover;
+use super::encounters::shrinks;
 use super::occupancy::Carriages;
 use super::reach::User;
 use super::step::StepInputs;
@@ -15,6 +16,7 @@ use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::measures::{self, SeverityInputs};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
+use crate::detection::path::Pose;
 use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
@@ -201,38 +203,41 @@ impl StepInputs<'_> {
         for ((user, of), poses) in users.into_iter().zip(pair).zip(scratch.courses.iter_mut()) {
             poses.clear();
             self.course(user, of.carriage, &[self.state(user).speed * ttc::HORIZON], true, poses);
-            poses.iter_mut().for_each(|pose| pose.front -= pose.axis * met.shrinks);
+            set_back(poses, of.setback);
         }
-        let Scratch { courses, halves, limits } = scratch;
-        let course = |of: &Participant, poses| SteadyMotion {
-            poses,
-            speed: of.speed,
-            deceleration: 0.0,
-            length: of.length(),
-            width: of.width(),
+        // A contact ahead that only grazes is none: two that are smaller by the tolerance decide whether there is one.
+        let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
+        let tolerance = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
+        let smaller = pair.map(|of| of.shrunk(shrinks(tolerance, pair[1])));
+        let Scratch { courses, smaller_courses, halves, limits } = scratch;
+        for one in [0, 1] {
+            smaller_courses[one].clone_from(&courses[one]);
+            set_back(&mut smaller_courses[one], smaller[one].setback - pair[one].setback);
+        }
+        let along = |slow_down: [MetrePerSecondSquared; 2]| {
+            let full = [0, 1].map(|one| steady(pair[one], &courses[one], slow_down[one]));
+            (full, [0, 1].map(|one| steady(&smaller[one], &smaller_courses[one], slow_down[one])))
         };
-        let [ego, foe] = [0, 1].map(|one| course(pair[one], &courses[one][..]));
+        let ([ego, foe], [smaller_ego, smaller_foe]) = along([0.0; 2]);
         let driver = |slot| &self.profile(self.user(slot)).driver;
         let braking = self.late_braking(met.slots[0], pair[0]);
         if self.is_obstacle(met.slots[1]) {
-            let ttc = ttc::time_to_fixed(halves, &ego, self.roster.shape(encounter.foe));
-            let Some(time) = ttc else { return Timely::APART };
+            let mut time_to = |ego| ttc::time_to_fixed(halves, ego, self.roster.shape(encounter.foe));
+            let Some(time) = time_to(&smaller_ego).and_then(|_| time_to(&ego)) else { return Timely::APART };
             let evasion = Evasion::Behind(Leader { room: ego.speed * time, speed: 0.0, deceleration: 0.0 });
             let drac = Some(ego.speed / (2.0 * time)).filter(|drac| *drac > 0.0);
-            return Timely { ttc, drac, ..Timely::APART }.with(&evasion, &braking, driver(met.slots[0]));
+            return Timely { ttc: Some(time), drac, ..Timely::APART }.with(&evasion, &braking, driver(met.slots[0]));
         }
-        let ttc = ttc::time_to_collision(&ego, &foe);
+        // The smaller two may touch too late to be found.
+        let touch_at_last = || contact::touches(&ego.at(ttc::HORIZON), &foe.at(ttc::HORIZON));
+        let ttc = ttc::time_to_collision(&ego, &foe)
+            .filter(|_| ttc::time_to_collision(&smaller_ego, &smaller_foe).is_some() || touch_at_last());
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely { ttc, drac, ..Timely::APART };
-        let ahead = [met.meeting.ego_distance, met.meeting.foe_distance];
-        // Both go on as now. They are narrower by the tolerance, so that a graze does not count as a crash.
-        let narrower = if met.shrinks > 0.0 { 0.0 } else { self.tolerance(met.slots, ahead) };
-        let [mut ego, mut foe] = [ego, foe];
-        for (user, course) in users.into_iter().zip([&mut ego, &mut foe]) {
-            course.deceleration = self.deceleration(user);
-            course.width = (course.width - narrower).max(course.width / 2.0);
-        }
-        let Some(meets) = ttc::time_to_collision(&ego, &foe) else { return timely };
+        // Both go on as now.
+        let ([ego, foe], [smaller_ego, smaller_foe]) = along(users.map(|user| self.deceleration(user)));
+        let meets = ttc::time_to_collision(&smaller_ego, &smaller_foe).and_then(|_| ttc::time_to_collision(&ego, &foe));
+        let Some(meets) = meets else { return timely };
         let foe_braking = self.late_braking(met.slots[1], pair[1]);
         let alone = ttb::to_stay_behind(halves, limits, [&ego, &foe], &braking, meets);
         if encounter.kind == Kind::Frontal {
@@ -248,6 +253,16 @@ impl StepInputs<'_> {
         let of_foe = ttb::to_stay_behind(halves, limits, [&foe, &ego], &foe_braking, meets);
         timely.with(&of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
     }
+}
+
+/// A road user, or a carriage of it, that keeps its deceleration along its course.
+fn steady<'a>(of: &Participant, poses: &'a [Pose], deceleration: MetrePerSecondSquared) -> SteadyMotion<'a> {
+    SteadyMotion { poses, speed: of.speed, deceleration, length: of.length(), width: of.width() }
+}
+
+/// Moves the fronts of a course back.
+fn set_back(course: &mut [Pose], by: Metre) {
+    course.iter_mut().for_each(|pose| pose.front -= pose.axis * by);
 }
 
 /// A driver that slows down by at least this, in m/s², has responded: from here on, a vehicle has to light its brake lamps

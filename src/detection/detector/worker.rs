@@ -34,6 +34,8 @@ pub(super) struct Findings {
 pub(super) struct Scratch {
     /// Poses further ahead than the paths of the step: the ego's and the foe's.
     pub courses: [Vec<Pose>; 2],
+    /// The same of both if they are smaller.
+    pub smaller_courses: [Vec<Pose>; 2],
     pub halves: Bisection,
     /// How far an ego may be at which times.
     pub limits: Vec<(Second, Metre)>,
@@ -41,8 +43,10 @@ pub(super) struct Scratch {
 
 impl Default for Scratch {
     fn default() -> Self {
+        let courses = || [(); 2].map(|()| Vec::with_capacity(MOST_POSES));
         Self {
-            courses: [(); 2].map(|()| Vec::with_capacity(MOST_POSES)),
+            courses: courses(),
+            smaller_courses: courses(),
             halves: Bisection::to_keep(),
             limits: Vec::with_capacity(MOST_TIMES),
         }

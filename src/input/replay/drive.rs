@@ -51,7 +51,7 @@ impl Drive {
         let against = self.against.take().filter(|(known, _)| *known == edge);
         let was_ahead = std::mem::replace(&mut self.ahead, ahead);
         let is_same = self.reached.last().is_some_and(|last| last.edge == edge);
-        if is_same && (ahead.is_some() || was_ahead.is_none()) {
+        if is_same && (was_ahead == ahead || was_ahead.is_none()) {
             self.unseen_since = None;
             return;
         }
@@ -63,7 +63,8 @@ impl Drive {
     /// Its heading is against its lane, which is on this edge, or in the junction between this edge and `ahead`.
     pub fn against(&mut self, edge: EdgeIndex, ahead: Option<EdgeIndex>, moment: &Moment) {
         // In a junction it is in a sharp turn if it came from there; an overtaker would be on the way of oncoming traffic.
-        if ahead.is_some() && self.reached.last().is_some_and(|last| last.edge == edge) {
+        let came_from_there = self.ahead == Some(edge) || self.reached.last().is_some_and(|last| last.edge == edge);
+        if ahead.is_some() && came_from_there {
             return self.along(edge, ahead, moment);
         }
         if self.against.is_none_or(|(known, _)| known != edge) {
@@ -161,6 +162,8 @@ mod tests {
         assert_eq!(reached(&[Along(A), Between(B, C), Along(C)]), [(A, 0), (B, 1), (C, 2)]);
         assert_eq!(reached(&[Along(A), Between(A, B), Along(A)]), [(A, 0), (B, 2), (A, 2)], "round a ring");
         assert_eq!(reached(&[Along(A), Between(A, B)]), [(A, 0), (B, NEVER)]);
+        assert_eq!(reached(&[Between(A, B), Between(A, C)]), [(A, 0), (B, 1), (A, 1), (C, NEVER)], "B is short");
+        assert_eq!(reached(&[Between(A, B), AgainstBetween(B, A)]), [(A, 0), (B, 1), (A, NEVER)], "turns at once");
     }
 
     #[test]

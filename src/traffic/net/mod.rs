@@ -1,8 +1,9 @@
 //! A SUMO net (`*.net.xml`, also gzipped).
 //!
-//! It holds only what paths, obstacles and the log need: lane shapes, links and junctions. `overlaps` and `quality` find
-//! where it is not drawn as it is driven.
+//! It holds only what paths, obstacles and the log need: lane shapes, links and junctions. `overlaps`, `corners` and `quality`
+//! find where it is not drawn as it is driven.
 
+mod corners;
 mod elements;
 pub mod filter;
 mod finder;

@@ -20,11 +20,11 @@ use crate::geometry::{Bounds, Point, cross};
 use crate::util::units::Metre;
 
 /// The width of SUMO's default vehicle in m. On a narrower lane a vehicle is as wide as the lane.
-const VEHICLE_WIDTH: Metre = 1.8;
+pub(super) const VEHICLE_WIDTH: Metre = 1.8;
 /// Two lanes that overlap by less than this lie beside each other, in m; by more, they lie on each other or cross.
 const BESIDE: Metre = VEHICLE_WIDTH / 2.0;
 /// Less is due to shapes that are rounded to a centimetre, in m.
-const ROUNDING: Metre = 0.02;
+pub(super) const ROUNDING: Metre = 0.02;
 /// Lanes of which one leads to the other within this distance follow each other, in m.
 const FOLLOWING: Metre = 10.0;
 /// The length of a shorter lane counts as this, in m, so that a search along lanes ends.

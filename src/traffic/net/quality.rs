@@ -1,5 +1,6 @@
 //! Where a net is not drawn as it is driven, in a line for the start of a run.
 
+use super::corners::cut_corners;
 use super::elements::{EdgeFunction, LaneIndex};
 use super::network::Net;
 use super::overlaps::{Overlap, Overlaps};
@@ -15,7 +16,7 @@ const NAMED: usize = 3;
 impl Net {
     /// Where it is not drawn as it is driven: a line for each way in which it is not.
     pub fn remarks(&self, overlaps: &Overlaps) -> Vec<String> {
-        lengths(self).into_iter().chain(overlapping(self, overlaps)).collect()
+        lengths(self).into_iter().chain(overlapping(self, overlaps)).chain(corners(self)).collect()
     }
 }
 
@@ -56,19 +57,34 @@ fn lengths(net: &Net) -> Option<String> {
 
 /// How many pairs of lanes overlap as drawn, and the worst of them; none where none does.
 fn overlapping(net: &Net, overlaps: &Overlaps) -> Option<String> {
-    let places = overlaps.places();
+    let named = named(net, overlaps.places())?;
+    Some(match overlaps.places().len() {
+        1 => format!("2 lanes overlap as drawn: {named}"),
+        count => format!("{count} pairs of lanes overlap as drawn, the worst first: {named}"),
+    })
+}
+
+/// At how many places vehicles cut a corner of a pavement as drawn, and the worst of them; none where they do not.
+fn corners(net: &Net) -> Option<String> {
+    let places = cut_corners(net);
+    let named = named(net, &places)?;
+    Some(match places.len() {
+        1 => format!("on a junction lane vehicles cut the corner of a pavement as drawn: {named}"),
+        count => {
+            format!("on {count} junction lanes vehicles cut corners of pavements as drawn, the worst first: {named}")
+        }
+    })
+}
+
+/// The worst places; none if there is no place.
+fn named(net: &Net, places: &[Overlap]) -> Option<String> {
     let name = |place: &Overlap| {
         let (one, other) = place.lanes;
         format!("{} and {} by {:.2} m", net.lane_id(one), net.lane_id(other), place.depth)
     };
-    let count = places.len();
     let named = places.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
-    let more = if count > NAMED { ", …" } else { "" };
-    match count {
-        0 => None,
-        1 => Some(format!("2 lanes overlap as drawn: {named}")),
-        _ => Some(format!("{count} pairs of lanes overlap as drawn, the worst first: {named}{more}")),
-    }
+    let more = if places.len() > NAMED { ", …" } else { "" };
+    (!places.is_empty()).then(|| named + more)
 }
 
 #[cfg(test)]

@@ -1,0 +1,108 @@
+//! Corners of pavements that vehicles cut as drawn.
+//!
+//! SUMO's drivers yield to persons on crossings; they do not see those on a walking area, where pavements and crossings
+//! meet. Where a junction lane is drawn nearer to a walking area than half a vehicle is wide, each vehicle there drives
+//! over the corner, whoever stands on it.
+
+use rustc_hash::FxHashMap;
+
+use super::elements::{EdgeFunction, Lane, LaneIndex};
+use super::network::Net;
+use super::overlaps::{Overlap, ROUNDING, VEHICLE_WIDTH};
+use crate::geometry::{Point, cross};
+use crate::util::units::Metre;
+
+/// The walking areas and the junction lanes that cut them, the deepest first.
+pub(super) fn cut_corners(net: &Net) -> Vec<Overlap> {
+    let mut driven = FxHashMap::<&str, Vec<LaneIndex>>::default();
+    let mut areas = Vec::new();
+    for (lane, index) in net.lanes.iter().zip((0..).map(LaneIndex)) {
+        let edge = &net.edges[lane.edge.0 as usize];
+        match edge.function {
+            EdgeFunction::Internal if lane.has_vehicles => driven.entry(&edge.junction).or_default().push(index),
+            EdgeFunction::WalkingArea => areas.push((index, edge.junction.as_str())),
+            _ => {}
+        }
+    }
+    let mut places = Vec::new();
+    for (area, junction) in areas {
+        for other in driven.get(junction).into_iter().flatten() {
+            let depth = reach(&net.lanes[area.0 as usize].shape, &net.lanes[other.0 as usize]);
+            // Deeper, the area lies across the road: persons cross there.
+            if depth > ROUNDING && depth <= VEHICLE_WIDTH {
+                places.push(Overlap { lanes: (area, *other), depth });
+            }
+        }
+    }
+    places.sort_by(|a, b| b.depth.total_cmp(&a.depth).then(a.lanes.cmp(&b.lanes)));
+    places
+}
+
+/// How far a vehicle on a lane reaches into an area; 0 or less if it does not.
+fn reach(area: &[Point], lane: &Lane) -> Metre {
+    let half = lane.width.min(VEHICLE_WIDTH) / 2.0;
+    let sides = || area.windows(2).map(|side| [side[0], side[1]]).chain([[area[area.len() - 1], area[0]]]);
+    let from_outline = |point| sides().map(|side| distance(side, point)).fold(f64::INFINITY, f64::min);
+    let within = lane.shape.iter().filter(|point| is_inside(sides(), **point)).map(|point| from_outline(*point));
+    if let Some(deepest) = within.reduce(f64::max) {
+        return half + deepest;
+    }
+    let of_lane = lane.shape.iter().map(|point| from_outline(*point));
+    let pieces = || lane.shape.windows(2).map(|piece| [piece[0], piece[1]]);
+    let of_area = area.iter().flat_map(|corner| pieces().map(|piece| distance(piece, *corner)));
+    half - of_lane.chain(of_area).fold(f64::INFINITY, f64::min)
+}
+
+/// The distance of a place from a piece of a line.
+fn distance([from, to]: [Point; 2], place: Point) -> Metre {
+    let along = to - from;
+    let part = (place - from).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+    (place - (from + along * part.clamp(0.0, 1.0))).norm()
+}
+
+/// Whether an outline is around a place: a ray from there crosses it an odd number of times.
+fn is_inside(sides: impl Iterator<Item = [Point; 2]>, place: Point) -> bool {
+    let crossed = sides.filter(|[from, to]| {
+        let is_above = |point: &Point| point.y > place.y;
+        let is_left = cross(&(to - from), &(place - from)) > 0.0;
+        is_above(from) != is_above(to) && is_left == is_above(to)
+    });
+    crossed.count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    /// How far a vehicle on a junction lane of this shape cuts a corner of 4 m by 4 m.
+    fn cut(shape: &str, attributes: &str) -> Option<Metre> {
+        let text = format!(
+            r#"<net><edge id=":j_0" function="internal"><lane id=":j_0_0" length="9" shape="{shape}" {attributes}/></edge>
+            <edge id=":j_w0" function="walkingarea"><lane id=":j_w0_0" length="4" shape="0,0 4,0 4,4 0,4"/></edge>
+            <edge id=":k_w0" function="walkingarea"><lane id=":k_w0_0" length="4" shape="0,0 4,0 4,4 0,4"/></edge></net>"#
+        );
+        let found = cut_corners(&Net::parse(Path::new("net"), text).unwrap());
+        assert!(found.len() < 2, "only in its own junction");
+        found.first().map(|place| place.depth)
+    }
+
+    #[test]
+    fn a_vehicle_cuts_the_corner_that_its_lane_passes_too_near() {
+        for (shape, depth) in [
+            ("-5,-0.5 9,-0.5", Some(0.4)),
+            ("-5,-0.5 5,-0.7 9,-3", Some(0.3)),
+            ("-5,-1 9,-1", None),
+            ("-5,0.5 1,0.5 2,-9", Some(1.4)),
+            ("-5,2 2,2 9,2", None),
+            ("-3,0 -0.3,-0.4 0,-3", Some(0.4)),
+        ] {
+            let found = cut(shape, "");
+            assert!(found.is_some() == depth.is_some(), "{shape}: {found:?}");
+            assert!((found.unwrap_or(0.0) - depth.unwrap_or(0.0)).abs() < 0.02, "{shape}: {found:?}");
+        }
+        assert_eq!(cut("-5,-0.5 9,-0.5", r#"width="1""#), None, "a bicycle lane");
+        assert_eq!(cut("-5,-0.5 9,-0.5", r#"allow="pedestrian""#), None, "for persons");
+    }
+}
