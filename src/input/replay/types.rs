@@ -51,6 +51,9 @@ pub(super) fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, St
     found.width = number("width")?.unwrap_or(found.width);
     found.mass = number("mass")?.unwrap_or(found.mass);
     found.decel = number("decel")?.unwrap_or(found.decel);
+    found.tau = number("tau")?.unwrap_or(found.tau);
+    found.min_gap = number("minGap")?.unwrap_or(found.min_gap);
+    found.action_step = number("actionStepLength")?.unwrap_or(found.action_step);
     // As in SUMO, emergency braking is never weaker than ordinary braking.
     found.emergency_decel = number("emergencyDecel")?.unwrap_or(found.emergency_decel.max(found.decel));
     Ok(found)
