@@ -352,6 +352,23 @@ mod tests {
     }
 
     #[test]
+    fn a_slower_ego_is_not_too_late_behind_one_that_brakes() {
+        // The room first grows; the build-up of 9 s ends the approach before it is used up.
+        let braking = LateBraking { speed: 41.07, present: 0.0, build_up: 9.138, deceleration: 237.98 };
+        assert!(braking.longest_wait_behind(&Leader { room: 3.7e-4, speed: 44.67, deceleration: 9.067 }) > 0.0);
+    }
+
+    #[test]
+    fn a_wait_is_exact_where_the_present_braking_is_weak() {
+        // The deceleration does not build up fully before the ego stands, and of itself it would brake for 25 years.
+        let braking = LateBraking { speed: 7.7, present: 1e-8, build_up: 2.0, deceleration: 9.75 };
+        let at_once = LateBraking { present: 0.0, ..braking };
+        let leader = Leader { room: 42.5, speed: 0.0, deceleration: 0.0 };
+        let found = [braking, at_once].map(|braking| braking.longest_wait_behind(&leader));
+        assert!((found[0] - found[1] - 1e-8 * found[0] * found[0] / 2.0 / 7.7).abs() < 1e-8, "{found:?}");
+    }
+
+    #[test]
     fn a_standing_leader_leaves_the_room_less_the_stopping_distance() {
         let braking = LateBraking { speed: 20.0, present: 0.0, build_up: 0.0, deceleration: 8.0 };
         let wait = braking.longest_wait_behind(&Leader { room: 45.0, speed: 0.0, deceleration: 0.0 });

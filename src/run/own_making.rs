@@ -74,3 +74,64 @@ fn types(counts: &[u64], roster: &Roster, text: &dyn Fn(&Profile) -> String) -> 
     };
     (!of_types.is_empty()).then(|| (counts.iter().sum(), named + &more))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::options::Options;
+    use crate::run::Run;
+    use crate::traffic::frame::State;
+    use crate::traffic::profile::Profile;
+    use crate::traffic::sumo_type::SumoType;
+    use crate::{Error, Result};
+
+    /// The remarks of a run in which a follower of one type is 13 m behind a leader of another, both at 15 m/s.
+    fn remarks(follower: SumoType, leader: SumoType) -> Vec<String> {
+        let options = Options::default();
+        let mut run = Run::new(&options, None).unwrap();
+        let users = [follower, leader].map(|sumo| {
+            let profile = run.roster.profile(Profile::vehicle(&sumo, &options)).unwrap();
+            run.enter(&sumo.name, profile)
+        });
+        run.begin_step(0.0);
+        for (user, x) in users.into_iter().zip([0.0, 18.0]) {
+            run.frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed: 15.0 });
+        }
+        let stepped: Result<()> = run.step(|_, _| Ok::<_, Error>(()));
+        stepped.unwrap();
+        let summary = run.finish().unwrap();
+        assert_eq!(summary.count(None, None), 1);
+        summary.remarks
+    }
+
+    #[test]
+    fn ordinary_following_is_named_with_its_type_and_share() {
+        let hurried = SumoType { tau: 0.7, ..SumoType::car("hurried") };
+        let found = remarks(hurried, SumoType::car("car"));
+        let [line] = &found[..] else { panic!("{found:?}") };
+        // It keeps 0.7 V + 2.5 m, and μ is 1.1 V + 0.5 m.
+        assert!(line.starts_with("ordinary following makes 1 of 1 conflicts"), "{line}");
+        assert!(line.ends_with("(hurried from 18 km/h on)"), "{line}");
+    }
+
+    #[test]
+    fn a_driver_that_keeps_its_distance_is_not_named() {
+        assert_eq!(remarks(SumoType { tau: 1.5, ..SumoType::car("calm") }, SumoType::car("car")), [""; 0]);
+    }
+
+    #[test]
+    fn a_foe_that_brakes_harder_than_cars_is_named() {
+        let strong = SumoType { emergency_decel: 10.0, ..SumoType::car("strong") };
+        let found = remarks(SumoType { tau: 1.5, ..SumoType::car("calm") }, strong);
+        assert_eq!(
+            found,
+            ["1 of 1 conflicts have a foe that brakes harder than 9 m/s² (emergencyDecel: strong with 10 m/s²)"]
+        );
+    }
+
+    #[test]
+    fn steps_of_half_a_second_are_long() {
+        let run = Run::new(&Options::default(), None).unwrap();
+        let found = [0.4, 0.5].map(|length| run.opening_remarks(Some(length)).len());
+        assert_eq!(found, [0, 1]);
+    }
+}

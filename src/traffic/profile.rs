@@ -258,6 +258,17 @@ mod tests {
     }
 
     #[test]
+    fn drivers_that_act_seldom_tailgate_at_lower_speeds() {
+        let from = |tau, action_step| {
+            let sumo = SumoType { tau, action_step, ..SumoType::car("car") };
+            Profile::vehicle(&sumo, &Options::default()).tailgates_from
+        };
+        // 2.5 m less ε of 0.5 m, over what lacks to the response time of 1.05 s and half of the build-up.
+        assert!((from(1.0, 0.0) - 20.0).abs() < 1e-9 && (from(1.0, 0.1) - 2.0 / 0.15).abs() < 1e-9);
+        assert_eq!(from(1.2, 0.1), f64::INFINITY);
+    }
+
+    #[test]
     fn a_ridden_vehicle_of_default_mass_weighs_its_rider_too() {
         let mut options = Options::default();
         options.types.insert("light".to_owned(), TypeOptions { mass: Some(12.0), ..TypeOptions::default() });
