@@ -3,7 +3,7 @@
 
 use crate::detection::kind::Kind;
 use crate::events::Conflict;
-use crate::traffic::profile::Profile;
+use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::MetrePerSecondSquared;
 
@@ -29,7 +29,8 @@ impl OwnMaking {
         if conflict.kind == Kind::RearEnd && conflict.ego_speed >= ego.tailgates_from {
             add_one(&mut self.following, conflict.ego_profile);
         }
-        if roster.profile_at(conflict.foe_profile).brakes.deceleration > HARDEST {
+        let foe = roster.profile_at(conflict.foe_profile);
+        if foe.category == Category::Vehicle && foe.brakes.deceleration > HARDEST {
             add_one(&mut self.braking, conflict.foe_profile);
         }
     }

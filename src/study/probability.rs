@@ -15,8 +15,8 @@ use crate::traffic::driver::Driver;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 const SCENES: [&str; 2] = ["behind a leader", "across a foe's way"];
-/// Nodes of the quadratures; closecall has 16.
-const NODES: [usize; 4] = [4, 8, 16, 32];
+/// Nodes of the other quadratures; closecall has 16.
+const NODES: [usize; 3] = [4, 8, 32];
 const DRAWS: [u32; 2] = [1_000, 10_000];
 /// The attentive driver: mean and standard deviation of its response time, and of its deceleration, with its range.
 const RESPONSE: [Second; 2] = [0.92, 0.28];

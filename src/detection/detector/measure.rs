@@ -14,7 +14,6 @@ use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::measures::{self, SeverityInputs};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::traffic::driver::Driver;
@@ -183,13 +182,7 @@ impl StepInputs<'_> {
             course.deceleration = self.deceleration(user);
             course.width = (course.width - narrower).max(course.width / 2.0);
         }
-        let keeps_speed = ego.deceleration == 0.0 && foe.deceleration == 0.0;
-        let meets = match ttc {
-            _ if keeps_speed && narrower == 0.0 => ttc,
-            None if keeps_speed && narrower > ERRORS_OF_TTC => None,
-            _ => ttc::time_to_collision(&ego, &foe),
-        };
-        let Some(meets) = meets else { return timely };
+        let Some(meets) = ttc::time_to_collision(&ego, &foe) else { return timely };
         let foe_braking = self.late_braking(met.slots[1], pair[1]);
         let alone = ttb::to_stay_behind(halves, limits, [&ego, &foe], &braking, meets);
         if encounter.kind == Kind::Frontal {
@@ -206,10 +199,6 @@ impl StepInputs<'_> {
         timely.with(&of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
     }
 }
-
-/// Road users that are narrower by more than this, in m, do not touch where wider ones do not: twice what each of them may be
-/// away from where its turn is assumed to be.
-const ERRORS_OF_TTC: Metre = 4.0 * TOLERANCE;
 
 /// A driver that slows down by at least this, in m/s², has responded: from here on, a vehicle has to light its brake lamps
 /// (UN R13-H, 5.2.22.4).
