@@ -5,12 +5,14 @@
 //! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
 
 mod obstacles;
+mod own_making;
 pub mod recorded;
 pub mod step;
 mod warm_up;
 
 use std::sync::Arc;
 
+use own_making::OwnMaking;
 use rustc_hash::FxHashSet;
 
 use crate::detection::detector::Detector;
@@ -32,7 +34,7 @@ use crate::util::units::Second;
 use crate::{Error, Result};
 use warm_up::WarmUp;
 
-/// Steps longer than this are worth a remark, in s: a vehicle at 50 km/h moves by more than its own length.
+/// Steps of this length and more are worth a remark, in s: a vehicle at 50 km/h moves by more than its own length.
 const LONG_STEP: Second = 0.5;
 
 /// One run.
@@ -65,6 +67,7 @@ pub struct Run {
     /// How long a step lasts: as the source says, or else the time between the first two steps.
     step_length: Option<Second>,
     summary: Summary,
+    own_making: OwnMaking,
 }
 
 impl Run {
@@ -101,13 +104,14 @@ impl Run {
             type_settings: type_settings(options),
             step_length: None,
             summary: Summary::default(),
+            own_making: OwnMaking::default(),
         })
     }
 
     /// What the user should know before the run: how the net is drawn, and whether steps of this length are too long.
     pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<String> {
         let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps()));
-        let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
+        let steps = step_length.filter(|length| *length >= LONG_STEP).map(|length| {
             format!(
                 "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
                  step length; 0.1 s is better (SUMO's --step-length)"
@@ -304,11 +308,13 @@ impl Run {
         self.outputs.write_conflicts(closed)?;
         self.outputs.finish()?;
         count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+        closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster));
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
         let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
         let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
-        self.summary.remarks = remarks.chain(self.warm_up.remark()).collect();
+        let own_making = self.own_making.remarks(&self.roster);
+        self.summary.remarks = remarks.chain(self.warm_up.remark()).chain(own_making).collect();
         Ok(self.summary.clone())
     }
 }

@@ -151,7 +151,9 @@ impl Frames {
         let mass = value(columns.mass.as_ref(), row).unwrap_or(usual.mass);
         let what = if let Sort::Person = sort { "person " } else { "" };
         let name = format!("{what}{length} m x {width} m, {decel} m/s², {mass} kg");
-        let sumo = SumoType { name, length, width, mass, emergency_decel: decel, decel, ..usual };
+        // How a script's road users follow is not known.
+        let tau = f64::INFINITY;
+        let sumo = SumoType { name, length, width, mass, emergency_decel: decel, decel, tau, ..usual };
         let profile = if let Sort::Person = sort {
             let profile = Profile::person(&sumo, &self.options, run.step_length().unwrap_or_default());
             let profile = run.roster.profile(profile).map_err(exception)?;

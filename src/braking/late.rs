@@ -170,8 +170,8 @@ impl Closing {
         }
         // It would end before the deceleration has built up: F has no closed inverse there.
         let ends = |wait: Second| self.way(wait) <= room;
-        let (least, most) = if present > 0.0 { (0.0, speed / present) } else { ((speed / present).max(0.0), wait) };
-        if ends(least) { bisect(ends, least, most.max(least)) } else { f64::NEG_INFINITY }
+        let most = if present > 0.0 { speed / present } else { wait };
+        if ends(0.0) { bisect(ends, 0.0, most) } else { f64::NEG_INFINITY }
     }
 
     /// F(w): the distance until the motion ends.
@@ -203,11 +203,16 @@ impl Closing {
         (self.full + self.present) * self.build_up / 2.0
     }
 
-    /// When a motion at this speed ends within the build-up.
+    /// When a motion at this speed ends within the build-up. A speed below 0 first rises above it if the present
+    /// deceleration is below 0; if it never does, the motion ends at once.
     fn ends_in_build_up(&self, speed: MetrePerSecond) -> Second {
         let jerk = (self.full - self.present) / self.build_up;
-        let root = (self.present * self.present + 2.0 * jerk * speed.max(0.0)).sqrt();
-        if self.present > 0.0 { 2.0 * speed.max(0.0) / (self.present + root) } else { (root - self.present) / jerk }
+        let squared = self.present * self.present + 2.0 * jerk * speed;
+        if squared < 0.0 || (self.present >= 0.0 && speed <= 0.0) {
+            return 0.0;
+        }
+        let root = squared.sqrt();
+        if self.present > 0.0 { 2.0 * speed / (self.present + root) } else { (root - self.present) / jerk }
     }
 
     /// S(U).
@@ -216,7 +221,7 @@ impl Closing {
             return self.built_up_distance(speed);
         }
         let (time, jerk) = (self.ends_in_build_up(speed), (self.full - self.present) / self.build_up);
-        (speed.max(0.0) - self.present * time / 2.0 - jerk * time * time / 6.0) * time
+        (speed - self.present * time / 2.0 - jerk * time * time / 6.0) * time
     }
 
     /// S(U) of a motion that lasts longer than the build-up.
@@ -229,18 +234,18 @@ impl Closing {
 
 /// The largest value between two at which `holds` is true, up to rounding: true at the lower, and false from there on.
 fn bisect(holds: impl Fn(f64) -> bool, low: f64, high: f64) -> f64 {
-    /// More halvings than digits.
-    const HALVINGS: u32 = 60;
     let (mut low, mut high) = (low, high);
-    for _ in 0..HALVINGS {
+    loop {
         let middle = low + (high - low) / 2.0;
+        if middle <= low || middle >= high || middle.is_nan() {
+            return low;
+        }
         if holds(middle) {
             low = middle;
         } else {
             high = middle;
         }
     }
-    low
 }
 
 #[cfg(test)]
@@ -344,6 +349,24 @@ mod tests {
         let braking = LateBraking { speed: 10.0, present: 2.5, build_up: 0.1, deceleration: 9.0 };
         assert_eq!(braking.longest_wait_behind(&Leader { room: 20.1, speed: 0.0, deceleration: 0.0 }), f64::INFINITY);
         assert!(braking.longest_wait_behind(&Leader { room: 19.9, speed: 0.0, deceleration: 0.0 }) < 5.0);
+    }
+
+    #[test]
+    fn a_slower_ego_is_not_too_late_behind_one_that_brakes() {
+        // The room first grows; the build-up of 9 s ends the approach before it is used up.
+        let braking = LateBraking { speed: 41.07, present: 0.0, build_up: 9.138, deceleration: 237.98 };
+        assert!(braking.longest_wait_behind(&Leader { room: 3.7e-4, speed: 44.67, deceleration: 9.067 }) > 0.0);
+    }
+
+    #[test]
+    fn a_wait_is_exact_where_the_present_braking_is_weak() {
+        // The deceleration does not build up fully before the ego stands, and the present one alone would take
+        // 7.7e12 s.
+        let braking = LateBraking { speed: 7.7, present: 1e-12, build_up: 2.0, deceleration: 9.75 };
+        let steady = LateBraking { present: 0.0, ..braking };
+        let leader = Leader { room: 42.5, speed: 0.0, deceleration: 0.0 };
+        let found = [braking, steady].map(|braking| braking.longest_wait_behind(&leader));
+        assert!((found[0] - found[1]).abs() < 1e-10, "{found:?}");
     }
 
     #[test]

@@ -95,6 +95,7 @@ impl Run {
         let path = |row| detector.path(frame, roster, row);
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
         count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+        closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }
 
     /// Writes the log and the other files, and ends the step.

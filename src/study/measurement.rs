@@ -19,6 +19,10 @@ pub enum Axis {
     Time,
     /// The model of μ, or integration of the braking equations.
     Braking,
+    /// How long a driver can wait: in closed form, or by small steps.
+    Late,
+    /// The quadrature of the crash probability, or draws.
+    Probability,
     /// f32 or f64, and the origin of coordinates.
     Numbers,
     /// The prediction of a road user's path.
@@ -27,7 +31,16 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of tables and charts.
-    pub const ALL: [Self; 6] = [Self::Volume, Self::Candidates, Self::Time, Self::Braking, Self::Numbers, Self::Path];
+    pub const ALL: [Self; 8] = [
+        Self::Volume,
+        Self::Candidates,
+        Self::Time,
+        Self::Braking,
+        Self::Late,
+        Self::Probability,
+        Self::Numbers,
+        Self::Path,
+    ];
 
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
@@ -36,6 +49,8 @@ impl Axis {
             Self::Candidates => "candidates",
             Self::Time => "time",
             Self::Braking => "braking",
+            Self::Late => "late",
+            Self::Probability => "probability",
             Self::Numbers => "numbers",
             Self::Path => "path",
         }

@@ -9,10 +9,12 @@ mod chart;
 mod clock;
 mod decisions;
 mod driven;
+mod late;
 mod measurement;
 mod numbers;
 mod page;
 mod path;
+mod probability;
 pub mod reference;
 pub mod stress;
 mod time;
@@ -34,6 +36,8 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
         Axis::Candidates => candidates::measure(plan),
         Axis::Time => time::measure(plan),
         Axis::Braking => braking::measure(plan),
+        Axis::Late => late::measure(plan),
+        Axis::Probability => probability::measure(plan),
         Axis::Numbers => numbers::measure(plan),
         Axis::Path => {
             let record = record.ok_or_else(|| Error::Value("the path axis needs SUMO".to_owned()))?;

@@ -12,6 +12,8 @@ fn question(axis: Axis) -> [&'static str; 2] {
         Axis::Candidates => ["Which road users are near each other?", "every pair (from 10⁵ on: the sweep along x)"],
         Axis::Time => ["When do two moving cars first touch?", "separating axes in 300-bit arithmetic"],
         Axis::Braking => ["How much room does the ego need?", "the braking equations solved in 300-bit arithmetic"],
+        Axis::Late => ["How long can the driver wait?", "the motion of both solved in 300-bit arithmetic"],
+        Axis::Probability => ["How likely is it that the driver brakes too late?", "Simpson's rule with 256 intervals"],
         Axis::Numbers => ["Which type of number, and which origin?", "exact arithmetic on the same f64 inputs"],
         Axis::Path => ["Where will a road user go?", "where the recorded vehicles really drove"],
     }

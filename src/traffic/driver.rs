@@ -24,6 +24,8 @@ const NODES: [(f64, f64); 8] = [
 pub struct Driver {
     /// Mean and standard deviation of the response time's logarithm.
     response: [f64; 2],
+    /// Mean and standard deviation of the largest deceleration before it is cut, and the least and the largest value.
+    braking: [MetrePerSecondSquared; 4],
     /// Decelerations and their weights, whose sum is 1.
     decelerations: Arc<[(MetrePerSecondSquared, f64)]>,
 }
@@ -41,20 +43,22 @@ impl Driver {
         let (mean, deviation) = (value(|of| of.response_mean), value(|of| of.response_sd));
         // A lognormal distribution from its own mean and standard deviation.
         let spread = if deviation > 0.0 { (deviation / mean).powi(2).ln_1p() } else { 0.0 };
-        Self {
-            response: [mean.ln() - spread / 2.0, spread.sqrt()],
-            decelerations: decelerations(
-                braking(|of| of.deceleration_mean),
-                braking(|of| of.deceleration_sd),
-                braking(|of| of.deceleration_min),
-                braking(|of| of.deceleration_max),
-            ),
-        }
+        let braking = [
+            braking(|of| of.deceleration_mean),
+            braking(|of| of.deceleration_sd),
+            braking(|of| of.deceleration_min),
+            braking(|of| of.deceleration_max),
+        ];
+        Self { response: [mean.ln() - spread / 2.0, spread.sqrt()], braking, decelerations: decelerations(braking) }
     }
 
     /// One that stops within a known time at a known deceleration: a person on foot.
     pub fn certain(response: Second, deceleration: MetrePerSecondSquared) -> Self {
-        Self { response: [response.ln(), 0.0], decelerations: Arc::new([(deceleration, 1.0)]) }
+        Self {
+            response: [response.ln(), 0.0],
+            braking: [deceleration, 0.0, deceleration, deceleration],
+            decelerations: Arc::new([(deceleration, 1.0)]),
+        }
     }
 
     /// The probability that it responds later than this.
@@ -67,18 +71,36 @@ impl Driver {
         if deviation > 0.0 { libm::erfc(above / (deviation * SQRT_2)) / 2.0 } else { f64::from(above < 0.0) }
     }
 
+    /// The probability that its vehicle brakes too weakly, where every deceleration below one that is too weak is, too.
+    pub fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
+        /// The deceleration is then right to a millionth of the range.
+        const HALVINGS: u32 = 20;
+        let [mean, deviation, least, most] = self.braking;
+        if deviation <= 0.0 || most <= least {
+            return f64::from(is_too_weak(mean));
+        }
+        if !is_too_weak(least) {
+            return 0.0;
+        }
+        if is_too_weak(most) {
+            return 1.0;
+        }
+        let [mut weak, mut strong] = [least, most];
+        for _ in 0..HALVINGS {
+            let middle = (weak + strong) / 2.0;
+            *(if is_too_weak(middle) { &mut weak } else { &mut strong }) = middle;
+        }
+        let below = |value: f64| libm::erfc((mean - value) / (deviation * SQRT_2));
+        (below((weak + strong) / 2.0) - below(least)) / (below(most) - below(least))
+    }
+
     /// The decelerations that stand for the distribution, with their weights.
     pub fn decelerations(&self) -> impl Iterator<Item = (MetrePerSecondSquared, f64)> {
         self.decelerations.iter().copied()
     }
 }
 
-fn decelerations(
-    mean: MetrePerSecondSquared,
-    deviation: MetrePerSecondSquared,
-    low: MetrePerSecondSquared,
-    high: MetrePerSecondSquared,
-) -> Arc<[(MetrePerSecondSquared, f64)]> {
+fn decelerations([mean, deviation, low, high]: [MetrePerSecondSquared; 4]) -> Arc<[(MetrePerSecondSquared, f64)]> {
     if deviation <= 0.0 || high <= low {
         return Arc::new([(mean, 1.0)]);
     }

@@ -4,7 +4,7 @@ use super::driver::Driver;
 use super::sumo_type::SumoType;
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
-use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
+use crate::util::units::{Kilogram, Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
 /// The sort of road user, as far as the model distinguishes.
@@ -46,6 +46,9 @@ pub struct Profile {
     pub driver: Driver,
     /// Whether nothing protects its occupants: a person, a bicycle, a motorcycle.
     pub unprotected: bool,
+    /// The speed from which on its drivers follow another of their type more closely than μ allows, in m/s; infinite where
+    /// they never do, or where it is not known how they follow.
+    pub tailgates_from: MetrePerSecond,
 }
 
 /// Classes whose vehicles have air brakes.
@@ -110,6 +113,16 @@ fn settings(name: &str, options: &Options) -> TypeOptions {
     origins(name).find_map(|name| options.types.get(name)).cloned().unwrap_or_default()
 }
 
+/// The speed from which on drivers of a type follow each other more closely than μ allows. At a speed V they keep V·tau +
+/// minGap; until they act, a leader that brakes as usual takes off what an actionStepLength · decel / a of headway is worth.
+/// μ is V (t1 + t2 + t3/2) + ε.
+fn tailgates_from(sumo: &SumoType, brakes: &Brakes, epsilon: Metre) -> MetrePerSecond {
+    let keeps = sumo.tau - sumo.action_step * sumo.decel / brakes.deceleration;
+    let lacks = brakes.response + brakes.build_up / 2.0 - keeps;
+    let room = (sumo.min_gap - epsilon).max(0.0);
+    if lacks > 0.0 { room / lacks } else { f64::INFINITY }
+}
+
 impl Profile {
     /// Checks that the values are possible.
     ///
@@ -165,6 +178,11 @@ impl Profile {
             Deceleration::Emergency => sumo.emergency_decel,
             Deceleration::Decel => sumo.decel,
         });
+        let brakes = Brakes {
+            response: set.response_time.unwrap_or(options.response_time) + delay,
+            build_up: set.build_up.unwrap_or(options.build_up),
+            deceleration,
+        };
         let length = set.length.unwrap_or(sumo.length);
         let (chord, carriages) = carriages(&sumo.shape, &sumo.vehicle_class, length);
         Self {
@@ -175,11 +193,7 @@ impl Profile {
             carriages,
             width: set.width.unwrap_or(sumo.width),
             mass: set.mass.unwrap_or_else(|| sumo.mass_on_the_road()),
-            brakes: Brakes {
-                response: set.response_time.unwrap_or(options.response_time) + delay,
-                build_up: set.build_up.unwrap_or(options.build_up),
-                deceleration,
-            },
+            brakes,
             driver: Driver::new(
                 options.driver,
                 &options.driver_options,
@@ -187,6 +201,7 @@ impl Profile {
                 sumo.emergency_decel / PASSENGER_CAR_BRAKES,
             ),
             unprotected: UNPROTECTED_CLASSES.contains(&sumo.vehicle_class.as_str()),
+            tailgates_from: tailgates_from(sumo, &brakes, options.epsilon),
         }
     }
 
@@ -204,6 +219,7 @@ impl Profile {
             brakes: Brakes { response: step_length, build_up: 0.0, deceleration: PERSON_DECELERATION },
             driver: Driver::certain(step_length, PERSON_DECELERATION),
             unprotected: true,
+            tailgates_from: f64::INFINITY,
         }
     }
 
@@ -220,6 +236,7 @@ impl Profile {
             brakes: Brakes { response: 0.0, build_up: 0.0, deceleration: 1.0 },
             driver: Driver::certain(0.0, 1.0),
             unprotected: false,
+            tailgates_from: f64::INFINITY,
         }
     }
 }
@@ -238,6 +255,17 @@ mod tests {
         assert_eq!(["car", "car@a", "car@b", "carriage"].map(width), [1.5, 1.5, 3.0, 1.8]);
         // Both the type's id and the vehicle's may contain an @.
         assert_eq!(["car@wide@a", "car@wide@b@1", "car@c@1"].map(width), [2.5, 2.5, 1.5]);
+    }
+
+    #[test]
+    fn drivers_that_act_seldom_tailgate_at_lower_speeds() {
+        let from = |tau, action_step| {
+            let sumo = SumoType { tau, action_step, ..SumoType::car("car") };
+            Profile::vehicle(&sumo, &Options::default()).tailgates_from
+        };
+        // 2.5 m less ε of 0.5 m, over what lacks to the response time of 1.05 s and half of the build-up.
+        assert!((from(1.0, 0.0) - 20.0).abs() < 1e-9 && (from(1.0, 0.1) - 2.0 / 0.15).abs() < 1e-9);
+        assert_eq!(from(1.2, 0.1), f64::INFINITY);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! SUMO's types of road users, and its defaults by vehicle class.
 
-use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared};
+use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 
 /// A vehicle or person type, as SUMO describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +21,12 @@ pub struct SumoType {
     pub emergency_decel: MetrePerSecondSquared,
     /// `decel` in m/s².
     pub decel: MetrePerSecondSquared,
+    /// `tau` in s: the headway that its drivers keep.
+    pub tau: Second,
+    /// `minGap` in m: the room that they keep besides.
+    pub min_gap: Metre,
+    /// `actionStepLength` in s: how often they act; 0 for in every step.
+    pub action_step: Second,
 }
 
 impl SumoType {
@@ -43,6 +49,9 @@ impl SumoType {
             mass,
             emergency_decel,
             decel,
+            tau: TAU,
+            min_gap: min_gap(class),
+            action_step: 0.0,
         }
     }
 
@@ -63,6 +72,19 @@ impl SumoType {
 const RIDDEN: [&str; 4] = ["bicycle", "scooter", "moped", "motorcycle"];
 /// The mass of a rider in kg, by Regulation (EU) No 168/2013, article 5 (2).
 const RIDER: Kilogram = 75.0;
+
+/// SUMO's default `tau`.
+const TAU: Second = 1.0;
+
+/// SUMO 1.28's default `minGap` of a vehicle class.
+fn min_gap(class: &str) -> Metre {
+    match class {
+        "pedestrian" => 0.25,
+        "bicycle" | "scooter" | "wheelchair" => 0.5,
+        "rail_urban" | "rail" | "rail_electric" | "rail_fast" | "subway" => 5.0,
+        _ => 2.5,
+    }
+}
 
 /// SUMO 1.28's defaults by vehicle class: length and width in m, mass in kg, `emergencyDecel` and
 /// `decel` in m/s². Other classes have those of the first.

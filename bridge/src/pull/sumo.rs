@@ -103,6 +103,9 @@ impl TypeProfiles {
             mass: number("getMass")?,
             emergency_decel: number("getEmergencyDecel")?,
             decel: number("getDecel")?,
+            tau: number("getTau")?,
+            min_gap: number("getMinGap")?,
+            action_step: number("getActionStepLength")?,
         })
     }
 }

@@ -18,8 +18,11 @@ pub fn crash_probability(
     has_responded: bool,
     longest_wait: impl Fn(MetrePerSecondSquared) -> Second,
 ) -> Probability {
-    let is_late = |wait| if has_responded { f64::from(wait < 0.0) } else { driver.responds_later_than(wait) };
-    let sum = driver.decelerations().map(|(value, weight)| weight * is_late(longest_wait(value))).sum::<f64>();
+    if has_responded {
+        return driver.brakes_too_weakly(|deceleration| longest_wait(deceleration) < 0.0);
+    }
+    let is_late = |deceleration| driver.responds_later_than(longest_wait(deceleration));
+    let sum = driver.decelerations().map(|(value, weight)| weight * is_late(value)).sum::<f64>();
     sum.clamp(0.0, 1.0)
 }
 
@@ -37,7 +40,7 @@ mod tests {
         let mut chance = Rng::with_seed(1);
         let normal =
             |chance: &mut Rng| (-2.0 * (1.0 - chance.f64()).ln()).sqrt() * (std::f64::consts::TAU * chance.f64()).cos();
-        for (speed, room) in [(10.0, 15.0), (14.0, 25.0), (20.0, 40.0), (30.0, 90.0), (5.0, 4.0)] {
+        for (speed, room) in [(10.0, 15.0), (14.0, 25.0), (20.0, 40.0), (20.0, 26.0), (30.0, 90.0), (5.0, 4.0)] {
             let wait = |deceleration| {
                 LateBraking { speed, present: 0.0, build_up: 0.1, deceleration }.longest_wait_behind(&Leader {
                     room,
@@ -45,9 +48,9 @@ mod tests {
                     deceleration: 0.0,
                 })
             };
-            let found = crash_probability(&driver, false, wait);
+            let [found, braking] = [false, true].map(|has_responded| crash_probability(&driver, has_responded, wait));
             let spread = (1.0 + (0.28_f64 / 0.92).powi(2)).ln();
-            let mut crashes = 0;
+            let mut crashes = [0; 2];
             for _ in 0..DRAWS {
                 let response = (0.92_f64.ln() - spread / 2.0 + spread.sqrt() * normal(&mut chance)).exp();
                 let deceleration = loop {
@@ -56,11 +59,15 @@ mod tests {
                         break drawn;
                     }
                 };
-                crashes += u32::from(response > wait(deceleration));
+                let longest = wait(deceleration);
+                crashes[0] += u32::from(response > longest);
+                crashes[1] += u32::from(longest < 0.0);
             }
-            let drawn = f64::from(crashes) / f64::from(DRAWS);
-            let error = (drawn * (1.0 - drawn) / f64::from(DRAWS)).sqrt();
-            assert!((found - drawn).abs() < 4.0 * error + 1e-5, "{found} by quadrature, {drawn} drawn");
+            for (found, crashes) in [found, braking].into_iter().zip(crashes) {
+                let drawn = f64::from(crashes) / f64::from(DRAWS);
+                let error = (drawn * (1.0 - drawn) / f64::from(DRAWS)).sqrt();
+                assert!((found - drawn).abs() < 4.0 * error + 1e-5, "{found} by quadrature, {drawn} drawn");
+            }
         }
     }
 }

@@ -51,6 +51,9 @@ pub(super) fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, St
     found.width = number("width")?.unwrap_or(found.width);
     found.mass = number("mass")?.unwrap_or(found.mass);
     found.decel = number("decel")?.unwrap_or(found.decel);
+    found.tau = number("tau")?.unwrap_or(found.tau);
+    found.min_gap = number("minGap")?.unwrap_or(found.min_gap);
+    found.action_step = number("actionStepLength")?.unwrap_or(found.action_step);
     // As in SUMO, emergency braking is never weaker than ordinary braking.
     found.emergency_decel = number("emergencyDecel")?.unwrap_or(found.emergency_decel.max(found.decel));
     Ok(found)
@@ -72,3 +75,18 @@ const OWN: [(&str, &str); 6] = [
     ("DEFAULT_RAILTYPE", "rail"),
     ("DEFAULT_CONTAINERTYPE", "container"),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_type_follows_as_its_file_says_or_as_its_class_does() {
+        let read =
+            |attributes: &str| vehicle_type(&BytesStart::from_content(format!("vType {attributes}"), 5)).unwrap();
+        let follows = |of: SumoType| [of.tau, of.min_gap, of.action_step];
+        assert_eq!(follows(read(r#"id="a" tau="0.7" minGap="1" actionStepLength="0.5""#)), [0.7, 1.0, 0.5]);
+        assert_eq!(follows(read(r#"id="b" vClass="bicycle""#)), [1.0, 0.5, 0.0]);
+        assert_eq!(follows(read(r#"id="c" vClass="subway""#)), [1.0, 5.0, 0.0]);
+    }
+}

@@ -5,7 +5,7 @@
 //! assumption is made about which value is the largest.
 
 use super::{BigFloat, precise};
-use crate::braking::{Braking, MuModel};
+use crate::braking::{Braking, LateBraking, Leader, MuModel};
 
 /// A phase of braking: from `start` on, distance = c0 + c1 τ + c2 τ² + c3 τ³ with τ = t − start.
 #[derive(Clone)]
@@ -16,35 +16,49 @@ struct Phase {
 
 /// The phases of one road user; the last one is its standstill.
 fn phases(braking: &Braking, at_once: bool) -> Vec<Phase> {
+    let Braking { speed, brakes } = *braking;
+    let (response, build_up) = if at_once { (0.0, 0.0) } else { (brakes.response, brakes.build_up) };
+    late_phases(&LateBraking { speed, present: 0.0, build_up, deceleration: brakes.deceleration }, Some(response))
+}
+
+/// The phases of one that goes on with its present deceleration for a wait, or for ever, and then brakes fully. The last
+/// one is its standstill, if it ever stands.
+fn late_phases(braking: &LateBraking, wait: Option<f64>) -> Vec<Phase> {
     let zero = || precise(0.0);
-    let brakes = braking.brakes;
-    let v = precise(braking.speed);
-    let a = precise(brakes.deceleration);
-    let (r, t3) = if at_once { (zero(), zero()) } else { (precise(brakes.response), precise(brakes.build_up)) };
-    let mut phases = vec![Phase { start: zero(), cubic: [zero(), v.clone(), zero(), zero()] }];
-    let mut distance = &v * &r;
-    let mut time = r.clone();
-    let mut speed = v.clone();
+    let two = || precise(2.0);
+    let [v, d, t3, a] = [braking.speed, braking.present, braking.build_up, braking.deceleration].map(precise);
+    let wait = wait.map(precise);
+    let mut phases = vec![Phase { start: zero(), cubic: [zero(), v.clone(), -(&d / two()), zero()] }];
+    let stands = |time: BigFloat, distance: BigFloat| Phase { start: time, cubic: [distance, zero(), zero(), zero()] };
+    let by_itself = (v == zero() || d > zero()).then(|| if v == zero() { zero() } else { &v / &d });
+    let Some(wait) = wait.filter(|wait| by_itself.as_ref().is_none_or(|stands| wait < stands)) else {
+        phases.extend(by_itself.map(|time| {
+            let distance = &v * &time / two();
+            stands(time, distance)
+        }));
+        return phases;
+    };
+    let mut distance = &v * &wait - &d * &wait * &wait / two();
+    let mut speed = &v - &d * &wait;
+    let mut time = wait;
     if t3 > zero() {
-        let jerk = &a / &t3;
-        // On the ramp: speed = v − jerk τ²/2.
-        let to_stand = (precise(2.0) * &v / &jerk).sqrt();
-        let lasts = if to_stand < t3 { to_stand } else { t3.clone() };
-        phases
-            .push(Phase { start: time.clone(), cubic: [distance.clone(), v.clone(), zero(), -(&jerk / precise(6.0))] });
-        distance += &v * &lasts - &jerk * &lasts * &lasts * &lasts / precise(6.0);
+        // On the ramp: speed − d τ − jerk τ²/2.
+        let jerk = (&a - &d) / &t3;
+        let to_stand = two() * &speed / (&d + (&d * &d + two() * &jerk * &speed).sqrt());
+        let stands = to_stand < t3;
+        let lasts = if stands { to_stand } else { t3 };
+        let cubic = [distance.clone(), speed.clone(), -(&d / two()), -(&jerk / precise(6.0))];
+        phases.push(Phase { start: time.clone(), cubic });
+        distance += &speed * &lasts - &d * &lasts * &lasts / two() - &jerk * &lasts * &lasts * &lasts / precise(6.0);
         time += &lasts;
-        speed = if lasts < t3 { zero() } else { &v - &jerk * &lasts * &lasts / precise(2.0) };
+        speed = if stands { zero() } else { &speed - &d * &lasts - &jerk * &lasts * &lasts / two() };
     }
     if speed > zero() {
-        phases.push(Phase {
-            start: time.clone(),
-            cubic: [distance.clone(), speed.clone(), -(&a / precise(2.0)), zero()],
-        });
-        distance += &speed * &speed / (precise(2.0) * &a);
+        phases.push(Phase { start: time.clone(), cubic: [distance.clone(), speed.clone(), -(&a / two()), zero()] });
+        distance += &speed * &speed / (two() * &a);
         time += &speed / &a;
     }
-    phases.push(Phase { start: time, cubic: [distance, zero(), zero(), zero()] });
+    phases.push(stands(time, distance));
     phases
 }
 
@@ -95,6 +109,24 @@ pub fn stopping_distance(braking: &Braking) -> BigFloat {
 
 fn rest(phases: &[Phase]) -> BigFloat {
     phases.last().map_or(precise(0.0), |last| last.cubic[0].clone())
+}
+
+/// The distance until one that brakes late, or never, stands, in m; 0 if it never does.
+pub fn late_distance(braking: &LateBraking, wait: Option<f64>) -> BigFloat {
+    rest(&late_phases(braking, wait))
+}
+
+/// Its distance at a time, in m.
+pub fn late_distance_at(braking: &LateBraking, wait: Option<f64>, time: f64) -> BigFloat {
+    let [distance, ..] = from(&late_phases(braking, wait), &precise(time));
+    distance
+}
+
+/// The least room behind a leader that one that brakes late, or never, ever has, in m: below 0 where they touch.
+pub fn least_room_behind(leader: &Leader, braking: &LateBraking, wait: Option<f64>) -> BigFloat {
+    let Leader { room, speed, deceleration } = *leader;
+    let ahead = LateBraking { speed, present: deceleration, build_up: 0.0, deceleration };
+    precise(room) - narrowest(&late_phases(braking, wait), &late_phases(&ahead, None), &precise(1.0), precise(0.0))
 }
 
 /// The minimal collision distance in m.

@@ -5,6 +5,7 @@ pub mod braking;
 pub mod chance;
 pub mod contact;
 pub mod pairs;
+pub mod probability;
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;

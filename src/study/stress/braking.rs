@@ -51,36 +51,26 @@ pub(super) const CASES: &[Case] = &[
         check(chance, &pair, tally);
     }),
     Case::new(Group::Braking, "all at once", |chance, tally| {
-        let sigmas = [1.0, 1.0 - f64::EPSILON, 1e-300, 0.0, -1e-300, -1.0];
-        let pair = MuInputs {
-            v: chance.magnitude(1e-12, 300.0),
-            vi: chance.magnitude(1e-12, 300.0),
-            a: chance.magnitude(1e-9, 1e9),
-            ai: chance.magnitude(1e-9, 1e9),
-            r: chance.magnitude(1e-9, 10.0),
-            t3: chance.magnitude(1e-9, 100.0),
-            sigma: chance.pick(&sigmas),
-            epsilon: 0.0,
-        };
+        let pair = extreme(chance);
         check(chance, &pair, tally);
     }),
 ];
 
 /// The inputs of a μ.
 #[derive(Clone, Copy, Debug)]
-struct MuInputs {
-    v: MetrePerSecond,
-    vi: MetrePerSecond,
-    a: MetrePerSecondSquared,
-    ai: MetrePerSecondSquared,
-    r: Second,
-    t3: Second,
-    sigma: f64,
-    epsilon: Metre,
+pub(super) struct MuInputs {
+    pub v: MetrePerSecond,
+    pub vi: MetrePerSecond,
+    pub a: MetrePerSecondSquared,
+    pub ai: MetrePerSecondSquared,
+    pub r: Second,
+    pub t3: Second,
+    pub sigma: f64,
+    pub epsilon: Metre,
 }
 
 impl MuInputs {
-    fn with<T>(&self, use_it: impl FnOnce(&Braking, &Braking) -> T) -> T {
+    pub fn with<T>(&self, use_it: impl FnOnce(&Braking, &Braking) -> T) -> T {
         let brakes = Brakes { response: self.r, build_up: self.t3, deceleration: self.a };
         let foe_brakes = Brakes { deceleration: self.ai, ..brakes };
         use_it(&Braking { speed: self.v, brakes: &brakes }, &Braking { speed: self.vi, brakes: &foe_brakes })
@@ -91,7 +81,7 @@ impl MuInputs {
     }
 }
 
-fn usual(chance: &mut Chance) -> MuInputs {
+pub(super) fn usual(chance: &mut Chance) -> MuInputs {
     MuInputs {
         v: chance.between(0.0, 60.0),
         vi: chance.between(0.0, 60.0),
@@ -101,6 +91,20 @@ fn usual(chance: &mut Chance) -> MuInputs {
         t3: chance.between(0.0, 1.0),
         sigma: chance.angle().cos(),
         epsilon: chance.pick(&[0.0, 0.5]),
+    }
+}
+
+pub(super) fn extreme(chance: &mut Chance) -> MuInputs {
+    let sigmas = [1.0, 1.0 - f64::EPSILON, 1e-300, 0.0, -1e-300, -1.0];
+    MuInputs {
+        v: chance.magnitude(1e-12, 300.0),
+        vi: chance.magnitude(1e-12, 300.0),
+        a: chance.magnitude(1e-9, 1e9),
+        ai: chance.magnitude(1e-9, 1e9),
+        r: chance.magnitude(1e-9, 10.0),
+        t3: chance.magnitude(1e-9, 100.0),
+        sigma: chance.pick(&sigmas),
+        epsilon: 0.0,
     }
 }
 

@@ -29,6 +29,7 @@ pub fn car() -> Profile {
         brakes: Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 },
         driver: Driver::certain(1.0, 8.0),
         unprotected: false,
+        tailgates_from: f64::INFINITY,
     }
 }
 

@@ -7,7 +7,9 @@ mod braking;
 mod cars;
 mod case;
 mod geometry;
+mod late;
 mod paths;
+mod probability;
 mod table;
 mod tally;
 mod time;
@@ -22,7 +24,13 @@ use tally::Tally;
 ///
 /// Every case has a random stream of its own, so a result depends only on the seed and the case's number of inputs.
 pub fn run(count: u64, seed: u64, only: Option<Group>) -> Vec<PropertyResult> {
-    let all = braking::CASES.iter().chain(geometry::CASES).chain(time::CASES).chain(paths::CASES);
+    let all = braking::CASES
+        .iter()
+        .chain(late::CASES)
+        .chain(probability::CASES)
+        .chain(geometry::CASES)
+        .chain(time::CASES)
+        .chain(paths::CASES);
     let chosen = all.filter(|case| only.is_none_or(|group| case.group == group)).collect::<Vec<_>>();
     let each = count.div_ceil(chosen.len().max(1) as u64);
     let mut rows = Vec::new();

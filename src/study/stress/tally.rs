@@ -9,6 +9,10 @@ use crate::study::reference::{BigFloat, Deviation, deviation};
 pub enum Group {
     /// Stopping distance and μ.
     Braking,
+    /// Time left and time to brake.
+    Late,
+    /// Crash and injury probabilities.
+    Probability,
     /// Contact and distance of rectangles.
     Geometry,
     /// Time to collision, steps, events.
@@ -22,6 +26,8 @@ pub enum Group {
 pub enum Unit {
     /// Relative to the expected value.
     Relative,
+    /// As it is: a probability.
+    Absolute,
     /// Metres.
     Metre,
     /// Units in the last place of a coordinate.
@@ -37,6 +43,7 @@ impl Unit {
     pub fn name(self) -> &'static str {
         match self {
             Self::Relative => "relative",
+            Self::Absolute => "absolute",
             Self::Metre => "m",
             Self::Ulps => "ulps",
             Self::Second => "s",
