@@ -5,6 +5,7 @@
 //! `encounters`, `measure`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
+mod align;
 mod candidates;
 mod cover;
 mod encounters;
@@ -62,6 +63,8 @@ pub struct Detector {
     overlaps: Overlaps,
     routes_may_change: bool,
     sublane: bool,
+    /// Over which share of a step, up to its end, a speed is the mean.
+    averaged_over: f64,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -102,6 +105,7 @@ impl Detector {
             net,
             routes_may_change: true,
             sublane: false,
+            averaged_over: 0.0,
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -216,6 +220,7 @@ impl Detector {
     pub fn set_placement(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
+        let way_back = self.way_back(&state);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
         if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
@@ -226,6 +231,7 @@ impl Detector {
             axis: direction(state.heading),
             chord: profile.chord,
             length: profile.length,
+            way_back,
             width: profile.width,
             speed: state.speed,
             sublane: self.sublane,

@@ -1,0 +1,77 @@
+//! Road users moved back to the moment to which their speeds belong.
+//!
+//! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
+//! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
+//! v(t) Δt/2 further back along the path that it drove.
+
+use super::Detector;
+use crate::detection::path::turn;
+use crate::geometry::rectangle::direction;
+use crate::options::Align;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::units::{Metre, Second};
+
+impl Detector {
+    /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
+    /// ballistic one.
+    pub fn set_averaged_over(&mut self, share: f64) {
+        self.averaged_over = share;
+    }
+
+    /// Whether road users are moved back.
+    pub fn aligns(&self) -> bool {
+        self.share() > 0.0
+    }
+
+    fn share(&self) -> f64 {
+        match self.options.align {
+            Align::Auto => self.averaged_over,
+            Align::Always => 1.0,
+            Align::Never => 0.0,
+        }
+    }
+
+    /// How long before the end of the step a road user has its speed.
+    fn behind(&self) -> Second {
+        self.share() * self.step / 2.0
+    }
+
+    /// Moves all road users back to the moment of their speeds, if that is wanted; also one that has just entered the scene, so that it
+    /// keeps its distance from the others. Call it after [`Detector::track_paths`] and the placements.
+    pub fn align(&mut self, frame: &mut Frame, roster: &Roster) {
+        let behind = self.behind();
+        if behind == 0.0 {
+            return;
+        }
+        for row in 0..frame.len() as u32 {
+            let user = frame.user(row);
+            let state = frame.state_mut(row);
+            let driven = state.speed * behind;
+            if driven > 0.0 {
+                self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
+            }
+        }
+    }
+
+    fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {
+        if !on_lanes {
+            let back = direction(state.heading) * driven;
+            (state.x, state.y) = (state.x - back.x, state.y - back.y);
+            return;
+        }
+        let path = &mut self.paths[user.0 as usize];
+        let of_net = super::reach::lines_of(self.net.as_deref());
+        let before = path.track.chord(path.lines(of_net), chord);
+        path.move_back(of_net, driven);
+        let front = path.track.point(path.lines(of_net));
+        let after = path.track.chord(path.lines(of_net), chord);
+        (state.x, state.y) = (front.x, front.y);
+        state.heading += turn(&before, &after);
+    }
+
+    /// How far a path has to reach back beyond the road user's length.
+    pub(super) fn way_back(&self, state: &State) -> Metre {
+        state.speed * self.behind()
+    }
+}
