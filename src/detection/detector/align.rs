@@ -2,15 +2,20 @@
 //!
 //! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
 //! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
-//! v(t) Δt/2 further back along the path that it drove.
+//! v(t) Δt/2 further back along the path that it drove. A change of lanes is a jump at the step's end, so that it was still on
+//! the lane before; and one that enters the scene at the step's end was not there.
 
 use super::Detector;
+use super::reach::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
 use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, Second};
+
+/// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
+const LEAST_JUMP: Metre = 0.5;
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -33,12 +38,11 @@ impl Detector {
     }
 
     /// How long before the end of the step a road user has its speed.
-    fn behind(&self) -> Second {
+    pub(super) fn behind(&self) -> Second {
         self.share() * self.step / 2.0
     }
 
-    /// Moves all road users back to the moment of their speeds, if that is wanted; also one that has just entered the scene, so that it
-    /// keeps its distance from the others. Call it after [`Detector::track_paths`] and the placements.
+    /// Moves all road users back to the moment of their speeds, if that is wanted. Call it after [`Detector::track_paths`] and the placements.
     pub fn align(&mut self, frame: &mut Frame, roster: &Roster) {
         let behind = self.behind();
         if behind == 0.0 {
@@ -52,6 +56,27 @@ impl Detector {
                 self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
             }
         }
+        for (row, jump) in &self.jumps {
+            let state = frame.state_mut(*row);
+            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
+            self.on_lanes[*row as usize] = false;
+        }
+    }
+
+    /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
+    pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
+        let (path, behind) = (&self.paths[user.0 as usize], self.behind());
+        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| behind > 0.0 && !path.track.is_empty()) else {
+            return;
+        };
+        let driven = last.speed * behind + state.speed * self.step;
+        let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
+        let (off, direction) = (state.front() - point, direction.normalize());
+        let along = off.dot(&direction);
+        let aside = off - direction * along;
+        if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
+            self.jumps.push((row, aside));
+        }
     }
 
     fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {
@@ -61,7 +86,7 @@ impl Detector {
             return;
         }
         let path = &mut self.paths[user.0 as usize];
-        let of_net = super::reach::lines_of(self.net.as_deref());
+        let of_net = lines_of(self.net.as_deref());
         let before = path.track.chord(path.lines(of_net), chord);
         path.move_back(of_net, driven);
         let front = path.track.point(path.lines(of_net));

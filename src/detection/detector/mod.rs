@@ -29,8 +29,8 @@ use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
-use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
+use crate::geometry::{Point, Vector};
 use crate::options::condition::LookAhead;
 use crate::options::{Mode, Options};
 use crate::traffic::frame::{Frame, Row};
@@ -65,6 +65,8 @@ pub struct Detector {
     sublane: bool,
     /// Over which share of a step, up to its end, a speed is the mean.
     averaged_over: f64,
+    /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
+    jumps: Vec<(u32, Vector)>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -106,6 +108,7 @@ impl Detector {
             routes_may_change: true,
             sublane: false,
             averaged_over: 0.0,
+            jumps: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -321,6 +324,7 @@ impl Detector {
             roster,
             turns,
             epsilon,
+            is_earlier: self.behind() > 0.0,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths: self.all_paths(),

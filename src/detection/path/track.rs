@@ -123,6 +123,16 @@ impl Track {
         (self.at, self.vertex, self.front) = (at, vertex, front);
     }
 
+    /// The place and the direction at a distance ahead of the front bumper; beyond the end, straight on.
+    pub fn ahead_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+        let mut cursor = self.cursor(lines);
+        cursor.distance += distance;
+        while cursor.room() <= 0.0 {
+            cursor.enter_next();
+        }
+        (cursor.point(), cursor.under.direction)
+    }
+
     /// Where the front bumper is.
     pub fn point(&self, lines: &Lines) -> Point {
         lines.segment(self.vertex).at(self.front)
