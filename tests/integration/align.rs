@@ -8,8 +8,8 @@ fn car() -> Profile {
     Profile::vehicle(&SumoType::car("car"), &Options::default())
 }
 
-/// The states after a second step, 1 s after the first, of road users that were these, and the TTC of the first with another.
-fn second_step(detector: &mut Detector, net: Option<&Net>, steps: [&[State]; 2]) -> (Vec<State>, Option<f64>) {
+/// The states after a second step, 1 s after the first, and the first TTC; with a net, all are about this far along its lane.
+fn second_step(detector: &mut Detector, net: Option<(&Net, f64)>, steps: [&[State]; 2]) -> (Vec<State>, Option<f64>) {
     let (mut roster, mut frame) = (Roster::default(), Frame::default());
     let profile = roster.profile(car()).unwrap();
     let users = steps[0].iter().enumerate().map(|(number, _)| roster.enter(&number.to_string(), profile));
@@ -20,10 +20,10 @@ fn second_step(detector: &mut Detector, net: Option<&Net>, steps: [&[State]; 2])
             frame.push(*user, *state);
         }
         for row in detector.track_paths(&frame, &roster).to_vec() {
-            let Some(net) = net else { continue };
+            let Some((net, position)) = net else { continue };
             let placement = Placement {
                 lane: net.lane("e_0").unwrap(),
-                position: 0.0,
+                position,
                 route: Some([net.edge("e").unwrap()].into()),
                 route_position: 0,
                 lateral_speed: 0.0,
@@ -49,7 +49,8 @@ fn on_lanes_half_a_step_back_follows_the_bend() {
     let (way, car) = (Way::bend(), car());
     let at = |distance: f64| way.vehicle(&car, distance, 8.0);
     for front in (20..200).map(f64::from) {
-        let (found, _) = second_step(&mut aligning(Some(&way)), Some(&way.net), [&[at(front - 8.0)], &[at(front)]]);
+        let (found, _) =
+            second_step(&mut aligning(Some(&way)), Some((&way.net, front)), [&[at(front - 8.0)], &[at(front)]]);
         let (found, expected) = (found[0], at(front - 4.0));
         assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
         assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");
@@ -86,14 +87,19 @@ fn speeds_of_a_moment_are_left_where_they_are() {
 fn a_change_of_lanes_comes_after_the_step() {
     let way = Way::bend();
     let at = |x: f64, y: f64| State { x, y, speed: 8.0, ..State::default() };
-    let (found, _) = second_step(&mut aligning(Some(&way)), Some(&way.net), [&[at(40.0, 0.0)], &[at(48.0, 3.2)]]);
+    let (found, _) =
+        second_step(&mut aligning(Some(&way)), Some((&way.net, 48.0)), [&[at(40.0, 0.0)], &[at(48.0, 3.2)]]);
     assert!((found[0].x - 44.0).abs() < 1e-9 && found[0].y.abs() < 1e-9, "{found:?}");
 }
 
 #[test]
-fn what_enters_after_the_moment_meets_nobody() {
-    let [ego, foe] = [State { speed: 20.0, ..State::default() }, State { x: 30.0, speed: 1.0, ..State::default() }];
-    let ttc = |first: [State; 2]| second_step(&mut aligning(None), None, [&first, &[ego, foe]]).1;
-    assert!(ttc([ego, foe]).is_some());
-    assert_eq!(ttc([ego, State { speed: f64::NAN, ..foe }]), None);
+fn what_enters_after_the_moment_collides_with_nothing() {
+    let [behind, ahead] = [20.0, 28.0].map(|x| State { x, speed: x, ..State::default() });
+    let encounters = |first: [State; 2]| {
+        let mut detector = aligning(None);
+        second_step(&mut detector, None, [&first, &[behind, ahead]]);
+        detector.encounters().filter(|found| found.collision).count()
+    };
+    assert_eq!(encounters([behind, ahead]), 1, "half a step back they overlap");
+    assert_eq!(encounters([State { speed: f64::NAN, ..behind }, ahead]), 0);
 }

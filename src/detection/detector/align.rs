@@ -3,7 +3,8 @@
 //! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
 //! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
 //! v(t) Δt/2 further back along the path that it drove. A change of lanes is a jump at the step's end, so that it was still on
-//! the lane before; and one that enters the scene at the step's end was not there.
+//! the lane before. One that enters the scene at the step's end was not there; it keeps its distance from the others if it is
+//! moved back too, but no overlap is a collision then.
 
 use super::Detector;
 use super::reach::lines_of;
@@ -65,11 +66,12 @@ impl Detector {
 
     /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
-        let (path, behind) = (&self.paths[user.0 as usize], self.behind());
-        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| behind > 0.0 && !path.track.is_empty()) else {
+        let path = &self.paths[user.0 as usize];
+        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| self.behind() > 0.0 && !path.track.is_empty())
+        else {
             return;
         };
-        let driven = last.speed * behind + state.speed * self.step;
+        let driven = last.speed * self.was_behind + state.speed * self.step;
         let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);

@@ -81,13 +81,9 @@ impl Unsettled {
     }
 }
 
-/// Whether two road users can be a pair at all. One that enters was not there at the moment of the others. Two that stand
-/// are a pair only in the step in which one of them stops: what
+/// Whether two road users can be a pair at all. Two that stand are one only in the step in which one of them stops: what
 /// it ran into on its last metre is a collision.
 fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
-    if [a, b].into_iter().any(|user| user.motion == Motion::Enters) {
-        return false;
-    }
     let has_stopped = [a, b].into_iter().any(|user| user.motion == Motion::HasStopped) && mode == Mode::Closecall;
     if !a_state.moves() && !b_state.moves() && !has_stopped {
         work.both_stand += 1;
@@ -209,7 +205,7 @@ impl StepInputs<'_> {
         None
     }
 
-    /// Adds a pair that collides now.
+    /// Adds a pair that collides now, unless one of the two was not there yet.
     fn collide(
         &self,
         work: &mut Work,
@@ -218,6 +214,9 @@ impl StepInputs<'_> {
         overlap: Overlap,
         found: &mut Findings,
     ) {
+        if slots.iter().any(|slot| self.user(*slot).motion == Motion::Enters) {
+            return;
+        }
         let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
         let roles = Roles::new(ego, slots, [first, second]);
         let conflict_point = ConflictPoint {

@@ -65,6 +65,8 @@ pub struct Detector {
     sublane: bool,
     /// Over which share of a step, up to its end, a speed is the mean.
     averaged_over: f64,
+    /// How long before the end of the last step road users had their speeds, in s.
+    was_behind: Second,
     /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
     jumps: Vec<(u32, Vector)>,
     conflicts_only: bool,
@@ -108,6 +110,7 @@ impl Detector {
             routes_may_change: true,
             sublane: false,
             averaged_over: 0.0,
+            was_behind: 0.0,
             jumps: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
