@@ -178,6 +178,17 @@ impl Run {
         self.detector.has_fixed_routes()
     }
 
+    /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
+    /// ballistic one and for measured speeds.
+    pub fn set_averaged_over(&mut self, share: f64) {
+        self.detector.set_averaged_over(share);
+    }
+
+    /// Whether road users are moved back by half a step, to the moment to which their speeds belong.
+    pub fn aligns(&self) -> bool {
+        self.detector.aligns()
+    }
+
     /// A vehicle or person enters the scene; the roster has its profile.
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
         let user = self.roster.enter(id, profile);

@@ -55,6 +55,7 @@ pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options
         seed: sumo.and_then(seed),
         step_length: sumo.map(step_length).transpose()?,
         sublane: run.sublane(),
+        aligned: run.aligns(),
         ..RunRecord::new(scenario, options.clone())
     })
 }

@@ -54,7 +54,8 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     if !arguments.check.quiet {
         run.opening_remarks(Some(replay.step_length())).iter().for_each(|remark| eprintln!("closecall: {remark}"));
     }
-    let record = record(&arguments, options)?;
+    run.set_averaged_over(replay.averaged_over());
+    let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);

@@ -3,6 +3,7 @@
 //! One struct serves the command line (clap), the TOML file and Python. A TOML key or a Python keyword is the long
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
+mod align;
 pub mod condition;
 mod driver;
 #[cfg(feature = "cli")]
@@ -28,6 +29,7 @@ use crate::{Error, Result};
 use condition::Condition;
 use shortcut::Shortcut;
 
+pub use align::Align;
 pub use driver::{DriverModel, DriverOptions};
 pub use severity_rule::SeverityRule;
 #[cfg(feature = "cli")]
@@ -156,6 +158,10 @@ pub struct Options {
     /// Driver that crash probabilities assume.
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub driver: DriverModel,
+    /// Move road users back by half a step, to the moment to which their speeds belong: where SUMO's Euler update has moved
+    /// them (`auto`), `always` or `never`.
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "WHEN", default_value_t))]
+    pub align: Align,
     /// Types of the SUMO polygons that are static obstacles.
     #[cfg_attr(feature = "cli", arg(long, value_name = "TYPE,…", value_delimiter = ','))]
     pub obstacles: Vec<String>,
@@ -211,6 +217,7 @@ impl Default for Options {
             serious_ttc: SERIOUS_TTC,
             serious_drac: SERIOUS_DRAC,
             driver: DriverModel::default(),
+            align: Align::default(),
             obstacles: Vec::new(),
             filter: None,
             log: Condition::default(),

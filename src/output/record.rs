@@ -22,6 +22,8 @@ pub struct RunRecord {
     pub step_length: Option<Second>,
     /// Whether road users may move sideways without changing lanes (SUMO's sublane model).
     pub sublane: bool,
+    /// Whether road users were moved back by half a step, to the moment to which their speeds belong.
+    pub aligned: bool,
     /// The options.
     pub options: Options,
     /// SUMO's command line, without the program's name.
@@ -45,6 +47,7 @@ impl RunRecord {
             seed: None,
             step_length: None,
             sublane: false,
+            aligned: false,
             options,
             sumo_words: Vec::new(),
             inputs: Vec::new(),

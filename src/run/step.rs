@@ -46,6 +46,7 @@ impl Run {
         self.lane_lookups += rows.len() as u64;
         let placed = place(self, &rows);
         self.unplaced = rows;
+        self.detector.align(&mut self.frame, &self.roster);
         placed
     }
 

@@ -164,6 +164,11 @@ impl Frame {
         &self.states[row as usize]
     }
 
+    /// A row's state, to change it.
+    pub fn state_mut(&mut self, row: u32) -> &mut State {
+        &mut self.states[row as usize]
+    }
+
     /// The row of a road user, the last one if it has several; none where it is absent in this step.
     pub fn row_of(&self, user: UserIndex) -> Option<u32> {
         self.rows.get(user.0 as usize).copied().filter(|row| *row != ABSENT)

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
+mod align;
 mod articulated;
 mod bisection;
 mod command_line;
@@ -16,3 +17,4 @@ mod replay;
 mod street;
 mod sublane;
 mod time_to_collision;
+mod way;

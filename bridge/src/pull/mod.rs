@@ -42,6 +42,8 @@ impl Source {
         if option(source, "lateral-resolution")?.parse::<f64>().is_ok_and(|width| width > 0.0) {
             run.set_sublane(true);
         }
+        let is_ballistic = option(source, "step-method.ballistic")? == "true";
+        run.set_averaged_over(if is_ballistic { 0.0 } else { 1.0 });
         Ok(if is_libsumo(source) {
             Self::Libsumo(Box::new(Libsumo::new(source, options)?))
         } else {

@@ -9,7 +9,7 @@ use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
 use crate::geometry::Point;
 use crate::options::{Mode, PathModel};
-use crate::traffic::frame::{Frame, Row};
+use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::threads::share;
@@ -24,10 +24,12 @@ impl Detector {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
         }
+        self.was_behind = self.behind();
         self.step = (frame.time - self.time).max(0.0);
         self.time = frame.time;
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
+        self.jumps.clear();
         self.on_lanes.clear();
         self.on_lanes.resize(frame.len(), false);
         if self.turns() == PathSource::Lanes {
@@ -37,7 +39,7 @@ impl Detector {
                     continue;
                 }
                 if state.moves() {
-                    self.keep_on_path(row, user, state.front());
+                    self.keep_on_path(row, user, &state);
                 } else {
                     self.stop_on_path(row, user, state.front());
                     // It still bends along the path on which it came.
@@ -73,7 +75,16 @@ impl Detector {
     fn update_areas(&mut self, frame: &Frame, roster: &Roster) {
         let (turns, epsilon) = (self.turns(), self.options.epsilon);
         let paths = Paths::new(&self.paths, self.net.as_deref());
-        let sight = StepView { frame, roster, turns, epsilon, on_lanes: &self.on_lanes, speeds: &self.speeds, paths };
+        let sight = StepView {
+            frame,
+            roster,
+            turns,
+            epsilon,
+            is_earlier: self.behind() > 0.0,
+            on_lanes: &self.on_lanes,
+            speeds: &self.speeds,
+            paths,
+        };
         let reach = Reach::new(frame, roster, &self.options, self.shortcuts, paths).with(self.cover());
         let (this_step, look) = ((roster.changes(), frame.len()), self.look);
         let are_same = std::mem::replace(&mut self.last_step, this_step) == this_step;
@@ -138,9 +149,12 @@ impl Detector {
     }
 
     /// Follows a row's path along the lanes, or adds it to those whose lane is needed.
-    fn keep_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
+    fn keep_on_path(&mut self, row: usize, user: UserIndex, state: &State) {
         let of_net = lines_of(self.net.as_deref());
-        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, front);
+        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, state.front());
+        if !self.on_lanes[row] {
+            self.take_jump(row as u32, user, state);
+        }
         if self.shortcuts.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
         } else {

@@ -211,7 +211,7 @@ impl StepInputs<'_> {
         None
     }
 
-    /// Adds a pair that collides now.
+    /// Adds a pair that collides now, unless one of the two was not there yet.
     fn collide(
         &self,
         work: &mut Work,
@@ -220,6 +220,9 @@ impl StepInputs<'_> {
         overlap: Overlap,
         found: &mut Findings,
     ) {
+        if slots.iter().any(|slot| self.user(*slot).motion == Motion::Enters) {
+            return;
+        }
         let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
         let roles = Roles::new(ego, slots, [first, second]);
         let conflict_point = ConflictPoint {

@@ -5,6 +5,7 @@
 //! `encounters`, `measure`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
+mod align;
 mod candidates;
 mod cover;
 mod encounters;
@@ -28,8 +29,8 @@ use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
-use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
+use crate::geometry::{Point, Vector};
 use crate::options::condition::LookAhead;
 use crate::options::{Mode, Options};
 use crate::traffic::frame::{Frame, Row};
@@ -62,6 +63,12 @@ pub struct Detector {
     overlaps: Overlaps,
     routes_may_change: bool,
     sublane: bool,
+    /// Over which share of a step, up to its end, a speed is the mean.
+    averaged_over: f64,
+    /// How long before the end of the last step road users had their speeds, in s.
+    was_behind: Second,
+    /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
+    jumps: Vec<(u32, Vector)>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -102,6 +109,9 @@ impl Detector {
             net,
             routes_may_change: true,
             sublane: false,
+            averaged_over: 0.0,
+            was_behind: 0.0,
+            jumps: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -216,6 +226,7 @@ impl Detector {
     pub fn set_placement(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
+        let way_back = self.way_back(&state);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
         if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
@@ -226,6 +237,7 @@ impl Detector {
             axis: direction(state.heading),
             chord: profile.chord,
             length: profile.length,
+            way_back,
             width: profile.width,
             speed: state.speed,
             sublane: self.sublane,
@@ -315,6 +327,7 @@ impl Detector {
             roster,
             turns,
             epsilon,
+            is_earlier: self.behind() > 0.0,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths: self.all_paths(),

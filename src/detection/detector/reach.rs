@@ -26,6 +26,8 @@ pub(super) enum Motion {
     Moves,
     /// It stands, and moved in the step before.
     HasStopped,
+    /// It moves, and has entered the scene after the moment to which the others are moved back.
+    Enters,
     /// It stands, and stood in the step before or has just entered the scene.
     Rests,
 }
@@ -128,6 +130,8 @@ pub(super) struct StepView<'a> {
     pub roster: &'a Roster,
     pub turns: PathSource,
     pub epsilon: Metre,
+    /// Whether road users are moved back to a moment before the end of the step.
+    pub is_earlier: bool,
     pub on_lanes: &'a [bool],
     /// By [`UserIndex`], the speed in the last step that the road user was in.
     pub speeds: &'a [LastSpeed],
@@ -169,6 +173,8 @@ impl StepView<'_> {
             PathSource::Lanes if on_lanes => goes_straight(),
             PathSource::Lanes => !moves || profile.category != Category::Vehicle,
         };
+        let last = || self.speeds.get(index.0 as usize);
+        let is_new = || last().is_none_or(|last| last.speed.is_nan());
         let bends = profile.carriages > 1 && on_lanes && !ahead && {
             let (track, lines) = self.paths.track(index);
             !track.is_straight(lines, profile.length, reach(state, profile, self.epsilon))
@@ -181,8 +187,9 @@ impl StepView<'_> {
             profile: type_index,
             category: profile.category,
             motion: match moves {
+                true if self.is_earlier && is_new() => Motion::Enters,
                 true => Motion::Moves,
-                false if self.speeds.get(index.0 as usize).is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
+                false if last().is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
                 false => Motion::Rests,
             },
             ahead,

@@ -49,6 +49,8 @@ pub struct PathStart {
     pub chord: Metre,
     /// Length of the road user in m.
     pub length: Metre,
+    /// How much further back the path is needed, in m.
+    pub way_back: Metre,
     /// Its width in m.
     pub width: Metre,
     /// Speed in m/s.
@@ -73,6 +75,11 @@ impl LanePath {
     /// Updates the place of the front bumper; `false` if it has left the path.
     pub fn follow(&mut self, of_net: &Lines, front: Point) -> bool {
         self.track.follow(self.own.as_ref().map_or(of_net, |own| &own.lines), front)
+    }
+
+    /// Moves the front bumper back.
+    pub fn move_back(&mut self, of_net: &Lines, distance: Metre) {
+        self.track.move_back(self.own.as_ref().map_or(of_net, |own| &own.lines), distance);
     }
 
     /// Whether it knows the route from this position on.
@@ -128,7 +135,7 @@ impl LanePath {
             self.own = Some(Box::new(own));
         }
         self.edge = (!against).then_some(0);
-        self.remove_behind(net, start.length + KEPT_BEHIND);
+        self.remove_behind(net, start.length + start.way_back + KEPT_BEHIND);
         self.shrink();
     }
 
@@ -266,7 +273,7 @@ fn lanes_behind(
     start: &PathStart,
     route: &RouteAhead,
 ) -> SmallVec<[LaneIndex; 4]> {
-    let needed = start.length + KEPT_BEHIND;
+    let needed = start.length + start.way_back + KEPT_BEHIND;
     let rear = start.front - start.axis * start.chord;
     let mut lanes = SmallVec::new();
     let mut covered = foot.distance;

@@ -130,7 +130,7 @@ fn skewed(chord: Vector, skew: Radian, distance: Metre, length: Metre) -> Vector
 }
 
 /// The direction from the rear to the front; `otherwise` if both are in one place (a hairpin without width).
-fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
+pub(super) fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
     (front - rear).try_normalize(1e-9).unwrap_or(otherwise)
 }
 

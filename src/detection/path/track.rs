@@ -5,8 +5,9 @@
 
 use smallvec::SmallVec;
 
+use super::poses::chord;
 use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
-use crate::geometry::{Bounds, Point};
+use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
 
 /// Within one simulation step a road user drives at most this many times the straight distance along the line: enough
@@ -113,6 +114,34 @@ impl Track {
             }
         }
         false
+    }
+
+    /// Moves the front bumper back; before the first line, straight back.
+    pub fn move_back(&mut self, lines: &Lines, distance: Metre) {
+        let Cursor { at, vertex, distance: front, .. } = self.behind(lines, distance);
+        self.end += self.lines[at..self.at].iter().map(|line| lines.length(*line)).sum::<Metre>();
+        (self.at, self.vertex, self.front) = (at, vertex, front);
+    }
+
+    /// The place and the direction at a distance ahead of the front bumper; beyond the end, straight on.
+    pub fn ahead_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+        let mut cursor = self.cursor(lines);
+        cursor.distance += distance;
+        while cursor.room() <= 0.0 {
+            cursor.enter_next();
+        }
+        (cursor.point(), cursor.under.direction)
+    }
+
+    /// Where the front bumper is.
+    pub fn point(&self, lines: &Lines) -> Point {
+        lines.segment(self.vertex).at(self.front)
+    }
+
+    /// The direction from a point this far behind the front bumper to it.
+    pub fn chord(&self, lines: &Lines, length: Metre) -> Vector {
+        let front = self.cursor(lines);
+        chord(front.point(), front.back(length).point(), front.under.direction)
     }
 
     /// Metres of the plane per metre of the line that the front bumper is on.
@@ -352,5 +381,18 @@ mod tests {
         let (mut track, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
         assert!(track.follow(&lines, Point::new(49.99, 0.0)), "a rounded position");
         assert!(!track.follow(&lines, Point::new(49.0, 0.0)));
+    }
+
+    #[test]
+    fn moved_back_it_is_where_it_came_from() {
+        let lines = Lines::through([(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)].map(|(x, y)| Point::new(x, y)));
+        let mut track = Track::default();
+        track.begin(&lines, 0, 14.0);
+        track.move_back(&lines, 6.0);
+        assert_eq!((track.front(), track.ahead(), track.point(&lines)), (8.0, 22.0, Point::new(8.0, 0.0)));
+        assert_eq!(track.chord(&lines, 5.0), Vector::x());
+        track.move_back(&lines, 9.0);
+        assert_eq!(track.point(&lines), Point::new(-1.0, 0.0));
+        assert!(track.follow(&lines, Point::new(10.0, 1.0)));
     }
 }

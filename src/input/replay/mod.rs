@@ -1,7 +1,7 @@
 //! Replay: SUMO's fcd-output as frames, through the same checks as a live run. SUMO is not needed.
 //!
 //! The recording is read twice: once for the routes that the vehicles drove, then step by step. Before that, its beginning
-//! tells whether it fits the net.
+//! tells whether it fits the net and how SUMO moved the vehicles.
 
 mod clock;
 mod columns;
@@ -27,6 +27,7 @@ pub mod rows;
 mod source;
 mod tags;
 mod types;
+mod update;
 mod user;
 mod vehicles;
 mod xml;
@@ -73,6 +74,7 @@ pub struct Replay {
     routes: Option<Routes>,
     options: Options,
     step_length: Second,
+    averaged_over: f64,
     steps: u32,
     /// Rows of vehicles so far, and how many of them are on a lane that the net does not have.
     vehicle_rows: u64,
@@ -124,6 +126,7 @@ impl Replay {
             routes,
             options: options.clone(),
             step_length,
+            averaged_over: update::averaged_over(path)?,
             steps: 0,
             vehicle_rows: 0,
             unknown_lanes: 0,
@@ -157,6 +160,11 @@ impl Replay {
     /// The time between the first two steps, in s.
     pub fn step_length(&self) -> Second {
         self.step_length
+    }
+
+    /// Over which share of a step a recorded speed is the mean: 1 for SUMO's Euler update, 0 for its ballistic one.
+    pub fn averaged_over(&self) -> f64 {
+        self.averaged_over
     }
 
     /// What may make the result differ from that of the simulation, a line each.

@@ -1,0 +1,104 @@
+//! Road users moved back to the moment to which their speeds belong.
+//!
+//! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
+//! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
+//! v(t) Δt/2 further back along the path that it drove. A change of lanes is a jump at the step's end, so that it was still on
+//! the lane before. One that enters the scene at the step's end was not there; it keeps its distance from the others if it is
+//! moved back too, but no overlap is a collision then.
+
+use super::Detector;
+use super::reach::lines_of;
+use crate::detection::path::turn;
+use crate::geometry::rectangle::direction;
+use crate::options::Align;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::units::{Metre, Second};
+
+/// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
+const LEAST_JUMP: Metre = 0.5;
+
+impl Detector {
+    /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
+    /// ballistic one.
+    pub fn set_averaged_over(&mut self, share: f64) {
+        self.averaged_over = share;
+    }
+
+    /// Whether road users are moved back.
+    pub fn aligns(&self) -> bool {
+        self.share() > 0.0
+    }
+
+    fn share(&self) -> f64 {
+        match self.options.align {
+            Align::Auto => self.averaged_over,
+            Align::Always => 1.0,
+            Align::Never => 0.0,
+        }
+    }
+
+    /// How long before the end of the step a road user has its speed.
+    pub(super) fn behind(&self) -> Second {
+        self.share() * self.step / 2.0
+    }
+
+    /// Moves all road users back to the moment of their speeds, if that is wanted. Call it after [`Detector::track_paths`] and the placements.
+    pub fn align(&mut self, frame: &mut Frame, roster: &Roster) {
+        let behind = self.behind();
+        if behind == 0.0 {
+            return;
+        }
+        for row in 0..frame.len() as u32 {
+            let user = frame.user(row);
+            let state = frame.state_mut(row);
+            let driven = state.speed * behind;
+            if driven > 0.0 {
+                self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
+            }
+        }
+        for (row, jump) in &self.jumps {
+            let state = frame.state_mut(*row);
+            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
+            self.on_lanes[*row as usize] = false;
+        }
+    }
+
+    /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
+    pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
+        let path = &self.paths[user.0 as usize];
+        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| self.behind() > 0.0 && !path.track.is_empty())
+        else {
+            return;
+        };
+        let driven = last.speed * self.was_behind + state.speed * self.step;
+        let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
+        let (off, direction) = (state.front() - point, direction.normalize());
+        let along = off.dot(&direction);
+        let aside = off - direction * along;
+        if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
+            self.jumps.push((row, aside));
+        }
+    }
+
+    fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {
+        if !on_lanes {
+            let back = direction(state.heading) * driven;
+            (state.x, state.y) = (state.x - back.x, state.y - back.y);
+            return;
+        }
+        let path = &mut self.paths[user.0 as usize];
+        let of_net = lines_of(self.net.as_deref());
+        let before = path.track.chord(path.lines(of_net), chord);
+        path.move_back(of_net, driven);
+        let front = path.track.point(path.lines(of_net));
+        let after = path.track.chord(path.lines(of_net), chord);
+        (state.x, state.y) = (front.x, front.y);
+        state.heading += turn(&before, &after);
+    }
+
+    /// How far a path has to reach back beyond the road user's length.
+    pub(super) fn way_back(&self, state: &State) -> Metre {
+        state.speed * self.behind()
+    }
+}

@@ -1,0 +1,105 @@
+//! Positions and speeds of SUMO's Euler update, brought to one moment.
+
+use closecall::{Align, Detector, Frame, Net, Options, Placement, Profile, Roster, State, SumoType};
+
+use super::way::Way;
+
+fn car() -> Profile {
+    Profile::vehicle(&SumoType::car("car"), &Options::default())
+}
+
+/// The states after a second step, 1 s after the first, and the first TTC; with a net, all are about this far along its lane.
+fn second_step(detector: &mut Detector, net: Option<(&Net, f64)>, steps: [&[State]; 2]) -> (Vec<State>, Option<f64>) {
+    let (mut roster, mut frame) = (Roster::default(), Frame::default());
+    let profile = roster.profile(car()).unwrap();
+    let users = steps[0].iter().enumerate().map(|(number, _)| roster.enter(&number.to_string(), profile));
+    let users = users.collect::<Vec<_>>();
+    for (states, time) in steps.into_iter().zip([0.0, 1.0]) {
+        frame.begin(time);
+        for (user, state) in users.iter().zip(states) {
+            frame.push(*user, *state);
+        }
+        for row in detector.track_paths(&frame, &roster).to_vec() {
+            let Some((net, position)) = net else { continue };
+            let placement = Placement {
+                lane: net.lane("e_0").unwrap(),
+                position,
+                route: Some([net.edge("e").unwrap()].into()),
+                route_position: 0,
+                lateral_speed: 0.0,
+            };
+            detector.set_placement(&frame, &roster, row, &placement);
+        }
+        detector.align(&mut frame, &roster);
+        detector.broad_phase(&frame, &roster);
+        _ = detector.narrow_phase(&frame, &roster);
+    }
+    let ttc = detector.encounters().find_map(|found| found.nearness?.ttc);
+    (frame.rows().map(|row| row.state).collect(), ttc)
+}
+
+fn aligning(net: Option<&Way>) -> Detector {
+    let mut detector = Detector::new(&Options::default(), net.map(|way| way.net.clone()));
+    detector.set_averaged_over(1.0);
+    detector
+}
+
+#[test]
+fn on_lanes_half_a_step_back_follows_the_bend() {
+    let (way, car) = (Way::bend(), car());
+    let at = |distance: f64| way.vehicle(&car, distance, 8.0);
+    for front in (20..200).map(f64::from) {
+        let (found, _) =
+            second_step(&mut aligning(Some(&way)), Some((&way.net, front)), [&[at(front - 8.0)], &[at(front)]]);
+        let (found, expected) = (found[0], at(front - 4.0));
+        assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
+        assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");
+    }
+}
+
+#[test]
+fn without_lanes_half_a_step_back_is_straight() {
+    let state = |x: f64| State { x, y: 2.0, heading: std::f64::consts::PI, speed: 6.0, ..State::default() };
+    let (found, _) = second_step(&mut aligning(None), None, [&[state(10.0)], &[state(4.0)]]);
+    assert!((found[0].x - 7.0).abs() < 1e-12 && (found[0].y - 2.0).abs() < 1e-12, "{found:?}");
+}
+
+#[test]
+fn half_a_step_back_the_time_to_collision_is_half_a_step_longer() {
+    let pair = |x: f64| [State { x, speed: 12.0, ..State::default() }, State { x: 40.0, ..State::default() }];
+    let ttc = |align: Align| {
+        let mut detector = Detector::new(&Options { align, ..Options::default() }, None);
+        detector.set_averaged_over(1.0);
+        second_step(&mut detector, None, [&pair(8.0), &pair(20.0)]).1.unwrap()
+    };
+    assert!((ttc(Align::Auto) - ttc(Align::Never) - 0.5).abs() < 1e-9);
+    assert_eq!(ttc(Align::Auto), ttc(Align::Always));
+}
+
+#[test]
+fn speeds_of_a_moment_are_left_where_they_are() {
+    let state = State { x: 5.0, speed: 5.0, ..State::default() };
+    let mut detector = Detector::new(&Options::default(), None);
+    assert_eq!(second_step(&mut detector, None, [&[State { x: 0.0, ..state }], &[state]]).0, [state]);
+}
+
+#[test]
+fn a_change_of_lanes_comes_after_the_step() {
+    let way = Way::bend();
+    let at = |x: f64, y: f64| State { x, y, speed: 8.0, ..State::default() };
+    let (found, _) =
+        second_step(&mut aligning(Some(&way)), Some((&way.net, 48.0)), [&[at(40.0, 0.0)], &[at(48.0, 3.2)]]);
+    assert!((found[0].x - 44.0).abs() < 1e-9 && found[0].y.abs() < 1e-9, "{found:?}");
+}
+
+#[test]
+fn what_enters_after_the_moment_collides_with_nothing() {
+    let [behind, ahead] = [20.0, 28.0].map(|x| State { x, speed: x, ..State::default() });
+    let encounters = |first: [State; 2]| {
+        let mut detector = aligning(None);
+        second_step(&mut detector, None, [&first, &[behind, ahead]]);
+        detector.encounters().filter(|found| found.collision).count()
+    };
+    assert_eq!(encounters([behind, ahead]), 1, "half a step back they overlap");
+    assert_eq!(encounters([State { speed: f64::NAN, ..behind }, ahead]), 0);
+}
