@@ -77,6 +77,8 @@ pub mod traffic {
 }
 
 pub mod util {
+    pub use crate::util::limits;
+    pub use crate::util::panics::caught;
     pub use crate::util::threads::{Helper, Team};
     pub use crate::util::units::Second;
 }

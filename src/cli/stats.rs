@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::progress::CountBar;
 use super::say::{say, value};
 use crate::Result;
+use crate::analysis::logged::check_none_lost;
 use crate::analysis::statistics::{By, Request, Statistics, table};
 
 /// Which logs to analyse, and how to print the result.
@@ -57,5 +58,6 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Format::Csv => table::csv(&table::tables(&statistics))?,
         Format::Html => table::html(&table::tables(&statistics)),
     };
-    say(printed)
+    say(printed)?;
+    check_none_lost(&statistics.lost)
 }

@@ -99,7 +99,7 @@ mod tests {
             ("colour", "red", "there is no option \"colour\""),
             ("colour", "false", "there is no option \"colour\""),
             ("serious_tcc", "1", "there is no option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
-            ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be a finite number, 0 or more"),
+            ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be 0 to 3600 s"),
             ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper"),
             ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),
         ] {

@@ -7,6 +7,7 @@ use rustc_hash::FxHashMap;
 use super::driver::DriverOptions;
 use super::type_options::TypeOptions;
 use super::values::word;
+use crate::util::input_file;
 use crate::{Error, Result};
 
 /// The content of a TOML file of options.
@@ -28,7 +29,7 @@ impl OptionsFile {
     /// # Errors
     /// An error that names the file and the line or key: unreadable, not TOML, an unknown key.
     pub fn read(path: &Path, known: &[String]) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
+        let text = input_file::text(path)?;
         Self::parse(path, &text, known)
     }
 
@@ -45,10 +46,7 @@ impl OptionsFile {
                     for (name, settings) in types {
                         let table = format!("type.{name}");
                         let parsed: TypeOptions = parse_table(path, &table, settings)?;
-                        parsed
-                            .driver
-                            .check()
-                            .map_err(|why| Error::content(path, format!("[{table}.driver]: {why}")))?;
+                        parsed.check().map_err(|why| Error::content(path, format!("[{table}]: {why}")))?;
                         file.types.insert(name, parsed);
                     }
                 }

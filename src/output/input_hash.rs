@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::util::input_file;
 use crate::{Error, Result};
 
 /// One input file.
@@ -23,7 +24,7 @@ impl Input {
     /// [`Error::File`] if it cannot be read.
     pub fn of(path: &Path) -> Result<Self> {
         let fail = |source| Error::file(path, source);
-        let mut file = std::fs::File::open(path).map_err(fail)?;
+        let mut file = input_file::file(path)?;
         let mut hasher = Hasher::default();
         std::io::copy(&mut file, &mut hasher).map_err(fail)?;
         Ok(Self { path: path.to_owned(), sha256: hasher.digits() })

@@ -4,6 +4,8 @@ pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod golden_section;
 pub(crate) mod input_file;
+pub mod limits;
+pub mod panics;
 #[cfg(feature = "parquet")]
 pub mod parquet_column;
 pub mod threads;

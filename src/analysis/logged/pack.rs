@@ -14,7 +14,7 @@ use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
 use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical};
-use super::reader::ConflictReader;
+use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
 use crate::util::parquet_column::unreadable;
@@ -107,6 +107,7 @@ fn write(
             rows.push(conflict.map_err(Fault::Own)?);
         }
         if rows.is_empty() {
+            reader::check_none_lost(conflicts.lost().as_slice()).map_err(Fault::Own)?;
             break;
         }
         let mut group = writer.next_row_group()?;

@@ -9,7 +9,9 @@ use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
+use super::possible::PossibleRows;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
+use crate::util::input_file;
 use crate::util::parquet_column::{Batch, unreadable};
 use crate::{Error, Result};
 
@@ -81,6 +83,9 @@ pub struct ParquetLog {
     batch: usize,
     /// How many of them were returned.
     returned: usize,
+    /// How many rows were returned in all.
+    rows: u64,
+    possible: PossibleRows,
 }
 
 impl std::fmt::Debug for ParquetLog {
@@ -114,12 +119,19 @@ impl ParquetLog {
             left: 0,
             batch: 0,
             returned: 0,
+            rows: 0,
+            possible: PossibleRows::default(),
         })
     }
 
     /// Reads the snapshots as well, where the file has them.
     pub fn read_snapshots(&mut self) {
         self.with_snapshots = true;
+    }
+
+    /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
+    pub fn demand_margins_below_zero(&mut self) {
+        self.possible.margins_below_zero = true;
     }
 
     /// The columns, without the labels of a sweep.
@@ -144,7 +156,9 @@ impl ParquetLog {
         let row = self.returned;
         self.returned += 1;
         let cell = |column: usize| self.columns[column].as_ref().map_or(Ok(Value::Missing), |batch| batch.value(row));
-        LoggedConflict::from_cells(cell).map(Some).map_err(|message| Error::content(&self.path, message))
+        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.possible.check(&row).map(|()| Some(row)));
+        self.rows += 1;
+        checked.map_err(|message| Error::content(&self.path, format!("row {}: {message}", self.rows)))
     }
 
     /// Opens the columns of the next row group; whether there is one.
@@ -234,6 +248,6 @@ impl ColumnBatch {
 }
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>> {
-    let file = File::open(path).map_err(|source| Error::file(path, source))?;
+    let file = input_file::file(path)?;
     SerializedFileReader::new(file).map_err(|error| unreadable(path, &error))
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::options::OptionsFile;
+use crate::util::input_file;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 
@@ -153,7 +154,7 @@ impl Scenario {
             None => configuration(&folder, &name)?,
         };
         let full = folder.join(&sumocfg);
-        std::fs::File::open(&full).map_err(|source| Error::file(&full, source))?;
+        input_file::file(&full)?;
         Ok(Self { name, folder, sumocfg, has_settings, settings })
     }
 

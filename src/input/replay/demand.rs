@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::lists::{ListWriter, Lists, Place};
 use super::types::{VehicleTypes, text, vehicle_type};
 use crate::traffic::net::{EdgeIndex, Net};
-use crate::util::input_file::{LineCounter, open, xml_message};
+use crate::util::input_file::{ElementSource, xml_message};
 use crate::{Error, Result};
 
 /// Reads the types and the routes that route and additional files define.
@@ -88,12 +88,12 @@ type Found<T> = std::result::Result<T, String>;
 
 impl DemandReader<'_> {
     fn read(&mut self, path: &Path) -> Result<()> {
-        let mut reader = Reader::from_reader(LineCounter::new(open(path)?));
+        let mut reader = Reader::from_reader(ElementSource::open(path)?);
         let mut buffer = Vec::new();
         let mut holder = None;
         loop {
             buffer.clear();
-            let line = reader.get_ref().line();
+            let line = reader.get_mut().begin_element();
             let wrong = |message: String| Error::line(path, line, message.replace('\n', " "));
             match reader.read_event_into(&mut buffer).map_err(|error| wrong(xml_message(&error)))? {
                 Event::Start(tag) => match tag.name().as_ref() {
