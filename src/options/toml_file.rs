@@ -5,6 +5,7 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 
 use super::driver::DriverOptions;
+use super::settings;
 use super::type_options::TypeOptions;
 use super::values::word;
 use crate::util::input_file;
@@ -46,7 +47,8 @@ impl OptionsFile {
                     for (name, settings) in types {
                         let table = format!("type.{name}");
                         let parsed: TypeOptions = parse_table(path, &table, settings)?;
-                        parsed.check().map_err(|why| Error::content(path, format!("[{table}]: {why}")))?;
+                        let line = line_of(text, &format!("[{table}"));
+                        parsed.check().map_err(|why| Error::line(path, line, format!("[{table}]: {why}")))?;
                         file.types.insert(name, parsed);
                     }
                 }
@@ -60,12 +62,20 @@ impl OptionsFile {
                     if !known.contains(&option) {
                         return Err(Error::content(path, format!("unknown key \"{name}\"")));
                     }
-                    file.words.extend(word(name, &plain_value(path, name, &value)?));
+                    let value = plain_value(path, name, &value)?;
+                    settings::check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
+                    file.words.extend(word(name, &value));
                 }
             }
         }
         Ok(file)
     }
+}
+
+/// The line of a key, from 1.
+fn line_of(text: &str, key: &str) -> u64 {
+    let is_of = |line: &str| line.trim_start().trim_start_matches(['"', '\'']).starts_with(key);
+    1 + text.lines().take_while(|line| !is_of(line)).count() as u64
 }
 
 /// The settings of a table that is not a list of command-line options.

@@ -77,7 +77,7 @@ pub const TEXT: Limit =
     between("options, filters, run.json", "bytes", [0.0, 67_108_864.0], "a filter of 10⁶ edges is smaller");
 /// How many times its size a gzipped net or demand file may have when it is unpacked.
 pub const INFLATION: Limit =
-    between("unpacked size of a gzipped file", "times its size", [0.0, 50.0], "nets shrink by 6 to 20");
+    between("unpacked size of a gzipped file", "times its size", [0.0, 25.0], "nets and demands shrink by 5 to 20");
 /// Points of a polygon.
 pub const CORNERS: Limit =
     between("points of an obstacle", "points", [3.0, 1000.0], "a coast in more detail is no obstacle of traffic");
@@ -156,12 +156,8 @@ impl Limit {
 
 /// A number in few digits.
 fn shown(value: f64) -> String {
-    let size = value.abs();
-    if size == 0.0 || (1e-4..1e5).contains(&size) || !value.is_finite() {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
+    let (plain, short) = (value.to_string(), format!("{value:e}"));
+    if plain.len() <= short.len().max(8) { plain } else { short }
 }
 
 #[cfg(test)]

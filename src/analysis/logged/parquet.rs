@@ -12,7 +12,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use super::possible::PossibleRows;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::input_file;
-use crate::util::parquet_column::{Batch, unreadable};
+use crate::util::parquet_column::{Batch, guarded};
 use crate::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
@@ -166,16 +166,17 @@ impl ParquetLog {
         if self.next_group == self.file.num_row_groups() {
             return Ok(false);
         }
-        let group = self.file.get_row_group(self.next_group).map_err(|error| unreadable(&self.path, &error))?;
+        (self.left, self.columns) = guarded(&self.path, || {
+            let group = self.file.get_row_group(self.next_group)?;
+            let open = |(column, place): (&Column, Option<usize>)| {
+                let is_wanted = self.with_snapshots || column.presence != Presence::Snapshot;
+                let reader = place.filter(|_| is_wanted).map(|place| group.get_column_reader(place)).transpose();
+                reader.and_then(|reader| reader.map(ColumnBatch::new).transpose())
+            };
+            let columns = COLUMNS.iter().zip(self.places).map(open).collect::<std::result::Result<_, _>>()?;
+            Ok((usize::try_from(group.metadata().num_rows()).unwrap_or_default(), columns))
+        })?;
         self.next_group += 1;
-        self.left = usize::try_from(group.metadata().num_rows()).unwrap_or_default();
-        let open = |(column, place): (&Column, Option<usize>)| {
-            let is_wanted = self.with_snapshots || column.presence != Presence::Snapshot;
-            let reader = place.filter(|_| is_wanted).map(|place| group.get_column_reader(place)).transpose();
-            reader.and_then(|reader| reader.map(ColumnBatch::new).transpose())
-        };
-        let columns = COLUMNS.iter().zip(self.places).map(open).collect::<std::result::Result<_, _>>();
-        self.columns = columns.map_err(|error| unreadable(&self.path, &error))?;
         Ok(true)
     }
 
@@ -184,7 +185,7 @@ impl ParquetLog {
         self.returned = 0;
         self.left -= self.batch;
         for column in self.columns.iter_mut().flatten() {
-            let read = column.read(self.batch).map_err(|error| unreadable(&self.path, &error))?;
+            let read = guarded(&self.path, || column.read(self.batch))?;
             if read != self.batch {
                 return Err(Error::content(&self.path, "its columns differ in length"));
             }
@@ -249,5 +250,5 @@ impl ColumnBatch {
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>> {
     let file = input_file::file(path)?;
-    SerializedFileReader::new(file).map_err(|error| unreadable(path, &error))
+    guarded(path, || SerializedFileReader::new(file))
 }

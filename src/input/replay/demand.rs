@@ -17,10 +17,18 @@ use crate::{Error, Result};
 /// # Errors
 /// An error that names the file, the line and what is wrong.
 pub(super) fn read(paths: &[PathBuf], net: &Net) -> Result<(VehicleTypes, PlannedRoutes)> {
-    let mut reader =
-        DemandReader { net, types: VehicleTypes::default(), lists: ListWriter::default(), routes: Known::default() };
-    paths.iter().try_for_each(|path| reader.read(path))?;
+    let mut reader = DemandReader::new(net);
+    paths.iter().try_for_each(|path| reader.elements(path, ElementSource::open(path)?))?;
     Ok((reader.types, PlannedRoutes { routes: reader.routes, lists: reader.lists.finish()? }))
+}
+
+/// Reads a text as a route or additional file; `path` names it in errors.
+///
+/// # Errors
+/// As for files.
+pub fn parse(path: &Path, text: impl Into<Vec<u8>>, net: &Net) -> Result<()> {
+    let mut reader = DemandReader::new(net);
+    reader.elements(path, ElementSource::new(Box::new(std::io::Cursor::new(text.into()))))
 }
 
 /// The routes that the files define; their edges are in a temporary file.
@@ -86,9 +94,13 @@ struct Holder {
 /// What is wrong with an element.
 type Found<T> = std::result::Result<T, String>;
 
-impl DemandReader<'_> {
-    fn read(&mut self, path: &Path) -> Result<()> {
-        let mut reader = Reader::from_reader(ElementSource::open(path)?);
+impl<'a> DemandReader<'a> {
+    fn new(net: &'a Net) -> Self {
+        Self { net, types: VehicleTypes::default(), lists: ListWriter::default(), routes: Known::default() }
+    }
+
+    fn elements(&mut self, path: &Path, source: ElementSource) -> Result<()> {
+        let mut reader = Reader::from_reader(source);
         let mut buffer = Vec::new();
         let mut holder = None;
         loop {

@@ -125,7 +125,9 @@ impl NetReader<'_> {
         let ends = ["from", "to"].map(|end| self.junction_index(attributes.get(end).unwrap_or(within)));
         let junction = attributes.get("to").unwrap_or(within).to_owned();
         let index = EdgeIndex(self.net.edges.len() as u32);
-        self.net.edge_ids.insert(id.to_owned(), index);
+        if self.net.edge_ids.insert(id.to_owned(), index).is_some() {
+            return Err(self.wrong(format!("edge \"{id}\" is there twice")));
+        }
         self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction, ends });
         Ok(())
     }
@@ -158,7 +160,9 @@ impl NetReader<'_> {
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;
         edge_lanes.push(index);
-        self.net.lane_ids.insert(id.to_owned(), index);
+        if self.net.lane_ids.insert(id.to_owned(), index).is_some() {
+            return Err(self.wrong(format!("lane \"{id}\" is there twice")));
+        }
         self.net.lines.begin();
         let drawn = shape.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
         self.net.lines.set_stretch(stretch(length, drawn));
