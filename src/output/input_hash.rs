@@ -32,7 +32,7 @@ impl Input {
 }
 
 /// SHA-256 of the bytes written to it.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Hasher(Sha256);
 
 impl Hasher {
@@ -44,6 +44,12 @@ impl Hasher {
     /// The hash in hexadecimal digits.
     pub(crate) fn digits(self) -> String {
         self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+impl std::fmt::Debug for Hasher {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("Hasher")
     }
 }
 

@@ -46,7 +46,11 @@ impl RecordedRun {
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
-        let log = Log::create(folder, record.options.log_encounters)?;
+        let mut log = Log::create(folder, record.options.log_encounters)?;
+        let record = RunRecord { csv_safe: files.csv_safe, ..record };
+        if files.csv_safe {
+            log.set_csv_safe();
+        }
         log.write_record(&record)?;
         run.set_log(log);
         run.set_outputs(outputs);
@@ -83,6 +87,7 @@ impl RecordedRun {
                 summary: summary.clone(),
                 complete: error.is_none(),
                 error,
+                conflicts_sha256: Some(log.digest()),
                 ..*record
             })?;
         }
@@ -105,7 +110,13 @@ impl RecordedRun {
         if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
             let (step_length, summary) = (self.run.step_length(), self.run.summary.clone());
             // The error to report is the one that led here.
-            let _ = log.write_record(&RunRecord { step_length, summary, error: Some(error), ..*record });
+            let _ = log.write_record(&RunRecord {
+                step_length,
+                summary,
+                error: Some(error),
+                conflicts_sha256: Some(log.digest()),
+                ..*record
+            });
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Helpers that know nothing of traffic: units, numbers, threads, files.
 
+pub(crate) mod csv_safe;
 pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod golden_section;

@@ -7,6 +7,7 @@ mod bisection;
 mod command_line;
 mod contact;
 mod detector;
+mod hostile;
 mod lane_lengths;
 mod lanes;
 mod levels;

@@ -5,7 +5,9 @@ use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
 use super::possible::PossibleRows;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
+use crate::util::csv_safe::plain;
 use crate::util::input_file::{self, longer};
 use crate::util::limits::LINE;
 use crate::{Error, Result};
@@ -20,6 +22,8 @@ pub struct CsvLog {
     /// Where in a row each of the [`COLUMNS`] is; none where the file lacks it or it is not to be read.
     places: [Option<usize>; COLUMNS.len()],
     possible: PossibleRows,
+    /// Whether the run wrote texts so that no spreadsheet runs them.
+    is_safe: bool,
 }
 
 impl CsvLog {
@@ -37,7 +41,8 @@ impl CsvLog {
             return Err(Error::content(path, "its last row is cut short"));
         }
         file.seek(SeekFrom::Start(0)).map_err(fault)?;
-        let mut reader = csv::Reader::from_reader(ShortRows { file: file.take(whole), row: 0 });
+        let mut reader =
+            csv::Reader::from_reader(ShortRows { file: file.take(whole), row: 0, hasher: Hasher::default() });
         let header = reader.headers().map_err(|error| unreadable(path, 1, &error))?.clone();
         let mut log = Self {
             path: path.to_owned(),
@@ -46,6 +51,7 @@ impl CsvLog {
             row: csv::StringRecord::new(),
             places: [None; COLUMNS.len()],
             possible: PossibleRows::default(),
+            is_safe: false,
         };
         log.read_columns(|presence| presence != Presence::Snapshot);
         let mut places = COLUMNS.iter().zip(log.places);
@@ -66,9 +72,19 @@ impl CsvLog {
         self.places = COLUMNS.map(|column| place(&column).filter(|_| is_wanted(column.presence)));
     }
 
+    /// Reads texts as they were before they were made safe for spreadsheets.
+    pub fn undo_csv_safe(&mut self) {
+        self.is_safe = true;
+    }
+
     /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
     pub fn demand_margins_below_zero(&mut self) {
         self.possible.margins_below_zero = true;
+    }
+
+    /// The SHA-256 of what was read: once no row is left, that of the file.
+    pub fn digest(&self) -> String {
+        self.reader.get_ref().hasher.clone().digits()
     }
 
     /// The columns of the file.
@@ -90,6 +106,7 @@ impl CsvLog {
             return Ok(None);
         }
         let cell = |column: usize| match self.places[column].and_then(|place| self.row.get(place)) {
+            Some(text) if self.is_safe => COLUMNS[column].column_type.parse(plain(text)),
             Some(text) => COLUMNS[column].column_type.parse(text),
             None => Ok(Value::Missing),
         };
@@ -104,6 +121,7 @@ struct ShortRows {
     file: Take<File>,
     /// Bytes read since the row began.
     row: usize,
+    hasher: Hasher,
 }
 
 impl Read for ShortRows {
@@ -114,6 +132,7 @@ impl Read for ShortRows {
         }
         let read = self.file.read(buffer)?;
         self.row += read;
+        self.hasher.add(&buffer[..read]);
         Ok(read)
     }
 }
@@ -211,10 +230,10 @@ mod tests {
         // The half row is longer than the blocks in which its begin is searched.
         let half = ROW.replace("truck", &"truck".repeat(2000));
         fs::write(&path, header() + ROW + &half[..half.len() - 1]).unwrap();
-        let mut rows = CsvLog::open(&path, || true).unwrap();
+        let mut rows = CsvLog::open(&path, true).unwrap();
         assert_eq!(rows.read().unwrap().map(|conflict| conflict.id), Some(1));
         assert_eq!(rows.read().unwrap(), None);
-        assert!(CsvLog::open(&path, || false).is_err());
+        assert!(CsvLog::open(&path, false).is_err());
     }
 
     #[test]

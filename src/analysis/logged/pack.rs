@@ -1,6 +1,7 @@
 //! A log as one Parquet file, for a data set of many runs.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,9 +14,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical};
+use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, digest, physical};
 use super::reader::{self, ConflictReader};
 use super::run::record;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
@@ -56,10 +58,7 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> R
     let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
     let draft = draft.map_err(|source| Error::file(within, source))?;
     let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
-    let metadata = vec![
-        KeyValue::new(RECORD_KEY.to_owned(), record),
-        KeyValue::new(FINGERPRINT_KEY.to_owned(), fingerprint.to_owned()),
-    ];
+    let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned())];
     write(file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
         Fault::Parquet(error) => unreadable(out, &error),
@@ -95,11 +94,11 @@ fn write(
     file: File,
     mut conflicts: ConflictReader,
     labels: &[Label],
-    metadata: Vec<KeyValue>,
+    metadata: [(&str, String); 2],
 ) -> std::result::Result<(), Fault> {
-    let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-    let properties = properties.set_key_value_metadata(Some(metadata)).build();
-    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(labels)?), Arc::new(properties))?;
+    let properties = Arc::new(WriterProperties::builder().set_compression(Compression::SNAPPY).build());
+    let file = HashedFile { file, hasher: Hasher::default() };
+    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(labels)?), properties)?;
     let mut rows = Vec::with_capacity(1024);
     loop {
         rows.clear();
@@ -122,8 +121,32 @@ fn write(
         }
         group.close()?;
     }
+    writer.flush().map_err(ParquetError::from)?;
+    let digest =
+        digest(writer.bytes_written(), writer.inner().hasher.clone(), metadata.each_ref().map(|(_, it)| &**it));
+    for (key, value) in metadata.into_iter().chain([(DIGEST_KEY, digest)]) {
+        writer.append_key_value_metadata(KeyValue::new(key.to_owned(), value));
+    }
     writer.close()?;
     Ok(())
+}
+
+/// A file that hashes what is written to it.
+struct HashedFile {
+    file: File,
+    hasher: Hasher,
+}
+
+impl Write for HashedFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hasher.add(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
 }
 
 fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {

@@ -1,6 +1,7 @@
 //! `conflicts.parquet`, batch by batch: a sweep writes one file per run, with its `run.json` inside.
 
 use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use parquet::basic::Type as Physical;
@@ -10,6 +11,7 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::possible::PossibleRows;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::input_file;
 use crate::util::parquet_column::{Batch, guarded};
@@ -19,6 +21,32 @@ use crate::{Error, Result};
 pub(super) const RECORD_KEY: &str = "closecall.run.json";
 /// The key of the fingerprint in the file's metadata.
 pub(super) const FINGERPRINT_KEY: &str = "closecall.fingerprint";
+/// The key of the [`digest`] in the file's metadata; files of earlier versions have none.
+pub(super) const DIGEST_KEY: &str = "closecall.digest";
+
+/// How many bytes the rows take, and the SHA-256 of these and of the texts of the metadata: pages have no checksums of
+/// their own.
+pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 2]) -> String {
+    metadata.iter().for_each(|text| rows.add(text));
+    format!("{bytes} {}", rows.digits())
+}
+
+/// Whether the file is not as it was written.
+fn is_changed(path: &Path, file: &SerializedFileReader<File>) -> Result<bool> {
+    let [record, fingerprint, known] = [RECORD_KEY, FINGERPRINT_KEY, DIGEST_KEY].map(|key| value(file, key));
+    let Some(known) = known else { return Ok(false) };
+    let bytes = known.split(' ').next().and_then(|bytes| bytes.parse::<u64>().ok()).unwrap_or_default();
+    let mut rows = Hasher::default();
+    let copied = std::io::copy(&mut input_file::file(path)?.take(bytes), &mut rows);
+    copied.map_err(|source| Error::file(path, source))?;
+    Ok(digest(bytes as usize, rows, [&record.unwrap_or_default(), &fingerprint.unwrap_or_default()]) != known)
+}
+
+/// The value of a key in the file's metadata.
+fn value(file: &SerializedFileReader<File>, key: &str) -> Option<String> {
+    let pairs = file.metadata().file_metadata().key_value_metadata().into_iter().flatten();
+    pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
+}
 
 /// Rows in memory at once.
 const BATCH: usize = 4096;
@@ -51,9 +79,8 @@ impl Packed {
         let file = open(path)?;
         let metadata = file.metadata().file_metadata();
         let value = |key: &str| {
-            let pairs = metadata.key_value_metadata().into_iter().flatten();
-            let found = pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone());
-            found.ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
+            value(&file, key)
+                .ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
         };
         let columns = metadata.schema_descr().columns().iter();
         let labels = columns.filter(|column| Column::named(column.name()).is_none());
@@ -86,6 +113,7 @@ pub struct ParquetLog {
     /// How many rows were returned in all.
     rows: u64,
     possible: PossibleRows,
+    is_changed: bool,
 }
 
 impl std::fmt::Debug for ParquetLog {
@@ -111,7 +139,6 @@ impl ParquetLog {
         }
         Ok(Self {
             path: path.to_owned(),
-            file,
             places,
             with_snapshots: false,
             next_group: 0,
@@ -121,12 +148,19 @@ impl ParquetLog {
             returned: 0,
             rows: 0,
             possible: PossibleRows::default(),
+            is_changed: is_changed(path, &file)?,
+            file,
         })
     }
 
     /// Reads the snapshots as well, where the file has them.
     pub fn read_snapshots(&mut self) {
         self.with_snapshots = true;
+    }
+
+    /// Whether the file is not as its run wrote it.
+    pub fn is_changed(&self) -> bool {
+        self.is_changed
     }
 
     /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.

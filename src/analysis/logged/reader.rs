@@ -17,24 +17,43 @@ pub struct ConflictReader {
     read: u64,
     /// How many conflicts the run counted.
     counted: Option<u64>,
+    /// The SHA-256 of what the run wrote.
+    digest: Option<String>,
     failed: bool,
 }
 
-/// A file that has not the rows that its run counted.
+/// A file that has not the rows that its run wrote.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LostRows {
     /// The file.
     pub file: PathBuf,
-    /// The rows that it has.
-    pub read: u64,
-    /// The rows that its run counted.
-    pub counted: u64,
+    /// What its rows are instead.
+    pub why: Lost,
+}
+
+/// What is wrong with the rows of a file as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lost {
+    /// There are more or fewer of them.
+    Rows {
+        /// The rows that it has.
+        read: u64,
+        /// The rows that its run counted.
+        counted: u64,
+    },
+    /// Their bytes are others.
+    Changed,
 }
 
 impl std::fmt::Display for LostRows {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
-        let Self { file, read, counted } = self;
-        write!(f, "{}: it has {read} rows, but its run counted {counted} conflicts", file.display())
+        let file = self.file.display();
+        match self.why {
+            Lost::Rows { read, counted } => {
+                write!(f, "{file}: it has {read} rows, but its run counted {counted} conflicts")
+            }
+            Lost::Changed => write!(f, "{file}: it was changed since its run wrote it (its SHA-256 differs)"),
+        }
     }
 }
 
@@ -82,15 +101,28 @@ impl ConflictReader {
                 LogFile::Parquet(log) => log.demand_margins_below_zero(),
             }
         }
-        let counted = run.filter(|_| has_result).map(|run| run.conflicts());
-        Ok(Self { file, read: 0, counted, failed: false })
+        if let (LogFile::Csv(log), true) = (&mut file, run.as_ref().is_some_and(|run| run.csv_safe)) {
+            log.undo_csv_safe();
+        }
+        let run = run.filter(|_| has_result);
+        let counted = run.as_ref().map(LoggedRun::conflicts);
+        let digest = run.and_then(|run| run.conflicts_sha256);
+        Ok(Self { file, read: 0, counted, digest, failed: false })
     }
 
-    /// Whether rows are gone, once all were read: how many, and how many the run counted; none where all are there, and
-    /// where the run was killed before it counted them.
+    /// What is wrong with the rows as a whole, once all were read; none where they are those that the run wrote, and where
+    /// the run was killed before it counted them.
     pub fn lost(&self) -> Option<LostRows> {
-        let counted = self.counted.filter(|counted| *counted != self.read)?;
-        Some(LostRows { file: self.path().to_owned(), read: self.read, counted })
+        let file = self.path().to_owned();
+        if let Some(counted) = self.counted.filter(|counted| *counted != self.read) {
+            return Some(LostRows { file, why: Lost::Rows { read: self.read, counted } });
+        }
+        let is_another = match (&self.file, &self.digest) {
+            (LogFile::Csv(log), Some(digest)) => log.digest() != *digest,
+            (LogFile::Csv(_), None) => false,
+            (LogFile::Parquet(log), _) => log.is_changed(),
+        };
+        is_another.then_some(LostRows { file, why: Lost::Changed })
     }
 
     /// Reads the snapshots as well, where the log has them.

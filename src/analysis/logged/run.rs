@@ -33,6 +33,12 @@ pub struct LoggedRun {
     pub options: serde_json::Value,
     /// Whether the run reached its end.
     pub complete: bool,
+    /// The SHA-256 of its `conflicts.csv`; none in the logs of earlier versions, and where the run was killed.
+    #[serde(default)]
+    pub conflicts_sha256: Option<String>,
+    /// Whether texts that spreadsheets would run as formulas begin with an apostrophe.
+    #[serde(default)]
+    pub csv_safe: bool,
     /// What it found.
     pub summary: Summary,
 }

@@ -199,6 +199,7 @@ mod tests {
         let conflict = LoggedConflict::from_cells(cell).unwrap();
         let conflicts = vec![RunConflict { run: 0, conflict }];
         let text = json(Conflicts {
+            lost: Vec::new(),
             logs: Vec::new(),
             records: Vec::new(),
             variants: Vec::new(),
