@@ -157,7 +157,7 @@ impl Limit {
 /// A number in few digits.
 fn shown(value: f64) -> String {
     let (plain, short) = (value.to_string(), format!("{value:e}"));
-    if plain.len() <= short.len().max(8) { plain } else { short }
+    if plain.len() <= short.len().clamp(8, 12) { plain } else { short }
 }
 
 #[cfg(test)]

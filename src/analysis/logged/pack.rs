@@ -265,8 +265,11 @@ mod tests {
             ("collision", _) => id.is_multiple_of(2).to_string(),
             _ if column.is_optional() && (id + column.name.len()).is_multiple_of(3) => String::new(),
             (_, ColumnType::Flag) => id.is_multiple_of(2).to_string(),
+            ("ego_path" | "foe_path", _) => format!("{} -2.50", id % 7),
             (name, ColumnType::Text) => format!("{name} {}", id % 7),
-            (name, ColumnType::Number) => format!("-{}.25", id % 100 + name.len()),
+            ("margin", _) => format!("-{}.25", id % 100),
+            (_, ColumnType::Number) if column.unit() == "1" => "0.25".to_owned(),
+            (_, ColumnType::Number) => format!("{}.25", id % 100),
         }
     }
 
