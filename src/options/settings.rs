@@ -37,17 +37,20 @@ impl Options {
         let settings = SettingsParser::from_arg_matches(&matches).map_err(|error| plain(&error))?;
         settings.options.checked()
     }
-}
 
-/// Checks the value of a setting in a file, unless the option is one of another command.
-pub(super) fn check(name: &str, value: &str) -> std::result::Result<(), String> {
-    let mut command = SettingsParser::command();
-    let option = name.replace('_', "-");
-    if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
-        return Ok(());
+    /// Checks the value of a setting in a file, unless the option is one of another command.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check_setting(name: &str, value: &str) -> std::result::Result<(), String> {
+        let mut command = SettingsParser::command();
+        let option = name.replace('_', "-");
+        if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
+            return Ok(());
+        }
+        let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
+        checked.map_err(|error| plain(&error).to_string())
     }
-    let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
-    checked.map_err(|error| plain(&error).to_string())
 }
 
 /// clap's message as one line that names the setting, not the long option.

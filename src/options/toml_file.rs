@@ -5,11 +5,13 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 
 use super::driver::DriverOptions;
-use super::settings;
 use super::type_options::TypeOptions;
 use super::values::word;
 use crate::util::input_file;
 use crate::{Error, Result};
+
+/// Says what is wrong with the value of an option, if anything is.
+pub type Check = fn(&str, &str) -> std::result::Result<(), String>;
 
 /// The content of a TOML file of options.
 #[derive(Debug, Default)]
@@ -25,20 +27,21 @@ pub struct OptionsFile {
 }
 
 impl OptionsFile {
-    /// Reads a TOML file; `known` are the long options that a key may name.
+    /// Reads a TOML file; `known` are the long options that a key may name, and `check` checks their values
+    /// ([`Options::check_setting`](super::Options::check_setting)).
     ///
     /// # Errors
     /// An error that names the file and the line or key: unreadable, not TOML, an unknown key.
-    pub fn read(path: &Path, known: &[String]) -> Result<Self> {
+    pub fn read(path: &Path, known: &[String], check: Check) -> Result<Self> {
         let text = input_file::text(path)?;
-        Self::parse(path, &text, known)
+        Self::parse(path, &text, known, check)
     }
 
     /// Reads TOML from a text; `path` names it in errors.
     ///
     /// # Errors
     /// As for [`OptionsFile::read`].
-    pub fn parse(path: &Path, text: &str, known: &[String]) -> Result<Self> {
+    pub fn parse(path: &Path, text: &str, known: &[String], check: Check) -> Result<Self> {
         let table: toml::Table = toml::from_str(text).map_err(|error| toml_error(path, text, &error))?;
         let mut file = Self::default();
         for (key, value) in table {
@@ -63,7 +66,7 @@ impl OptionsFile {
                         return Err(Error::content(path, format!("unknown key \"{name}\"")));
                     }
                     let value = plain_value(path, name, &value)?;
-                    settings::check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
+                    check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
                     file.words.extend(word(name, &value));
                 }
             }

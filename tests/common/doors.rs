@@ -74,7 +74,9 @@ pub fn net(bytes: &[u8]) {
 /// Any text as a TOML file of options gives words or an error.
 pub fn config(bytes: &[u8]) {
     let known = ["mu", "epsilon", "obstacles", "keep-all", "response-time"].map(str::to_owned);
-    let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known) else { return };
+    let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, Options::check_setting) else {
+        return;
+    };
     let settings = file.words.iter().filter_map(|word| word.trim_start_matches("--").split_once('='));
     let settings = settings.map(|(name, value)| (name, value.to_owned())).collect::<Vec<_>>();
     let _ = Options::from_settings(settings);
