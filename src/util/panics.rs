@@ -11,7 +11,9 @@ static LAST: Mutex<Option<String>> = Mutex::new(None);
 /// Keeps what a panic says for the error that it becomes, instead of printing it.
 pub fn keep_quiet() {
     set_hook(Box::new(|panic: &PanicHookInfo| {
-        let said = panic.payload_as_str().unwrap_or("no message").replace('\n', " ");
+        let payload = panic.payload();
+        let said = payload.downcast_ref::<&str>().copied().or(payload.downcast_ref::<String>().map(String::as_str));
+        let said = said.unwrap_or("no message").replace('\n', " ");
         let place = panic.location().map(|place| format!(" ({}:{})", place.file(), place.line()));
         *LAST.lock().unwrap_or_else(PoisonError::into_inner) = Some(said + &place.unwrap_or_default());
     }));

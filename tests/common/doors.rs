@@ -131,7 +131,7 @@ fn of_log(files: &[(&str, &[u8])]) {
     }
     let request = Request { folders: vec![log.clone()], by: Default::default(), against: Vec::new(), worst: 3 };
     let _ = Statistics::of(&request, &mut |_, _| ());
-    let _ = report::write(&[log.clone()], None, &folder.path().join("report.html"), &mut |_, _| ());
+    let _ = report::write(std::slice::from_ref(&log), None, &folder.path().join("report.html"), &mut |_, _| ());
     let _ = plot::write(&[log], None, &folder.path().join("plots"), plot::PictureFormat::Svg, &mut |_, _| ());
 }
 

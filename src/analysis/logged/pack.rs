@@ -296,6 +296,29 @@ mod tests {
     }
 
     #[test]
+    fn a_flipped_bit_among_the_rows_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let [log, packed] = ["log", "p"].map(|name| folder.path().join(name));
+        fs::create_dir(&log).unwrap();
+        let rows = (1..=20).map(|id| COLUMNS.map(|column| cell(&column, id)).join(",") + "\n").collect::<String>();
+        fs::write(log.join(CONFLICTS), COLUMNS.map(|column| column.name).join(",") + "\n" + &rows).unwrap();
+        fs::write(log.join(RUN), "{}\n").unwrap();
+        pack(&log, &labels(), "abc", &packed.join(PARQUET)).unwrap();
+        let whole = fs::read(packed.join(PARQUET)).unwrap();
+        let is_noticed = || {
+            let Ok(mut reader) = ConflictReader::open(&packed) else { return true };
+            reader.by_ref().any(|row| row.is_err()) || reader.lost().is_some()
+        };
+        assert!(!is_noticed());
+        for place in (4..whole.len() / 4).step_by(97) {
+            let mut changed = whole.clone();
+            changed[place] ^= 4;
+            fs::write(packed.join(PARQUET), changed).unwrap();
+            assert!(is_noticed(), "byte {place} of {}", whole.len());
+        }
+    }
+
+    #[test]
     fn a_packed_log_reads_the_same_across_row_groups() {
         for rows in [0, 1, 5000, GROUP + 10] {
             let (logged, packed, beside) = packed(&format!("rows{rows}"), rows);
