@@ -110,8 +110,8 @@ impl Checker {
     ///
     /// Raises:
     ///     ValueError: a column is missing, unknown or has another length, an id occurs twice, the time is before the last
-    ///         one, or dimensions are impossible.
-    ///     RuntimeError: the checker is closed and has no simulation.
+    ///         one, dimensions, a place or a speed are impossible (docs/limits.md), or too many are in one place.
+    ///     RuntimeError: the checker is closed and has no simulation, or closecall itself failed.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
         caught(|| self.check(py, time, states)).unwrap_or_else(|fault| {
