@@ -30,12 +30,12 @@ stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a mil
 study: $(VENV)/wheel ## error against run time, for every choice that closecall makes
 	$(BIN)/closecall study --quick --out docs/study
 
+DOORS := $(notdir $(wildcard tests/fuzz/*))
 FUZZ := PATH=$(CURDIR)/target/tools/bin:$$PATH cargo +nightly fuzz run
 
-fuzz: target/tools/bin/cargo-fuzz ## random files into the readers, a minute each
-	mkdir -p fuzz/corpus/fcd && $(FUZZ) fcd fuzz/corpus/fcd tests/fuzz/fcd -- -max_total_time=60
-	mkdir -p fuzz/corpus/net && $(FUZZ) net fuzz/corpus/net tests/fuzz/net -- -max_total_time=60
-	mkdir -p fuzz/corpus/config && $(FUZZ) config fuzz/corpus/config tests/fuzz/config -- -max_total_time=60
+fuzz: target/tools/bin/cargo-fuzz ## random files into everything that is read, a minute each
+	for door in $(DOORS); do mkdir -p fuzz/corpus/$$door && $(FUZZ) $$door fuzz/corpus/$$door tests/fuzz/$$door -- \
+		-max_total_time=60 -timeout=5 -rss_limit_mb=1024 || exit 1; done
 
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files
 	cargo fmt --all --check

@@ -35,6 +35,9 @@ pub enum Error {
         /// What is wrong with it.
         message: String,
     },
+    /// A log lacks rows that its run counted; what is there was used.
+    #[error("{0}")]
+    Lost(String),
     /// A recording ends early; the steps before that were checked.
     #[error("{}: cut short after time {time} s: {message}", path.display())]
     CutShort {
@@ -51,6 +54,17 @@ pub enum Error {
     /// A measured value exceeds its bound.
     #[error("{0}")]
     Exceeded(String),
+    /// A step that cannot be checked; the steps before it were.
+    #[error("at {time} s: {message}")]
+    Step {
+        /// The simulated time.
+        time: f64,
+        /// What is wrong in it.
+        message: String,
+    },
+    /// A panic: a fault of closecall itself.
+    #[error("internal error: {0}; please report this line with the command and its input")]
+    Internal(String),
     /// SUMO refused to start: its configuration, net or demand cannot be used.
     #[error("{}: SUMO says: {message}", path.display())]
     Refused {
@@ -102,12 +116,20 @@ impl Error {
         Self::Content { path: path.to_owned(), message: message.into() }
     }
 
+    /// A step that cannot be checked.
+    pub fn step(time: f64, message: impl Into<String>) -> Self {
+        Self::Step { time, message: message.into() }
+    }
+
     /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded,
-    /// 3 if a recording was cut short, 130 if the user interrupted it, 2 for every other unusable input.
+    /// 3 if a recording was cut short or a log lacks rows, 70 if closecall itself is at fault, 130 if the user interrupted it, 2 for every
+    /// other unusable input.
     pub fn exit_status(&self) -> u8 {
         match self {
             Self::Failed { .. } | Self::Exceeded(_) => 1,
-            Self::CutShort { .. } => 3,
+            Self::CutShort { .. } | Self::Lost(_) => 3,
+            // EX_SOFTWARE of sysexits.h.
+            Self::Internal(_) => 70,
             // The convention of shells: 128 + SIGINT.
             Self::Interrupted { .. } | Self::Stopped | Self::Paused { .. } => 130,
             _ => 2,

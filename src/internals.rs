@@ -4,7 +4,11 @@
 
 #[cfg(feature = "cli")]
 pub mod analysis {
-    pub use crate::analysis::logged::ConflictReader;
+    pub use crate::analysis::logged::{ConflictReader, LoggedRun};
+    #[cfg(feature = "plot")]
+    pub use crate::analysis::plot;
+    pub use crate::analysis::report;
+    pub use crate::analysis::statistics::{Request, Statistics};
 }
 
 #[cfg(feature = "cli")]
@@ -40,7 +44,7 @@ pub mod geometry {
 }
 
 pub mod input {
-    pub use crate::input::replay::demand::PlannedRoutes;
+    pub use crate::input::replay::demand::{self, PlannedRoutes};
     pub use crate::input::replay::recording::Recording;
     pub use crate::input::replay::routes::Routes;
     pub use crate::input::replay::rows::RecordedStep;
@@ -73,10 +77,13 @@ pub mod study {
 pub mod traffic {
     pub use crate::traffic::frame::SUMO_INVALID;
     pub use crate::traffic::net::EdgeFunction;
+    pub use crate::traffic::net::filter::Filter;
     pub use crate::traffic::profile::Carriage;
 }
 
 pub mod util {
+    pub use crate::util::limits;
+    pub use crate::util::panics::caught;
     pub use crate::util::threads::{Helper, Team};
     pub use crate::util::units::Second;
 }

@@ -3,5 +3,6 @@
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
+    closecall::cli::keep_panics_quiet();
     ExitCode::from(closecall::cli::main(std::env::args_os(), None))
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use closecall::internals::output::{Context, LoggedConflict};
+use closecall::internals::util::caught;
 use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -109,10 +110,57 @@ impl Checker {
     ///
     /// Raises:
     ///     ValueError: a column is missing, unknown or has another length, an id occurs twice, the time is before the last
-    ///         one, or dimensions are impossible.
-    ///     RuntimeError: the checker is closed and has no simulation.
+    ///         one, dimensions, a place or a speed are impossible (docs/limits.md), or too many are in one place.
+    ///     RuntimeError: the checker is closed and has no simulation, or closecall itself failed.
     #[pyo3(signature = (time=0.0, states=None))]
     fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
+        caught(|| self.check(py, time, states)).unwrap_or_else(|fault| {
+            self.is_closed = true;
+            self.recorded.abandon(fault.to_string());
+            Err(exception(fault))
+        })
+    }
+
+    /// End the run: close and write the open conflicts, and restore the colours of painted vehicles.
+    fn close(&mut self, py: Python) -> PyResult<()> {
+        self.end(py, None)
+    }
+
+    /// The same, with the error that ended the run early, if there was one.
+    #[pyo3(name = "_end")]
+    fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
+        if std::mem::replace(&mut self.is_closed, true) {
+            return Ok(());
+        }
+        self.recorded.close(Ending { error, ..Ending::default() }).map_err(exception)?;
+        match &mut self.painter {
+            Some(painter) => painter.clear(py),
+            None => Ok(()),
+        }
+    }
+
+    /// All conflicts so far; the open ones as they are now.
+    #[getter]
+    fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let run = &self.recorded.run;
+        let context = |number| Context { number, net: run.net(), roster: &run.roster };
+        let conflicts = run.conflicts();
+        let logged = (1..).zip(&conflicts).map(|(number, conflict)| LoggedConflict::new(conflict, context(number)));
+        PyList::new(py, logged.map(Conflict).collect::<Vec<_>>())
+    }
+
+    /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
+    #[getter]
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let text = serde_json::to_string(&self.recorded.run.summary())
+            .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        py.import("json")?.call_method1("loads", (text,))
+    }
+}
+
+impl Checker {
+    /// Checks one step.
+    fn check(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
         let run = &mut self.recorded.run;
         match (&mut self.feed, states) {
             (Feed::Simulation(_), None) if self.is_closed => return Ok(false),
@@ -150,42 +198,6 @@ impl Checker {
             painter.paint(py, &self.recorded.run)?;
         }
         Ok(true)
-    }
-
-    /// End the run: close and write the open conflicts, and restore the colours of painted vehicles.
-    fn close(&mut self, py: Python) -> PyResult<()> {
-        self.end(py, None)
-    }
-
-    /// The same, with the error that ended the run early, if there was one.
-    #[pyo3(name = "_end")]
-    fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
-        if std::mem::replace(&mut self.is_closed, true) {
-            return Ok(());
-        }
-        self.recorded.close(Ending { error, ..Ending::default() }).map_err(exception)?;
-        match &mut self.painter {
-            Some(painter) => painter.clear(py),
-            None => Ok(()),
-        }
-    }
-
-    /// All conflicts so far; the open ones as they are now.
-    #[getter]
-    fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let run = &self.recorded.run;
-        let context = |number| Context { number, net: run.net(), roster: &run.roster };
-        let conflicts = run.conflicts();
-        let logged = (1..).zip(&conflicts).map(|(number, conflict)| LoggedConflict::new(conflict, context(number)));
-        PyList::new(py, logged.map(Conflict).collect::<Vec<_>>())
-    }
-
-    /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
-    #[getter]
-    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text = serde_json::to_string(&self.recorded.run.summary())
-            .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        py.import("json")?.call_method1("loads", (text,))
     }
 }
 

@@ -4,7 +4,7 @@ use closecall::Error;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-/// The exception for an error: an `OSError` for files, a `RuntimeError` if SUMO failed, otherwise a `ValueError`.
+/// The exception for an error: an `OSError` for files, a `RuntimeError` if SUMO or closecall itself failed, otherwise a `ValueError`.
 pub fn exception(error: Error) -> PyErr {
     match error {
         Error::File { path, source } => {
@@ -15,7 +15,7 @@ pub fn exception(error: Error) -> PyErr {
                 None => PyOSError::new_err(format!("{}: {text}", path.display())),
             }
         }
-        Error::Refused { .. } | Error::Failed { .. } => PyRuntimeError::new_err(error.to_string()),
+        Error::Refused { .. } | Error::Failed { .. } | Error::Internal(_) => PyRuntimeError::new_err(error.to_string()),
         _ => PyValueError::new_err(error.to_string()),
     }
 }

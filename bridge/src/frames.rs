@@ -1,5 +1,6 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
 
+use closecall::internals::util::limits;
 use closecall::{Category, Options, Point, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
 use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
@@ -79,9 +80,7 @@ impl Frames {
         };
         let sorts = if states.contains("category")? { sorts(states)? } else { vec![Sort::Vehicle; ids.len()] };
         check("category", sorts.len())?;
-        if !time.is_finite() {
-            return Err(PyValueError::new_err(format!("time is {time}")));
-        }
+        limits::TIME.check("time", time).map_err(PyValueError::new_err)?;
         run.begin_step(time);
         self.steps += 1;
         if let Some(length) = run.step_length() {
@@ -135,15 +134,18 @@ impl Frames {
             // An obstacle has no usual size.
             Sort::Obstacle => SumoType { length: f64::NAN, width: f64::NAN, ..SumoType::car("") },
         };
-        let size = |name: &str, column: Option<&StateColumn>, usual: f64| match value(column, row).unwrap_or(usual) {
-            size if size.is_finite() && size > 0.0 => Ok(size),
-            size if column.is_some() => {
-                Err(PyValueError::new_err(format!("\"{id}\": {name} is {size}, it must be finite and above 0")))
-            }
-            _ => Err(PyValueError::new_err(format!("\"{id}\" is an obstacle, which needs \"length\" and \"width\""))),
+        let size = |name: &str, column: Option<&StateColumn>, usual: f64, limit: &limits::Limit| {
+            let size = value(column, row).unwrap_or(usual);
+            let message = |why| match column {
+                Some(_) => format!("\"{id}\": {why}"),
+                None => format!("\"{id}\" is an obstacle, which needs \"length\" and \"width\""),
+            };
+            limit.check(name, size).map_err(|why| PyValueError::new_err(message(why)))
         };
-        let length = size("length", columns.length.as_ref(), usual.length)?;
-        let width = size("width", columns.width.as_ref(), usual.width)?;
+        let length = size("length", columns.length.as_ref(), usual.length, &limits::LENGTH)?;
+        // A wall may be wider than any vehicle.
+        let widest = if let Sort::Obstacle = sort { &limits::LENGTH } else { &limits::WIDTH };
+        let width = size("width", columns.width.as_ref(), usual.width, widest)?;
         if let Sort::Obstacle = sort {
             return run.enter_shape(id, "obstacle", &outline(state, length, width)).map_err(exception);
         }

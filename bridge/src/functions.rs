@@ -3,6 +3,7 @@
 use clap::ValueEnum;
 use closecall::internals::geometry::{Rectangle, Vector};
 use closecall::internals::options::{BUILD_UP, EPSILON, RESPONSE};
+use closecall::internals::util::limits::{self, Limit};
 use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType, internals};
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
@@ -15,8 +16,8 @@ type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 /// The minimal collision distance of an ego and a foe, in m; arrays broadcast as in NumPy.
 ///
 /// Args:
-///     speed, foe_speed: m/s, 0 or more.
-///     decel, foe_decel: braking decelerations in m/s², above 0; 9.0 by default.
+///     speed, foe_speed: m/s, 0 to 1000.
+///     decel, foe_decel: braking decelerations in m/s², 0.01 to 1000; 9.0 by default.
 ///     response_time: time t1 + t2 at full speed before braking begins, in s; 1.05 by default.
 ///     build_up: time t3 in which the deceleration builds up, in s; 0.1 by default.
 ///     epsilon: redundancy, in m; 0.5 by default.
@@ -70,14 +71,13 @@ pub fn mu<'py>(
         ("epsilon", given(epsilon, EPSILON)),
     ];
     for (name, values) in &columns {
-        let above = matches!(*name, "decel" | "foe_decel");
-        let fits = |value: &f64| value.is_finite() && *value >= 0.0 && !(above && *value == 0.0);
-        if let Some(value) = values.iter().find(|value| !fits(value)) {
-            return Err(bad(format!(
-                "{name} is {value}, it must be finite and {}",
-                if above { "above 0" } else { "0 or more" }
-            )));
-        }
+        let limit = match *name {
+            "decel" | "foe_decel" => &limits::DECELERATION,
+            "epsilon" => &limits::RESERVE,
+            "speed" | "foe_speed" => &limits::SPEED,
+            _ => &limits::DURATION,
+        };
+        values.iter().try_for_each(|value| limit.check(name, *value).map(|_| ())).map_err(bad)?;
     }
     let [speed, foe_speed, decel, foe_decel, response_time, build_up, epsilon] = columns;
     let columns = [speed, foe_speed, decel, foe_decel, response_time, build_up, epsilon, ("angle", sigmas)];
@@ -123,8 +123,8 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 ///     n booleans.
 ///
 /// Raises:
-///     ValueError: an array does not have 5 columns, the numbers of rows differ, a value is not finite, or a dimension is
-///         negative.
+///     ValueError: an array does not have 5 columns, the numbers of rows differ, or a value is out of its range; the
+///         message names it.
 #[pyfunction]
 pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     let pairs = pairs(&a, &b)?;
@@ -142,6 +142,15 @@ pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
+/// The columns of a rectangle, each with its limit; it may be a line or a point.
+const RECTANGLE: [(&str, Limit); 5] = [
+    ("x", limits::POSITION),
+    ("y", limits::POSITION),
+    ("heading", limits::ANGLE),
+    ("length", Limit { is_open: false, ..limits::LENGTH }),
+    ("width", Limit { is_open: false, ..limits::LENGTH }),
+];
+
 fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
     let (a, b) = (a.as_array(), b.as_array());
     for (name, rows) in [("a", &a), ("b", &b)] {
@@ -154,15 +163,11 @@ fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
         if rows.nrows() != a.nrows() {
             return Err(PyValueError::new_err(format!("a has {} rows, b has {}", a.nrows(), rows.nrows())));
         }
-        if let Some((row, _)) = rows
-            .rows()
-            .into_iter()
-            .enumerate()
-            .find(|(_, row)| row.iter().any(|value| !value.is_finite()) || row[3] < 0.0 || row[4] < 0.0)
-        {
-            return Err(PyValueError::new_err(format!(
-                "{name}, row {row}: all values must be finite, length and width 0 or more"
-            )));
+        for (number, row) in rows.rows().into_iter().enumerate() {
+            for ((column, limit), value) in RECTANGLE.iter().zip(row) {
+                let checked = limit.check(column, *value);
+                checked.map_err(|why| PyValueError::new_err(format!("{name}, row {number}: {why}")))?;
+            }
         }
     }
     let rectangle = |row: numpy::ndarray::ArrayView1<f64>| {

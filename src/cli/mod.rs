@@ -33,9 +33,11 @@ use std::io::Write;
 use std::path::Path;
 
 use crate::batch::regress::Scenario;
+use crate::util::panics::caught;
 use crate::{Error, Result};
 use parse::{Command, ParseError, command, parse};
 
+pub use crate::util::panics::keep_quiet as keep_panics_quiet;
 pub use sumo::{RunRequest, Simulate, Sumo};
 #[cfg(feature = "parquet")]
 pub use workers::{Distribute, ReportEnd, Workers};
@@ -50,7 +52,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Err(ParseError::Clap(error)) => return refused(&error),
         Err(ParseError::File(error)) => return failed(&error),
     };
-    let done = match cli.command {
+    let done = caught(|| match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         #[cfg(feature = "parquet")]
         Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),
@@ -65,8 +67,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         #[cfg(feature = "plot")]
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),
-    };
-    match done {
+    });
+    match done.flatten() {
         Ok(status) => status,
         Err(error) => failed(&error),
     }

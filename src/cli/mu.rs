@@ -6,7 +6,7 @@ use super::say::say;
 use crate::Result;
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::detection::kind::Kind;
-use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, not_negative, positive};
+use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, deceleration, duration, reserve, speed};
 use crate::traffic::sumo_type::SumoType;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
@@ -14,25 +14,25 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 #[derive(Args)]
 pub struct MuArgs {
     /// Speed of the ego, in m/s.
-    #[arg(long, value_name = "V", value_parser = not_negative)]
+    #[arg(long, value_name = "V", value_parser = speed)]
     speed: MetrePerSecond,
     /// Speed of the foe, in m/s.
-    #[arg(long, value_name = "V", value_parser = not_negative)]
+    #[arg(long, value_name = "V", value_parser = speed)]
     foe_speed: MetrePerSecond,
     /// Deceleration of the ego, in m/s². The default is SUMO's emergencyDecel of a car.
-    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
+    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = deceleration)]
     decel: MetrePerSecondSquared,
     /// Deceleration of the foe, in m/s².
-    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = positive)]
+    #[arg(long, value_name = "A", default_value_t = SumoType::car("").emergency_decel, value_parser = deceleration)]
     foe_decel: MetrePerSecondSquared,
     /// Response time t1 + t2 of both, in s.
-    #[arg(long, value_name = "T", default_value_t = RESPONSE, value_parser = not_negative)]
+    #[arg(long, value_name = "T", default_value_t = RESPONSE, value_parser = duration)]
     response_time: Second,
     /// Time t3 in which the deceleration of both builds up, in s.
-    #[arg(long, value_name = "T3", default_value_t = BUILD_UP, value_parser = not_negative)]
+    #[arg(long, value_name = "T3", default_value_t = BUILD_UP, value_parser = duration)]
     build_up: Second,
     /// Redundancy ε, in m.
-    #[arg(long, value_name = "E", default_value_t = EPSILON, value_parser = not_negative)]
+    #[arg(long, value_name = "E", default_value_t = EPSILON, value_parser = reserve)]
     epsilon: Metre,
     /// Kind of encounter, which sets σ = cos α: 1 for rear_end, 0 for side, −1 for frontal.
     #[arg(long, value_enum, default_value = "rear_end")]

@@ -7,6 +7,7 @@ use clap::Args;
 use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
+use crate::analysis::logged::check_none_lost;
 use crate::analysis::plot::{self, PictureFormat};
 
 /// Which logs to draw, and where to.
@@ -33,12 +34,12 @@ pub struct PlotArgs {
 pub fn run(arguments: &PlotArgs) -> Result<()> {
     let PlotArgs { folders, out, format, net, quiet } = arguments;
     let mut bar = CountBar::new("conflicts", !quiet);
-    let files = plot::write(folders, net.as_deref(), out, *format, &mut |read, all| bar.show(read, all))?;
+    let (files, lost) = plot::write(folders, net.as_deref(), out, *format, &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if !quiet {
         for file in files {
             say(format_args!("{}\n", file.display()))?;
         }
     }
-    Ok(())
+    check_none_lost(&lost)
 }

@@ -7,6 +7,7 @@ use clap::Args;
 use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
+use crate::analysis::logged::check_none_lost;
 use crate::analysis::report;
 use crate::util::units::counted;
 
@@ -33,11 +34,11 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut progress = |read, all| bar.show(read, all);
     let made = report::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, &mut progress)?;
     drop(bar);
+    let report::Made { runs, conflicts, bytes, lost } = made;
     if !arguments.quiet {
-        let report::Made { runs, conflicts, bytes } = made;
         let size = bytes as f64 / 1e6;
         let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
         say(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
     }
-    Ok(())
+    check_none_lost(&lost)
 }

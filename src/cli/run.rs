@@ -6,7 +6,9 @@ use clap::Args;
 
 use super::check_args::CheckArgs;
 use super::sumo::{RunRequest, Sumo, no_sumo};
-use crate::options::{not_negative, positive};
+use crate::input::sumo_files;
+use crate::options::{step_length, time};
+use crate::util::input_file;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -23,16 +25,16 @@ pub struct RunArgs {
     #[arg(long)]
     gui: bool,
     /// Simulated time at which the run begins, in s.
-    #[arg(short = 'b', long, value_name = "S", value_parser = not_negative)]
+    #[arg(short = 'b', long, value_name = "S", value_parser = time)]
     begin: Option<Second>,
     /// Simulated time at which the run ends, in s.
-    #[arg(short = 'e', long, value_name = "S", value_parser = not_negative)]
+    #[arg(short = 'e', long, value_name = "S", value_parser = time)]
     end: Option<Second>,
     /// Random seed for SUMO.
     #[arg(long, value_name = "N")]
     seed: Option<u32>,
     /// Length of a simulation step, in s.
-    #[arg(long, value_name = "S", value_parser = positive)]
+    #[arg(long, value_name = "S", value_parser = step_length)]
     step_length: Option<Second>,
     /// Threads, SUMO's own included. With 2, closecall works while SUMO computes its next step; use 1 when running many
     /// simulations at once.
@@ -56,11 +58,12 @@ pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
 /// The request for the bridge, with everything checked that can be before SUMO starts.
 pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     let scenario = arguments.configuration_file.as_ref().or(arguments.scenario.as_ref()).cloned().unwrap_or_default();
-    // Opened here so that an error carries the operating system's own message.
-    std::fs::File::open(&scenario).map_err(|source| Error::file(&scenario, source))?;
+    // Opened here so that an error carries the operating system's own message, and SUMO never waits for a pipe.
+    input_file::file(&scenario)?;
     if scenario.is_dir() {
         return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
     }
+    sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);
     let options = arguments.check.checked(&out)?;
     let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];

@@ -5,11 +5,11 @@ use std::path::Path;
 use clap::Command;
 
 use crate::Result;
-use crate::options::OptionsFile;
+use crate::options::{Options, OptionsFile};
 
 /// Reads a TOML file. Its keys may be long options of any command, so that one file can serve several commands.
 pub fn read(all: &Command, path: &Path) -> Result<OptionsFile> {
-    OptionsFile::read(path, &known(all))
+    OptionsFile::read(path, &known(all), Options::check_setting)
 }
 
 /// The long options of all commands.

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::progress::CountBar;
 use super::say::{say, value};
 use crate::Result;
+use crate::analysis::logged::check_none_lost;
 use crate::analysis::statistics::{By, Request, Statistics, table};
 
 /// Which logs to analyse, and how to print the result.
@@ -24,6 +25,9 @@ pub struct StatsArgs {
     /// Runs to compare with: log folders, or folders that contain log folders.
     #[arg(long, value_name = "DIR", num_args = 1..)]
     against: Vec<PathBuf>,
+    /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
+    #[arg(long)]
+    csv_safe: bool,
     /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
@@ -44,7 +48,7 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, worst } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, worst } = arguments;
     let mut bar = CountBar::new("conflicts", true);
     let statistics = Statistics::of(&Request { folders, by, against, worst }, &mut |read, all| bar.show(read, all))?;
     drop(bar);
@@ -54,8 +58,9 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
     let printed = match format {
         Format::Json => serde_json::to_string_pretty(&statistics).map_err(|error| value(error.to_string()))? + "\n",
         Format::Text => table::text(&table::tables(&statistics)),
-        Format::Csv => table::csv(&table::tables(&statistics))?,
+        Format::Csv => table::csv(&table::tables(&statistics), csv_safe)?,
         Format::Html => table::html(&table::tables(&statistics)),
     };
-    say(printed)
+    say(printed)?;
+    check_none_lost(&statistics.lost)
 }

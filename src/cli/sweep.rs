@@ -14,6 +14,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
+use crate::util::input_file;
 use crate::util::threads::processors;
 use crate::util::units::counted;
 use crate::{Error, Result};
@@ -125,7 +126,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     let default_out = default_folder(&arguments.scenario, RESULTS);
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_out))?;
     // Opened here so that an error carries the operating system's own message.
-    std::fs::File::open(&arguments.scenario).map_err(|source| Error::file(&arguments.scenario, source))?;
+    input_file::file(&arguments.scenario)?;
     arguments.vary.iter().try_for_each(check)?;
     // The workers already use all processors, so one thread per run is fastest.
     let mut words = vec![text(&absolute(&arguments.scenario)?)?, "--threads=1".to_owned()];
@@ -163,7 +164,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
 
 /// The selection file that a TOML file of options names.
 fn filter_in(file: &Path) -> Option<PathBuf> {
-    let table = std::fs::read_to_string(file).ok()?.parse::<toml::Table>().ok()?;
+    let table = input_file::text(file).ok()?.parse::<toml::Table>().ok()?;
     Some(table.get("filter")?.as_str()?.into())
 }
 

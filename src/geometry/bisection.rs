@@ -130,7 +130,7 @@ impl Bisection {
         }
         let whole = self.parts[of as usize].movement;
         let area = &mut self.parts[other as usize];
-        let fits = area.excess() <= TOLERANCE;
+        let fits = area.fits();
         let stray = area.stray();
         let hull = *area.hull(&mut self.hulls);
         if !fits && known != which.none() && self.is_clear(of, &hull, stray, which, known) {
@@ -156,7 +156,7 @@ impl Bisection {
             return None;
         }
         let part = &mut self.parts[of as usize];
-        if part.bend() <= TOLERANCE {
+        if part.is_straight() {
             let near = if known == which.none() { part.bounds } else { part.slide_before(which, known).bounds };
             if !near.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
                 return None;
@@ -186,7 +186,7 @@ impl Bisection {
         {
             return true;
         }
-        if part.bend() <= TOLERANCE {
+        if part.is_straight() {
             let better = part.slide_before(which, known);
             return !better.bounds.grown(room).meet(&hull.bounds)
                 || better.movement.hull().is_further_than(room, &hull.outline);

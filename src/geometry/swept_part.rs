@@ -4,12 +4,16 @@ use super::convex::ConvexOutline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, ContactInterval, translation};
-use super::sweep::Movement;
+use super::sweep::{Movement, TOLERANCE};
 use super::{Bounds, Vector};
 use crate::util::units::Metre;
 
 /// An upper bound on rounding errors, in m.
 const ROUNDING: Metre = 1e-6;
+
+/// No part is halved more often, so that no values, NaN included, make the search deep. The longest road user, which turns
+/// round within one movement, needs 20 halvings.
+const MOST_HALVINGS: u8 = 24;
 
 /// A movement or a part of one.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +29,8 @@ pub(super) struct SweptPart {
     middle: Option<Vector>,
     /// Index of the first half, once the part is halved; the second half follows it.
     pub halves: Option<u32>,
+    /// How many times a movement was halved for it.
+    halvings: u8,
 }
 
 impl SweptPart {
@@ -33,7 +39,16 @@ impl SweptPart {
         let mut bounds = first.bounds();
         bounds.join(&last.bounds());
         let turn = (movement.to_axis - movement.from_axis).norm();
-        Self { movement, axes: [first.axis, last.axis], bounds, turn, hull: None, middle: None, halves: None }
+        Self {
+            movement,
+            axes: [first.axis, last.axis],
+            bounds,
+            turn,
+            hull: None,
+            middle: None,
+            halves: None,
+            halvings: 0,
+        }
     }
 
     /// A convex polygon around the area that the part covers.
@@ -74,17 +89,27 @@ impl SweptPart {
         let at = |part| from + (to - from) * part;
         let first = Movement { from: at(0.0), from_axis: self.axes[0], to: at(0.5), to_axis: middle, ..self.movement };
         let second = Movement { from: at(0.5), from_axis: middle, to: at(1.0), to_axis: self.axes[1], ..self.movement };
-        [Self::new(first), Self::new(second)]
+        [first, second].map(|half| Self { halvings: self.halvings + 1, ..Self::new(half) })
+    }
+
+    /// Whether its hull reaches beyond the area that it covers by no more than the tolerance.
+    pub fn fits(&self) -> bool {
+        self.excess() <= TOLERANCE || self.halvings >= MOST_HALVINGS
+    }
+
+    /// Whether a translation along the middle direction takes its corners where the movement does, to the tolerance.
+    pub fn is_straight(&self) -> bool {
+        self.bend() <= TOLERANCE || self.halvings >= MOST_HALVINGS
     }
 
     /// How far the hull reaches beyond the area that the movement covers: on the inner side of a turn the hull cuts the
     /// corner between the sides of the first and the last rectangle.
-    pub fn excess(&self) -> Metre {
+    fn excess(&self) -> Metre {
         self.turn * self.movement.length / 4.0
     }
 
     /// How far the turn takes a corner from where a translation along the middle direction would take it.
-    pub fn bend(&self) -> Metre {
+    fn bend(&self) -> Metre {
         self.turn * (self.movement.length + self.movement.width) / 2.0
     }
 

@@ -6,6 +6,7 @@ use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use crate::traffic::net::Net;
+use crate::util::input_file::{self, ElementSource, xml_message};
 use crate::{Error, Result};
 
 /// Checks that an XML file is well-formed to its end: SUMO reads demand piece by piece and would find a fault only during
@@ -14,13 +15,14 @@ use crate::{Error, Result};
 /// # Errors
 /// An error that names the file, the line and what is wrong.
 pub fn check_xml(path: &Path) -> Result<()> {
-    let mut reader = Reader::from_reader(crate::util::input_file::open(path)?);
+    let mut reader = Reader::from_reader(ElementSource::open(path)?);
     reader.config_mut().check_end_names = true;
     let mut buffer = Vec::new();
     let mut depth = 0_i64;
     let mut elements = 0_u64;
     loop {
         buffer.clear();
+        let line = reader.get_mut().begin_element();
         match reader.read_event_into(&mut buffer) {
             Ok(Event::Start(_)) => {
                 depth += 1;
@@ -30,10 +32,7 @@ pub fn check_xml(path: &Path) -> Result<()> {
             Ok(Event::End(_)) => depth -= 1,
             Ok(Event::Eof) => break,
             Ok(_) => {}
-            Err(error) => {
-                let line = line_of(path, reader.error_position())?;
-                return Err(Error::line(path, line, error.to_string().replace('\n', " ")));
-            }
+            Err(error) => return Err(Error::line(path, line, xml_message(&error))),
         }
     }
     if depth != 0 || elements == 0 {
@@ -54,6 +53,16 @@ pub fn fault(configuration: &Path) -> Option<Error> {
     })
 }
 
+/// Checks that none of the files that a configuration names is a pipe or a device, for which SUMO would wait, or which
+/// would never end. What else is wrong with them, SUMO says itself.
+///
+/// # Errors
+/// [`Error::Content`] that names the file.
+pub fn check_are_files(configuration: &Path) -> Result<()> {
+    let named = files_of(configuration).unwrap_or_default();
+    named.iter().filter(|(_, path)| path.exists()).try_for_each(|(_, path)| input_file::file(path).map(|_| ()))
+}
+
 /// The net that a SUMO configuration names, if it can be read.
 pub fn net_of(configuration: &Path) -> Option<PathBuf> {
     let named = files_of(configuration).ok()?;
@@ -71,14 +80,14 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
         ("a", "additional-files"),
     ];
     let folder = configuration.parent().unwrap_or(Path::new(""));
-    let mut reader = Reader::from_reader(crate::util::input_file::open(configuration)?);
+    let mut reader = Reader::from_reader(ElementSource::open(configuration)?);
     let mut buffer = Vec::new();
     let mut files = Vec::new();
     loop {
         buffer.clear();
-        let event = reader
-            .read_event_into(&mut buffer)
-            .map_err(|error| Error::content(configuration, error.to_string().replace('\n', " ")))?;
+        let line = reader.get_mut().begin_element();
+        let event = reader.read_event_into(&mut buffer);
+        let event = event.map_err(|error| Error::line(configuration, line, xml_message(&error)))?;
         let tag = match event {
             Event::Start(tag) | Event::Empty(tag) => tag,
             Event::Eof => return Ok(files),
@@ -90,12 +99,6 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
             files.extend(names.map(|name| (*option, folder.join(name))));
         }
     }
-}
-
-fn line_of(path: &Path, position: u64) -> Result<u64> {
-    use std::io::Read;
-    let before = crate::util::input_file::open(path)?.take(position).bytes();
-    Ok(1 + before.filter(|byte| matches!(byte, Ok(b'\n'))).count() as u64)
 }
 
 #[cfg(test)]

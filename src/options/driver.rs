@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::util::limits::{DECELERATION, DURATION, Limit};
 use crate::util::units::{MetrePerSecondSquared, Second};
 
 /// A driver: the response time and the largest deceleration of its vehicle.
@@ -79,24 +80,17 @@ impl DriverOptions {
     /// # Errors
     /// A text that names the value and what it must be.
     pub fn check(&self) -> Result<(), String> {
-        let above_zero = [
-            ("response_mean", self.response_mean),
-            ("deceleration_mean", self.deceleration_mean),
-            ("deceleration_min", self.deceleration_min),
-            ("deceleration_max", self.deceleration_max),
-        ];
-        let deviations = [("response_sd", self.response_sd), ("deceleration_sd", self.deceleration_sd)];
-        let wrong = |value: f64, must_be_positive: bool| {
-            !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0)
-        };
-        for (values, must_be_positive, wanted) in
-            [(&above_zero[..], true, "above 0"), (&deviations[..], false, "0 or more")]
-        {
-            for (name, value) in values {
-                if let Some(value) = value.filter(|value| wrong(*value, must_be_positive)) {
-                    return Err(format!("{name} is {value}, it must be finite and {wanted}"));
-                }
-            }
+        let response = Limit { is_open: true, ..DURATION };
+        let deviation = Limit { least: 0.0, ..DECELERATION };
+        for (name, value, limit) in [
+            ("response_mean", self.response_mean, &response),
+            ("response_sd", self.response_sd, &DURATION),
+            ("deceleration_mean", self.deceleration_mean, &DECELERATION),
+            ("deceleration_sd", self.deceleration_sd, &deviation),
+            ("deceleration_min", self.deceleration_min, &DECELERATION),
+            ("deceleration_max", self.deceleration_max, &DECELERATION),
+        ] {
+            value.map_or(Ok(0.0), |value| limit.check(name, value))?;
         }
         match (self.deceleration_min, self.deceleration_max) {
             (Some(least), Some(most)) if least > most => {

@@ -36,7 +36,9 @@ pub use severity_rule::SeverityRule;
 pub use toml_file::OptionsFile;
 pub use type_options::{BrakeSystem, TypeOptions};
 #[cfg(feature = "cli")]
-pub(crate) use values::{angle, not_negative, positive, probability};
+pub(crate) use values::{
+    angle, deceleration, deceleration_threshold, duration, probability, reserve, speed, step_length, time,
+};
 
 /// The method that finds the conflicts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -120,22 +122,22 @@ pub struct Options {
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub decel: Deceleration,
     /// Response time t1 of the driver, in s (Guan et al. 2008, fig. 4).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = RESPONSE_TIME, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = RESPONSE_TIME, value_parser = duration))]
     pub response_time: Second,
     /// Brake coordination time t2 of hydraulic brakes, in s (the paper's lower bound).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = HYDRAULIC_DELAY, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = HYDRAULIC_DELAY, value_parser = duration))]
     pub hydraulic_delay: Second,
     /// Brake coordination time t2 of pneumatic brakes, in s (the paper's lower bound).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = PNEUMATIC_DELAY, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = PNEUMATIC_DELAY, value_parser = duration))]
     pub pneumatic_delay: Second,
     /// Build-up time t3 of the deceleration, in s.
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = BUILD_UP, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = BUILD_UP, value_parser = duration))]
     pub build_up: Second,
     /// Reserve ε of μ, in m (eq. 21).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = EPSILON, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = EPSILON, value_parser = reserve))]
     pub epsilon: Metre,
     /// Two road users that overlap by up to this touch but do not collide, in m.
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = CONTACT_TOLERANCE, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M", default_value_t = CONTACT_TOLERANCE, value_parser = reserve))]
     pub contact_tolerance: Metre,
     /// A conflict is rear-end if the angle at the conflict point is below this, in rad (default 30°).
     #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = REAR_END_BELOW, value_parser = angle))]
@@ -150,10 +152,10 @@ pub struct Options {
     #[cfg_attr(feature = "cli", arg(long, value_name = "P", default_value_t = SERIOUS_PROBABILITY, value_parser = probability))]
     pub serious_probability: f64,
     /// With `--severity fhwa`, a conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = duration))]
     pub serious_ttc: Second,
     /// With `--severity fhwa`, a conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
-    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = deceleration_threshold))]
     pub serious_drac: MetrePerSecondSquared,
     /// Driver that crash probabilities assume.
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]

@@ -37,6 +37,20 @@ impl Options {
         let settings = SettingsParser::from_arg_matches(&matches).map_err(|error| plain(&error))?;
         settings.options.checked()
     }
+
+    /// Checks the value of a setting in a file, unless the option is one of another command.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check_setting(name: &str, value: &str) -> std::result::Result<(), String> {
+        let mut command = SettingsParser::command();
+        let option = name.replace('_', "-");
+        if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
+            return Ok(());
+        }
+        let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
+        checked.map_err(|error| plain(&error).to_string())
+    }
 }
 
 /// clap's message as one line that names the setting, not the long option.
@@ -99,7 +113,7 @@ mod tests {
             ("colour", "red", "there is no option \"colour\""),
             ("colour", "false", "there is no option \"colour\""),
             ("serious_tcc", "1", "there is no option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
-            ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be a finite number, 0 or more"),
+            ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be 0 to 3600 s"),
             ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper"),
             ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),
         ] {

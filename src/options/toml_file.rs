@@ -7,7 +7,11 @@ use rustc_hash::FxHashMap;
 use super::driver::DriverOptions;
 use super::type_options::TypeOptions;
 use super::values::word;
+use crate::util::input_file;
 use crate::{Error, Result};
+
+/// Says what is wrong with the value of an option, if anything is.
+pub type Check = fn(&str, &str) -> std::result::Result<(), String>;
 
 /// The content of a TOML file of options.
 #[derive(Debug, Default)]
@@ -23,20 +27,21 @@ pub struct OptionsFile {
 }
 
 impl OptionsFile {
-    /// Reads a TOML file; `known` are the long options that a key may name.
+    /// Reads a TOML file; `known` are the long options that a key may name, and `check` checks their values
+    /// ([`Options::check_setting`](super::Options::check_setting)).
     ///
     /// # Errors
     /// An error that names the file and the line or key: unreadable, not TOML, an unknown key.
-    pub fn read(path: &Path, known: &[String]) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
-        Self::parse(path, &text, known)
+    pub fn read(path: &Path, known: &[String], check: Check) -> Result<Self> {
+        let text = input_file::text(path)?;
+        Self::parse(path, &text, known, check)
     }
 
     /// Reads TOML from a text; `path` names it in errors.
     ///
     /// # Errors
     /// As for [`OptionsFile::read`].
-    pub fn parse(path: &Path, text: &str, known: &[String]) -> Result<Self> {
+    pub fn parse(path: &Path, text: &str, known: &[String], check: Check) -> Result<Self> {
         let table: toml::Table = toml::from_str(text).map_err(|error| toml_error(path, text, &error))?;
         let mut file = Self::default();
         for (key, value) in table {
@@ -45,10 +50,8 @@ impl OptionsFile {
                     for (name, settings) in types {
                         let table = format!("type.{name}");
                         let parsed: TypeOptions = parse_table(path, &table, settings)?;
-                        parsed
-                            .driver
-                            .check()
-                            .map_err(|why| Error::content(path, format!("[{table}.driver]: {why}")))?;
+                        let line = line_of(text, &format!("[{table}"));
+                        parsed.check().map_err(|why| Error::line(path, line, format!("[{table}]: {why}")))?;
                         file.types.insert(name, parsed);
                     }
                 }
@@ -62,12 +65,20 @@ impl OptionsFile {
                     if !known.contains(&option) {
                         return Err(Error::content(path, format!("unknown key \"{name}\"")));
                     }
-                    file.words.extend(word(name, &plain_value(path, name, &value)?));
+                    let value = plain_value(path, name, &value)?;
+                    check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
+                    file.words.extend(word(name, &value));
                 }
             }
         }
         Ok(file)
     }
+}
+
+/// The line of a key, from 1.
+fn line_of(text: &str, key: &str) -> u64 {
+    let is_of = |line: &str| line.trim_start().trim_start_matches(['"', '\'']).starts_with(key);
+    1 + text.lines().take_while(|line| !is_of(line)).count() as u64
 }
 
 /// The settings of a table that is not a list of command-line options.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::driver::DriverOptions;
+use crate::util::limits::{DECELERATION, DURATION, LENGTH, MASS, WIDTH};
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 
 /// The brake system of a vehicle.
@@ -38,4 +39,25 @@ pub struct TypeOptions {
     /// Its drivers.
     #[serde(default)]
     pub driver: DriverOptions,
+}
+
+impl TypeOptions {
+    /// Checks the values that are set.
+    ///
+    /// # Errors
+    /// A text that names the value and what it must be.
+    pub fn check(&self) -> Result<(), String> {
+        for (name, value, limit) in [
+            ("response_time", self.response_time, &DURATION),
+            ("brake_delay", self.brake_delay, &DURATION),
+            ("build_up", self.build_up, &DURATION),
+            ("decel", self.decel, &DECELERATION),
+            ("length", self.length, &LENGTH),
+            ("width", self.width, &WIDTH),
+            ("mass", self.mass, &MASS),
+        ] {
+            value.map_or(Ok(0.0), |value| limit.check(name, value))?;
+        }
+        self.driver.check().map_err(|why| format!("driver: {why}"))
+    }
 }

@@ -1,19 +1,45 @@
 //! Values of options: their ranges, and the command-line form of a setting.
 
-/// A number of 0 or more.
-pub(crate) fn not_negative(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value),
-        _ => Err("it must be a finite number, 0 or more".to_owned()),
-    }
+use crate::util::limits::{DECELERATION, DURATION, Limit, RESERVE, SPEED, TIME};
+
+/// A duration in s.
+pub(crate) fn duration(text: &str) -> std::result::Result<f64, String> {
+    within(&DURATION, text)
 }
 
-/// A number above 0.
-pub(crate) fn positive(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a number above 0".to_owned()),
-    }
+/// The length of a step in s.
+pub(crate) fn step_length(text: &str) -> std::result::Result<f64, String> {
+    within(&Limit { is_open: true, ..DURATION }, text)
+}
+
+/// A simulated time in s, 0 or more.
+pub(crate) fn time(text: &str) -> std::result::Result<f64, String> {
+    within(&Limit { least: 0.0, ..TIME }, text)
+}
+
+/// A distance in m that is kept in reserve.
+pub(crate) fn reserve(text: &str) -> std::result::Result<f64, String> {
+    within(&RESERVE, text)
+}
+
+/// A speed in m/s.
+pub(crate) fn speed(text: &str) -> std::result::Result<f64, String> {
+    within(&SPEED, text)
+}
+
+/// A deceleration in m/s².
+pub(crate) fn deceleration(text: &str) -> std::result::Result<f64, String> {
+    within(&DECELERATION, text)
+}
+
+/// A threshold of decelerations in m/s²; 0 for none.
+pub(crate) fn deceleration_threshold(text: &str) -> std::result::Result<f64, String> {
+    within(&Limit { least: 0.0, ..DECELERATION }, text)
+}
+
+fn within(limit: &Limit, text: &str) -> std::result::Result<f64, String> {
+    let value = text.parse().ok().filter(|value| limit.holds(*value));
+    value.ok_or_else(|| format!("it must be {}", limit.range()))
 }
 
 /// A probability, 0 to 1.

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
+use crate::util::input_file;
 use crate::{Error, Result};
 
 /// One input file.
@@ -23,7 +24,7 @@ impl Input {
     /// [`Error::File`] if it cannot be read.
     pub fn of(path: &Path) -> Result<Self> {
         let fail = |source| Error::file(path, source);
-        let mut file = std::fs::File::open(path).map_err(fail)?;
+        let mut file = input_file::file(path)?;
         let mut hasher = Hasher::default();
         std::io::copy(&mut file, &mut hasher).map_err(fail)?;
         Ok(Self { path: path.to_owned(), sha256: hasher.digits() })
@@ -31,7 +32,7 @@ impl Input {
 }
 
 /// SHA-256 of the bytes written to it.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(crate) struct Hasher(Sha256);
 
 impl Hasher {
@@ -43,6 +44,12 @@ impl Hasher {
     /// The hash in hexadecimal digits.
     pub(crate) fn digits(self) -> String {
         self.0.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+}
+
+impl std::fmt::Debug for Hasher {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str("Hasher")
     }
 }
 

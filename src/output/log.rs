@@ -8,6 +8,7 @@ use std::fs::{self, File};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::input_hash::Hasher;
 use super::record::RunRecord;
 use super::schema::{COLUMNS, Context, LoggedConflict, Value};
 use super::series;
@@ -15,6 +16,7 @@ use crate::events::Conflict;
 use crate::options::{ENCOUNTERS, SERIES};
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
+use crate::util::csv_safe::safe;
 use crate::{Error, Result};
 
 /// The name of the conflicts' file.
@@ -81,6 +83,17 @@ impl Log {
         self.conflicts.flush()
     }
 
+    /// Writes texts so that no spreadsheet runs them as formulas.
+    pub fn set_csv_safe(&mut self) {
+        self.conflicts.is_safe = true;
+        self.series.iter_mut().for_each(|table| table.is_safe = true);
+    }
+
+    /// The SHA-256 of `conflicts.csv`.
+    pub fn digest(&self) -> String {
+        self.conflicts.rows.get_ref().hasher.clone().digits()
+    }
+
     /// Writes `run.json`, whole or not at all.
     ///
     /// # Errors
@@ -113,21 +126,25 @@ struct CsvFile {
     rows: csv::Writer<WholeRows>,
     /// The text of the cell that is being written.
     text: String,
+    is_safe: bool,
 }
 
 impl CsvFile {
     fn create<'a>(path: PathBuf, columns: impl Iterator<Item = &'a str>) -> Result<Self> {
         let file = File::create(&path).map_err(|source| Error::file(&path, source))?;
-        let rows = WholeRows { file, written: 0, waiting: Vec::new() };
-        let mut table = Self { path, rows: csv::Writer::from_writer(rows), text: String::new() };
+        let rows = WholeRows { file, written: 0, waiting: Vec::new(), hasher: Hasher::default() };
+        let mut table = Self { path, rows: csv::Writer::from_writer(rows), text: String::new(), is_safe: false };
         table.write_row(columns.map(Value::Text))?;
         table.flush()?;
         Ok(table)
     }
 
     fn write_row<'a>(&mut self, values: impl IntoIterator<Item = Value<'a>>) -> Result<()> {
-        let Self { rows, text, .. } = self;
-        let written = values.into_iter().try_for_each(|value| rows.write_field(value.text(text)));
+        let Self { rows, text, is_safe, .. } = self;
+        let written = values.into_iter().try_for_each(|value| match value {
+            Value::Text(cell) if *is_safe => rows.write_field(safe(cell, text)),
+            value => rows.write_field(value.text(text)),
+        });
         let written = written.and_then(|()| rows.write_record(None::<&[u8]>));
         written.map_err(|error| self.unwritable(error.into()))
     }
@@ -148,6 +165,8 @@ struct WholeRows {
     /// Bytes on disk.
     written: u64,
     waiting: Vec<u8>,
+    /// Of what is on disk.
+    hasher: Hasher,
 }
 
 impl Write for WholeRows {
@@ -159,7 +178,10 @@ impl Write for WholeRows {
     fn flush(&mut self) -> std::io::Result<()> {
         let done = self.file.write_all(&self.waiting);
         match done {
-            Ok(()) => self.written += self.waiting.len() as u64,
+            Ok(()) => {
+                self.written += self.waiting.len() as u64;
+                self.hasher.add(&self.waiting);
+            }
             Err(_) => self.take_back(),
         }
         // The buffer of a step with many rows would stay for the rest of the run.
@@ -185,7 +207,8 @@ mod tests {
     fn the_row_after_a_half_written_one_is_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("rows.csv");
-        let mut rows = WholeRows { file: File::create(&path).unwrap(), written: 0, waiting: b"first\n".to_vec() };
+        let file = File::create(&path).unwrap();
+        let mut rows = WholeRows { file, written: 0, waiting: b"first\n".to_vec(), hasher: Hasher::default() };
         rows.flush().unwrap();
         rows.file.write_all(b"sec").unwrap();
         rows.take_back();

@@ -34,6 +34,10 @@ pub struct RunRecord {
     pub complete: bool,
     /// Why it did not reach its end.
     pub error: Option<String>,
+    /// The SHA-256 of `conflicts.csv`; none while the run goes on.
+    pub conflicts_sha256: Option<String>,
+    /// Whether texts that spreadsheets would run as formulas begin with an apostrophe in the CSV files.
+    pub csv_safe: bool,
     /// What it found.
     pub summary: Summary,
 }
@@ -53,6 +57,8 @@ impl RunRecord {
             inputs: Vec::new(),
             complete: false,
             error: None,
+            conflicts_sha256: None,
+            csv_safe: false,
             summary: Summary::default(),
         }
     }

@@ -5,13 +5,14 @@ use crate::geometry::Point;
 use crate::geometry::polygon::convex_parts;
 use crate::traffic::profile::Profile;
 use crate::traffic::roster::UserIndex;
+use crate::util::limits::{CORNERS, POSITION};
 use crate::{Error, Result};
 
 impl Run {
     /// A static obstacle enters the scene and stays: a polygon of this type and outline.
     ///
     /// # Errors
-    /// [`Error::Value`] if the outline has fewer than three points or a point that is not finite.
+    /// [`Error::Value`] if the outline has too few or too many points, or one that is beyond all places.
     pub fn enter_obstacle(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<()> {
         let user = self.enter_shape(id, polygon_type, outline)?;
         self.obstacles.push((user, outline[0]));
@@ -23,8 +24,10 @@ impl Run {
     /// # Errors
     /// Those of [`Run::enter_obstacle`].
     pub fn enter_shape(&mut self, id: &str, polygon_type: &str, outline: &[Point]) -> Result<UserIndex> {
-        if outline.len() < 3 || outline.iter().any(|point| !(point.x + point.y).is_finite()) {
-            return Err(Error::Value(format!("polygon \"{id}\" needs at least three points, all finite")));
+        let values = outline.iter().flat_map(|point| [("x", point.x, &POSITION), ("y", point.y, &POSITION)]);
+        for (name, value, limit) in [("its number of points", outline.len() as f64, &CORNERS)].into_iter().chain(values)
+        {
+            limit.check(name, value).map_err(|why| Error::Value(format!("polygon \"{id}\": {why}")))?;
         }
         let shape = convex_parts(outline).into();
         let profile = self.roster.profile(Profile::obstacle(polygon_type))?;

@@ -6,13 +6,14 @@
 use std::path::Path;
 
 use super::Run;
-use crate::Result;
 use crate::detection::detector::LeftOut;
 use crate::output::earlier_log::EarlierLog;
 use crate::output::formats::{OutputFiles, Outputs};
 use crate::output::log::Log;
 use crate::output::record::RunRecord;
 use crate::output::summary::Summary;
+use crate::util::panics;
+use crate::{Error, Result};
 
 /// A run and the record of how it was made.
 pub struct RecordedRun {
@@ -45,7 +46,11 @@ impl RecordedRun {
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
-        let log = Log::create(folder, record.options.series_file())?;
+        let mut log = Log::create(folder, record.options.series_file())?;
+        let record = RunRecord { csv_safe: files.csv_safe, ..record };
+        if files.csv_safe {
+            log.set_csv_safe();
+        }
         log.write_record(&record)?;
         run.set_log(log);
         run.set_outputs(outputs);
@@ -82,6 +87,7 @@ impl RecordedRun {
                 summary: summary.clone(),
                 complete: error.is_none(),
                 error,
+                conflicts_sha256: Some(log.digest()),
                 ..*record
             })?;
         }
@@ -94,8 +100,31 @@ impl RecordedRun {
         if let Some(log) = self.run.log.take() {
             log.discard();
         }
-        if let Some(earlier) = self.earlier {
+        if let Some(earlier) = self.earlier.take() {
             earlier.restore();
+        }
+    }
+
+    /// Records that closecall itself failed within a step, which nothing can close any more; the rows so far stay.
+    pub fn abandon(&mut self, error: String) {
+        if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
+            let (step_length, summary) = (self.run.step_length(), self.run.summary.clone());
+            // The error to report is the one that led here.
+            let _ = log.write_record(&RunRecord {
+                step_length,
+                summary,
+                error: Some(error),
+                conflicts_sha256: Some(log.digest()),
+                ..*record
+            });
+        }
+    }
+}
+
+impl Drop for RecordedRun {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            self.abandon(Error::Internal(panics::last()).to_string());
         }
     }
 }

@@ -23,7 +23,7 @@ impl Run {
     /// `place` sets the placement ([`Run::set_placement`]) of the rows that it is given. A row may stay without one.
     ///
     /// # Errors
-    /// Those of `place`, and [`Error::File`] that names an output that cannot be written.
+    /// Those of `place` and of [`Run::finish_step`].
     pub fn step<E: From<Error>>(
         &mut self,
         place: impl FnOnce(&mut Self, &[u32]) -> std::result::Result<(), E>,
@@ -53,12 +53,18 @@ impl Run {
     /// The second half of [`Run::step`]: both phases, the events and the log. `ended` is called after each part.
     ///
     /// # Errors
-    /// [`Error::File`] that names an output that cannot be written.
+    /// [`Error::Step`] if a road user is where none can be, or too many are in one place; [`Error::File`] that names an
+    /// output that cannot be written.
     pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
+        if let Some((user, why)) = self.frame.impossible() {
+            return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
+        }
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
+        self.check_crowd()?;
         ended(StepPart::BroadPhase);
         self.narrow_phase();
+        self.check_crowd()?;
         ended(StepPart::NarrowPhase);
         self.close_conflicts();
         ended(StepPart::Events);
@@ -75,6 +81,12 @@ impl Run {
     /// Finds the pairs that may meet.
     fn broad_phase(&mut self) {
         self.detector.broad_phase(&self.frame, &self.roster);
+    }
+
+    /// Ends the run where a step has more pairs than memory should hold.
+    fn check_crowd(&self) -> Result<()> {
+        let crowd = self.detector.crowd(&self.frame, &self.roster);
+        crowd.map_or(Ok(()), |crowd| Err(Error::step(self.frame.time, crowd)))
     }
 
     /// Tests these pairs and keeps those that may be logged, on the filter's lanes if there is a filter.

@@ -6,10 +6,16 @@
 
 use super::roster::UserIndex;
 use crate::geometry::Point;
+use crate::util::limits::{ANGLE, HEIGHT, POSITION, SPEED};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// SUMO's own value for "no position" (`tcpip::INVALID_DOUBLE_VALUE`).
 pub const SUMO_INVALID: f64 = -1_073_741_824.0;
+
+/// Whether a value is [`SUMO_INVALID`], to the digits that a recording has.
+pub fn is_nowhere(value: f64) -> bool {
+    (value - SUMO_INVALID).abs() < 1.0
+}
 
 /// A road user's changing part, as it goes into a [`Frame`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -40,9 +46,33 @@ impl State {
         self.speed > 0.0
     }
 
-    fn is_valid(&self) -> bool {
+    /// Checks that the values are possible.
+    ///
+    /// # Errors
+    /// A message that says which is not, and what it must be.
+    pub fn check(&self) -> Result<(), String> {
+        for (name, value, limit) in [
+            ("x", self.x, &POSITION),
+            ("y", self.y, &POSITION),
+            ("z", self.z, &HEIGHT),
+            ("heading", self.heading, &ANGLE),
+            ("speed", self.speed, &SPEED),
+        ] {
+            limit.check(name, value)?;
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn is_possible(&self) -> bool {
         let Self { x, y, z, heading, speed } = *self;
-        (x + y + z + heading + speed).is_finite() && x > SUMO_INVALID && y > SUMO_INVALID && speed >= 0.0
+        POSITION.holds(x) & POSITION.holds(y) & HEIGHT.holds(z) & ANGLE.holds(heading) & SPEED.holds(speed)
+    }
+
+    /// Whether it says that the road user is absent: a value that is SUMO's invalid one, or none, or a speed below 0.
+    fn is_absent(&self) -> bool {
+        let Self { x, y, z, heading, speed } = *self;
+        !(x + y + z + heading + speed).is_finite() || is_nowhere(x) || is_nowhere(y) || speed < 0.0
     }
 }
 
@@ -66,6 +96,8 @@ pub struct Frame {
     states: Vec<State>,
     /// By [`UserIndex`], the row.
     rows: Vec<u32>,
+    /// The first road user that is where none can be, and why.
+    impossible: Option<(UserIndex, String)>,
 }
 
 /// No row.
@@ -79,16 +111,32 @@ impl Frame {
             self.rows[user.0 as usize] = ABSENT;
         }
         self.states.clear();
+        self.impossible = None;
+    }
+
+    /// The first road user whose state no road user can have, and why; its step cannot be checked.
+    pub(crate) fn impossible(&self) -> Option<&(UserIndex, String)> {
+        self.impossible.as_ref()
+    }
+
+    #[cold]
+    fn leave_out(&mut self, user: UserIndex, state: &State) {
+        if let (None, false, Err(why)) = (&self.impossible, state.is_absent(), state.check()) {
+            self.impossible = Some((user, why));
+        }
     }
 
     /// Adds a road user's row. Without a valid position (SUMO's invalid value, NaN and infinities are not) or a valid
-    /// speed it is absent in this step: the row is left out, and `false` returned.
+    /// speed it is absent in this step: the row is left out, and `false` returned. So is one with values that no road user
+    /// can have; [`Run::step`](crate::Run::step) then fails.
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
-        let valid = state.is_valid();
+        let valid = state.is_possible();
         if valid {
             self.users.push(user);
             self.states.push(state);
             self.number(self.len() - 1);
+        } else {
+            self.leave_out(user, &state);
         }
         valid
     }
@@ -110,10 +158,13 @@ impl Frame {
         let mut end = first;
         if filled.is_ok() {
             for row in first..self.len() {
-                if self.states[row].is_valid() {
+                let state = self.states[row];
+                if state.is_possible() {
                     self.states.swap(end, row);
                     self.users.swap(end, row);
                     end += 1;
+                } else {
+                    self.leave_out(self.users[row], &state);
                 }
             }
         }

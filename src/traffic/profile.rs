@@ -4,6 +4,7 @@ use super::driver::Driver;
 use super::sumo_type::SumoType;
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};
+use crate::util::limits::{DECELERATION, DURATION, LENGTH, MASS, WIDTH};
 use crate::util::units::{Kilogram, Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 use crate::{Error, Result};
 
@@ -127,25 +128,20 @@ impl Profile {
     /// Checks that the values are possible.
     ///
     /// # Errors
-    /// [`Error::Value`] where a dimension, mass or brake value is not finite or negative, or where the mass, the
-    /// deceleration, or a dimension is 0 (an obstacle's dimensions may be).
+    /// [`Error::Value`] where a dimension, mass or brake value is beyond its limit; an obstacle has none.
     pub fn check(&self) -> Result<()> {
-        let checks = [
-            ("length", self.length, self.category != Category::Obstacle),
-            ("width", self.width, self.category != Category::Obstacle),
-            ("mass", self.mass, true),
-            ("deceleration", self.brakes.deceleration, self.category == Category::Vehicle),
-            ("response time", self.brakes.response, false),
-            ("build-up time", self.brakes.build_up, false),
-        ];
-        for (what, value, must_be_positive) in checks {
-            let bad = !value.is_finite() || value < 0.0 || (must_be_positive && value == 0.0);
-            if bad {
-                let (wanted, name) = (if must_be_positive { "above 0" } else { "0 or more" }, &self.name);
-                return Err(Error::Value(format!(
-                    "type \"{name}\": {what} is {value}, it must be finite and {wanted}"
-                )));
-            }
+        if self.category == Category::Obstacle {
+            return Ok(());
+        }
+        for (what, value, limit) in [
+            ("length", self.length, &LENGTH),
+            ("width", self.width, &WIDTH),
+            ("mass", self.mass, &MASS),
+            ("deceleration", self.brakes.deceleration, &DECELERATION),
+            ("response time", self.brakes.response, &DURATION),
+            ("build-up time", self.brakes.build_up, &DURATION),
+        ] {
+            limit.check(what, value).map_err(|why| Error::Value(format!("type \"{}\": {why}", self.name)))?;
         }
         Ok(())
     }
@@ -315,7 +311,7 @@ mod tests {
         let flat = SumoType { width: 0.0, ..SumoType::car("car") };
         for profile in [Profile::vehicle(&flat, &options), Profile::person(&flat, &options, 0.1)] {
             let message = profile.check().unwrap_err().to_string();
-            assert_eq!(message, "type \"car\": width is 0, it must be finite and above 0");
+            assert_eq!(message, "type \"car\": width is 0, it must be above 0 and at most 200 m");
         }
         Profile::obstacle("kiosk").check().unwrap();
     }

@@ -1,9 +1,12 @@
 //! Helpers that know nothing of traffic: units, numbers, threads, files.
 
+pub(crate) mod csv_safe;
 pub(crate) mod decimal;
 pub mod double_double;
 pub(crate) mod golden_section;
 pub(crate) mod input_file;
+pub mod limits;
+pub mod panics;
 #[cfg(feature = "parquet")]
 pub mod parquet_column;
 pub mod threads;

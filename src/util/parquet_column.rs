@@ -7,6 +7,7 @@ use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 
 use crate::Error;
+use crate::util::panics::{self, caught};
 
 /// The values of a batch; none where the file has null.
 pub struct Batch<T: DataType> {
@@ -38,6 +39,17 @@ impl<T: DataType> Batch<T> {
     /// The value in a row of the batch.
     pub fn get(&self, row: usize) -> Option<&T::T> {
         self.values.get(row)?.as_ref()
+    }
+}
+
+/// Reads a part of a Parquet file. On damaged files the library panics too.
+///
+/// # Errors
+/// [`Error::Content`] for the library's error or panic.
+pub fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, ParquetError>) -> crate::Result<T> {
+    match caught(read) {
+        Ok(read) => read.map_err(|error| unreadable(path, &error)),
+        Err(_) => Err(Error::content(path, format!("it is damaged: {}", panics::last()))),
     }
 }
 

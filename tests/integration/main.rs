@@ -8,6 +8,7 @@ mod bisection;
 mod command_line;
 mod contact;
 mod detector;
+mod hostile;
 mod lane_lengths;
 mod lanes;
 mod levels;

@@ -306,9 +306,10 @@ def test_a_repeated_run_counts_once(tmp_path: Path) -> None:
     assert f"{tmp_path}/d: counted, but compare {tmp_path}/b: same settings and seed" in done.stderr
 
 
-@pytest.mark.parametrize("shape", [-0.3, -0.1, 0.15])
+@pytest.mark.parametrize("shape", [-0.3, -0.1, 0.1])
 def test_the_crash_frequency_matches_scipys_fit(shape: float, tmp_path: Path) -> None:
-    excesses = scipy_stats.genpareto.rvs(shape, scale=0.6, size=400, random_state=7)
+    # No excess reaches 2 s: a TTC below 0 is none that a run writes.
+    excesses = scipy_stats.genpareto.rvs(shape, scale=0.25, size=400, random_state=2)
     ttcs = [round(2 - float(excess), 6) for excess in excesses]
     found = stats(made(tmp_path / "log", ttcs, hours=10.0))["extremes"]
     ttc = next(one for one in found if one["quantity"] == "ttc")["crashes"]
@@ -322,7 +323,7 @@ def test_the_crash_frequency_matches_scipys_fit(shape: float, tmp_path: Path) ->
     assert (ttc["shape"], ttc["scale"]) == pytest.approx((c, scale), abs=5e-3)
     wanted = len(below) / 10 * scipy_stats.genpareto.sf(ttc["threshold"], ttc["shape"], scale=ttc["scale"])
     assert ttc["per_hour"] == pytest.approx(wanted, rel=1e-6)
-    truth = 400 / 10 * scipy_stats.genpareto.sf(2, shape, scale=0.6)
+    truth = 400 / 10 * scipy_stats.genpareto.sf(2, shape, scale=0.25)
     assert ttc["low"] <= truth <= ttc["high"]
     known = scipy_stats.genpareto(ttc["shape"], scale=ttc["scale"])
     a, n = sorted(sample), len(sample)

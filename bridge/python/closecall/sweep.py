@@ -26,6 +26,9 @@ Task = tuple[str, list[str], str]
 ASKED_EVERY = 0.2
 """Interval in s at which Dask is asked whether a run is still wanted."""
 
+MOST_SAID = 1 << 16
+"""Bytes of a run's messages that are kept."""
+
 
 def results(
     tasks: list[Task], folder: str | os.PathLike[str], workers: int, scheduler: str | None
@@ -86,28 +89,26 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
     """
     Path(folder).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=folder) as unfinished:
-        log, errors = Path(unfinished, "log"), Path(unfinished, "stderr.txt")
+        log = Path(unfinished, "log")
         command = [*_start.command("_child"), "run", "--quiet", "--out", str(log), *words]
-        with (
-            errors.open("wb") as stderr,
-            subprocess.Popen(
-                command,
-                cwd=here,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.DEVNULL,
-                stderr=stderr,
-                # Ctrl-C must reach only the sweep, which then ends its runs.
-                start_new_session=True,
-            ) as process,
-        ):
-            wait(process, wanted())
+        with subprocess.Popen(
+            command,
+            cwd=here,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.DEVNULL,
+            # Not a file: the reason of a failed run may be that the disk is full.
+            stderr=subprocess.PIPE,
+            # Ctrl-C must reach only the sweep, which then ends its runs.
+            start_new_session=True,
+        ) as process:
+            said = wait(process, wanted())
         if process.returncode != 0:
-            raise RuntimeError(failure(errors.read_text(errors="replace"), process.returncode))
+            raise RuntimeError(failure(said.decode(errors="replace"), process.returncode))
         finish_run(task, str(log))
 
 
-def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> None:
-    """Wait until the process has ended, and kill it once it is no longer wanted."""
+def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> bytes:
+    """Wait until the process has ended, and kill it once it is no longer wanted; return the end of what it said."""
     ended = threading.Event()
 
     def watch() -> None:
@@ -118,9 +119,14 @@ def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> Non
     # Popen.wait with a timeout notices the end up to 50 ms late, so that a thread asks instead.
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
+    said = b""
+    assert process.stderr
+    while block := process.stderr.read1(MOST_SAID):  # type: ignore[attr-defined]
+        said = (said + block)[-MOST_SAID:]
     process.wait()
     ended.set()
     watcher.join()
+    return said
 
 
 def wanted() -> Callable[[], bool]:

@@ -6,7 +6,7 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
-use super::logged::{ConflictReader, Progress, Reading, log_folders};
+use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
 use crate::Result;
 use crate::detection::kind::{Kind, Severity};
@@ -32,6 +32,8 @@ pub struct Conflicts {
     pub(super) conflicts: Vec<RunConflict>,
     /// How many there are in the logs.
     pub(super) seen: u64,
+    /// The logs that lack rows.
+    pub(super) lost: Vec<LostRows>,
 }
 
 /// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
@@ -49,11 +51,14 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
     let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
+    let mut lost = Vec::new();
     for (run, log) in (0..).zip(&logs) {
-        for conflict in ConflictReader::open(log)?.with_snapshots() {
+        let mut conflicts = ConflictReader::open(log)?.with_snapshots();
+        for conflict in &mut conflicts {
             worst.push(RunConflict { run, conflict: conflict? });
             reading.count();
         }
+        lost.extend(conflicts.lost());
     }
     let mut variants = Variants::of(&known.iter().map(|(_, run)| *run).collect::<Vec<_>>());
     for variant in &mut variants.all {
@@ -77,8 +82,9 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
             .push(format!("The runs differ in {varied}: the filter selects one variant, the page begins with all."));
     }
     ground.notes.append(&mut variants.notes);
+    ground.notes.extend(lost.iter().map(ToString::to_string));
     let seen = worst.seen();
-    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen })
+    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen, lost })
 }
 
 impl Conflicts {

@@ -4,43 +4,54 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
+use super::possible::PossibleRows;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
+use crate::util::csv_safe::plain;
+use crate::util::input_file::{self, longer};
+use crate::util::limits::LINE;
 use crate::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
 #[derive(Debug)]
 pub struct CsvLog {
     path: PathBuf,
-    reader: csv::Reader<Take<File>>,
+    reader: csv::Reader<ShortRows>,
     header: csv::StringRecord,
     row: csv::StringRecord,
     /// Where in a row each of the [`COLUMNS`] is; none where the file lacks it or it is not to be read.
     places: [Option<usize>; COLUMNS.len()],
+    possible: PossibleRows,
+    /// Whether the run wrote texts so that no spreadsheet runs them.
+    is_safe: bool,
 }
 
 impl CsvLog {
     /// Opens the file and checks its columns and its end. A row that is cut short at the end is ignored if the log
     /// `has_no_result`: the run was killed while it wrote the row, or is still writing it.
-    pub fn open(path: &Path, has_no_result: impl FnOnce() -> bool) -> Result<Self> {
+    pub fn open(path: &Path, has_no_result: bool) -> Result<Self> {
         let fault = |source| Error::file(path, source);
-        let mut file = File::open(path).map_err(fault)?;
+        let mut file = input_file::file(path)?;
         let length = file.metadata().map_err(fault)?.len();
         let whole = whole_rows(&mut file, length).map_err(fault)?;
         if length == 0 {
             return Err(Error::content(path, "it is empty: not even the line of columns is there"));
         }
-        if whole < length && !has_no_result() {
+        if whole < length && !has_no_result {
             return Err(Error::content(path, "its last row is cut short"));
         }
         file.seek(SeekFrom::Start(0)).map_err(fault)?;
-        let mut reader = csv::Reader::from_reader(file.take(whole));
-        let header = reader.headers().map_err(|error| unreadable(path, &error))?.clone();
+        let mut reader =
+            csv::Reader::from_reader(ShortRows { file: file.take(whole), row: 0, hasher: Hasher::default() });
+        let header = reader.headers().map_err(|error| unreadable(path, 1, &error))?.clone();
         let mut log = Self {
             path: path.to_owned(),
             reader,
             header,
             row: csv::StringRecord::new(),
             places: [None; COLUMNS.len()],
+            possible: PossibleRows::default(),
+            is_safe: false,
         };
         log.read_columns(|presence| presence != Presence::Snapshot);
         let mut places = COLUMNS.iter().zip(log.places);
@@ -61,6 +72,21 @@ impl CsvLog {
         self.places = COLUMNS.map(|column| place(&column).filter(|_| is_wanted(column.presence)));
     }
 
+    /// Reads texts as they were before they were made safe for spreadsheets.
+    pub fn undo_csv_safe(&mut self) {
+        self.is_safe = true;
+    }
+
+    /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
+    pub fn demand_margins_below_zero(&mut self) {
+        self.possible.margins_below_zero = true;
+    }
+
+    /// The SHA-256 of what was read: once no row is left, that of the file.
+    pub fn digest(&self) -> String {
+        self.reader.get_ref().hasher.clone().digits()
+    }
+
     /// The columns of the file.
     pub fn columns(&self) -> Vec<String> {
         self.header.iter().map(str::to_owned).collect()
@@ -73,16 +99,41 @@ impl CsvLog {
 
     /// The next conflict; none after the last.
     pub fn read(&mut self) -> Result<Option<LoggedConflict>> {
-        let more = self.reader.read_record(&mut self.row).map_err(|error| unreadable(&self.path, &error))?;
+        let line = self.reader.position().line();
+        self.reader.get_mut().row = 0;
+        let more = self.reader.read_record(&mut self.row).map_err(|error| unreadable(&self.path, line, &error))?;
         if !more {
             return Ok(None);
         }
         let cell = |column: usize| match self.places[column].and_then(|place| self.row.get(place)) {
+            Some(text) if self.is_safe => COLUMNS[column].column_type.parse(plain(text)),
             Some(text) => COLUMNS[column].column_type.parse(text),
             None => Ok(Value::Missing),
         };
-        let line = self.row.position().map_or(0, csv::Position::line);
-        LoggedConflict::from_cells(cell).map(Some).map_err(|message| Error::line(&self.path, line, message))
+        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.possible.check(&row).map(|()| Some(row)));
+        checked.map_err(|message| Error::line(&self.path, line, message))
+    }
+}
+
+/// The rows of a file, each of which has to end: a quotation mark that is not closed makes one row of all that follow.
+#[derive(Debug)]
+struct ShortRows {
+    file: Take<File>,
+    /// Bytes read since the row began.
+    row: usize,
+    hasher: Hasher,
+}
+
+impl Read for ShortRows {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.row > LINE.count() {
+            let why = longer("the row", &LINE) + ": a quotation mark that is not closed?";
+            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, why));
+        }
+        let read = self.file.read(buffer)?;
+        self.row += read;
+        self.hasher.add(&buffer[..read]);
+        Ok(read)
     }
 }
 
@@ -103,9 +154,10 @@ fn whole_rows(file: &mut File, length: u64) -> std::io::Result<u64> {
     Ok(0)
 }
 
-fn unreadable(path: &Path, error: &csv::Error) -> Error {
-    let line = error.position().map_or(0, csv::Position::line);
+fn unreadable(path: &Path, line: u64, error: &csv::Error) -> Error {
+    let line = error.position().map_or(line, csv::Position::line);
     let message = match error.kind() {
+        csv::ErrorKind::Io(source) if source.kind() == std::io::ErrorKind::InvalidData => source.to_string(),
         csv::ErrorKind::Io(source) => return Error::file(path, std::io::Error::new(source.kind(), source.to_string())),
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             format!("the row has {len} cells, not {expected_len}")
@@ -178,10 +230,10 @@ mod tests {
         // The half row is longer than the blocks in which its begin is searched.
         let half = ROW.replace("truck", &"truck".repeat(2000));
         fs::write(&path, header() + ROW + &half[..half.len() - 1]).unwrap();
-        let mut rows = CsvLog::open(&path, || true).unwrap();
+        let mut rows = CsvLog::open(&path, true).unwrap();
         assert_eq!(rows.read().unwrap().map(|conflict| conflict.id), Some(1));
         assert_eq!(rows.read().unwrap(), None);
-        assert!(CsvLog::open(&path, || false).is_err());
+        assert!(CsvLog::open(&path, false).is_err());
     }
 
     #[test]

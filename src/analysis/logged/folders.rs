@@ -1,7 +1,10 @@
 //! Which folders are logs.
 
+use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+use rustc_hash::FxHashSet;
 
 use crate::output::earlier_log::EARLIER;
 use crate::output::log::CONFLICTS;
@@ -12,36 +15,49 @@ pub const PARQUET: &str = "conflicts.parquet";
 /// The name of the file of counts that a blessed scenario has.
 pub const SUMMARY: &str = "summary.json";
 
-/// How many levels below a named folder are searched: a guard against links that lead upwards.
-const DEEPEST: usize = 16;
-
 /// The log folders among these and below them, each once, in the order of their paths. Earlier logs that a run has kept
 /// are found only in folders that are named.
 ///
 /// # Errors
 /// [`Error::File`] where a folder is missing or cannot be read; [`Error::Content`] where it holds no log.
 pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
+    let mut known = Vec::new();
     for folder in named {
-        let before = found.len();
-        search(folder, DEEPEST, &mut found)?;
-        if found.len() == before {
+        let mut found = logs_below(folder)?;
+        if found.is_empty() {
             return Err(Error::content(
                 folder,
                 format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at any depth"),
             ));
         }
-    }
-    let mut known = Vec::with_capacity(found.len());
-    for folder in found {
-        known.push((folder.canonicalize().map_err(|source| Error::file(&folder, source))?, folder));
+        known.append(&mut found);
     }
     known.sort();
     known.dedup_by(|a, b| a.0 == b.0);
     Ok(known.into_iter().map(|(_, folder)| folder).collect())
 }
 
-fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
+/// The logs in a folder and below it, each as its real folder and as it was come to. A folder that links lead to more than
+/// once, or back to, is searched once.
+fn logs_below(folder: &Path) -> Result<Vec<(PathBuf, PathBuf)>> {
+    let mut logs = Vec::new();
+    let mut searched = FxHashSet::default();
+    let mut ahead = VecDeque::from([folder.to_owned()]);
+    while let Some(folder) = ahead.pop_front() {
+        let real = folder.canonicalize().map_err(|source| Error::file(&folder, source))?;
+        if searched.insert(real.clone()) {
+            let (is_log, below) = search(&folder)?;
+            ahead.extend(below);
+            if is_log {
+                logs.push((real, folder));
+            }
+        }
+    }
+    Ok(logs)
+}
+
+/// Whether a folder is a log, and the folders in it to search.
+fn search(folder: &Path) -> Result<(bool, Vec<PathBuf>)> {
     let entries = fs::read_dir(folder).map_err(|source| Error::file(folder, source))?;
     let mut below = Vec::new();
     let mut is_log = false;
@@ -60,14 +76,9 @@ fn search(folder: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<()> {
     if is_log {
         below.retain(|path| path.file_name().unwrap_or_default() != EARLIER);
     }
+    below.sort_unstable();
     // What `closecall regress` has blessed looks like a log, but is none.
-    if is_log && !is_blessed {
-        found.push(folder.to_owned());
-    }
-    if depth > 0 {
-        below.iter().try_for_each(|path| search(path, depth - 1, found))?;
-    }
-    Ok(())
+    Ok((is_log && !is_blessed, below))
 }
 
 #[cfg(test)]
@@ -89,6 +100,16 @@ mod tests {
         assert!(log_folders(&[top.join("b")]).unwrap_err().to_string().contains("there is no log in it"));
         assert!(log_folders(&[top.join("c")]).unwrap_err().to_string().contains("/c: "));
         fs::remove_dir_all(top).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_folder_that_holds_itself_is_searched_once() {
+        let top = tempfile::tempdir().unwrap();
+        fs::create_dir(top.path().join("log")).unwrap();
+        fs::write(top.path().join("log").join(CONFLICTS), "").unwrap();
+        ["a", "b", "c"].iter().for_each(|link| std::os::unix::fs::symlink(top.path(), top.path().join(link)).unwrap());
+        assert_eq!(log_folders(&[top.path().to_owned()]).unwrap(), [top.path().join("log")]);
     }
 
     #[test]

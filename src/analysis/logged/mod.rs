@@ -13,6 +13,7 @@ mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "no_parquet.rs"]
 mod parquet;
+mod possible;
 mod reader;
 mod reading;
 mod run;
@@ -22,7 +23,7 @@ pub use folders::{PARQUET, SUMMARY, log_folders};
 pub use pack::{Label, LabelValue, pack};
 #[cfg(feature = "parquet")]
 pub use parquet::Packed;
-pub use reader::ConflictReader;
+pub use reader::{ConflictReader, LostRows, check_none_lost};
 pub use reading::{Progress, Reading};
 pub use run::{LoggedRun, record};
 

@@ -32,6 +32,14 @@ impl ParquetLog {
         match *self {}
     }
 
+    pub fn is_changed(&self) -> bool {
+        match *self {}
+    }
+
+    pub fn demand_margins_below_zero(&mut self) {
+        match *self {}
+    }
+
     pub fn columns(&self) -> Vec<String> {
         match *self {}
     }

@@ -1,6 +1,7 @@
 //! A log as one Parquet file, for a data set of many runs.
 
 use std::fs::{self, File};
+use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -13,9 +14,10 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical};
-use super::reader::ConflictReader;
+use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, digest, physical};
+use super::reader::{self, ConflictReader};
 use super::run::record;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
@@ -56,10 +58,7 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> R
     let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
     let draft = draft.map_err(|source| Error::file(within, source))?;
     let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
-    let metadata = vec![
-        KeyValue::new(RECORD_KEY.to_owned(), record),
-        KeyValue::new(FINGERPRINT_KEY.to_owned(), fingerprint.to_owned()),
-    ];
+    let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned())];
     write(file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
         Fault::Parquet(error) => unreadable(out, &error),
@@ -95,11 +94,11 @@ fn write(
     file: File,
     mut conflicts: ConflictReader,
     labels: &[Label],
-    metadata: Vec<KeyValue>,
+    metadata: [(&str, String); 2],
 ) -> std::result::Result<(), Fault> {
-    let properties = WriterProperties::builder().set_compression(Compression::SNAPPY);
-    let properties = properties.set_key_value_metadata(Some(metadata)).build();
-    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(labels)?), Arc::new(properties))?;
+    let properties = Arc::new(WriterProperties::builder().set_compression(Compression::SNAPPY).build());
+    let file = HashedFile { file, hasher: Hasher::default() };
+    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(labels)?), properties)?;
     let mut rows = Vec::with_capacity(1024);
     loop {
         rows.clear();
@@ -107,6 +106,7 @@ fn write(
             rows.push(conflict.map_err(Fault::Own)?);
         }
         if rows.is_empty() {
+            reader::check_none_lost(conflicts.lost().as_slice()).map_err(Fault::Own)?;
             break;
         }
         let mut group = writer.next_row_group()?;
@@ -121,8 +121,32 @@ fn write(
         }
         group.close()?;
     }
+    writer.flush().map_err(ParquetError::from)?;
+    let digest =
+        digest(writer.bytes_written(), writer.inner().hasher.clone(), metadata.each_ref().map(|(_, it)| &**it));
+    for (key, value) in metadata.into_iter().chain([(DIGEST_KEY, digest)]) {
+        writer.append_key_value_metadata(KeyValue::new(key.to_owned(), value));
+    }
     writer.close()?;
     Ok(())
+}
+
+/// A file that hashes what is written to it.
+struct HashedFile {
+    file: File,
+    hasher: Hasher,
+}
+
+impl Write for HashedFile {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.file.write(bytes)?;
+        self.hasher.add(&bytes[..written]);
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.file.flush()
+    }
 }
 
 fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
@@ -241,8 +265,11 @@ mod tests {
             ("collision", _) => id.is_multiple_of(2).to_string(),
             _ if column.is_optional() && (id + column.name.len()).is_multiple_of(3) => String::new(),
             (_, ColumnType::Flag) => id.is_multiple_of(2).to_string(),
+            ("ego_path" | "foe_path", _) => format!("{} -2.50", id % 7),
             (name, ColumnType::Text) => format!("{name} {}", id % 7),
-            (name, ColumnType::Number) => format!("-{}.25", id % 100 + name.len()),
+            ("margin", _) => format!("-{}.25", id % 100),
+            (_, ColumnType::Number) if column.unit() == "1" => "0.25".to_owned(),
+            (_, ColumnType::Number) => format!("{}.25", id % 100),
         }
     }
 
@@ -266,6 +293,29 @@ mod tests {
         let beside = Packed::of(&folder.join("p").join(PARQUET)).unwrap();
         fs::remove_dir_all(folder).unwrap();
         (both.0, both.1, beside)
+    }
+
+    #[test]
+    fn a_flipped_bit_among_the_rows_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let [log, packed] = ["log", "p"].map(|name| folder.path().join(name));
+        fs::create_dir(&log).unwrap();
+        let rows = (1..=20).map(|id| COLUMNS.map(|column| cell(&column, id)).join(",") + "\n").collect::<String>();
+        fs::write(log.join(CONFLICTS), COLUMNS.map(|column| column.name).join(",") + "\n" + &rows).unwrap();
+        fs::write(log.join(RUN), "{}\n").unwrap();
+        pack(&log, &labels(), "abc", &packed.join(PARQUET)).unwrap();
+        let whole = fs::read(packed.join(PARQUET)).unwrap();
+        let is_noticed = || {
+            let Ok(mut reader) = ConflictReader::open(&packed) else { return true };
+            reader.by_ref().any(|row| row.is_err()) || reader.lost().is_some()
+        };
+        assert!(!is_noticed());
+        for place in (4..whole.len() / 4).step_by(97) {
+            let mut changed = whole.clone();
+            changed[place] ^= 4;
+            fs::write(packed.join(PARQUET), changed).unwrap();
+            assert!(is_noticed(), "byte {place} of {}", whole.len());
+        }
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! `conflicts.parquet`, batch by batch: a sweep writes one file per run, with its `run.json` inside.
 
 use std::fs::File;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use parquet::basic::Type as Physical;
@@ -9,14 +10,43 @@ use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 
+use super::possible::PossibleRows;
+use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
-use crate::util::parquet_column::{Batch, unreadable};
+use crate::util::input_file;
+use crate::util::parquet_column::{Batch, guarded};
 use crate::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
 pub(super) const RECORD_KEY: &str = "closecall.run.json";
 /// The key of the fingerprint in the file's metadata.
 pub(super) const FINGERPRINT_KEY: &str = "closecall.fingerprint";
+/// The key of the [`digest`] in the file's metadata; files of earlier versions have none.
+pub(super) const DIGEST_KEY: &str = "closecall.digest";
+
+/// How many bytes the rows take, and the SHA-256 of these and of the texts of the metadata: pages have no checksums of
+/// their own.
+pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 2]) -> String {
+    metadata.iter().for_each(|text| rows.add(text));
+    format!("{bytes} {}", rows.digits())
+}
+
+/// Whether the file is not as it was written.
+fn is_changed(path: &Path, file: &SerializedFileReader<File>) -> Result<bool> {
+    let [record, fingerprint, known] = [RECORD_KEY, FINGERPRINT_KEY, DIGEST_KEY].map(|key| value(file, key));
+    let Some(known) = known else { return Ok(false) };
+    let bytes = known.split(' ').next().and_then(|bytes| bytes.parse::<u64>().ok()).unwrap_or_default();
+    let mut rows = Hasher::default();
+    let copied = std::io::copy(&mut input_file::file(path)?.take(bytes), &mut rows);
+    copied.map_err(|source| Error::file(path, source))?;
+    Ok(digest(bytes as usize, rows, [&record.unwrap_or_default(), &fingerprint.unwrap_or_default()]) != known)
+}
+
+/// The value of a key in the file's metadata.
+fn value(file: &SerializedFileReader<File>, key: &str) -> Option<String> {
+    let pairs = file.metadata().file_metadata().key_value_metadata().into_iter().flatten();
+    pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
+}
 
 /// Rows in memory at once.
 const BATCH: usize = 4096;
@@ -49,9 +79,8 @@ impl Packed {
         let file = open(path)?;
         let metadata = file.metadata().file_metadata();
         let value = |key: &str| {
-            let pairs = metadata.key_value_metadata().into_iter().flatten();
-            let found = pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone());
-            found.ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
+            value(&file, key)
+                .ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
         };
         let columns = metadata.schema_descr().columns().iter();
         let labels = columns.filter(|column| Column::named(column.name()).is_none());
@@ -81,6 +110,10 @@ pub struct ParquetLog {
     batch: usize,
     /// How many of them were returned.
     returned: usize,
+    /// How many rows were returned in all.
+    rows: u64,
+    possible: PossibleRows,
+    is_changed: bool,
 }
 
 impl std::fmt::Debug for ParquetLog {
@@ -106,7 +139,6 @@ impl ParquetLog {
         }
         Ok(Self {
             path: path.to_owned(),
-            file,
             places,
             with_snapshots: false,
             next_group: 0,
@@ -114,12 +146,26 @@ impl ParquetLog {
             left: 0,
             batch: 0,
             returned: 0,
+            rows: 0,
+            possible: PossibleRows::default(),
+            is_changed: is_changed(path, &file)?,
+            file,
         })
     }
 
     /// Reads the snapshots as well, where the file has them.
     pub fn read_snapshots(&mut self) {
         self.with_snapshots = true;
+    }
+
+    /// Whether the file is not as its run wrote it.
+    pub fn is_changed(&self) -> bool {
+        self.is_changed
+    }
+
+    /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
+    pub fn demand_margins_below_zero(&mut self) {
+        self.possible.margins_below_zero = true;
     }
 
     /// The columns, without the labels of a sweep.
@@ -144,7 +190,9 @@ impl ParquetLog {
         let row = self.returned;
         self.returned += 1;
         let cell = |column: usize| self.columns[column].as_ref().map_or(Ok(Value::Missing), |batch| batch.value(row));
-        LoggedConflict::from_cells(cell).map(Some).map_err(|message| Error::content(&self.path, message))
+        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.possible.check(&row).map(|()| Some(row)));
+        self.rows += 1;
+        checked.map_err(|message| Error::content(&self.path, format!("row {}: {message}", self.rows)))
     }
 
     /// Opens the columns of the next row group; whether there is one.
@@ -152,16 +200,17 @@ impl ParquetLog {
         if self.next_group == self.file.num_row_groups() {
             return Ok(false);
         }
-        let group = self.file.get_row_group(self.next_group).map_err(|error| unreadable(&self.path, &error))?;
+        (self.left, self.columns) = guarded(&self.path, || {
+            let group = self.file.get_row_group(self.next_group)?;
+            let open = |(column, place): (&Column, Option<usize>)| {
+                let is_wanted = self.with_snapshots || column.presence != Presence::Snapshot;
+                let reader = place.filter(|_| is_wanted).map(|place| group.get_column_reader(place)).transpose();
+                reader.and_then(|reader| reader.map(ColumnBatch::new).transpose())
+            };
+            let columns = COLUMNS.iter().zip(self.places).map(open).collect::<std::result::Result<_, _>>()?;
+            Ok((usize::try_from(group.metadata().num_rows()).unwrap_or_default(), columns))
+        })?;
         self.next_group += 1;
-        self.left = usize::try_from(group.metadata().num_rows()).unwrap_or_default();
-        let open = |(column, place): (&Column, Option<usize>)| {
-            let is_wanted = self.with_snapshots || column.presence != Presence::Snapshot;
-            let reader = place.filter(|_| is_wanted).map(|place| group.get_column_reader(place)).transpose();
-            reader.and_then(|reader| reader.map(ColumnBatch::new).transpose())
-        };
-        let columns = COLUMNS.iter().zip(self.places).map(open).collect::<std::result::Result<_, _>>();
-        self.columns = columns.map_err(|error| unreadable(&self.path, &error))?;
         Ok(true)
     }
 
@@ -170,7 +219,7 @@ impl ParquetLog {
         self.returned = 0;
         self.left -= self.batch;
         for column in self.columns.iter_mut().flatten() {
-            let read = column.read(self.batch).map_err(|error| unreadable(&self.path, &error))?;
+            let read = guarded(&self.path, || column.read(self.batch))?;
             if read != self.batch {
                 return Err(Error::content(&self.path, "its columns differ in length"));
             }
@@ -234,6 +283,6 @@ impl ColumnBatch {
 }
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>> {
-    let file = File::open(path).map_err(|source| Error::file(path, source))?;
-    SerializedFileReader::new(file).map_err(|error| unreadable(path, &error))
+    let file = input_file::file(path)?;
+    guarded(path, || SerializedFileReader::new(file))
 }

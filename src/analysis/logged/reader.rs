@@ -1,20 +1,73 @@
 //! Reads the conflicts of a log one by one, from CSV or Parquet.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::csv::CsvLog;
 use super::folders::PARQUET;
 use super::parquet::ParquetLog;
 use super::run::LoggedRun;
-use crate::Result;
 use crate::output::log::CONFLICTS;
 use crate::output::schema::LoggedConflict;
+use crate::{Error, Result};
 
 /// The conflicts of one log folder, one by one, in the order of the file. Memory does not grow with their number.
 #[derive(Debug)]
 pub struct ConflictReader {
     file: LogFile,
+    read: u64,
+    /// How many conflicts the run counted.
+    counted: Option<u64>,
+    /// The SHA-256 of what the run wrote.
+    digest: Option<String>,
     failed: bool,
+}
+
+/// A file that has not the rows that its run wrote.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LostRows {
+    /// The file.
+    pub file: PathBuf,
+    /// What its rows are instead.
+    pub why: Lost,
+}
+
+/// What is wrong with the rows of a file as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Lost {
+    /// There are more or fewer of them.
+    Rows {
+        /// The rows that it has.
+        read: u64,
+        /// The rows that its run counted.
+        counted: u64,
+    },
+    /// Their bytes are others.
+    Changed,
+}
+
+impl std::fmt::Display for LostRows {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let file = self.file.display();
+        match self.why {
+            Lost::Rows { read, counted } => {
+                write!(f, "{file}: it has {read} rows, but its run counted {counted} conflicts")
+            }
+            Lost::Changed => write!(f, "{file}: it was changed since its run wrote it (its SHA-256 differs)"),
+        }
+    }
+}
+
+/// Nothing where no rows are lost.
+///
+/// # Errors
+/// [`Error::Lost`] that names the first file and how many others there are.
+pub fn check_none_lost(lost: &[LostRows]) -> Result<()> {
+    let others = match lost.len() {
+        0 => return Ok(()),
+        1 => String::new(),
+        all => format!(" (and so have {} other logs)", all - 1),
+    };
+    Err(Error::Lost(format!("{}{others}", lost[0])))
 }
 
 /// The file that holds them.
@@ -35,13 +88,41 @@ impl ConflictReader {
         let csv = folder.join(CONFLICTS);
         let parquet = folder.join(PARQUET);
         let is_csv = csv.exists() || !parquet.exists();
-        let file = if is_csv {
-            let has_no_result = || LoggedRun::read(folder).is_ok_and(|run| run.summary.steps == 0);
-            LogFile::Csv(Box::new(CsvLog::open(&csv, has_no_result)?))
+        let run = LoggedRun::read(folder).ok();
+        let has_result = run.as_ref().is_none_or(|run| run.summary.steps > 0);
+        let mut file = if is_csv {
+            LogFile::Csv(Box::new(CsvLog::open(&csv, !has_result)?))
         } else {
             LogFile::Parquet(Box::new(ParquetLog::open(&parquet)?))
         };
-        Ok(Self { file, failed: false })
+        if run.as_ref().is_some_and(LoggedRun::logs_margins_below_zero) {
+            match &mut file {
+                LogFile::Csv(log) => log.demand_margins_below_zero(),
+                LogFile::Parquet(log) => log.demand_margins_below_zero(),
+            }
+        }
+        if let (LogFile::Csv(log), true) = (&mut file, run.as_ref().is_some_and(|run| run.csv_safe)) {
+            log.undo_csv_safe();
+        }
+        let run = run.filter(|_| has_result);
+        let counted = run.as_ref().map(LoggedRun::conflicts);
+        let digest = run.and_then(|run| run.conflicts_sha256);
+        Ok(Self { file, read: 0, counted, digest, failed: false })
+    }
+
+    /// What is wrong with the rows as a whole, once all were read; none where they are those that the run wrote, and where
+    /// the run was killed before it counted them.
+    pub fn lost(&self) -> Option<LostRows> {
+        let file = self.path().to_owned();
+        if let Some(counted) = self.counted.filter(|counted| *counted != self.read) {
+            return Some(LostRows { file, why: Lost::Rows { read: self.read, counted } });
+        }
+        let is_another = match (&self.file, &self.digest) {
+            (LogFile::Csv(log), Some(digest)) => log.digest() != *digest,
+            (LogFile::Csv(_), None) => false,
+            (LogFile::Parquet(log), _) => log.is_changed(),
+        };
+        is_another.then_some(LostRows { file, why: Lost::Changed })
     }
 
     /// Reads the snapshots as well, where the log has them.
@@ -83,6 +164,7 @@ impl Iterator for ConflictReader {
             LogFile::Parquet(log) => log.read(),
         };
         self.failed = read.is_err();
+        self.read += u64::from(matches!(read, Ok(Some(_))));
         read.transpose()
     }
 }

@@ -9,6 +9,8 @@ use super::parquet::Packed;
 use crate::output::input_hash::Input;
 use crate::output::log::RUN;
 use crate::output::summary::Summary;
+use crate::util::input_file;
+use crate::util::limits::{DURATION, TIME};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -31,6 +33,12 @@ pub struct LoggedRun {
     pub options: serde_json::Value,
     /// Whether the run reached its end.
     pub complete: bool,
+    /// The SHA-256 of its `conflicts.csv`; none in the logs of earlier versions, and where the run was killed.
+    #[serde(default)]
+    pub conflicts_sha256: Option<String>,
+    /// Whether texts that spreadsheets would run as formulas begin with an apostrophe.
+    #[serde(default)]
+    pub csv_safe: bool,
     /// What it found.
     pub summary: Summary,
 }
@@ -52,7 +60,7 @@ pub fn record(folder: &Path) -> Result<(PathBuf, String)> {
     let own = folder.join(RUN);
     let packed = folder.join(PARQUET);
     if own.exists() || !packed.exists() {
-        let text = std::fs::read_to_string(&own).map_err(|source| Error::file(&own, source))?;
+        let text = input_file::text(&own)?;
         return Ok((own, text));
     }
     let record = Packed::record_of(&packed)?;
@@ -66,7 +74,31 @@ impl LoggedRun {
     /// [`Error::File`] or [`Error::Line`] where it is missing or closecall did not write it.
     pub fn read(folder: &Path) -> Result<Self> {
         let (path, text) = record(folder)?;
-        serde_json::from_str(&text).map_err(|error| Error::line(&path, error.line() as u64, error.to_string()))
+        Self::parse(&path, &text)
+    }
+
+    /// Reads the text of a `run.json`; `path` names it in errors.
+    ///
+    /// # Errors
+    /// [`Error::Line`] or [`Error::Content`] where closecall did not write it.
+    pub fn parse(path: &Path, text: &str) -> Result<Self> {
+        let run: Self = serde_json::from_str(text)
+            .map_err(|error| Error::line(path, error.line() as u64, error.to_string().replace('\n', " ")))?;
+        run.check().map_err(|why| Error::content(path, why))?;
+        Ok(run)
+    }
+
+    fn check(&self) -> std::result::Result<(), String> {
+        let Summary { begin, end, .. } = self.summary;
+        TIME.check("begin", begin)?;
+        TIME.check("end", end)?;
+        DURATION.check("step_length", self.step_length.unwrap_or_default())?;
+        if begin > end { Err(format!("its end, {end} s, is before its begin, {begin} s")) } else { Ok(()) }
+    }
+
+    /// Whether it logs only conflicts in the sense of margin < 0: unless its options name another condition.
+    pub fn logs_margins_below_zero(&self) -> bool {
+        matches!(self.options.get("log").and_then(serde_json::Value::as_str), None | Some("margin < 0" | "paper"))
     }
 
     /// The number of conflicts that it found.

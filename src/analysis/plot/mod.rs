@@ -16,7 +16,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
 use super::dataset::{self, Conflicts};
-use super::logged::Progress;
+use super::logged::{LostRows, Progress};
 use crate::{Error, Result};
 use chart::{Chart, message};
 
@@ -34,7 +34,8 @@ pub enum PictureFormat {
     Svg,
 }
 
-/// Draws the charts of the logs in `folders` into the folder `out`, which is created if necessary; returns the files.
+/// Draws the charts of the logs in `folders` into the folder `out`, which is created if necessary; returns the files, and
+/// the logs that lack rows.
 ///
 /// # Errors
 /// Those of [`dataset::read`], and [`Error::File`] if a picture cannot be written.
@@ -44,7 +45,7 @@ pub fn write(
     out: &Path,
     format: PictureFormat,
     progress: &mut Progress,
-) -> Result<Vec<PathBuf>> {
+) -> Result<(Vec<PathBuf>, Vec<LostRows>)> {
     let conflicts = dataset::read(folders, net, progress)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
     font::register()?;
@@ -53,7 +54,7 @@ pub fn write(
     for measure in &charts::MEASURES {
         files.push(picture(out, measure.name, format, CHART_SIZE, &conflicts, charts::Distribution(measure))?);
     }
-    Ok(files)
+    Ok((files, conflicts.lost))
 }
 
 /// Draws one chart into the file `name` with the format's extension.

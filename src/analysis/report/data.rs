@@ -21,7 +21,7 @@ const NOT_SHOWN: &str = "clearance";
 
 /// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
 pub fn json(found: Conflicts) -> String {
-    let Conflicts { logs, records, variants, ground, mut conflicts, seen } = found;
+    let Conflicts { logs, records, variants, ground, mut conflicts, seen, .. } = found;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
@@ -199,6 +199,7 @@ mod tests {
         let conflict = LoggedConflict::from_cells(cell).unwrap();
         let conflicts = vec![RunConflict { run: 0, conflict }];
         let text = json(Conflicts {
+            lost: Vec::new(),
             logs: Vec::new(),
             records: Vec::new(),
             variants: Vec::new(),

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::dataset::read;
-use super::logged::Progress;
+use super::logged::{LostRows, Progress};
 use crate::{Error, Result};
 
 /// The template, with a mark for each part.
@@ -42,6 +42,8 @@ pub struct Made {
     pub conflicts: u64,
     /// The size of the page in bytes.
     pub bytes: usize,
+    /// The logs that lack rows.
+    pub lost: Vec<LostRows>,
 }
 
 /// Writes the report of the logs in `folders`: each is a log itself, or a folder of logs.
@@ -54,9 +56,10 @@ pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut
     let conflicts = read(folders, net, progress)?;
     let runs = conflicts.logs.len();
     let seen = conflicts.seen;
+    let lost = conflicts.lost.clone();
     let page = page(&data::json(conflicts));
     fs::write(out, &page).map_err(|source| Error::file(out, source))?;
-    Ok(Made { runs, conflicts: seen, bytes: page.len() })
+    Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
 }
 
 /// Replaces each mark by its part. The parts themselves are not searched for marks, since an id may look like one.

@@ -12,7 +12,7 @@ use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::quantile;
 use super::worst::WorstOf;
-use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, Progress, Reading, log_folders};
+use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
 use crate::{Error, Result};
@@ -91,6 +91,8 @@ pub struct Collection {
     pub variants: Variants,
     /// Logs that were not counted, were counted in part, or seem to repeat another.
     pub left_out: Vec<LeftOutLog>,
+    /// The logs that lack rows.
+    pub lost: Vec<LostRows>,
     /// The conflicts of each variant, by group.
     pub groups: Vec<FxHashMap<String, ConflictGroup>>,
     /// Counts by kind and severity.
@@ -123,6 +125,7 @@ impl Collection {
             folders,
             variants,
             left_out,
+            lost: Vec::new(),
             tallies: Default::default(),
             edges: FxHashMap::default(),
             junctions: FxHashMap::default(),
@@ -159,13 +162,13 @@ impl Collection {
         &mut self,
         run: usize,
         variant: usize,
-        reader: ConflictReader,
+        mut reader: ConflictReader,
         by: By,
         progress: &mut Reading,
     ) -> Result<()> {
         let folder = self.folders[run].clone();
         let mut own = Columns::default();
-        for conflict in reader {
+        for conflict in &mut reader {
             let conflict = conflict?;
             progress.count();
             self.add(run, variant, &folder, &conflict, by);
@@ -173,6 +176,7 @@ impl Collection {
                 column.extend(value);
             }
         }
+        self.lost.extend(reader.lost());
         self.medians.push(own.map(|mut values| {
             values.sort_unstable_by(f64::total_cmp);
             quantile(&values, 0.5)

@@ -8,10 +8,11 @@ use crate::analysis::logged::LoggedConflict;
 use crate::detection::kind::{Kind, Severity};
 
 /// How conflicts are grouped.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, clap::ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum By {
     /// Rear-end, frontal, side.
+    #[default]
     Kind,
     /// Caution, serious, critical.
     Severity,

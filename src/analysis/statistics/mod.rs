@@ -24,7 +24,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::logged::Progress;
+use super::logged::{LostRows, Progress};
 use crate::{Error, Result};
 use hot_spots::hot_spots;
 
@@ -69,6 +69,9 @@ pub struct Statistics {
     pub notes: Vec<String>,
     /// Logs that were not counted, were counted in part, or repeat another.
     pub left_out: Vec<LeftOutLog>,
+    /// The logs that lack rows, whose other rows count.
+    #[serde(skip)]
+    pub lost: Vec<LostRows>,
     /// How conflicts are grouped.
     pub by: By,
     /// For each variant all conflicts as one group, then each group.
@@ -97,11 +100,13 @@ impl Statistics {
         }
         let mut set = Collection::read(&request.folders, request.by, request.worst, progress)?;
         let mut left_out = std::mem::take(&mut set.left_out);
+        let mut lost = std::mem::take(&mut set.lost);
         let comparison = if request.against.is_empty() {
             None
         } else {
             let mut other = Collection::read(&request.against, request.by, 0, progress)?;
             left_out.append(&mut other.left_out);
+            lost.append(&mut other.lost);
             for (set, folders) in [(&set, &request.folders), (&other, &request.against)] {
                 check_alike(set, folders)?;
             }
@@ -121,6 +126,7 @@ impl Statistics {
             variants: variant::statistics(&set),
             notes: variants.notes.clone(),
             left_out,
+            lost,
             by: request.by,
             edges: hot_spots(&set, &set.edges, request.worst),
             junctions: hot_spots(&set, &set.junctions, request.worst),

@@ -14,6 +14,7 @@ use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
 use crate::output::schema::{COLUMNS, LoggedConflict};
 use crate::output::summary::{Count, Exposure};
+use crate::util::input_file;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -158,7 +159,7 @@ impl Outcome {
         if !table.exists() && !summary.exists() {
             return Ok(None);
         }
-        let csv = std::fs::read(&table).map_err(|source| Error::file(&table, source))?;
+        let csv = input_file::text(&table)?.into_bytes();
         Ok(Some(Self { summary: read_json(&summary)?, conflicts: conflicts(&csv, &table)?, csv }))
     }
 
@@ -215,7 +216,7 @@ fn conflicts(csv: &[u8], path: &Path) -> Result<Vec<SeedConflict>> {
 }
 
 fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T> {
-    let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
+    let text = input_file::text(path)?;
     serde_json::from_str(&text).map_err(|error| Error::line(path, error.line() as u64, error.to_string()))
 }
 

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use crate::options::OptionsFile;
+use crate::options::{Options, OptionsFile};
+use crate::util::input_file;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 
@@ -131,7 +132,11 @@ impl Scenario {
         let folder = folder.canonicalize().map_err(|source| Error::file(folder, source))?;
         let path = folder.join(SETTINGS);
         let has_settings = path.is_file();
-        let file = if has_settings { OptionsFile::read(&path, known)? } else { OptionsFile::default() };
+        let file = if has_settings {
+            OptionsFile::read(&path, known, Options::check_setting)?
+        } else {
+            OptionsFile::default()
+        };
         let mut settings = match file.regress {
             Some(table) => table.try_into().map_err(|error: toml::de::Error| {
                 let key = error.to_string().lines().last().unwrap_or_default().trim().to_owned();
@@ -153,7 +158,7 @@ impl Scenario {
             None => configuration(&folder, &name)?,
         };
         let full = folder.join(&sumocfg);
-        std::fs::File::open(&full).map_err(|source| Error::file(&full, source))?;
+        input_file::file(&full)?;
         Ok(Self { name, folder, sumocfg, has_settings, settings })
     }
 

@@ -1,7 +1,7 @@
 //! Which runs of a sweep are done already.
 //!
-//! A run is done if its file exists and records that the run ended normally, if the words and the version are the same,
-//! and if the files that it read have not changed since.
+//! A run is done if its file exists, whole, and records that the run ended normally, if the words and the version are the
+//! same, and if the files that it read have not changed since.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashMap;
 
 use super::task::{RUN, Task, data_set};
-use crate::analysis::logged::{Label, LabelValue, LoggedRun, PARQUET, Packed};
+use crate::analysis::logged::{ConflictReader, Label, LabelValue, LoggedRun, PARQUET, Packed};
 use crate::output::input_hash::{Hasher, Input};
 use crate::output::log;
 use crate::{Error, Result};
@@ -53,7 +53,16 @@ fn is_done(task: &Task, hashes: &mut Hashes) -> bool {
             hashes.entry(input.path.clone()).or_insert_with_key(|path| Input::of(path).ok().map(|now| now.sha256));
         now.as_ref() == Some(&input.sha256)
     };
-    run.complete && packed.fingerprint == task.fingerprint && run.inputs.iter().all(&mut is_as_it_was)
+    run.complete
+        && packed.fingerprint == task.fingerprint
+        && run.inputs.iter().all(&mut is_as_it_was)
+        && is_whole(&task.file())
+}
+
+/// Whether all rows of a file can be read, and are those that its run counted.
+fn is_whole(file: &Path) -> bool {
+    let Some(Ok(mut rows)) = file.parent().map(ConflictReader::open) else { return false };
+    rows.by_ref().all(|row| row.is_ok()) && rows.lost().is_none()
 }
 
 /// All files of a data set must have the same columns, including those of earlier runs.

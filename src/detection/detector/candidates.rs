@@ -12,9 +12,31 @@ use crate::options::{Mode, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::limits::{FEWEST_PAIRS, PAIRS};
 use crate::util::threads::share;
 
+/// Pairs in one step if every pair is kept; they take half a gibibyte.
+const MOST_OF_ALL: usize = 1 << 26;
+
 impl Detector {
+    /// Where so many road users are that the step cannot be checked: the one with the most others near it.
+    pub fn crowd(&self, frame: &Frame, roster: &Roster) -> Option<String> {
+        if !self.is_crowded {
+            return None;
+        }
+        let mut near = vec![0_u32; self.search.slots().len()];
+        for (a, b) in self.pairs.iter().flatten() {
+            near[*a as usize] += 1;
+            near[*b as usize] += 1;
+        }
+        let (user, others) = self.search.slots().iter().zip(near).max_by_key(|(_, others)| *others)?;
+        let (id, state) = (roster.id(user.index), frame.state(user.row));
+        Some(format!(
+            "too many road users in one place: \"{id}\" at ({:.1}, {:.1}) is near at least {others} others",
+            state.x, state.y
+        ))
+    }
+
     /// Checks which road users are still on their paths. Returns the rows of the frame whose lane the detector needs for
     /// both phases. The caller sets it with [`Detector::set_placement`], and skips those it cannot place.
     ///
@@ -130,8 +152,13 @@ impl Detector {
         let share = share(busy, count);
         let parts = (0..count.div_ceil(share)).map(|part| part * share..count.min((part + 1) * share));
         self.pairs.iter_mut().for_each(Vec::clear);
+        let most = if all { MOST_OF_ALL } else { FEWEST_PAIRS.max(count * PAIRS.count()) };
         self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
-            let mut found = |a: u32, b: u32| pairs.push((a, b));
+            let mut found = |a: u32, b: u32| {
+                if pairs.len() <= most {
+                    pairs.push((a, b));
+                }
+            };
             let area = |slot: u32| reach.area(&users[slot as usize]);
             match (all, search.has_round()) {
                 (true, _) => every_pair(part, &mut found),
@@ -144,6 +171,7 @@ impl Detector {
             }
         });
         let found = self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();
+        self.is_crowded = found > most as u64;
         self.work.areas_apart += all_pairs(count) - found;
         self.work.pairs += found;
     }

@@ -37,6 +37,7 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::limits::{ENCOUNTERS, FEWEST_ENCOUNTERS};
 use crate::util::threads::{Team, share};
 use crate::util::units::{Metre, Second};
 use cover::Cover;
@@ -95,6 +96,8 @@ pub struct Detector {
     /// By thread, the slots of the pairs whose areas meet.
     pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
+    /// Whether the step has more pairs than can be checked.
+    is_crowded: bool,
     team: Team,
 }
 
@@ -127,6 +130,7 @@ impl Detector {
             unplaced: Vec::new(),
             pairs: vec![Vec::new()],
             workers: vec![Worker::default()],
+            is_crowded: false,
             team: Team::default(),
         }
     }
@@ -264,7 +268,9 @@ impl Detector {
         let busy = self.team.busy(frame.len());
         let share = share(busy, self.pairs.iter().map(Vec::len).sum());
         let parts = self.pairs.iter().flat_map(|pairs| pairs.chunks(share));
-        self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs));
+        let most = FEWEST_ENCOUNTERS.max(frame.len() * ENCOUNTERS.count());
+        self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs, most));
+        self.is_crowded |= workers.iter().map(|worker| worker.found.encounters.len()).sum::<usize>() > most;
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
                 let scene = self.scene(frame, roster).as_met(met.further);

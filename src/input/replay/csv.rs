@@ -7,6 +7,8 @@ use super::columns::{Columns, NamedColumn};
 use super::names::Users;
 use super::rows::{Fields, RecordedStep, Scope, cut_short, in_order};
 use super::source::{ByteWindow, find_all};
+use crate::util::input_file::longer;
+use crate::util::limits::LINE;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -38,6 +40,7 @@ impl CsvRecording {
                 NextRow::Whole(length) if is_empty(&source.rest()[..length]) => source.consume(length),
                 NextRow::Whole(length) => break length,
                 NextRow::Incomplete => break source.rest().len(),
+                NextRow::TooLong => return Err(too_long(path, &source)),
                 NextRow::None => return Err(Error::content(path, "the file is empty")),
             }
         };
@@ -68,6 +71,7 @@ impl CsvRecording {
             let length = match next_row(&mut self.source).map_err(|error| cut(&error.to_string()))? {
                 NextRow::Whole(length) => length,
                 NextRow::Incomplete => return Err(cut("the last row is incomplete")),
+                NextRow::TooLong => return Err(too_long(&self.path, &self.source)),
                 NextRow::None => break,
             };
             let line = trimmed(&self.source.rest()[..length]);
@@ -179,27 +183,39 @@ enum NextRow {
     Whole(usize),
     /// The file ends within the row.
     Incomplete,
+    /// The row has no end within the length of a line.
+    TooLong,
     None,
 }
 
 #[inline]
 fn next_row(source: &mut ByteWindow) -> std::io::Result<NextRow> {
     let mut from = 0;
+    let mut is_quoted = false;
     loop {
         let rest = source.rest();
         let end = memchr::memchr(b'\n', &rest[from..]).map(|place| from + place + 1);
+        if end.unwrap_or(rest.len()) > LINE.count() {
+            return Ok(NextRow::TooLong);
+        }
         match end {
-            // A line end between quotation marks is part of a value.
-            Some(end) if source.is_marked() && memchr::memchr_iter(b'"', &rest[..end]).count() % 2 == 1 => from = end,
-            Some(end) => return Ok(NextRow::Whole(end)),
-            None => {
-                from = if source.is_marked() { from } else { rest.len() };
-                if !source.more()? {
-                    return Ok(if is_empty(source.rest()) { NextRow::None } else { NextRow::Incomplete });
+            Some(end) => {
+                // A line end between quotation marks is part of a value.
+                is_quoted ^= source.is_marked() && memchr::memchr_iter(b'"', &rest[from..end]).count() % 2 == 1;
+                if !is_quoted {
+                    return Ok(NextRow::Whole(end));
                 }
+                from = end;
             }
+            None if source.more()? => {}
+            None => return Ok(if is_empty(source.rest()) { NextRow::None } else { NextRow::Incomplete }),
         }
     }
+}
+
+fn too_long(path: &Path, source: &ByteWindow) -> Error {
+    let why = if source.is_marked() { ": a quotation mark that is not closed?" } else { "" };
+    Error::line(path, source.line(), format!("{}{why}", longer("the row", &LINE)))
 }
 
 fn trimmed(line: &[u8]) -> &[u8] {

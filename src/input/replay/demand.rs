@@ -9,7 +9,7 @@ use rustc_hash::FxHashMap;
 use super::lists::{ListWriter, Lists, Place};
 use super::types::{VehicleTypes, text, vehicle_type};
 use crate::traffic::net::{EdgeIndex, Net};
-use crate::util::input_file::{LineCounter, open, xml_message};
+use crate::util::input_file::{ElementSource, xml_message};
 use crate::{Error, Result};
 
 /// Reads the types and the routes that route and additional files define.
@@ -17,10 +17,18 @@ use crate::{Error, Result};
 /// # Errors
 /// An error that names the file, the line and what is wrong.
 pub(super) fn read(paths: &[PathBuf], net: &Net) -> Result<(VehicleTypes, PlannedRoutes)> {
-    let mut reader =
-        DemandReader { net, types: VehicleTypes::default(), lists: ListWriter::default(), routes: Known::default() };
-    paths.iter().try_for_each(|path| reader.read(path))?;
+    let mut reader = DemandReader::new(net);
+    paths.iter().try_for_each(|path| reader.elements(path, ElementSource::open(path)?))?;
     Ok((reader.types, PlannedRoutes { routes: reader.routes, lists: reader.lists.finish()? }))
+}
+
+/// Reads a text as a route or additional file; `path` names it in errors.
+///
+/// # Errors
+/// As for files.
+pub fn parse(path: &Path, text: impl Into<Vec<u8>>, net: &Net) -> Result<()> {
+    let mut reader = DemandReader::new(net);
+    reader.elements(path, ElementSource::new(Box::new(std::io::Cursor::new(text.into()))))
 }
 
 /// The routes that the files define; their edges are in a temporary file.
@@ -86,14 +94,18 @@ struct Holder {
 /// What is wrong with an element.
 type Found<T> = std::result::Result<T, String>;
 
-impl DemandReader<'_> {
-    fn read(&mut self, path: &Path) -> Result<()> {
-        let mut reader = Reader::from_reader(LineCounter::new(open(path)?));
+impl<'a> DemandReader<'a> {
+    fn new(net: &'a Net) -> Self {
+        Self { net, types: VehicleTypes::default(), lists: ListWriter::default(), routes: Known::default() }
+    }
+
+    fn elements(&mut self, path: &Path, source: ElementSource) -> Result<()> {
+        let mut reader = Reader::from_reader(source);
         let mut buffer = Vec::new();
         let mut holder = None;
         loop {
             buffer.clear();
-            let line = reader.get_ref().line();
+            let line = reader.get_mut().begin_element();
             let wrong = |message: String| Error::line(path, line, message.replace('\n', " "));
             match reader.read_event_into(&mut buffer).map_err(|error| wrong(xml_message(&error)))? {
                 Event::Start(tag) => match tag.name().as_ref() {

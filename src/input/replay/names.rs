@@ -2,6 +2,9 @@
 
 use rustc_hash::FxHashMap;
 
+use crate::util::input_file::longer;
+use crate::util::limits::NAME;
+
 /// Distinct texts, numbered in the order in which they appeared.
 #[derive(Debug, Default)]
 pub(super) struct Names {
@@ -31,7 +34,7 @@ impl Names {
             return Ok(*known);
         }
         let number = self.texts.len() as u32;
-        self.texts.push(utf8(text)?.to_owned());
+        self.texts.push(name(text)?.to_owned());
         self.known.insert(text.into(), number);
         Ok(number)
     }
@@ -151,7 +154,7 @@ impl Users {
             return Ok(index);
         }
         let user =
-            NamedUser { id: utf8(id)?.to_owned(), person, step: 0, place: 0, type_name: u32::MAX, lane: u32::MAX };
+            NamedUser { id: name(id)?.to_owned(), person, step: 0, place: 0, type_name: u32::MAX, lane: u32::MAX };
         let index = self.free.pop().unwrap_or(self.users.len() as u32);
         match self.users.get_mut(index as usize) {
             Some(free) => *free = user,
@@ -162,6 +165,11 @@ impl Users {
     }
 }
 
-fn utf8(text: &[u8]) -> Result<&str, String> {
+/// A text as an id, which is UTF-8 and not too long.
+fn name(text: &[u8]) -> Result<&str, String> {
+    if text.len() > NAME.count() {
+        let begin = String::from_utf8_lossy(&text[..40]);
+        return Err(longer(&format!("\"{begin}…\""), &NAME));
+    }
     std::str::from_utf8(text).map_err(|_| format!("\"{}\" is not UTF-8", String::from_utf8_lossy(text)))
 }

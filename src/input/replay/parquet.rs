@@ -13,7 +13,7 @@ use super::clock;
 use super::columns::{Columns, NamedColumn};
 use super::names::Users;
 use super::rows::{Fields, RecordedStep, Scope, in_order};
-use crate::util::parquet_column::{Batch, unreadable};
+use crate::util::parquet_column::{Batch, guarded};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -41,7 +41,7 @@ pub(super) struct ParquetRecording {
 
 impl ParquetRecording {
     pub fn new(path: &Path, file: File, scope: Scope) -> Result<Self> {
-        let file = SerializedFileReader::new(file).map_err(|error| unreadable(path, &error))?;
+        let file = guarded(path, || SerializedFileReader::new(file))?;
         let schema = file.metadata().file_metadata().schema_descr();
         let names = schema.columns().iter().map(|column| column.name().to_owned()).collect::<Vec<_>>();
         let mut columns = Columns::of(path, &names, scope)?;
@@ -73,7 +73,7 @@ impl ParquetRecording {
 
     pub fn next_step(&mut self, step: &mut RecordedStep, users: &mut Users) -> Result<bool> {
         let mut begun = false;
-        while self.fill().map_err(|error| unreadable(&self.path, &error))? {
+        while self.fill()? {
             let Some((times, values)) = &self.values else { break };
             let row = self.used;
             let wrong = |message| {
@@ -110,7 +110,15 @@ impl ParquetRecording {
     }
 
     /// Reads the next batch if all rows of the last one were used; whether there is a row.
-    fn fill(&mut self) -> std::result::Result<bool, ParquetError> {
+    fn fill(&mut self) -> Result<bool> {
+        if self.used < self.batch {
+            return Ok(true);
+        }
+        let path = self.path.clone();
+        guarded(&path, || self.next_batch())
+    }
+
+    fn next_batch(&mut self) -> std::result::Result<bool, ParquetError> {
         while self.used == self.batch {
             if self.left == 0 && !self.open_group()? {
                 return Ok(false);

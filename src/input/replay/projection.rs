@@ -9,6 +9,7 @@ use proj4rs::transform::transform;
 use super::rows::RecordedStep;
 use crate::geometry::{Point, Vector};
 use crate::traffic::net::{Location, Net};
+use crate::util::limits::POSITION;
 use crate::util::units::Metre;
 
 /// Parameters of a projection that describe its ellipsoid.
@@ -61,7 +62,7 @@ impl Projection {
                 Point::new(place.0, place.1)
             }
         };
-        Some(place + self.offset).filter(|place| (place.x + place.y).is_finite())
+        Some(place + self.offset).filter(|place| POSITION.holds(place.x) && POSITION.holds(place.y))
     }
 
     /// Moves all road users of a step from degrees to metres.

@@ -1,6 +1,5 @@
 //! SUMO's fcd-output, step by step: XML, CSV or Parquet, plain or gzipped. Its memory does not grow with the file.
 
-use std::fs::File;
 use std::io::{BufRead, Read};
 use std::path::Path;
 
@@ -10,6 +9,7 @@ use super::parquet::ParquetRecording;
 use super::rows::{RecordedRow, RecordedStep, Scope};
 use super::source::ByteWindow;
 use super::xml::XmlRecording;
+use crate::util::input_file;
 use crate::{Error, Result};
 
 /// A recording being read.
@@ -51,9 +51,9 @@ impl Recording {
     }
 
     fn from_file(path: &Path, scope: Scope) -> Result<Self> {
-        let reader = crate::util::input_file::open(path)?;
+        let reader = input_file::open(path)?;
         let unusable = |error| Error::file(path, error);
-        let mut file = File::open(path).map_err(unusable)?;
+        let mut file = input_file::file(path)?;
         let mut first = [0; PARQUET.len()];
         if file.read(&mut first).map_err(unusable)? == first.len() && first == *PARQUET {
             let format = Format::Parquet(Box::new(ParquetRecording::new(path, file, scope)?));

@@ -5,6 +5,8 @@ use std::path::Path;
 use super::names::{Numbers, Users};
 use super::number::number;
 use crate::Error;
+use crate::traffic::frame::is_nowhere;
+use crate::util::limits::{ANGLE, HEIGHT, LANE_LENGTH, Limit, POSITION, SPEED, TIME};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// One road user in one step of a recording, in SUMO's own terms.
@@ -92,7 +94,7 @@ impl RecordedStep {
             fields.parse(&mut values)?;
         }
         let [x, y, angle, speed, z, position, lateral_speed] = values;
-        if (x + y + angle + speed).is_nan() {
+        if !are_possible(&values) {
             fields.check(&values, holder)?;
         }
         let Numbers { user, type_name, lane, .. } = numbers;
@@ -116,6 +118,25 @@ const TEXTS: [&str; 4] = ["id", "type", "lane", "edge"];
 
 /// The first four are required.
 const NUMBERS: [&str; 7] = ["x", "y", "angle", "speed", "z", "pos", "speedLat"];
+
+/// The limits of [`NUMBERS`].
+const LIMITS: [Limit; 7] = [POSITION, POSITION, ANGLE, SPEED, HEIGHT, ALONG, ASIDE];
+/// The position along a lane, also of a vehicle that is just before its beginning.
+const ALONG: Limit = Limit { least: -LANE_LENGTH.most, ..LANE_LENGTH };
+/// A speed to either side.
+const ASIDE: Limit = Limit { least: -SPEED.most, ..SPEED };
+
+/// Whether all values are within their limits, or not given where that is possible.
+#[inline]
+fn are_possible([x, y, angle, speed, z, position, lateral_speed]: &[f64; 7]) -> bool {
+    POSITION.holds(*x)
+        & POSITION.holds(*y)
+        & ANGLE.holds(*angle)
+        & SPEED.holds(*speed)
+        & HEIGHT.holds(*z)
+        & (ALONG.holds(*position) | position.is_nan())
+        & ASIDE.holds(*lateral_speed)
+}
 
 /// The first of [`NUMBERS`] tell where a road user is and where it heads.
 const PLACE: usize = 3;
@@ -221,12 +242,21 @@ impl<'a> Fields<'a> {
         !self.texts[0].is_empty()
     }
 
-    /// Checks that the required values are given.
+    /// Checks that the required values are given, and all of them possible.
     #[cold]
     fn check(&self, numbers: &[f64; 7], holder: &str) -> std::result::Result<(), String> {
         let missing = NUMBERS.iter().zip(numbers).take(4).find(|(_, number)| number.is_nan());
         match missing.map(|(name, _)| *name).filter(|_| self.has_id()) {
-            None if self.has_id() => Ok(()),
+            None if self.has_id() => {
+                let mut given = NUMBERS.iter().zip(numbers).zip(&LIMITS).filter(|((_, number), _)| !number.is_nan());
+                let id = String::from_utf8_lossy(self.texts[0]);
+                given.try_for_each(|((name, number), limit)| {
+                    if is_nowhere(*number) {
+                        return Ok(());
+                    }
+                    limit.check(name, *number).map(|_| ()).map_err(|why| format!("\"{id}\": {why}"))
+                })
+            }
             missing => {
                 let id = String::from_utf8_lossy(self.texts[0]);
                 Err(format!("\"{id}\" has no {holder} {}", missing.unwrap_or(TEXTS[0])))
@@ -249,8 +279,7 @@ fn not_a_number(name: &str, value: &[u8]) -> String {
 pub(super) fn in_order(last: Option<Second>, time: Second) -> std::result::Result<(), String> {
     match last {
         Some(last) if time <= last => Err(format!("time {time} s follows {last} s")),
-        _ if !time.is_finite() => Err(format!("time is {time}")),
-        _ => Ok(()),
+        _ => TIME.check("time", time).map(|_| ()),
     }
 }
 

@@ -3,10 +3,11 @@
 use std::fs::File;
 use std::io::{self, BufRead, Read, Write};
 
+use crate::util::input_file::longer;
+use crate::util::limits::ELEMENT;
+
 /// The number of bytes read at once: they fit into a core's own cache.
 const BLOCK: usize = 1 << 18;
-/// The longest line or tag, in bytes; a longer one is an error.
-const LONGEST: usize = 1 << 24;
 
 /// A window that moves along a file; its memory does not grow with the file.
 pub(super) struct ByteWindow {
@@ -42,8 +43,8 @@ impl ByteWindow {
         self.buffer.copy_within(self.start..self.end, 0);
         self.end -= self.start;
         self.start = 0;
-        if self.end >= LONGEST {
-            return Err(io::Error::new(io::ErrorKind::InvalidData, "a line or tag that does not end"));
+        if self.end > ELEMENT.count() {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, longer("a line, tag or comment", &ELEMENT)));
         }
         if self.end + BLOCK / 2 > self.buffer.len() {
             self.buffer.resize((2 * self.end).max(BLOCK), 0);

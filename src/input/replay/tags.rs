@@ -1,6 +1,11 @@
 //! The tags of an XML file, found in place: what stands between `<` and `>`.
 
+use std::path::Path;
+
 use super::source::{ByteWindow, find};
+use crate::Error;
+use crate::util::input_file::longer;
+use crate::util::limits::ELEMENT;
 
 /// A tag without its `<` and `>`.
 pub(super) enum Tag<'a> {
@@ -27,9 +32,28 @@ impl<'a> Tag<'a> {
     }
 }
 
+/// Why there is no next tag, though the file has not ended.
+pub(super) enum TagFault {
+    /// The file ends within it, or cannot be read on.
+    CutShort(String),
+    /// It has no end within the length of an element.
+    TooLong,
+}
+
+impl TagFault {
+    /// The fault as the error of a line.
+    pub fn at(self, path: &Path, line: u64) -> Error {
+        let message = match self {
+            Self::CutShort(message) => message,
+            Self::TooLong => longer("a tag or comment", &ELEMENT),
+        };
+        Error::line(path, line, message)
+    }
+}
+
 /// Moves on to the next tag; returns the position of its `>` in the rest, none at the end of the file.
 #[inline]
-pub(super) fn next_tag(source: &mut ByteWindow) -> Result<Option<usize>, String> {
+pub(super) fn next_tag(source: &mut ByteWindow) -> Result<Option<usize>, TagFault> {
     loop {
         // Text between tags has no meaning here.
         let rest = source.rest();
@@ -38,11 +62,14 @@ pub(super) fn next_tag(source: &mut ByteWindow) -> Result<Option<usize>, String>
         if let Some(end) = end_of(source.rest()) {
             return Ok(Some(end));
         }
+        if source.rest().len() > ELEMENT.count() {
+            return Err(TagFault::TooLong);
+        }
         match source.more() {
             Ok(true) => {}
             Ok(false) if source.rest().is_empty() => return Ok(None),
-            Ok(false) => return Err("the file ends within a tag".to_owned()),
-            Err(error) => return Err(error.to_string()),
+            Ok(false) => return Err(TagFault::CutShort("the file ends within a tag".to_owned())),
+            Err(error) => return Err(TagFault::CutShort(error.to_string())),
         }
     }
 }

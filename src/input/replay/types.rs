@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 
 use crate::traffic::profile::origins;
 use crate::traffic::sumo_type::SumoType;
+use crate::util::limits::{DECELERATION, DURATION, LENGTH, Limit, MASS, RESERVE, WIDTH};
 
 /// VehicleTypes by their id.
 #[derive(Clone, Debug, Default)]
@@ -40,22 +41,25 @@ impl VehicleTypes {
 /// The type that a `<vType>` defines.
 pub(super) fn vehicle_type(tag: &BytesStart) -> std::result::Result<SumoType, String> {
     let text = |name: &str| text(tag, name);
-    let number = |name: &str| -> std::result::Result<Option<f64>, String> {
-        let parse = |text: String| text.parse().map_err(|_| format!("{name} is \"{text}\", not a number"));
+    let id = text("id")?.ok_or("a vType has no id")?;
+    let number = |name: &str, limit: &Limit| -> std::result::Result<Option<f64>, String> {
+        let parse = |text: String| {
+            let value = text.parse().map_err(|_| format!("{name} is \"{text}\", not a number"))?;
+            limit.check(name, value).map_err(|why| format!("type \"{id}\": {why}"))
+        };
         text(name)?.map(parse).transpose()
     };
-    let id = text("id")?.ok_or("a vType has no id")?;
     let mut found = SumoType::of_class(&id, text("vClass")?.as_deref().unwrap_or("passenger"));
     found.shape = text("guiShape")?.unwrap_or(found.shape);
-    found.length = number("length")?.unwrap_or(found.length);
-    found.width = number("width")?.unwrap_or(found.width);
-    found.mass = number("mass")?.unwrap_or(found.mass);
-    found.decel = number("decel")?.unwrap_or(found.decel);
-    found.tau = number("tau")?.unwrap_or(found.tau);
-    found.min_gap = number("minGap")?.unwrap_or(found.min_gap);
-    found.action_step = number("actionStepLength")?.unwrap_or(found.action_step);
+    found.length = number("length", &LENGTH)?.unwrap_or(found.length);
+    found.width = number("width", &WIDTH)?.unwrap_or(found.width);
+    found.mass = number("mass", &MASS)?.unwrap_or(found.mass);
+    found.decel = number("decel", &DECELERATION)?.unwrap_or(found.decel);
+    found.tau = number("tau", &DURATION)?.unwrap_or(found.tau);
+    found.min_gap = number("minGap", &RESERVE)?.unwrap_or(found.min_gap);
+    found.action_step = number("actionStepLength", &DURATION)?.unwrap_or(found.action_step);
     // As in SUMO, emergency braking is never weaker than ordinary braking.
-    found.emergency_decel = number("emergencyDecel")?.unwrap_or(found.emergency_decel.max(found.decel));
+    found.emergency_decel = number("emergencyDecel", &DECELERATION)?.unwrap_or(found.emergency_decel.max(found.decel));
     Ok(found)
 }
 

@@ -9,7 +9,7 @@ use super::clock;
 use super::names::Users;
 use super::rows::{Attribute, RecordedStep, Scope, cut_short, in_order};
 use super::source::{ByteWindow, find};
-use super::tags::{Tag, next_tag};
+use super::tags::{Tag, TagFault, next_tag};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -45,7 +45,7 @@ impl XmlRecording {
     pub fn new(path: &Path, mut source: ByteWindow, scope: Scope) -> Result<Self> {
         source.look_out_for(b'&');
         loop {
-            let next = next_tag(&mut source).map_err(|error| Error::content(path, error))?;
+            let next = next_tag(&mut source).map_err(|fault| fault.at(path, source.line()))?;
             let Some(end) = next else {
                 return Err(Error::content(path, "it is not an fcd-output: it has no <fcd-export>"));
             };
@@ -70,7 +70,10 @@ impl XmlRecording {
         let mut inside = false;
         loop {
             let cut = |message: &str| cut_short(&self.path, self.last, message);
-            let next = next_tag(&mut self.source).map_err(|error| cut(&error))?;
+            let next = next_tag(&mut self.source).map_err(|fault| match fault {
+                TagFault::CutShort(message) => cut(&message),
+                TagFault::TooLong => fault.at(&self.path, self.source.line()),
+            })?;
             let Some(end) = next else { return Err(cut("the file ends before </fcd-export>")) };
             let wrong = |message| Error::line(&self.path, self.source.line(), message);
             let mut ended = false;

@@ -29,6 +29,9 @@ pub struct OutputFiles {
     /// Replace an earlier log in the folder, instead of keeping it in the folder's own folder earlier.
     #[cfg_attr(feature = "cli", arg(long))]
     pub force: bool,
+    /// Begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
+    #[cfg_attr(feature = "cli", arg(long))]
+    pub csv_safe: bool,
 }
 
 impl OutputFiles {

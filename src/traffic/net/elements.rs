@@ -6,7 +6,7 @@ use crate::geometry::{Bounds, Vector};
 use crate::util::units::Metre;
 
 /// SUMO's default width of a lane in m.
-pub(super) const LANE_WIDTH: Metre = 3.2;
+pub(super) const USUAL_WIDTH: Metre = 3.2;
 
 /// The index of a lane in a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

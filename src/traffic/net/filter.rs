@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::{EdgeFunction, LaneIndex, Net};
+use crate::util::input_file;
 use crate::{Error, Result};
 
 /// A part of the net.
@@ -17,7 +18,14 @@ impl Filter {
     /// # Errors
     /// An error that names the file and line: unreadable, an unknown kind of object, an id that the net does not have.
     pub fn read(path: &Path, net: &Net) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|source| Error::file(path, source))?;
+        Self::parse(path, &input_file::text(path)?, net)
+    }
+
+    /// Reads a selection from a text; `path` names it in errors.
+    ///
+    /// # Errors
+    /// As for [`Filter::read`].
+    pub fn parse(path: &Path, text: &str, net: &Net) -> Result<Self> {
         let mut filter = Self { holds: vec![false; net.lanes.len()] };
         for (line, text) in (1..).zip(text.lines()) {
             let text = text.trim();

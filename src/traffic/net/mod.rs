@@ -73,10 +73,10 @@ mod tests {
     fn errors_name_the_line() {
         for (from, to, expected) in [
             ("0,0 100,0", "0,0", r#"line 3: lane "ab_0" has 1 shape point(s); at least two are needed"#),
-            ("0,0 100,0", "0,0 nan,0", r#"line 3: "ab_0": shape point "nan,0" is out of range"#),
+            ("0,0 100,0", "0,0 nan,0", r#"line 3: "ab_0": x is NaN, it must be -1e8 to 1e8 m"#),
             ("0,0 100,0", "0,0 x", r#"line 3: "ab_0": shape point "x" is not x,y or x,y,z"#),
             (r#"via=":b_0_0""#, r#"via="gone""#, r#"line 6: no lane "gone""#),
-            (r#"length="100""#, r#"length="-1""#, r#"line 3: lane "ab_0": its length must be 0 m or more"#),
+            (r#"length="100""#, r#"length="-1""#, r#"line 3: "ab_0": length is -1, it must be 0 to 10000000 m"#),
             ("</net>", "", "the file ends before its elements do"),
             ("<net>", "<routes>", "not a SUMO net: its root element is not <net>"),
         ] {

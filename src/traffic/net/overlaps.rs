@@ -29,6 +29,8 @@ pub(super) const ROUNDING: Metre = 0.02;
 const FOLLOWING: Metre = 10.0;
 /// The length of a shorter lane counts as this, in m, so that a search along lanes ends.
 const SHORTEST: Metre = 0.1;
+/// So many lanes do not follow each other within [`FOLLOWING`].
+const MOST_LANES: usize = 1000;
 
 /// Two independent lanes that overlap.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -194,10 +196,23 @@ impl<'a> Ways<'a> {
 
     /// Whether the way from the end of a lane reaches another within a distance.
     fn leads_to(&self, from: LaneIndex, to: LaneIndex, within: Metre) -> bool {
-        within > 0.0
-            && lane_of(self.net, from).links.iter().map(|link| link.via.unwrap_or(link.to)).any(|next| {
-                next == to || self.leads_to(next, to, within - lane_of(self.net, next).length.max(SHORTEST))
-            })
+        // The lanes that are reached, each with the shortest way there so far; those behind `next` are still to be followed.
+        let mut reached = vec![(from, 0.0)];
+        let mut next = 0;
+        while let Some(&(lane, way)) = reached.get(next).filter(|_| reached.len() < MOST_LANES) {
+            next += 1;
+            for link in &lane_of(self.net, lane).links {
+                let ahead = link.via.unwrap_or(link.to);
+                if ahead == to {
+                    return true;
+                }
+                let way = way + lane_of(self.net, ahead).length.max(SHORTEST);
+                if way < within && !reached.iter().any(|(known, shorter)| *known == ahead && *shorter <= way) {
+                    reached.push((ahead, way));
+                }
+            }
+        }
+        false
     }
 }
 

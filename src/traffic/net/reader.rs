@@ -1,7 +1,6 @@
 //! Reads a SUMO net: XML as netconvert writes it, plain or gzipped.
 
 use std::borrow::Cow;
-use std::io::BufRead;
 use std::path::Path;
 
 use quick_xml::Reader;
@@ -11,17 +10,15 @@ use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
 use super::elements::{
-    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, LANE_WIDTH, Lane, LaneIndex, Link, Location,
+    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Link, Location, USUAL_WIDTH,
 };
 use super::finder::Finder;
 use super::network::Net;
 use crate::geometry::polylines::stretch;
 use crate::geometry::{Bounds, Point, Vector};
-use crate::util::input_file::{LineCounter, open, xml_message};
+use crate::util::input_file::{ElementSource, xml_message};
+use crate::util::limits::{HEIGHT, LANE_LENGTH, LANE_WIDTH, Limit, POSITION};
 use crate::{Error, Result};
-
-/// Larger coordinates are not places on earth, in m; SUMO's invalid value is one of them.
-const FURTHEST: f64 = 1e9;
 
 impl Net {
     /// Reads a net file.
@@ -30,7 +27,7 @@ impl Net {
     /// An error that names the file and line: unreadable, not a SUMO net, a lane without geometry, a connection to a
     /// lane that does not exist.
     pub fn read(path: &Path) -> Result<Self> {
-        read(path, open(path)?)
+        read(path, ElementSource::open(path)?)
     }
 
     /// Reads a net from a text; `path` names it in errors.
@@ -38,12 +35,12 @@ impl Net {
     /// # Errors
     /// As for [`Net::read`].
     pub fn parse(path: &Path, text: impl Into<Vec<u8>>) -> Result<Self> {
-        read(path, Box::new(std::io::Cursor::new(text.into())))
+        read(path, ElementSource::new(Box::new(std::io::Cursor::new(text.into()))))
     }
 }
 
 /// Reads a net; `path` names it in errors.
-fn read(path: &Path, source: Box<dyn BufRead>) -> Result<Net> {
+fn read(path: &Path, source: ElementSource) -> Result<Net> {
     let heights = [f64::INFINITY, f64::NEG_INFINITY];
     let net = Net { heights, ..Net::default() };
     NetReader { path, line: 1, net, connections: Vec::new(), junctions: FxHashMap::default(), link_lanes: Vec::new() }
@@ -70,13 +67,14 @@ struct Connection {
 }
 
 impl NetReader<'_> {
-    fn read(mut self, source: Box<dyn BufRead>) -> Result<Net> {
-        let mut reader = Reader::from_reader(LineCounter::new(source));
+    fn read(mut self, source: ElementSource) -> Result<Net> {
+        let mut reader = Reader::from_reader(source);
         let mut buffer = Vec::new();
         let mut root = false;
         let mut depth = 0_usize;
         loop {
             buffer.clear();
+            self.line = reader.get_mut().begin_element();
             let event = reader.read_event_into(&mut buffer).map_err(|error| self.wrong(xml_message(&error)))?;
             match event {
                 Event::Start(ref tag) | Event::Empty(ref tag) => {
@@ -91,7 +89,6 @@ impl NetReader<'_> {
                 Event::Eof => break,
                 _ => {}
             }
-            self.line = reader.get_ref().line();
         }
         if !root || depth > 0 {
             return Err(self.wrong("the file ends before its elements do"));
@@ -128,7 +125,9 @@ impl NetReader<'_> {
         let ends = ["from", "to"].map(|end| self.junction_index(attributes.get(end).unwrap_or(within)));
         let junction = attributes.get("to").unwrap_or(within).to_owned();
         let index = EdgeIndex(self.net.edges.len() as u32);
-        self.net.edge_ids.insert(id.to_owned(), index);
+        if self.net.edge_ids.insert(id.to_owned(), index).is_some() {
+            return Err(self.wrong(format!("edge \"{id}\" is there twice")));
+        }
         self.net.edges.push(Edge { id: id.to_owned(), function, lanes: Vec::new(), junction, ends });
         Ok(())
     }
@@ -154,20 +153,16 @@ impl NetReader<'_> {
             let points = shape.len();
             return Err(self.wrong(format!("lane \"{id}\" has {points} shape point(s); at least two are needed")));
         }
-        let length = self.number(attributes, "length", f64::NAN)?;
-        if !(length.is_finite() && length >= 0.0) {
-            return Err(self.wrong(format!("lane \"{id}\": its length must be 0 m or more")));
-        }
-        let width = self.number(attributes, "width", LANE_WIDTH)?;
-        if !(width.is_finite() && width >= 0.0) {
-            return Err(self.wrong(format!("lane \"{id}\": its width must be 0 m or more")));
-        }
+        let length = self.number(attributes, "length", f64::NAN, &LANE_LENGTH)?;
+        let width = self.number(attributes, "width", USUAL_WIDTH, &LANE_WIDTH)?;
         let has_vehicles = attributes.get("allow") != Some("pedestrian") && attributes.get("disallow") != Some("all");
         let index = LaneIndex(self.net.lanes.len() as u32);
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;
         edge_lanes.push(index);
-        self.net.lane_ids.insert(id.to_owned(), index);
+        if self.net.lane_ids.insert(id.to_owned(), index).is_some() {
+            return Err(self.wrong(format!("lane \"{id}\" is there twice")));
+        }
         self.net.lines.begin();
         let drawn = shape.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
         self.net.lines.set_stretch(stretch(length, drawn));
@@ -218,11 +213,13 @@ impl NetReader<'_> {
 
     fn location(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let text = attributes.get("netOffset").unwrap_or("0,0");
-        let mut values =
-            text.split(',').map(|value| value.trim().parse::<f64>().ok().filter(|value| value.is_finite()));
+        let mut values = text.split(',').map(|value| value.trim().parse::<f64>().ok());
         let (Some(Some(x)), Some(Some(y))) = (values.next(), values.next()) else {
             return Err(self.wrong(format!("netOffset is \"{text}\", not x,y")));
         };
+        for offset in [x, y] {
+            POSITION.check("netOffset", offset).map_err(|why| self.wrong(why))?;
+        }
         let projection = attributes.get("projParameter").unwrap_or("!").to_owned();
         self.net.location = Some(Location { offset: Vector::new(x, y), projection });
         Ok(())
@@ -283,8 +280,8 @@ impl NetReader<'_> {
                 return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is not x,y or x,y,z")));
             };
             let z = z.flatten().unwrap_or(0.0);
-            if !(x.abs() < FURTHEST && y.abs() < FURTHEST && z.abs() < FURTHEST) {
-                return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is out of range")));
+            for (name, value, limit) in [("x", x, &POSITION), ("y", y, &POSITION), ("z", z, &HEIGHT)] {
+                limit.check(name, value).map_err(|why| self.wrong(format!("\"{id}\": {why}")))?;
             }
             if is_lane {
                 let [low, high] = self.net.heights;
@@ -324,11 +321,13 @@ impl NetReader<'_> {
         })
     }
 
-    fn number(&self, attributes: &ElementAttributes, name: &str, default: f64) -> Result<f64> {
-        match attributes.get(name) {
-            Some(text) => text.parse().map_err(|_| self.wrong(format!("{name} is \"{text}\", not a number"))),
-            None => Ok(default),
-        }
+    fn number(&self, attributes: &ElementAttributes, name: &str, default: f64, limit: &Limit) -> Result<f64> {
+        let id = attributes.get("id").unwrap_or_default();
+        let value = match attributes.get(name) {
+            Some(text) => text.parse().map_err(|_| self.wrong(format!("{name} is \"{text}\", not a number")))?,
+            None => default,
+        };
+        limit.check(name, value).map_err(|why| self.wrong(format!("\"{id}\": {why}")))
     }
 
     fn wrong(&self, message: impl Into<String>) -> Error {

@@ -1,0 +1,153 @@
+//! Everything that closecall reads, as functions of bytes: for the fuzz targets, and for the test that throws garbage.
+
+#![allow(dead_code, reason = "each fuzz target has one door")]
+
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::internals::analysis::{ConflictReader, LoggedRun, Request, Statistics, plot, report};
+use closecall::internals::input::{RecordedStep, Recording, check_xml, demand, fault};
+use closecall::internals::options::OptionsFile;
+use closecall::internals::traffic::Filter;
+use closecall::{Net, Options, Replay, Run};
+
+/// A door: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
+pub type Door = (&'static str, fn(&[u8]));
+
+pub const ALL: [Door; 10] = [
+    ("fcd", fcd),
+    ("net", net),
+    ("config", config),
+    ("demand", demand_files),
+    ("xml", xml),
+    ("filter", filter),
+    ("run_json", run_json),
+    ("log", log),
+    ("packed", packed),
+    ("replay", replay),
+];
+
+const NET: &str = r#"<net>
+<edge id="e" from="a" to="j"><lane id="e_0" length="90" shape="0,0 90,0"/></edge>
+<edge id="f" from="j" to="b"><lane id="f_0" length="90" shape="100,10 100,100"/></edge>
+<edge id=":j_0" function="internal"><lane id=":j_0_0" length="15" shape="90,0 97,3 100,10"/></edge>
+<junction id="j" intLanes=":j_0_0" shape="90,-2 102,-2 102,10 98,10"/>
+<connection from="e" to="f" fromLane="0" toLane="0" via=":j_0_0"/>
+<connection from=":j_0" to="f" fromLane="0" toLane="0"/></net>"#;
+
+fn a_net() -> Net {
+    Net::parse(Path::new("net"), NET).unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A folder in memory where there is one.
+fn folder() -> tempfile::TempDir {
+    tempfile::tempdir_in("/dev/shm").or_else(|_| tempfile::tempdir()).unwrap()
+}
+
+/// Any bytes as a recording give steps or an error.
+pub fn fcd(bytes: &[u8]) {
+    let Ok(mut recording) = Recording::parse(Path::new("fcd"), bytes) else { return };
+    let mut step = RecordedStep::default();
+    while let Ok(true) = recording.next_step(&mut step) {
+        assert!(step.time.is_finite());
+        assert!(step.rows().iter().all(|row| !recording.id(row.user).is_empty()));
+    }
+}
+
+/// Any bytes as a net give lanes with usable shapes or an error.
+pub fn net(bytes: &[u8]) {
+    let Ok(net) = Net::parse(Path::new("net"), bytes) else { return };
+    for (number, lane) in (0..).zip(&net.lanes) {
+        assert!(lane.shape.len() >= 2);
+        assert!(net.lines.line(number).iter().all(|vertex| vertex.distance.is_finite()));
+        assert!(net.lane_at(lane.shape[0]).is_some());
+    }
+    let overlaps = net.overlaps();
+    net.remarks(&overlaps);
+}
+
+/// Any text as a TOML file of options gives words or an error.
+pub fn config(bytes: &[u8]) {
+    let known = ["mu", "epsilon", "obstacles", "keep-all", "response-time"].map(str::to_owned);
+    let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, Options::check_setting) else {
+        return;
+    };
+    let settings = file.words.iter().filter_map(|word| word.trim_start_matches("--").split_once('='));
+    let settings = settings.map(|(name, value)| (name, value.to_owned())).collect::<Vec<_>>();
+    let _ = Options::from_settings(settings);
+}
+
+/// Any bytes as route and additional files give types and routes or an error.
+pub fn demand_files(bytes: &[u8]) {
+    let _ = demand::parse(Path::new("demand"), bytes, &a_net());
+}
+
+/// Any bytes as a file of SUMO's are well-formed or not, and a configuration names files or not.
+pub fn xml(bytes: &[u8]) {
+    let folder = folder();
+    let path = folder.path().join("any.sumocfg");
+    fs::write(&path, bytes).unwrap();
+    let _ = check_xml(&path);
+    let _ = fault(&path);
+}
+
+/// Any text as a selection holds lanes or not.
+pub fn filter(bytes: &[u8]) {
+    let _ = Filter::parse(Path::new("filter"), &text(bytes), &a_net());
+}
+
+/// Any text as a run.json is one or not.
+pub fn run_json(bytes: &[u8]) {
+    if let Ok(run) = LoggedRun::parse(Path::new("run.json"), &text(bytes)) {
+        assert!(run.hours().is_finite());
+    }
+}
+
+/// Any bytes as the log of a run give statistics, a report and pictures, or an error. A run.json may follow after a NUL.
+pub fn log(bytes: &[u8]) {
+    let (conflicts, run) = bytes.split_at(bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len()));
+    let run =
+        run.strip_prefix(&[0]).filter(|run| !run.is_empty()).unwrap_or(include_bytes!("../fuzz/run_json/run.json"));
+    of_log(&[("conflicts.csv", conflicts), ("run.json", run)]);
+}
+
+/// Any bytes as a file of a sweep, likewise.
+pub fn packed(bytes: &[u8]) {
+    of_log(&[("conflicts.parquet", bytes)]);
+}
+
+fn of_log(files: &[(&str, &[u8])]) {
+    let folder = folder();
+    let log = folder.path().join("log");
+    fs::create_dir(&log).unwrap();
+    files.iter().for_each(|(name, bytes)| fs::write(log.join(name), bytes).unwrap());
+    if let Ok(conflicts) = ConflictReader::open(&log) {
+        conflicts.with_snapshots().for_each(|conflict| drop(conflict.map(|conflict| conflict.delta_v())));
+    }
+    let request = Request { folders: vec![log.clone()], by: Default::default(), against: Vec::new(), worst: 3 };
+    let _ = Statistics::of(&request, &mut |_, _| ());
+    let _ = report::write(std::slice::from_ref(&log), None, &folder.path().join("report.html"), &mut |_, _| ());
+    let _ = plot::write(&[log], None, &folder.path().join("plots"), plot::PictureFormat::Svg, &mut |_, _| ());
+}
+
+/// Any bytes as a recording, after a NUL those of a demand, give conflicts or an error.
+pub fn replay(bytes: &[u8]) {
+    let (recording, demand) = bytes.split_at(bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len()));
+    let folder = folder();
+    let [fcd, rou] = ["fcd", "rou.xml"].map(|name| folder.path().join(name));
+    fs::write(&fcd, recording).unwrap();
+    fs::write(&rou, demand.strip_prefix(&[0]).unwrap_or(b"<routes/>")).unwrap();
+    let net = Arc::new(a_net());
+    for path in ["lanes", "arc"] {
+        let options = Options::from_settings([("path", path.to_owned())]).unwrap();
+        let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), &net, &options) else { return };
+        let mut run = Run::new(&options, Some(net.clone())).unwrap();
+        while let Ok(Some(_)) = replay.next(&mut run) {}
+        let _ = run.finish();
+    }
+}
