@@ -175,7 +175,7 @@ pub struct Options {
     #[cfg_attr(feature = "cli", arg(long, value_name = "CONDITION", default_value_t))]
     pub log: Condition,
     /// Count traffic and log conflicts only after this time from the begin, in s.
-    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = not_negative))]
+    #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = duration))]
     pub warmup: Second,
     /// Also write series.csv, with a row per step of each logged conflict.
     #[cfg_attr(feature = "cli", arg(long))]

@@ -49,6 +49,12 @@ impl Detector {
         if behind == 0.0 {
             return;
         }
+        // Its path begins on the lane that it has jumped to; before, it drove straight enough.
+        for (row, jump) in &self.jumps {
+            let state = frame.state_mut(*row);
+            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
+            self.on_lanes[*row as usize] = false;
+        }
         for row in 0..frame.len() as u32 {
             let user = frame.user(row);
             let state = frame.state_mut(row);
@@ -56,11 +62,6 @@ impl Detector {
             if driven > 0.0 {
                 self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
             }
-        }
-        for (row, jump) in &self.jumps {
-            let state = frame.state_mut(*row);
-            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
-            self.on_lanes[*row as usize] = false;
         }
     }
 

@@ -107,9 +107,9 @@ mod tests {
         let mut evidence = Evidence::default();
         let (mut position, mut speed) = (0.0, 10.0);
         let mut last = None;
-        for number in 0..400 {
+        for number in 1..=400 {
             let before = speed;
-            speed += STEP * if number / 40 % 2 == 0 { 2.0 } else { -1.9 };
+            speed += STEP * if (number - 1) / 40 % 2 == 0 { 2.0 } else { -1.9 };
             position += STEP * if is_euler { speed } else { (before + speed) / 2.0 };
             if number % kept != 0 {
                 continue;
