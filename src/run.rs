@@ -110,7 +110,7 @@ impl Run {
         let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
             format!(
                 "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
-                 step length; 0.1 s is better (SUMO's --step-length)"
+                 step length; 0.1 s is better (SUMO's --step-length), and closecall study SCENARIO measures by how much"
             )
         });
         net.chain(steps).collect()

@@ -13,7 +13,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, physical};
+use super::parquet::{FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, physical};
 use super::reader::ConflictReader;
 use super::run::record;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
@@ -47,7 +47,7 @@ pub enum LabelValue {
 ///
 /// # Errors
 /// Those of reading the log; [`Error::File`] or [`Error::Content`] where `out` cannot be written.
-pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> Result<()> {
+pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTime, out: &Path) -> Result<()> {
     let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
     let within = out.parent().unwrap_or(Path::new(""));
@@ -56,8 +56,10 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> R
     let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
     let draft = draft.map_err(|source| Error::file(within, source))?;
     let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
+    let run_time = serde_json::to_string(&run_time).map_err(|error| Error::Value(error.to_string()))?;
     let metadata = vec![
         KeyValue::new(RECORD_KEY.to_owned(), record),
+        KeyValue::new(RUN_TIME_KEY.to_owned(), run_time),
         KeyValue::new(FINGERPRINT_KEY.to_owned(), fingerprint.to_owned()),
     ];
     write(file, conflicts, labels, metadata).map_err(|fault| match fault {
@@ -255,7 +257,8 @@ mod tests {
         }
         fs::write(folder.join("log").join(CONFLICTS), text).unwrap();
         fs::write(folder.join("log").join(RUN), "{}\n").unwrap();
-        pack(&folder.join("log"), &labels(), "abc", &folder.join("p").join(PARQUET)).unwrap();
+        let run_time = RunTime { wall: 1.5, cpu: 2.25 };
+        pack(&folder.join("log"), &labels(), "abc", run_time, &folder.join("p").join(PARQUET)).unwrap();
         assert_eq!(fs::read_dir(folder.join("p")).unwrap().count(), 1, "a draft is left");
         let read = |folder: &Path| {
             let reader = ConflictReader::open(folder).unwrap().with_snapshots();
@@ -275,6 +278,7 @@ mod tests {
             assert_eq!(logged.len(), rows);
             assert_eq!(logged, packed);
             assert_eq!((beside.record.as_str(), beside.fingerprint.as_str()), ("{}\n", "abc"));
+            assert_eq!(beside.run_time, Some(RunTime { wall: 1.5, cpu: 2.25 }));
             let names = beside.labels.iter().map(|(name, number)| (name.as_str(), *number)).collect::<Vec<_>>();
             assert_eq!(names, [("option_epsilon", true), ("sumo_x", false), ("seed", true)]);
         }

@@ -8,21 +8,25 @@ use parquet::column::reader::ColumnReader;
 use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde::{Deserialize, Serialize};
 
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::parquet_column::{Batch, unreadable};
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
 pub(super) const RECORD_KEY: &str = "closecall.run.json";
 /// The key of the fingerprint in the file's metadata.
 pub(super) const FINGERPRINT_KEY: &str = "closecall.fingerprint";
+/// The key of the run time in the file's metadata.
+pub(super) const RUN_TIME_KEY: &str = "closecall.run_time";
 
 /// Rows in memory at once.
 const BATCH: usize = 4096;
 
 /// What a `conflicts.parquet` holds besides its rows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     /// The text of `run.json`.
     pub record: String,
@@ -30,6 +34,17 @@ pub struct Packed {
     pub fingerprint: String,
     /// The labels of the run, each with whether it is a number.
     pub labels: Vec<(String, bool)>,
+    /// What the run took; files of earlier versions do not have it.
+    pub run_time: Option<RunTime>,
+}
+
+/// What a run took, as the process that it was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RunTime {
+    /// From its start to its end.
+    pub wall: Second,
+    /// Of all processors together.
+    pub cpu: Second,
 }
 
 impl Packed {
@@ -48,10 +63,13 @@ impl Packed {
     pub fn of(path: &Path) -> Result<Self> {
         let file = open(path)?;
         let metadata = file.metadata().file_metadata();
-        let value = |key: &str| {
+        let there = |key: &str| {
             let pairs = metadata.key_value_metadata().into_iter().flatten();
-            let found = pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone());
-            found.ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
+            pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
+        };
+        let value = |key: &str| {
+            there(key)
+                .ok_or_else(|| Error::content(path, format!("it is not a file of closecall sweep: {key} is missing")))
         };
         let columns = metadata.schema_descr().columns().iter();
         let labels = columns.filter(|column| Column::named(column.name()).is_none());
@@ -61,6 +79,7 @@ impl Packed {
             labels: labels
                 .map(|column| (column.name().to_owned(), column.physical_type() != Physical::BYTE_ARRAY))
                 .collect(),
+            run_time: there(RUN_TIME_KEY).and_then(|text| serde_json::from_str(&text).ok()),
         })
     }
 }
