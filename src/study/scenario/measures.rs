@@ -14,6 +14,7 @@ use crate::output::schema::{Column, Value};
 const COLUMNS: [&str; 4] = ["ttc", "drac", "ttb", "margin"];
 /// The quantiles.
 const SHARES: [(&str, f64); 3] = [("q05", 0.05), ("q50", 0.5), ("q95", 0.95)];
+const EXPECTED_CRASHES: &str = "expected_crashes";
 /// The end of the names of rates.
 const PER_VEHICLE_HOUR: &str = "_per_vehicle_hour";
 
@@ -79,7 +80,7 @@ pub fn measures() -> Vec<Measure> {
         let per_hour = format!("{}{PER_VEHICLE_HOUR}", tally.name);
         [measure(tally.name, Form::Count), measure(per_hour, Form::Rate)]
     });
-    let crashes = ["", PER_VEHICLE_HOUR].map(|per| measure(format!("expected_crashes{per}"), Form::Value));
+    let crashes = ["", PER_VEHICLE_HOUR].map(|per| measure(format!("{EXPECTED_CRASHES}{per}"), Form::Value));
     let quantiles = COLUMNS.iter().flat_map(|column| SHARES.map(|(name, _)| format!("{column}_{name}")));
     counts.chain(crashes).chain(quantiles.map(|name| measure(name, Form::Value))).collect()
 }
@@ -122,6 +123,11 @@ impl RunFigures {
 }
 
 impl Measure {
+    /// Whether the same per vehicle-hour is a measure too.
+    pub fn has_rate(&self) -> bool {
+        self.form == Form::Count || self.name == EXPECTED_CRASHES
+    }
+
     /// The measure over the runs of a setting, one per seed, with its interval: that of a rate for counts, or else
     /// Student's t. `place` is that of the measure.
     pub fn estimate(&self, place: usize, runs: &[RunFigures]) -> Option<Estimate> {

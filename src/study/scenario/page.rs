@@ -206,7 +206,7 @@ fn convergence(text: &mut String, study: &Study) {
             axis.choices[axis.choices.len() - 1].value,
             100.0 * study.accuracy
         );
-        for (place, measure) in study.measures.iter().enumerate() {
+        for (place, measure) in study.measures.iter().enumerate().filter(|(_, measure)| !measure.has_rate()) {
             let [finest, .., coarsest] = &axis.choices[..] else { continue };
             let both = [finest, coarsest].map(|choice| study.estimate(choice.setting, place));
             let [Some(finest), Some(coarsest)] = both else { continue };

@@ -9,8 +9,8 @@
 use super::estimate::mean;
 use crate::analysis::statistics::t_quantile;
 
-/// Changes that shrink faster than this order are taken for a jump, not for convergence.
-const MOST: f64 = 16.0;
+/// Changes that shrink faster than this order are a jump, not convergence: SUMO's integration is of order 1 or 2.
+const MOST: f64 = 6.0;
 /// The factor of safety of the grid convergence index with three grids (Roache 1994; ASME V&V 20-2009).
 const SAFETY: f64 = 1.25;
 
