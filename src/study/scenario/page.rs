@@ -136,11 +136,18 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
     sentences
 }
 
-/// What the finest step itself is off by, if the steps have an order.
+/// What the finest step itself is off by, if the steps have an order, or that nothing tells where it matters.
 fn left_at_the_finest(study: &Study, axis: &Axis) -> Option<String> {
     let place = study.place(HEADLINE);
     let finest = &axis.choices[0];
-    let Convergence::Order { order, limit, half_width } = study.convergence(axis, place) else { return None };
+    let convergence = study.convergence(axis, place);
+    let Convergence::Order { order, limit, half_width } = convergence else {
+        let is_needed = study.recommended(axis, place) == 0;
+        let value = &finest.value;
+        return is_needed.then(|| {
+            format!("Whether {value} s is fine enough these runs cannot tell (order: {}).", convergence.why_none())
+        });
+    };
     let found = study.estimate(finest.setting, place)?.value;
     let off = found / limit - 1.0;
     let (order, limit) = (number(order), number(limit));

@@ -57,7 +57,7 @@ pub fn convergence(steps: &[f64], runs: &[Vec<f64>]) -> Convergence {
         let changes = a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>();
         mean(&changes).is_some_and(|change| change.value != 0.0 && !change.may_be_zero())
     };
-    if !differ(first, second) && !differ(second, third) {
+    if !differ(first, second) && !differ(second, third) && !differ(first, third) {
         return Convergence::WithinNoise;
     }
     let without = |left_out: Option<usize>| {
@@ -165,6 +165,9 @@ mod tests {
         };
         let Convergence::Order { limit, half_width, .. } = with([0.5, -0.5, 0.5, -0.5]) else { panic!() };
         assert!((limit - 50.0).abs() < 1e-6 && half_width > 1.25 * 10.0 && half_width < 20.0, "{half_width}");
+        // Neighbours that differ by less than the noise, in a row that does not.
+        let slow = [[0.0, 6.0, 0.0, 6.0], [5.0, 5.0, 5.0, 9.0], [8.0, 13.0, 5.0, 12.0]].map(|values| values.to_vec());
+        assert_eq!(convergence(&steps, &slow), Convergence::SeedsDisagree);
         assert_eq!(with([300.0, -300.0, 300.0, -300.0]), Convergence::WithinNoise);
         assert_eq!(with([0.0; 4]), of(steps, |step| 50.0 + 100.0 * step));
     }
