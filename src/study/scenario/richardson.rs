@@ -161,7 +161,7 @@ mod tests {
         let steps = [0.1, 0.2, 0.4];
         let with = |noise: [f64; 4]| {
             let of = |step: f64, sign: f64| noise.map(|noise| 50.0 + 100.0 * step + sign * noise).to_vec();
-            convergence(&steps, &[of(0.1, 1.0), of(0.2, -1.0), of(0.4, 1.0)])
+            convergence(&steps, &[of(0.1, 1.0), of(0.2, -1.0), of(0.4, 0.5)])
         };
         let Convergence::Order { limit, half_width, .. } = with([0.5, -0.5, 0.5, -0.5]) else { panic!() };
         assert!((limit - 50.0).abs() < 1e-6 && half_width > 1.25 * 10.0 && half_width < 20.0, "{half_width}");
