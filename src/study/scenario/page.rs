@@ -128,10 +128,9 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
     let serious = study.place(SHOWN[1]);
     let count = study.estimate(finest.setting, serious).map_or(0.0, |estimate| estimate.value);
     let for_serious = study.recommended(axis, serious);
-    if count > 0.0 && for_serious != at {
+    if count > 0.0 && for_serious < at {
         let value = &axis.choices[for_serious].value;
-        sentences
-            .push(format!("For {accuracy} % in serious and critical conflicts alone it needs steps of {value} s."));
+        sentences.push(format!("For {accuracy} % in serious and critical conflicts it needs steps of {value} s."));
     }
     sentences
 }
