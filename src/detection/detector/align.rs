@@ -9,14 +9,23 @@
 use super::Detector;
 use super::reach::lines_of;
 use crate::detection::path::turn;
+use crate::geometry::Vector;
 use crate::geometry::rectangle::direction;
 use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Metre, Second};
+use crate::util::units::{Metre, Radian, Second};
 
 /// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
 const LEAST_JUMP: Metre = 0.5;
+
+/// A road user that has jumped to another lane.
+pub(super) struct Jump {
+    row: u32,
+    aside: Vector,
+    /// The heading of its former path beside which it is now.
+    heading: Radian,
+}
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -49,10 +58,12 @@ impl Detector {
         if behind == 0.0 {
             return;
         }
-        // Its path begins on the lane that it has jumped to; before, it drove straight enough.
-        for (row, jump) in &self.jumps {
+        // Its path begins on the lane that it has jumped to; on the way there, it drove straight enough. SUMO's heading is that
+        // from its rear on the former lane to its front on the next.
+        for Jump { row, aside, heading } in &self.jumps {
             let state = frame.state_mut(*row);
-            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
+            (state.x, state.y) = (state.x - aside.x, state.y - aside.y);
+            state.heading = *heading;
             self.on_lanes[*row as usize] = false;
         }
         for row in 0..frame.len() as u32 {
@@ -78,7 +89,7 @@ impl Detector {
         let along = off.dot(&direction);
         let aside = off - direction * along;
         if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
-            self.jumps.push((row, aside));
+            self.jumps.push(Jump { row, aside, heading: direction.y.atan2(direction.x) });
         }
     }
 

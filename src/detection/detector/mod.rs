@@ -29,8 +29,8 @@ use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
+use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
-use crate::geometry::{Point, Vector};
 use crate::options::condition::LookAhead;
 use crate::options::{Mode, Options};
 use crate::traffic::frame::{Frame, Row};
@@ -40,6 +40,7 @@ use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::limits::{ENCOUNTERS, FEWEST_ENCOUNTERS};
 use crate::util::threads::{Team, share};
 use crate::util::units::{Metre, Second};
+use align::Jump;
 use cover::Cover;
 use last_speed::LastSpeed;
 use reach::{Paths, Reach, StepView, User};
@@ -69,7 +70,7 @@ pub struct Detector {
     /// How long before the end of the last step road users had their speeds, in s.
     was_behind: Second,
     /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
-    jumps: Vec<(u32, Vector)>,
+    jumps: Vec<Jump>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
