@@ -9,15 +9,15 @@ use super::files::{absolute, default_folder, say_if_elsewhere};
 use super::run::request;
 use super::say::{say, value};
 use super::sumo::{RunRequest, Sumo, no_sumo};
-use super::sweep::{ParseRun, Passed, check, check_runs, distribute};
+use super::sweep::{ParseRun, Passed, UNFINISHED, check, check_runs, distribute};
 use super::workers::Workers;
+use crate::Result;
 use crate::batch::sweep::{Seeds, Sweep, Vary};
 use crate::input::sumo_files;
 use crate::options::share;
 use crate::study::scenario::{self, Plan, Study};
 use crate::util::input_file;
 use crate::util::threads::processors;
-use crate::Result;
 
 /// What to vary in a scenario, and how to run it.
 #[derive(Args)]
@@ -77,7 +77,7 @@ impl ScenarioArgs {
         check_runs(&runs, &seeds, parse_run)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
-        distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out)?;
+        distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out.join(UNFINISHED))?;
         let failed = runs.missing()?.into_iter().map(|task| task.name.clone()).collect::<Vec<_>>();
         let study = Study::read(plan, &runs.tasks, &failed, seeds.to_string(), self.accuracy)?;
         let name = scenario.file_name().unwrap_or_default().to_string_lossy().into_owned();
