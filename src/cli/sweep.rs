@@ -14,6 +14,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
+use crate::output::folder::LogFolder;
 use crate::util::input_file;
 use crate::util::threads::processors;
 use crate::util::units::counted;
@@ -127,6 +128,7 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     let out = absolute(arguments.out.as_deref().unwrap_or(&default_out))?;
     // Opened here so that an error carries the operating system's own message.
     input_file::file(&arguments.scenario)?;
+    let _alone = LogFolder::claim(&out)?;
     arguments.vary.iter().try_for_each(check)?;
     // The workers already use all processors, so one thread per run is fastest.
     let mut words = vec![text(&absolute(&arguments.scenario)?)?, "--threads=1".to_owned()];

@@ -1,6 +1,5 @@
 //! A log as one Parquet file, for a data set of many runs.
 
-use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -19,6 +18,7 @@ use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
+use crate::util::output_file::OutputFile;
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
 
@@ -52,31 +52,13 @@ pub enum LabelValue {
 pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> Result<()> {
     let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
-    let within = out.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
-    // Hidden, as it is not yet a part of the data set; its name is its own, as two processes may write the same run.
-    let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
-    let draft = draft.map_err(|source| Error::file(within, source))?;
-    let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
+    let mut file = OutputFile::create(out)?;
     let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned())];
-    write(file, conflicts, labels, metadata).map_err(|fault| match fault {
+    write(&mut file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
         Fault::Parquet(error) => unreadable(out, &error),
     })?;
-    readable_by_all(draft.path()).map_err(|source| Error::file(out, source))?;
-    draft.persist(out).map(|_| ()).map_err(|error| Error::file(out, error.error))
-}
-
-/// Only its owner can read a temporary file; others read a data set too.
-#[cfg(unix)]
-fn readable_by_all(path: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    fs::set_permissions(path, fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable_by_all(_: &Path) -> std::io::Result<()> {
-    Ok(())
+    file.finish()
 }
 
 enum Fault {
@@ -91,7 +73,7 @@ impl From<ParquetError> for Fault {
 }
 
 fn write(
-    file: File,
+    file: &mut OutputFile,
     mut conflicts: ConflictReader,
     labels: &[Label],
     metadata: [(&str, String); 2],
@@ -132,12 +114,12 @@ fn write(
 }
 
 /// A file that hashes what is written to it.
-struct HashedFile {
-    file: File,
+struct HashedFile<'a> {
+    file: &'a mut OutputFile,
     hasher: Hasher,
 }
 
-impl Write for HashedFile {
+impl Write for HashedFile<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.hasher.add(&bytes[..written]);
@@ -242,6 +224,8 @@ fn repeat(
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use crate::analysis::logged::pack::*;
     use crate::analysis::logged::{PARQUET, Packed};
     use crate::output::log::{CONFLICTS, RUN};

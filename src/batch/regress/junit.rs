@@ -5,6 +5,7 @@ use std::path::Path;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
 use super::Report;
+use crate::util::output_file;
 use crate::{Error, Result};
 
 /// Writes the reports, one test case per scenario.
@@ -12,12 +13,8 @@ use crate::{Error, Result};
 /// # Errors
 /// [`Error::File`] if the file cannot be written.
 pub fn write(path: &Path, reports: &[Report]) -> Result<()> {
-    let fail = |source| Error::file(path, source);
-    let text = document(reports).to_string().map_err(|error| fail(std::io::Error::other(error.to_string())))?;
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(fail)?;
-    }
-    std::fs::write(path, text).map_err(fail)
+    let text = document(reports).to_string().map_err(|error| Error::content(path, error.to_string()))?;
+    output_file::write(path, text.as_bytes())
 }
 
 fn document(reports: &[Report]) -> quick_junit::Report {
