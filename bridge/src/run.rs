@@ -128,13 +128,13 @@ fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spe
         recorded.discard();
         return Err(Error::content(&request.scenario, message));
     }
-    let summary = recorded.close(Ending {
+    let closed = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
         left_out: left_out(request, persons),
         spent: spent.seconds(),
         ..Ending::default()
-    })?;
-    ended.map(|()| summary)
+    });
+    ended.and(closed)
 }
 
 /// The error for an exception before the first step.

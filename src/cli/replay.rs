@@ -63,13 +63,13 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
     let mut recorded = RecordedRun::open(run, record, folder, &arguments.check.outputs)?;
     let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
-    let summary = recorded.close(Ending {
+    let closed = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
         remarks: replay.remarks(),
         ..Ending::default()
-    })?;
+    });
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        arguments.check.print(&summary, &arguments.recording, &out)?;
+        arguments.check.print(&closed?, &arguments.recording, &out)?;
     }
     ended
 }

@@ -6,6 +6,7 @@ use std::fs::{self, File, TryLockError};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
+use crate::util::output_file::{folder_of, sync_folder};
 use crate::util::units::counted;
 use crate::{Error, Result};
 
@@ -36,7 +37,7 @@ impl LogFolder {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     pub fn claim_new(path: &Path) -> Result<Self> {
-        let within = path.parent().unwrap_or(Path::new(""));
+        let within = folder_of(path);
         fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let mut number = 0_u64;
@@ -52,7 +53,11 @@ impl LogFolder {
     }
 
     fn claim_as(path: &Path, is_new: bool) -> Result<Self> {
-        Ok(Self { path: path.to_owned(), _lock: lock(path)?, is_new })
+        let folder = Self { _lock: lock(path)?, path: path.to_owned(), is_new };
+        if is_new {
+            sync_folder(folder_of(path));
+        }
+        Ok(folder)
     }
 
     /// Where it is.

@@ -54,13 +54,14 @@ impl RecordedRun {
         check_keeps_inputs(path, &record.inputs)?;
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let earlier = if files.force { None } else { EarlierLog::keep(path)? };
-        let mut log = Log::create(path, record.options.series_file())?;
         let record = RunRecord { csv_safe: files.csv_safe, ..record };
-        if files.csv_safe {
-            log.set_csv_safe();
+        match begin_log(path, &record) {
+            Ok(log) => run.set_log(log),
+            Err(error) => {
+                earlier.into_iter().for_each(EarlierLog::restore);
+                return Err(error);
+            }
         }
-        log.write_record(&record)?;
-        run.set_log(log);
         run.set_outputs(outputs);
         if let Some(length) = record.step_length {
             run.set_step_length(length);
@@ -129,6 +130,18 @@ impl RecordedRun {
         }
         self.folder = None;
     }
+}
+
+fn begin_log(folder: &Path, record: &RunRecord) -> Result<Log> {
+    let mut log = Log::create(folder, record.options.series_file())?;
+    if record.csv_safe {
+        log.set_csv_safe();
+    }
+    if let Err(error) = log.write_record(record) {
+        log.discard();
+        return Err(error);
+    }
+    Ok(log)
 }
 
 /// Checks that none of the log's files is one that the run reads.

@@ -125,7 +125,8 @@ fn canonical(path: &Path) -> Option<PathBuf> {
     path.canonicalize().ok().or_else(in_its_folder)
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// The folder that a file or folder is in.
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -101,6 +101,21 @@ fn an_earlier_log_is_kept_unless_it_is_to_be_replaced() {
 }
 
 #[test]
+fn an_earlier_log_is_where_it_was_if_no_new_one_can_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    assert_eq!(closecall(folder.path(), &replay(&["--out", "out"])).status.code(), Some(0));
+    let log = || ["conflicts.csv", "run.json"].map(|name| fs::read(folder.path().join("out").join(name)).unwrap());
+    let first = log();
+    fs::create_dir(folder.path().join("out/series.csv")).unwrap();
+    let done = closecall(folder.path(), &replay(&["--out", "out", "--log-series"]));
+    assert_eq!(done.status.code(), Some(2), "{}", stdout(&done));
+    assert!(stderr(&done).starts_with("closecall: out/series.csv: "), "{}", stderr(&done));
+    assert_eq!(log(), first);
+    assert!(!folder.path().join("out/earlier").exists());
+}
+
+#[test]
 fn a_folder_that_another_run_writes_to_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     record(&folder.path().join("recorded"));

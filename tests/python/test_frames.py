@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import json
 import threading
 from pathlib import Path
 from typing import Any, Callable
@@ -62,7 +63,7 @@ def test_a_row_that_is_no_place_is_named() -> None:
 def test_the_same_time_twice_is_refused() -> None:
     checker = cc.Checker()
     checker.step(0.1, PAIR)
-    with pytest.raises(ValueError, match="time is 0.1, after 0.1"):
+    with pytest.raises(ValueError, match=r"time is 0\.1, after 0\.1"):
         checker.step(0.1, PAIR)
     assert checker.summary["steps"] == 1
 
@@ -109,7 +110,7 @@ class Broken(dict[str, Any]):
     def keys(self) -> Any:
         if self.get("fails") == "keys":
             raise ZeroDivisionError("keys")
-        return [name for name in super().keys() if name != "fails"]
+        return [name for name in super() if name != "fails"]
 
 
 @pytest.mark.parametrize("fails", ["keys", "id", "x", "mass"])
@@ -150,7 +151,7 @@ def test_reading_conflicts_in_a_thread_never_fails_a_step() -> None:
         while not ends.is_set():
             try:
                 assert len(checker.conflicts) <= checker.summary["steps"] + 1
-            except Exception as fault:  # noqa: BLE001
+            except Exception as fault:
                 faults.append(fault)
 
     readers = [threading.Thread(target=read) for _ in range(3)]
@@ -198,7 +199,8 @@ import json, resource, sys, warnings
 import closecall
 checker = closecall.Checker(out=sys.argv[1], log_series=True)
 def step(number):
-    pair = {"id": [f"a{number}", f"b{number}"], "x": [0.0, 20.0], "y": [0.0, 0.0], "heading": [0.0, 0.0], "speed": [20.0, 5.0]}
+    zeros = [0.0, 0.0]
+    pair = {"id": [f"a{number}", f"b{number}"], "x": [0.0, 20.0], "y": zeros, "heading": zeros, "speed": [20.0, 5.0]}
     checker.step(number * 10.0, pair)
 step(0), step(1)
 assert checker.log_error is None
@@ -217,8 +219,6 @@ print(json.dumps([len(checker.conflicts), checker.log_error, [str(warning.messag
 
 
 def test_a_log_ends_where_its_disk_was_full(tmp_path: Path) -> None:
-    import json
-
     done = python(FULL, tmp_path / "log")
     assert done.returncode == 0, done.stderr
     found, error, warned = json.loads(done.stdout)

@@ -12,10 +12,9 @@ import time
 from pathlib import Path
 from typing import Callable
 
+import closecall as cc
 import pytest
 from conftest import begin, closecall, until
-
-import closecall as cc
 
 Copy = Callable[[str], Path]
 
@@ -150,7 +149,7 @@ def test_statistics_are_written_to_a_file(log: Path, tmp_path: Path) -> None:
     written = closecall("stats", log, "--out", tmp_path / "table.txt")
     assert (written.returncode, written.stdout) == (0, "")
     assert (tmp_path / "table.txt").read_text() == printed.stdout
-    assert os.stat(tmp_path / "table.txt").st_mode & 0o777 == 0o666 & ~current_umask()
+    assert (tmp_path / "table.txt").stat().st_mode & 0o777 == 0o666 & ~current_umask()
 
 
 def current_umask() -> int:
