@@ -15,6 +15,7 @@ use crate::Result;
 use crate::batch::sweep::{Seeds, Sweep, Vary};
 use crate::input::sumo_files;
 use crate::options::share;
+use crate::output::folder::LogFolder;
 use crate::study::scenario::{self, Plan, Study};
 use crate::util::input_file;
 use crate::util::threads::processors;
@@ -75,6 +76,7 @@ impl ScenarioArgs {
         let plan = Plan::of(&self.vary, quick, &|vary| own_value(&own, vary))?;
         let runs = Sweep::of_settings(&words, &self.passed.for_sumo, &seeds, &plan.settings(), &out, &files)?;
         check_runs(&runs, &seeds, parse_run)?;
+        let _alone = LogFolder::claim(&out)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
         distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out.join(UNFINISHED))?;

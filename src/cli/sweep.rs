@@ -15,6 +15,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
+use crate::output::folder::LogFolder;
 use crate::util::input_file;
 use crate::util::threads::processors;
 use crate::util::units::counted;
@@ -165,18 +166,20 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     if arguments.list {
         return list(&plan).map(|()| 0);
     }
-    let mut unfinished = UNFINISHED.to_owned();
+    let mut unfinished = out.join(UNFINISHED);
     if let Some(number) = arguments.task {
         plan = plan.only(number)?;
-        unfinished += &format!("-{}", plan.tasks[0].name);
+        unfinished = out.join(format!("{UNFINISHED}-{}", plan.tasks[0].name));
     }
+    // Single runs may be done side by side, each of them once.
+    let _alone = LogFolder::claim(if arguments.task.is_some() { &unfinished } else { &out })?;
     let missing = plan.missing()?;
     let done = plan.tasks.len() - missing.len();
     let workers = match arguments.scheduler {
         Some(address) => Workers::Scheduler(address),
         None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
     };
-    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &out.join(unfinished))?;
+    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &unfinished)?;
     if !arguments.quiet {
         if arguments.out.is_none() {
             say_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;

@@ -54,7 +54,7 @@ impl Run {
     ///
     /// # Errors
     /// [`Error::Step`] if a road user is where none can be, or too many are in one place; [`Error::File`] that names an
-    /// output that cannot be written.
+    /// output that cannot be written, once: the steps after that one are checked, and nothing more is written.
     pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
@@ -107,7 +107,7 @@ impl Run {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
-        count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }
 
@@ -116,20 +116,15 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     fn write(&mut self) -> Result<()> {
-        let closed = self.tracker.closed();
-        if let (Some(log), false) = (&mut self.log, closed.is_empty()) {
-            log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
-        }
-        self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
-        self.outputs.write_conflicts(closed)?;
+        let written = self.writing.step(self.tracker.closed(), &self.frame, &self.roster, self.net.as_deref());
         self.tracker.forget_closed();
         // The indices become free only now: this step's events had to see that the road users are gone.
         for user in self.leaving.drain(..) {
             self.roster.leave(user);
             self.detector.forget(user);
             self.tracker.forget(user);
-            self.outputs.forget(user);
+            self.writing.outputs.forget(user);
         }
-        Ok(())
+        written
     }
 }

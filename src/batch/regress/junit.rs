@@ -5,19 +5,15 @@ use std::path::Path;
 use quick_xml::escape::escape;
 
 use super::Report;
-use crate::{Error, Result};
+use crate::Result;
+use crate::util::output_file;
 
 /// Writes the reports, one test case per scenario.
 ///
 /// # Errors
 /// [`Error::File`] if the file cannot be written.
 pub fn write(path: &Path, reports: &[Report]) -> Result<()> {
-    let fail = |source| Error::file(path, source);
-    let text = document(reports);
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(fail)?;
-    }
-    std::fs::write(path, text).map_err(fail)
+    output_file::write(path, document(reports).as_bytes())
 }
 
 fn document(reports: &[Report]) -> String {
