@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz licences advisories accuracy bench docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz torture soak licences advisories accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -36,6 +36,12 @@ FUZZ := PATH=$(CURDIR)/target/tools/bin:$$PATH cargo +nightly fuzz run
 fuzz: target/tools/bin/cargo-fuzz ## random files into everything that is read, a minute each
 	for door in $(DOORS); do mkdir -p fuzz/corpus/$$door && $(FUZZ) $$door fuzz/corpus/$$door tests/fuzz/$$door -- \
 		-max_total_time=60 -timeout=5 -rss_limit_mb=1024 || exit 1; done
+
+torture: ## kill it, fill its disk, cut its power, at every operation on files, for ten minutes
+	$(RUST_TESTS) --test torture -- --ignored --nocapture
+
+soak: $(VENV)/wheel ## 10^8 vehicle-steps in one process: memory and open files stay flat
+	$(BIN)/python tests/soak.py
 
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files, licences
 	cargo fmt --all --check
