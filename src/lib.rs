@@ -84,6 +84,7 @@ pub use input::replay::Replay;
 pub use options::condition::Condition;
 pub use options::shortcut::Shortcut;
 pub use options::{Align, BrakeSystem, Deceleration, Mode, Options, PathModel, TypeOptions};
+pub use output::folder::LogFolder;
 pub use output::formats::OutputFiles;
 pub use output::record::RunRecord;
 pub use output::summary::Summary;

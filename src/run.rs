@@ -9,7 +9,9 @@ mod own_making;
 pub mod recorded;
 pub mod step;
 mod warm_up;
+mod writing;
 
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 use own_making::OwnMaking;
@@ -33,6 +35,7 @@ use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::Second;
 use crate::{Error, Result};
 use warm_up::WarmUp;
+use writing::Writing;
 
 /// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by up to 32 %, at 0.1 s
 /// by 0 to 13 % (docs/step_length.md). The fourth digit is room for rounding in the times of recordings.
@@ -49,10 +52,10 @@ pub struct Run {
     filter: Option<Filter>,
     tracker: Tracker,
     warm_up: WarmUp,
-    log: Option<Log>,
-    outputs: Outputs,
-    keeps_conflicts: bool,
-    conflicts: Vec<Conflict>,
+    writing: Writing,
+    /// The closed conflicts that are kept in memory, and how many there may be: the latest.
+    conflicts: VecDeque<Conflict>,
+    most_conflicts: usize,
     leaving: Vec<UserIndex>,
     obstacles: Vec<(UserIndex, Point)>,
     /// The rows whose placement the step under way needs.
@@ -92,10 +95,9 @@ impl Run {
             filter,
             tracker: Tracker::new(options),
             warm_up: WarmUp::new(options.warmup),
-            log: None,
-            outputs: Outputs::default(),
-            keeps_conflicts: true,
-            conflicts: Vec::new(),
+            writing: Writing::default(),
+            conflicts: VecDeque::new(),
+            most_conflicts: usize::MAX,
             leaving: Vec::new(),
             obstacles: Vec::new(),
             unplaced: Vec::new(),
@@ -123,12 +125,22 @@ impl Run {
 
     /// Writes the conflicts to a log too.
     pub fn set_log(&mut self, log: Log) {
-        self.log = Some(log);
+        self.writing.log = Some(log);
     }
 
     /// Counts closed conflicts, but does not keep them in memory for [`Run::conflicts`].
     pub fn drop_closed_conflicts(&mut self) {
-        self.keeps_conflicts = false;
+        self.keep_closed_conflicts(0);
+    }
+
+    /// Keeps at most this many closed conflicts in memory for [`Run::conflicts`], the latest.
+    pub fn keep_closed_conflicts(&mut self, most: usize) {
+        self.most_conflicts = most;
+    }
+
+    /// Why the log and the other files are no longer written, if that is so.
+    pub fn log_error(&self) -> Option<&str> {
+        self.writing.error.as_deref()
     }
 
     /// Writes other files besides the log.
@@ -136,7 +148,7 @@ impl Run {
         if outputs.want_lanes() {
             self.detector.keep_asking_for_lanes();
         }
-        self.outputs = outputs;
+        self.writing.outputs = outputs;
     }
 
     /// States how long a step lasts; by default as long as the time between the first two.
@@ -259,7 +271,7 @@ impl Run {
     /// Whether the road user of a row is still on its predicted path, so that its lane is not needed as long as its
     /// route is the same.
     pub fn keeps_path(&self, row: u32) -> bool {
-        !self.outputs.want_lanes() && self.detector.keeps_path(row)
+        !self.writing.outputs.want_lanes() && self.detector.keeps_path(row)
     }
 
     /// Whether the route last given for a road user is known from this position in it.
@@ -270,7 +282,7 @@ impl Run {
     /// Sets where on the net the road user of a row is.
     pub fn set_placement(&mut self, row: u32, placement: &Placement) {
         self.detector.set_placement(&self.frame, &self.roster, row, placement);
-        self.outputs.place(row, placement);
+        self.writing.outputs.place(row, placement);
     }
 
     /// The pairs that met the log's condition in the last step, or will with the PET of their events.
@@ -281,6 +293,11 @@ impl Run {
     /// The conflicts that are still open in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()
+    }
+
+    /// The number of the first of [`Run::conflicts`], as in the log: closed conflicts before it are no longer in memory.
+    pub fn first_number(&self) -> u64 {
+        self.closed_conflicts() + 1 - self.conflicts.len() as u64
     }
 
     /// The closed conflicts that are kept in memory, then the open ones as they are now.
@@ -310,16 +327,12 @@ impl Run {
     /// Closes the open conflicts and writes them; returns the summary.
     ///
     /// # Errors
-    /// [`Error::File`] that names what cannot be written.
+    /// [`Error::File`] that names what cannot be written; the run is over then too, and counted.
     pub fn finish(&mut self) -> Result<Summary> {
         self.count_exposure(self.step_length.unwrap_or_default());
         let closed = self.tracker.finish(&self.roster);
-        if let Some(log) = &mut self.log {
-            log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
-        }
-        self.outputs.write_conflicts(closed)?;
-        self.outputs.finish()?;
-        count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+        let written = self.writing.finish(closed, &self.roster, self.net.as_deref());
+        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster));
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
@@ -327,7 +340,7 @@ impl Run {
         let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
         let own_making = self.own_making.remarks(&self.roster);
         self.summary.remarks = remarks.chain(self.warm_up.remark()).chain(own_making).collect();
-        Ok(self.summary.clone())
+        written.map(|()| self.summary.clone())
     }
 }
 
@@ -340,11 +353,12 @@ fn type_settings(options: &Options) -> Vec<(String, String)> {
     settings
 }
 
-fn count(closed: &[Conflict], summary: &mut Summary, kept: Option<&mut Vec<Conflict>>) {
+/// Counts closed conflicts, and keeps the latest `most` of them.
+fn count(closed: &[Conflict], summary: &mut Summary, kept: &mut VecDeque<Conflict>, most: usize) {
     for conflict in closed {
         summary.add(conflict);
     }
-    if let Some(kept) = kept {
-        kept.extend_from_slice(closed);
-    }
+    let new = &closed[closed.len().saturating_sub(most)..];
+    kept.drain(..(kept.len() + new.len()).saturating_sub(most).min(kept.len()));
+    kept.extend(new.iter().cloned());
 }

@@ -1,20 +1,27 @@
 //! The step listener: a run that a Python script feeds from libsumo, traci or arrays.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use closecall::internals::output::{Context, LoggedConflict};
 use closecall::internals::util::caught;
-use closecall::{Ending, Net, Options, OutputFiles, RecordedRun, Run};
+use closecall::{Ending, Error, LogFolder, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::conflict::Conflict;
 use crate::error::exception;
+use crate::exclusive::Exclusive;
 use crate::frames::Frames;
 use crate::paint::Painter;
 use crate::provenance;
-use crate::pull::{self, Source};
+use crate::pull::{self, Identity, Source};
+use crate::rows::Rows;
+
+/// The closed conflicts that stay in memory where a log has all of them: about 10 MB.
+const KEPT: usize = 10_000;
+/// The folder beside which `out="auto"` makes a new one.
+const AUTO: &str = "closecall-out";
 
 /// Finds the conflicts of a simulation, or of plain frames, step by step.
 ///
@@ -23,8 +30,9 @@ use crate::pull::{self, Source};
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, run.json, and series.csv with `log_series=True`); by default
-///         no log is written. An earlier log is kept in its folder `earlier`.
+///         no log is written. An earlier log is kept in its folder `earlier`; "auto" makes a new folder closecall-out-N.
 ///     force: whether to replace an earlier log instead of keeping it.
+///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
 ///     **options: the long options of the command line, with underscores: `mu="at_rest"`, `epsilon=1.0`.
 ///
@@ -33,24 +41,40 @@ use crate::pull::{self, Source};
 ///         message says which.
 ///     RuntimeError: no simulation is started.
 ///     OSError: a file or folder cannot be read or written.
-#[pyclass(subclass, module = "closecall._closecall", name = "Checker")]
+#[pyclass(subclass, frozen, module = "closecall._closecall", name = "Checker")]
 pub struct Checker {
+    state: Exclusive<State>,
+    has_simulation: bool,
+}
+
+/// What a step changes.
+struct State {
     recorded: RecordedRun,
     feed: Feed,
     painter: Option<Painter>,
     is_closed: bool,
+    /// Whether the simulation calls each step, and has called the last one.
+    listens: bool,
+    has_listened: bool,
 }
 
 /// Where the road users come from.
 enum Feed {
-    Simulation(Source),
+    Simulation(Box<Source>, Box<Identity>),
     Frames(Box<Frames>),
+}
+
+/// How a step ended, and what the user is warned of.
+struct Stepped {
+    goes_on: bool,
+    warning: Option<String>,
 }
 
 #[pymethods]
 impl Checker {
     #[new]
-    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, **options))]
+    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, keep=None, **options))]
+    #[expect(clippy::too_many_arguments, reason = "each is a keyword in Python")]
     fn new(
         py: Python,
         source: Option<&Bound<PyAny>>,
@@ -58,6 +82,7 @@ impl Checker {
         out: Option<PathBuf>,
         force: bool,
         paint: Option<bool>,
+        keep: Option<usize>,
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
@@ -68,18 +93,23 @@ impl Checker {
             (None, None) => None,
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
+        run.keep_closed_conflicts(keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX }));
         let feed = match source {
             Some(source) => {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
-                Feed::Simulation(Source::new(source, &mut run, &options)?)
+                let identity = Box::new(Identity::of(source)?);
+                Feed::Simulation(Box::new(Source::new(source, &mut run, &options)?), identity)
             }
             None => Feed::Frames(Box::new(Frames::new(&options))),
         };
         let recorded = match out {
-            Some(folder) => {
+            Some(out) => {
                 let record = provenance::record_of_script(source, given, &run, &options)?;
                 let files = OutputFiles { force, ..OutputFiles::default() };
-                let recorded = RecordedRun::open(run, record, &folder, &files).map_err(exception)?;
+                let is_auto = out == Path::new("auto");
+                let folder = if is_auto { LogFolder::claim_new(Path::new(AUTO)) } else { LogFolder::claim(&out) };
+                let folder = folder.map_err(exception)?;
+                let recorded = RecordedRun::open(run, record, folder, &files).map_err(exception)?;
                 if let Some(line) = recorded.earlier_log() {
                     py.import("sys")?.getattr("stderr")?.call_method1("write", (format!("closecall: {line}\n"),))?;
                 }
@@ -92,122 +122,182 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { recorded, feed, painter, is_closed: false })
+        let state = State { recorded, feed, painter, is_closed: false, listens: false, has_listened: false };
+        Ok(Self { state: Exclusive::new(state), has_simulation: source.is_some() })
     }
 
     /// Check one step. A simulation calls this itself if the checker is its step listener.
     ///
+    /// A frame that is refused changes nothing. If the log cannot be written any more (a full disk), the checker warns
+    /// once, says so in `log_error`, and goes on without writing.
+    ///
     /// Args:
-    ///     time: simulated time in s; only with `states`.
+    ///     time: simulated time in s, later than the last; only with `states`.
     ///     states: without a simulation, a mapping of columns of equal length: `id`, `x`, `y` (front-bumper centre, m),
     ///         `heading` (rad, counter-clockwise from +x), `speed` (m/s) and, if known, `category` (`vehicle`, `bicycle`,
-    ///         `person`, `obstacle`), `z`, `length`, `width` (m), `decel` (m/s²), `mass` (kg). A row whose position,
-    ///         heading or speed is not finite is ignored.
+    ///         `person`, `obstacle`), `z`, `length`, `width` (m), `decel` (m/s²), `mass` (kg). A road user without a row is
+    ///         not in the scene.
     ///
     /// Returns:
-    ///     Whether the listener wants the next step too: a simulation drops one that is closed. If the simulation's time
-    ///     goes back (another one was started or loaded, or an earlier state), the checker closes itself with a warning.
+    ///     Whether the listener wants the next step too: a simulation drops one that is closed. If another simulation or
+    ///     state was loaded meanwhile, the checker closes itself with a warning.
     ///
     /// Raises:
-    ///     ValueError: a column is missing, unknown or has another length, an id occurs twice, the time is before the last
-    ///         one, dimensions, a place or a speed are impossible (docs/limits.md), or too many are in one place.
+    ///     ValueError: a column is missing, unknown, has another length or no real numbers, an id occurs twice, the time is
+    ///         not after the last one, dimensions, a place or a speed are impossible (docs/limits.md), or too many are in one
+    ///         place, which ends the checker.
     ///     RuntimeError: the checker is closed and has no simulation, or closecall itself failed.
     #[pyo3(signature = (time=0.0, states=None))]
-    fn step(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
-        caught(|| self.check(py, time, states)).unwrap_or_else(|fault| {
-            self.is_closed = true;
-            self.recorded.abandon(fault.to_string());
-            Err(exception(fault))
-        })
+    fn step(&self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
+        let rows = match (self.has_simulation, states) {
+            (true, None) => None,
+            (false, Some(states)) => Some(Rows::read(states)?),
+            (true, Some(_)) => {
+                let message = "a checker with a simulation takes no states: it reads them itself";
+                return Err(PyTypeError::new_err(message));
+            }
+            (false, None) => {
+                let message = "a checker without a simulation needs states: step(time, states)";
+                return Err(PyTypeError::new_err(message));
+            }
+        };
+        let stepped = self.state.with(py, |state| {
+            caught(|| state.check(py, time, rows.as_ref())).unwrap_or_else(|fault| state.abandon(fault))
+        })?;
+        if let Some(warning) = stepped.warning {
+            py.import("warnings")?.call_method1("warn", (warning, py.get_type::<PyRuntimeWarning>()))?;
+        }
+        Ok(stepped.goes_on)
     }
 
     /// End the run: close and write the open conflicts, and restore the colours of painted vehicles.
-    fn close(&mut self, py: Python) -> PyResult<()> {
-        self.end(py, None)
+    fn close(&self, py: Python) -> PyResult<()> {
+        self.state.with(py, |state| state.end(py, None))
     }
 
     /// The same, with the error that ended the run early, if there was one.
     #[pyo3(name = "_end")]
-    fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
-        if std::mem::replace(&mut self.is_closed, true) {
-            return Ok(());
-        }
-        self.recorded.close(Ending { error, ..Ending::default() }).map_err(exception)?;
-        match &mut self.painter {
-            Some(painter) => painter.clear(py),
-            None => Ok(()),
-        }
+    fn end(&self, py: Python, error: Option<String>) -> PyResult<()> {
+        self.state.with(py, |state| state.end(py, error))
     }
 
-    /// All conflicts so far; the open ones as they are now.
+    /// Whether a simulation calls each step from now on.
+    #[pyo3(name = "_listen")]
+    fn listen(&self, py: Python, listens: bool) -> PyResult<()> {
+        self.state.with(py, |state| {
+            (state.listens, state.has_listened) = (listens, false);
+            Ok(())
+        })
+    }
+
+    /// The conflicts so far; the open ones as they are now. Of the closed ones, the latest `keep`.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let run = &self.recorded.run;
-        let context = |number| Context { number, net: run.net(), roster: &run.roster };
-        let conflicts = run.conflicts();
-        let logged = (1..).zip(&conflicts).map(|(number, conflict)| LoggedConflict::new(conflict, context(number)));
-        PyList::new(py, logged.map(Conflict).collect::<Vec<_>>())
+        let conflicts = self.state.with(py, |state| {
+            let run = &state.recorded.run;
+            let context = |number| Context { number, net: run.net(), roster: &run.roster };
+            let logged = |(number, conflict): (u64, &_)| Conflict(LoggedConflict::new(conflict, context(number)));
+            Ok((run.first_number()..).zip(&run.conflicts()).map(logged).collect::<Vec<_>>())
+        })?;
+        PyList::new(py, conflicts)
     }
 
     /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let text = serde_json::to_string(&self.recorded.run.summary())
-            .map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
+        let summary = self.state.with(py, |state| Ok(state.recorded.run.summary()))?;
+        let text = serde_json::to_string(&summary).map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         py.import("json")?.call_method1("loads", (text,))
+    }
+
+    /// Why the log is no longer written; None while it is, and without a log.
+    #[getter]
+    fn log_error(&self, py: Python) -> PyResult<Option<String>> {
+        self.state.with(py, |state| Ok(state.recorded.run.log_error().map(str::to_owned)))
     }
 }
 
-impl Checker {
+impl State {
     /// Checks one step.
-    fn check(&mut self, py: Python, time: f64, states: Option<&Bound<PyAny>>) -> PyResult<bool> {
+    fn check(&mut self, py: Python, time: f64, rows: Option<&Rows>) -> PyResult<Stepped> {
+        let goes_on = Ok(Stepped { goes_on: true, warning: None });
         let run = &mut self.recorded.run;
-        match (&mut self.feed, states) {
-            (Feed::Simulation(_), None) if self.is_closed => return Ok(false),
-            (Feed::Simulation(source), None) => {
-                let time = source.time(py)?;
-                if let Some(last) = run.time().filter(|last| time < *last) {
+        let checked = match (&mut self.feed, rows) {
+            (Feed::Simulation(..), _) if self.is_closed => return Ok(Stepped { goes_on: false, warning: None }),
+            (Feed::Simulation(source, identity), _) => {
+                let asked = (self.listens && self.has_listened).then_some(time);
+                let now = source.time(py)?;
+                if run.time() == Some(now) {
+                    // simulationStep does nothing up to a time that is reached already.
+                    return if asked.is_some_and(|until| until > 0.0) { goes_on } else { Err(again(now)) };
+                }
+                if let Some(why) = identity.is_another(py, run.time(), now, asked)? {
                     // The vehicles that it painted are not in the new simulation.
                     self.painter = None;
-                    self.close(py)?;
-                    warn_of_another(py, last, time)?;
-                    return Ok(false);
+                    self.end(py, None)?;
+                    return Ok(Stepped { goes_on: false, warning: Some(another(&why)) });
                 }
-                source.pull(py, run, time)?;
+                self.has_listened = self.listens;
+                source.pull(py, run, now)?;
                 source.update_paths(py, run)?;
-                py.detach(|| run.finish_step(|_| ())).map_err(exception)?;
+                py.detach(|| run.finish_step(|_| ()))
             }
-            (Feed::Frames(_), Some(_)) if self.is_closed => {
+            (Feed::Frames(_), _) if self.is_closed => {
                 return Err(PyRuntimeError::new_err("the checker is closed"));
             }
-            (Feed::Frames(frames), Some(states)) => {
-                if let Some(last) = run.time().filter(|last| time < *last) {
-                    return Err(PyValueError::new_err(format!("time is {time}, after {last}")));
-                }
-                frames.pull(run, time, states)?;
-                py.detach(|| run.step(|_, _| Ok(()))).map_err(exception)?;
+            (Feed::Frames(frames), Some(rows)) => {
+                frames.pull(run, time, rows)?;
+                py.detach(|| run.step(|_, _| Ok(())))
             }
-            (Feed::Simulation(_), Some(_)) => {
-                return Err(PyTypeError::new_err("a checker with a simulation takes no states: it reads them itself"));
-            }
-            (Feed::Frames(_), None) => {
-                return Err(PyTypeError::new_err("a checker without a simulation needs states: step(time, states)"));
-            }
-        }
+            (Feed::Frames(_), None) => return goes_on,
+        };
+        let warning = match checked {
+            Ok(()) => None,
+            Err(error @ Error::File { .. }) => Some(format!("{error}; the checker goes on, but its log ends here")),
+            // The step has changed the run already.
+            Err(error) => return self.abandon(error),
+        };
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.recorded.run)?;
         }
-        Ok(true)
+        Ok(Stepped { goes_on: true, warning })
+    }
+
+    /// Ends the run with an error that leaves it half-way in a step.
+    fn abandon(&mut self, error: Error) -> PyResult<Stepped> {
+        self.is_closed = true;
+        self.recorded.abandon(error.to_string());
+        Err(exception(error))
+    }
+
+    /// Ends the run, with the error that ended it early if there was one.
+    fn end(&mut self, py: Python, error: Option<String>) -> PyResult<()> {
+        if std::mem::replace(&mut self.is_closed, true) {
+            return Ok(());
+        }
+        let is_known = self.recorded.run.log_error().is_some();
+        let closed = self.recorded.close(Ending { error, ..Ending::default() });
+        if let Some(painter) = &mut self.painter {
+            painter.clear(py)?;
+        }
+        match closed {
+            // That the log is not written was said already, and is in `log_error`.
+            Err(Error::File { .. }) if is_known => Ok(()),
+            closed => closed.map(drop).map_err(exception),
+        }
     }
 }
 
-/// Says that a checker has stopped, as another simulation has taken the place of its own.
-fn warn_of_another(py: Python, last: f64, time: f64) -> PyResult<()> {
-    let message = format!(
-        "this checker has stopped: the simulation's time went back from {last} to {time} s, as another one was started or \
-         loaded, or an earlier state; make a new Checker for it"
-    );
-    py.import("warnings")?.call_method1("warn", (message, py.get_type::<PyRuntimeWarning>())).map(|_| ())
+fn again(time: f64) -> PyErr {
+    let message = "is the checker a step listener and called as well?";
+    PyValueError::new_err(format!("the simulation is at {time} s again; {message}"))
+}
+
+/// That a checker has stopped, as another simulation has taken the place of its own.
+fn another(why: &str) -> String {
+    format!(
+        "this checker has stopped: {why}, as another one was started or loaded, or another state; make a new Checker for it"
+    )
 }
 
 /// The options that Python keywords set.

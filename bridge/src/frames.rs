@@ -1,15 +1,17 @@
 //! Plain frames from Python: arrays of states, for trajectories that do not come from SUMO.
+//!
+//! A frame is checked as a whole before the run takes any of it, so that one that is refused changes nothing.
 
-use closecall::internals::util::limits;
+use closecall::internals::util::limits::{self, Limit};
 use closecall::{Category, Options, Point, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
-use numpy::{AllowTypeChange, PyArrayLike1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use crate::error::exception;
+use crate::rows::{Rows, Sort};
 
-/// Reads frames and remembers the road users in the scene.
+/// The road users in the scene.
 pub struct Frames {
     options: Options,
     /// Each road user by its id, and the last step that it was in.
@@ -19,33 +21,11 @@ pub struct Frames {
     steps: u64,
 }
 
-/// The columns of a frame.
-const COLUMNS: [&str; 11] = ["id", "x", "y", "heading", "speed", "z", "length", "width", "decel", "mass", "category"];
-
-/// What a road user is, as the column `category` says.
-#[derive(Clone, Copy)]
-enum Sort {
-    Vehicle,
-    Bicycle,
-    Person,
-    Obstacle,
-}
-
-const SORTS: [(&str, Sort); 4] =
-    [("vehicle", Sort::Vehicle), ("bicycle", Sort::Bicycle), ("person", Sort::Person), ("obstacle", Sort::Obstacle)];
-
-type StateColumn<'py> = PyArrayLike1<'py, f64, AllowTypeChange>;
-
-/// The optional columns, none where the frame lacks them.
-struct Optional<'py> {
-    length: Option<StateColumn<'py>>,
-    width: Option<StateColumn<'py>>,
-    decel: Option<StateColumn<'py>>,
-    mass: Option<StateColumn<'py>>,
-}
-
-fn value(column: Option<&StateColumn>, row: usize) -> Option<f64> {
-    column.map(|column| column.as_array()[row])
+/// The road user of a row.
+enum Entry {
+    Known(UserIndex),
+    New(Box<Profile>),
+    Obstacle([Point; 4]),
 }
 
 impl Frames {
@@ -53,59 +33,34 @@ impl Frames {
         Self { options: options.clone(), live: FxHashMap::default(), early_persons: Vec::new(), steps: 0 }
     }
 
-    /// Begins a step with the rows of `states`: a mapping of columns of equal length.
-    pub fn pull(&mut self, run: &mut Run, time: f64, states: &Bound<PyAny>) -> PyResult<()> {
-        check_names(states)?;
-        let ids = texts(states, "id")?;
-        let check = |name: &str, length: usize| {
-            let message = || format!("\"{name}\" has {length} values, \"id\" has {}", ids.len());
-            if length == ids.len() { Ok(()) } else { Err(PyValueError::new_err(message())) }
-        };
-        let column = |name: &str| -> PyResult<StateColumn> {
-            let Ok(column) = states.get_item(name) else {
-                return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
-            };
-            let column: StateColumn = column.extract()?;
-            check(name, column.as_array().len())?;
-            Ok(column)
-        };
-        let optional = |name: &str| states.contains(name)?.then(|| column(name)).transpose();
-        let [x, y, heading, speed] = [column("x")?, column("y")?, column("heading")?, column("speed")?];
-        let z = optional("z")?;
-        let others = Optional {
-            length: optional("length")?,
-            width: optional("width")?,
-            decel: optional("decel")?,
-            mass: optional("mass")?,
-        };
-        let sorts = if states.contains("category")? { sorts(states)? } else { vec![Sort::Vehicle; ids.len()] };
-        check("category", sorts.len())?;
+    /// Begins a step with the rows of a frame.
+    pub fn pull(&mut self, run: &mut Run, time: f64, rows: &Rows) -> PyResult<()> {
         limits::TIME.check("time", time).map_err(PyValueError::new_err)?;
+        if let Some(last) = run.time().filter(|last| time <= *last) {
+            return Err(PyValueError::new_err(format!("time is {time}, after {last}")));
+        }
+        let entries = self.entries(run, time, rows)?;
         run.begin_step(time);
         self.steps += 1;
         if let Some(length) = run.step_length() {
             self.early_persons.drain(..).for_each(|persons| run.roster.set_response(persons, length));
         }
-        for (row, id) in ids.iter().enumerate() {
-            let mut state = State {
-                x: x.as_array()[row],
-                y: y.as_array()[row],
-                z: value(z.as_ref(), row).unwrap_or_default(),
-                heading: heading.as_array()[row],
-                speed: speed.as_array()[row],
-            };
-            let user = match self.live.get(id) {
-                Some(&(_, step)) if step == self.steps => {
-                    return Err(PyValueError::new_err(format!("\"{id}\" is there twice")));
+        for ((id, entry), state) in rows.ids.iter().zip(entries).zip(&rows.states) {
+            let user = match entry {
+                Entry::Known(user) => user,
+                Entry::New(profile) => {
+                    let is_person = profile.category == Category::Person;
+                    let profile = run.roster.profile(*profile).map_err(exception)?;
+                    if is_person && run.step_length().is_none() {
+                        self.early_persons.push(profile);
+                    }
+                    run.enter(id, profile)
                 }
-                Some(&(user, _)) => user,
-                None => self.enter(run, id, sorts[row], &state, &others, row)?,
+                Entry::Obstacle(outline) => run.enter_shape(id, "obstacle", &outline).map_err(exception)?,
             };
             self.live.insert(id.clone(), (user, self.steps));
-            if run.roster.profile_of(user).category == Category::Obstacle {
-                state.speed = 0.0;
-            }
-            run.frame.push(user, state);
+            let stands = run.roster.profile_of(user).category == Category::Obstacle;
+            run.frame.push(user, if stands { State { speed: 0.0, ..*state } } else { *state });
         }
         let steps = self.steps;
         self.live.retain(|_, (user, seen)| {
@@ -117,16 +72,27 @@ impl Frames {
         Ok(())
     }
 
-    /// The road user of a row enters the scene.
-    fn enter(
-        &mut self,
-        run: &mut Run,
-        id: &str,
-        sort: Sort,
-        state: &State,
-        columns: &Optional,
-        row: usize,
-    ) -> PyResult<UserIndex> {
+    /// The road user of each row; nothing is changed yet.
+    fn entries(&self, run: &Run, time: f64, rows: &Rows) -> PyResult<Vec<Entry>> {
+        let mut seen = FxHashSet::default();
+        let step_length = run.step_length().or_else(|| Some(time - run.time()?));
+        let mut entries = Vec::with_capacity(rows.ids.len());
+        for (row, id) in rows.ids.iter().enumerate() {
+            if !seen.insert(id) {
+                return Err(PyValueError::new_err(format!("\"{id}\" is there twice")));
+            }
+            rows.states[row].check().map_err(|why| PyValueError::new_err(format!("\"{id}\": {why}")))?;
+            entries.push(match self.live.get(id) {
+                Some((user, _)) => Entry::Known(*user),
+                None => self.new_entry(rows, row, step_length)?,
+            });
+        }
+        Ok(entries)
+    }
+
+    /// The road user of a row that enters the scene.
+    fn new_entry(&self, rows: &Rows, row: usize, step_length: Option<f64>) -> PyResult<Entry> {
+        let (id, sort) = (&rows.ids[row], rows.sorts[row]);
         let usual = match sort {
             Sort::Vehicle => SumoType::car(""),
             Sort::Bicycle => SumoType::of_class("", "bicycle"),
@@ -134,39 +100,43 @@ impl Frames {
             // An obstacle has no usual size.
             Sort::Obstacle => SumoType { length: f64::NAN, width: f64::NAN, ..SumoType::car("") },
         };
-        let size = |name: &str, column: Option<&StateColumn>, usual: f64, limit: &limits::Limit| {
-            let size = value(column, row).unwrap_or(usual);
+        let wrong = |why: String| PyValueError::new_err(format!("\"{id}\": {why}"));
+        let size = |name: &str, column: Option<&Vec<f64>>, usual: f64, limit: &Limit| {
+            let size = column.map_or(usual, |column| column[row]);
             let message = |why| match column {
-                Some(_) => format!("\"{id}\": {why}"),
-                None => format!("\"{id}\" is an obstacle, which needs \"length\" and \"width\""),
+                Some(_) => wrong(why),
+                None => PyValueError::new_err(format!("\"{id}\" is an obstacle, which needs \"length\" and \"width\"")),
             };
-            limit.check(name, size).map_err(|why| PyValueError::new_err(message(why)))
+            limit.check(name, size).map_err(message)
         };
-        let length = size("length", columns.length.as_ref(), usual.length, &limits::LENGTH)?;
+        let length = size("length", rows.length.as_ref(), usual.length, &limits::LENGTH)?;
         // A wall may be wider than any vehicle.
         let widest = if let Sort::Obstacle = sort { &limits::LENGTH } else { &limits::WIDTH };
-        let width = size("width", columns.width.as_ref(), usual.width, widest)?;
+        let width = size("width", rows.width.as_ref(), usual.width, widest)?;
         if let Sort::Obstacle = sort {
-            return run.enter_shape(id, "obstacle", &outline(state, length, width)).map_err(exception);
+            let outline = outline(&rows.states[row], length, width);
+            for (name, value) in
+                outline.iter().flat_map(|corner| [("x of a corner", corner.x), ("y of a corner", corner.y)])
+            {
+                limits::POSITION.check(name, value).map_err(wrong)?;
+            }
+            return Ok(Entry::Obstacle(outline));
         }
-        let decel = value(columns.decel.as_ref(), row).unwrap_or(usual.emergency_decel);
-        let mass = value(columns.mass.as_ref(), row).unwrap_or(usual.mass);
+        let value = |column: &Option<Vec<f64>>, usual: f64| column.as_ref().map_or(usual, |column| column[row]);
+        let decel = value(&rows.decel, usual.emergency_decel);
+        let mass = value(&rows.mass, usual.mass);
         let what = if let Sort::Person = sort { "person " } else { "" };
         let name = format!("{what}{length} m x {width} m, {decel} m/s², {mass} kg");
         // How a script's road users follow is not known.
         let tau = f64::INFINITY;
         let sumo = SumoType { name, length, width, mass, emergency_decel: decel, decel, tau, ..usual };
         let profile = if let Sort::Person = sort {
-            let profile = Profile::person(&sumo, &self.options, run.step_length().unwrap_or_default());
-            let profile = run.roster.profile(profile).map_err(exception)?;
-            if run.step_length().is_none() {
-                self.early_persons.push(profile);
-            }
-            profile
+            Profile::person(&sumo, &self.options, step_length.unwrap_or_default())
         } else {
-            run.roster.profile(Profile::vehicle(&sumo, &self.options)).map_err(exception)?
+            Profile::vehicle(&sumo, &self.options)
         };
-        Ok(run.enter(id, profile))
+        profile.check().map_err(|error| wrong(error.to_string()))?;
+        Ok(Entry::New(Box::new(profile)))
     }
 }
 
@@ -178,40 +148,4 @@ fn outline(state: &State, length: f64, width: f64) -> [Point; 4] {
     };
     let half = width / 2.0;
     [corner(0.0, half), corner(length, half), corner(length, -half), corner(0.0, -half)]
-}
-
-/// The values of a column as texts.
-fn texts(states: &Bound<PyAny>, name: &str) -> PyResult<Vec<String>> {
-    let Ok(column) = states.get_item(name) else {
-        return Err(PyValueError::new_err(format!("there is no \"{name}\"")));
-    };
-    column.try_iter()?.map(|text| Ok(text?.str()?.to_string())).collect()
-}
-
-fn sorts(states: &Bound<PyAny>) -> PyResult<Vec<Sort>> {
-    let sort = |text: &String| {
-        let known = SORTS.iter().find(|(name, _)| name == text).map(|(_, sort)| *sort);
-        let message = || format!("category is \"{text}\": vehicle, bicycle, person or obstacle");
-        known.ok_or_else(|| PyValueError::new_err(message()))
-    };
-    texts(states, "category")?.iter().map(sort).collect()
-}
-
-/// Refuses a column that is not known: its name is most likely misspelt.
-fn check_names(states: &Bound<PyAny>) -> PyResult<()> {
-    // A table of Polars has no keys, an array of NumPy's structures neither.
-    let names = match (states.call_method0("keys"), states.getattr("columns")) {
-        (Ok(names), _) | (_, Ok(names)) => names,
-        _ => return Ok(()),
-    };
-    for name in names.try_iter()? {
-        let name = name?.str()?.to_string();
-        if !COLUMNS.contains(&name.as_str()) {
-            let alike = |known: &&str| strsim::jaro_winkler(known, &name);
-            let nearest = COLUMNS.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
-            let message = format!("there is no column \"{name}\"; did you mean \"{}\"?", nearest.unwrap_or(&"id"));
-            return Err(PyValueError::new_err(message));
-        }
-    }
-    Ok(())
 }

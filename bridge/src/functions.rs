@@ -5,13 +5,12 @@ use closecall::internals::geometry::{Rectangle, Vector};
 use closecall::internals::options::{BUILD_UP, EPSILON, RESPONSE};
 use closecall::internals::util::limits::{self, Limit};
 use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType, internals};
-use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
-use numpy::{AllowTypeChange, IntoPyArray, PyArrayDyn, PyArrayLike2, PyArrayLikeDyn};
+use numpy::ndarray::{ArrayD, ArrayViewD, Ix2, IxDyn};
+use numpy::{IntoPyArray, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-type Numbers<'py> = PyArrayLikeDyn<'py, f64, AllowTypeChange>;
-type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
+use crate::numbers::numbers;
 
 /// The minimal collision distance of an ego and a foe, in m; arrays broadcast as in NumPy.
 ///
@@ -35,21 +34,21 @@ type Rows<'py> = PyArrayLike2<'py, f64, AllowTypeChange>;
 #[expect(clippy::too_many_arguments, reason = "each is a keyword in Python")]
 pub fn mu<'py>(
     py: Python<'py>,
-    speed: Numbers,
-    foe_speed: Numbers,
-    decel: Option<Numbers>,
-    foe_decel: Option<Numbers>,
-    response_time: Option<Numbers>,
-    build_up: Option<Numbers>,
-    epsilon: Option<Numbers>,
+    speed: &Bound<'py, PyAny>,
+    foe_speed: &Bound<'py, PyAny>,
+    decel: Option<&Bound<'py, PyAny>>,
+    foe_decel: Option<&Bound<'py, PyAny>>,
+    response_time: Option<&Bound<'py, PyAny>>,
+    build_up: Option<&Bound<'py, PyAny>>,
+    epsilon: Option<&Bound<'py, PyAny>>,
     kind: &str,
     model: &str,
-    angle: Option<Numbers>,
+    angle: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let bad = |message: String| PyValueError::new_err(message);
     let kind =
         Kind::from_str(kind, false).map_err(|_| bad(format!("kind is \"{kind}\": rear_end, frontal or side")))?;
-    let angles = angle.map(|angles| angles.as_array().to_owned());
+    let angles = angle.map(|angle| numbers("angle", angle)).transpose()?;
     let is_angle = |angle: &f64| (0.0..=std::f64::consts::PI).contains(angle);
     if let Some(angle) = angles.iter().flatten().find(|angle| !is_angle(angle)) {
         return Err(bad(format!("angle is {angle}, it must be 0 to π")));
@@ -57,18 +56,19 @@ pub fn mu<'py>(
     let sigmas = angles.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), kind.sigma()), |angles| angles.mapv(f64::cos));
     let model =
         MuModel::from_str(model, false).map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
-    let given = |numbers: Option<Numbers>, default: f64| {
-        numbers.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), default), |numbers| numbers.as_array().to_owned())
+    let given = |name: &'static str, values: Option<&Bound<PyAny>>, default: f64| {
+        let values = values.map_or_else(|| Ok(ArrayD::from_elem(IxDyn(&[]), default)), |values| numbers(name, values));
+        Ok::<_, PyErr>((name, values?))
     };
     let car = SumoType::car("");
     let columns = [
-        ("speed", given(Some(speed), 0.0)),
-        ("foe_speed", given(Some(foe_speed), 0.0)),
-        ("decel", given(decel, car.emergency_decel)),
-        ("foe_decel", given(foe_decel, car.emergency_decel)),
-        ("response_time", given(response_time, RESPONSE)),
-        ("build_up", given(build_up, BUILD_UP)),
-        ("epsilon", given(epsilon, EPSILON)),
+        given("speed", Some(speed), 0.0)?,
+        given("foe_speed", Some(foe_speed), 0.0)?,
+        given("decel", decel, car.emergency_decel)?,
+        given("foe_decel", foe_decel, car.emergency_decel)?,
+        given("response_time", response_time, RESPONSE)?,
+        given("build_up", build_up, BUILD_UP)?,
+        given("epsilon", epsilon, EPSILON)?,
     ];
     for (name, values) in &columns {
         let limit = match *name {
@@ -126,8 +126,8 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 ///     ValueError: an array does not have 5 columns, the numbers of rows differ, or a value is out of its range; the
 ///         message names it.
 #[pyfunction]
-pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
-    let pairs = pairs(&a, &b)?;
+pub fn touches(py: Python, a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Py<PyAny>> {
+    let pairs = pairs(a, b)?;
     let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::touches(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
@@ -136,8 +136,8 @@ pub fn touches(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
 ///
 /// Args and errors as for `touches`.
 #[pyfunction]
-pub fn distance(py: Python, a: Rows, b: Rows) -> PyResult<Py<PyAny>> {
-    let pairs = pairs(&a, &b)?;
+pub fn distance(py: Python, a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Py<PyAny>> {
+    let pairs = pairs(a, b)?;
     let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::distance(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
@@ -151,8 +151,14 @@ const RECTANGLE: [(&str, Limit); 5] = [
     ("width", Limit { is_open: false, ..limits::LENGTH }),
 ];
 
-fn pairs(a: &Rows, b: &Rows) -> PyResult<Vec<(Rectangle, Rectangle)>> {
-    let (a, b) = (a.as_array(), b.as_array());
+fn pairs(a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Vec<(Rectangle, Rectangle)>> {
+    let rows = |name: &str, values: &Bound<PyAny>| {
+        let values = numbers(name, values)?;
+        let dimensions = values.ndim();
+        let message = |_| PyValueError::new_err(format!("{name} has {dimensions} dimensions; rows and columns are 2"));
+        values.into_dimensionality::<Ix2>().map_err(message)
+    };
+    let (a, b) = (rows("a", a)?, rows("b", b)?);
     for (name, rows) in [("a", &a), ("b", &b)] {
         if rows.ncols() != 5 {
             let found = rows.ncols();

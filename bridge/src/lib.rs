@@ -6,12 +6,15 @@
 mod checker;
 mod conflict;
 mod error;
+mod exclusive;
 mod frames;
 mod functions;
 mod interrupts;
+mod numbers;
 mod paint;
 mod provenance;
 mod pull;
+mod rows;
 mod run;
 mod session;
 mod start;

@@ -9,7 +9,7 @@ use closecall::internals::batch::Task;
 use closecall::internals::detection::LeftOut;
 use closecall::internals::input as sumo_files;
 use closecall::internals::output::Input;
-use closecall::{Ending, Error, RecordedRun, Result, Run, RunRecord, Summary, cli};
+use closecall::{Ending, Error, LogFolder, RecordedRun, Result, Run, RunRecord, Summary, cli};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -25,7 +25,7 @@ use crate::{provenance, sweep};
 #[pyfunction]
 pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let interrupts = Interrupts::new(py)?;
-    let mut simulate = |request: &RunRequest| simulate(py, request, &interrupts);
+    let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
     let mut interrupted = || interrupts.had_any();
     let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd| {
         interrupts.report();
@@ -55,10 +55,10 @@ fn closecall(py: Python) -> PyResult<Vec<OsString>> {
 }
 
 /// Runs the scenario to its end.
-fn simulate(py: Python, request: &RunRequest, interrupts: &Interrupts) -> Result<Summary> {
+fn simulate(py: Python, request: &RunRequest, folder: LogFolder, interrupts: &Interrupts) -> Result<Summary> {
     let ahead = NetAhead::begin(request);
     let sumo = start::start(py, request)?;
-    let result = attach(&sumo, request, ahead, interrupts);
+    let result = attach(&sumo, request, folder, ahead, interrupts);
     start::close(py, request.gui);
     interrupts.end_the_process();
     result
@@ -68,6 +68,7 @@ fn simulate(py: Python, request: &RunRequest, interrupts: &Interrupts) -> Result
 fn attach(
     sumo: &Bound<PyAny>,
     request: &RunRequest,
+    folder: LogFolder,
     ahead: Option<NetAhead>,
     interrupts: &Interrupts,
 ) -> Result<Summary> {
@@ -93,7 +94,7 @@ fn attach(
     }
     let mut session = Session::new(sumo, request, source, record.step_length).map_err(refused)?;
     interrupts.report();
-    let recorded = RecordedRun::open(run, record, &request.out, &request.outputs)?;
+    let recorded = RecordedRun::open(run, record, folder, &request.outputs)?;
     let (recorded, ended) = session.run_to_end(Box::new(recorded));
     close(*recorded, request, ended, &session.spent())
 }
@@ -127,13 +128,13 @@ fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spe
         recorded.discard();
         return Err(Error::content(&request.scenario, message));
     }
-    let summary = recorded.close(Ending {
+    let closed = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
         left_out: left_out(request, persons),
         spent: spent.seconds(),
         ..Ending::default()
-    })?;
-    ended.map(|()| summary)
+    });
+    ended.and(closed)
 }
 
 /// The error for an exception before the first step.

@@ -8,17 +8,23 @@ use super::ending;
 use super::files::{default_folder, kept, say_if_elsewhere};
 use crate::Result;
 use crate::options::Options;
+use crate::output::folder::LogFolder;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
 
 /// The name of the log's default folder.
 const LOG: &str = "closecall-out";
 
+/// Whether a run wants a new folder.
+fn is_auto(out: &Path) -> bool {
+    out == Path::new("auto")
+}
+
 /// How to check a scenario or a recording, and what to write.
 #[derive(Args)]
 pub(super) struct CheckArgs {
     /// Folder for the log [default: closecall-out next to the scenario or recording, or else in the working directory].
-    /// An earlier log is kept in its folder earlier.
+    /// An earlier log is kept in its folder earlier; auto makes a new folder beside the default one.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// TOML file with options.
@@ -39,7 +45,15 @@ pub(super) struct CheckArgs {
 impl CheckArgs {
     /// The folder for the log of this scenario or recording.
     pub fn log_folder(&self, input: &Path) -> PathBuf {
-        self.out.clone().unwrap_or_else(|| default_folder(input, LOG))
+        self.out.clone().filter(|out| !is_auto(out)).unwrap_or_else(|| default_folder(input, LOG))
+    }
+
+    /// The same folder, or a new one where that is wanted, for this run alone.
+    ///
+    /// # Errors
+    /// Where another run writes there, or nothing can be written.
+    pub fn claim(&self, folder: &Path) -> Result<LogFolder> {
+        if self.out.as_deref().is_some_and(is_auto) { LogFolder::claim_new(folder) } else { LogFolder::claim(folder) }
     }
 
     /// The options.

@@ -11,6 +11,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use crate::Result;
 use crate::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
+use crate::util::output_file::same_file;
 use crate::util::threads::processors;
 
 /// Which scenarios to run, and how to compare them.
@@ -69,6 +70,12 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
                 places.push(place);
             }
             Err(error) => drop(reports.insert(place, Report::unreadable(name(folder), Level::Exact, error))),
+        }
+    }
+    if let Some(path) = &arguments.junit {
+        let read = scenarios.iter().flat_map(Scenario::files).collect::<Vec<_>>();
+        if let Some(over) = same_file(path, read.iter().map(|file| &**file)) {
+            return Err(value(format!("--junit would be written over {}", over.display())));
         }
     }
     let mut bar = CountBar::new("runs", true);

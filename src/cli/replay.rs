@@ -44,6 +44,8 @@ pub struct ReplayArgs {
 pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let out = arguments.check.log_folder(&arguments.recording);
     let options = arguments.check.checked(&out)?;
+    let folder = arguments.check.claim(&out)?;
+    let out = folder.path().to_owned();
     let net = Arc::new(Net::read(&arguments.net)?);
     let mut replay = Replay::open(&arguments.recording, &arguments.route_files, &net, &options)?;
     let mut run = Run::new(&options, Some(net))?;
@@ -59,15 +61,15 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
-    let mut recorded = RecordedRun::open(run, record, &out, &arguments.check.outputs)?;
+    let mut recorded = RecordedRun::open(run, record, folder, &arguments.check.outputs)?;
     let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
-    let summary = recorded.close(Ending {
+    let closed = recorded.close(Ending {
         error: ended.as_ref().err().map(ToString::to_string),
         remarks: replay.remarks(),
         ..Ending::default()
-    })?;
+    });
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        arguments.check.print(&summary, &arguments.recording, &out)?;
+        arguments.check.print(&closed?, &arguments.recording, &out)?;
     }
     ended
 }

@@ -50,8 +50,10 @@ pub struct RunArgs {
 /// Runs the scenario and prints its summary.
 pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let Some(sumo) = sumo else { return no_sumo() };
-    let request = request(&arguments)?;
-    let summary = (sumo.simulate)(&request)?;
+    let mut request = request(&arguments)?;
+    let folder = arguments.check.claim(&request.out)?;
+    folder.path().clone_into(&mut request.out);
+    let summary = (sumo.simulate)(&request, folder)?;
     arguments.check.print(&summary, &request.scenario, &request.out)
 }
 

@@ -7,8 +7,9 @@ use clap::{Args, ValueEnum};
 use super::progress::CountBar;
 use super::say::{say, value};
 use crate::Result;
-use crate::analysis::logged::check_none_lost;
+use crate::analysis::logged::{check_keeps_logs, check_none_lost};
 use crate::analysis::statistics::{By, Request, Statistics, table};
+use crate::util::output_file;
 
 /// Which logs to analyse, and how to print the result.
 #[derive(Args)]
@@ -28,6 +29,9 @@ pub struct StatsArgs {
     /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
     #[arg(long)]
     csv_safe: bool,
+    /// File to write instead of standard output.
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
     /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
@@ -48,7 +52,10 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, csv_safe, worst } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, out, worst } = arguments;
+    if let Some(out) = &out {
+        check_keeps_logs(out, &[&folders[..], &against].concat(), None)?;
+    }
     let mut bar = CountBar::new("conflicts", true);
     let statistics = Statistics::of(&Request { folders, by, against, worst }, &mut |read, all| bar.show(read, all))?;
     drop(bar);
@@ -61,6 +68,9 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Format::Csv => table::csv(&table::tables(&statistics), csv_safe)?,
         Format::Html => table::html(&table::tables(&statistics)),
     };
-    say(printed)?;
+    match out {
+        Some(out) => output_file::write(&out, printed.as_bytes())?,
+        None => say(printed)?,
+    }
     check_none_lost(&statistics.lost)
 }

@@ -10,6 +10,7 @@ use super::sumo::{RunRequest, Sumo};
 use super::sweep::ParseRun;
 use crate::Result;
 use crate::options::Options;
+use crate::output::folder::LogFolder;
 use crate::output::formats::OutputFiles;
 use crate::study::{self, Axis, Plan};
 use crate::util::units::Second;
@@ -59,7 +60,8 @@ fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
         let measured = match &mut sumo {
             Some(sumo) => {
                 let mut record = |scenario: &Path, recording: &Path, end: Second| {
-                    (sumo.simulate)(&recorded(scenario, recording, end)).map(|_| ())
+                    let request = recorded(scenario, recording, end);
+                    (sumo.simulate)(&request, LogFolder::claim(&request.out)?).map(|_| ())
                 };
                 study::measure(axis, &plan, Some(&mut record))?
             }

@@ -9,14 +9,16 @@ use super::files::{absolute, default_folder, say_if_elsewhere};
 use super::run::request;
 use super::say::{say, value};
 use super::sumo::{RunRequest, Sumo, no_sumo};
-use super::sweep::{ParseRun, Passed, check, check_runs, distribute};
+use super::sweep::{ParseRun, Passed, UNFINISHED, check, check_runs, distribute};
 use super::workers::Workers;
+use crate::Result;
 use crate::batch::sweep::{Seeds, Sweep, Vary};
 use crate::input::sumo_files;
 use crate::options::share;
+use crate::output::folder::LogFolder;
 use crate::study::scenario::{self, Plan, Study};
+use crate::util::input_file;
 use crate::util::threads::processors;
-use crate::{Error, Result};
 
 /// What to vary in a scenario, and how to run it.
 #[derive(Args)]
@@ -63,7 +65,7 @@ impl ScenarioArgs {
         let default_out = default_folder(scenario, RESULTS);
         let out = absolute(out.unwrap_or(&default_out))?;
         // Opened here so that an error carries the operating system's own message.
-        std::fs::File::open(scenario).map_err(|source| Error::file(scenario, source))?;
+        input_file::file(scenario)?;
         self.vary.iter().try_for_each(check)?;
         let seeds =
             self.seeds.unwrap_or_else(|| Seeds(SEEDS[..if quick { QUICK_SEEDS } else { SEEDS.len() }].to_vec()));
@@ -74,9 +76,10 @@ impl ScenarioArgs {
         let plan = Plan::of(&self.vary, quick, &|vary| own_value(&own, vary))?;
         let runs = Sweep::of_settings(&words, &self.passed.for_sumo, &seeds, &plan.settings(), &out, &files)?;
         check_runs(&runs, &seeds, parse_run)?;
+        let _alone = LogFolder::claim(&out)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
-        distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out)?;
+        distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out.join(UNFINISHED))?;
         let failed = runs.missing()?.into_iter().map(|task| task.name.clone()).collect::<Vec<_>>();
         let study = Study::read(plan, &runs.tasks, &failed, seeds.to_string(), self.accuracy)?;
         let name = scenario.file_name().unwrap_or_default().to_string_lossy().into_owned();

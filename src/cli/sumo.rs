@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use super::say::value;
 use crate::Result;
 use crate::options::Options;
+use crate::output::folder::LogFolder;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
 
@@ -52,5 +53,5 @@ pub struct RunRequest {
     pub sumo_words: Vec<String>,
 }
 
-/// Runs SUMO with the checker attached.
-pub type Simulate<'a> = dyn FnMut(&RunRequest) -> Result<Summary> + 'a;
+/// Runs SUMO with the checker attached; the folder is the request's, for this run alone.
+pub type Simulate<'a> = dyn FnMut(&RunRequest, LogFolder) -> Result<Summary> + 'a;

@@ -1,5 +1,6 @@
 //! `closecall sweep`: plans many runs, each a task, and hands them to the bridge, which distributes them.
 
+use std::collections::HashSet;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
+use crate::output::folder::LogFolder;
 use crate::util::input_file;
 use crate::util::threads::processors;
 use crate::util::units::counted;
@@ -40,6 +42,12 @@ pub struct SweepArgs {
     /// Address of a Dask scheduler whose workers do the runs instead of this machine.
     #[arg(long, value_name = "ADDRESS", conflicts_with = "workers")]
     scheduler: Option<String>,
+    /// Print the runs as CSV instead of doing them: the number of each, its name, and whether it is done.
+    #[arg(long, conflicts_with_all = ["task", "workers", "scheduler"])]
+    list: bool,
+    /// Do only the run with this number in --list, for a batch system that starts a process for each run.
+    #[arg(long, value_name = "N", conflicts_with_all = ["workers", "scheduler"])]
+    task: Option<usize>,
     /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
@@ -85,6 +93,9 @@ const OWN: [&str; 10] =
     ["scenario", "configuration_file", "gui", "out", "force", "seed", "quiet", "explain", "ssm_output", "trj_output"];
 /// The name of the results' default folder.
 const RESULTS: &str = "closecall-sweep";
+/// The folder of unfinished logs in that of the results, hidden; a run that is done by itself adds its name, as others may be
+/// done meanwhile.
+pub(super) const UNFINISHED: &str = ".unfinished";
 /// Options that name a file whose content matters.
 const FILES: [&str; 2] = ["config", "filter"];
 /// The argument for the words after `--`.
@@ -150,15 +161,25 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     input_file::file(&arguments.scenario)?;
     arguments.vary.iter().try_for_each(check)?;
     let (words, files) = arguments.passed.shared(&arguments.scenario, &arguments.vary)?;
-    let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
+    let mut plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
     check_runs(&plan, &arguments.seeds, parse_run)?;
+    if arguments.list {
+        return list(&plan).map(|()| 0);
+    }
+    let mut unfinished = out.join(UNFINISHED);
+    if let Some(number) = arguments.task {
+        plan = plan.only(number)?;
+        unfinished = out.join(format!("{UNFINISHED}-{}", plan.tasks[0].name));
+    }
+    // Single runs may be done side by side, each of them once.
+    let _alone = LogFolder::claim(if arguments.task.is_some() { &unfinished } else { &out })?;
     let missing = plan.missing()?;
     let done = plan.tasks.len() - missing.len();
     let workers = match arguments.scheduler {
         Some(address) => Workers::Scheduler(address),
         None => Workers::Local(arguments.workers.map_or_else(processors, usize::from)),
     };
-    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &out)?;
+    let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &unfinished)?;
     if !arguments.quiet {
         if arguments.out.is_none() {
             say_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
@@ -175,30 +196,37 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     Ok(u8::from(failed > 0))
 }
 
+/// Prints the runs of a sweep; their names need no quotes.
+fn list(plan: &Sweep) -> Result<()> {
+    let missing = plan.missing()?.into_iter().map(|task| &task.name).collect::<HashSet<_>>();
+    let lines = plan.tasks.iter().enumerate();
+    let lines = lines.map(|(place, task)| format!("{},{},{}\n", place + 1, task.name, !missing.contains(&task.name)));
+    say(format_args!("task,run,done\n{}", lines.collect::<String>()))
+}
+
 /// The selection file that a TOML file of options names.
 fn filter_in(file: &Path) -> Option<PathBuf> {
     let table = input_file::text(file).ok()?.parse::<toml::Table>().ok()?;
     Some(table.get("filter")?.as_str()?.into())
 }
 
-/// Has the missing runs done; returns how many failed.
+/// Has the missing runs done, with their logs in a working folder until then; returns how many failed.
 pub(super) fn distribute(
     sumo: Sumo,
     workers: &Workers,
     missing: &[&Task],
     done_before: usize,
     quiet: bool,
-    out: &Path,
+    unfinished: &Path,
 ) -> Result<usize> {
     if missing.is_empty() {
         return Ok(0);
     }
-    let unfinished = out.join(".unfinished");
-    std::fs::create_dir_all(&unfinished).map_err(|source| Error::file(&unfinished, source))?;
+    std::fs::create_dir_all(unfinished).map_err(|source| Error::file(unfinished, source))?;
     let bar = bar(done_before, done_before + missing.len(), quiet);
     let mut done = done_before;
     let mut failed = 0;
-    let ended = (sumo.distribute)(workers, &unfinished, missing, &mut |name, error| {
+    let ended = (sumo.distribute)(workers, unfinished, missing, &mut |name, error| {
         done += 1;
         if let Some(error) = error {
             failed += 1;
@@ -208,7 +236,7 @@ pub(super) fn distribute(
     });
     bar.finish_and_clear();
     // Removes what killed workers left; if that fails, the folder is at least hidden.
-    let _ = std::fs::remove_dir_all(&unfinished);
+    let _ = std::fs::remove_dir_all(unfinished);
     match ended {
         Ok(()) => Ok(failed),
         Err(Error::Stopped) => Err(Error::Paused { done, all: done_before + missing.len() }),

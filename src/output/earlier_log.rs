@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::log::files;
+use super::log::{RUN, files};
 use crate::{Error, Result};
 
 /// The folder of the earlier logs, within the log's own: `earlier/1`, `earlier/2`, …
@@ -32,7 +32,9 @@ impl EarlierLog {
         let within = folder.join(EARLIER);
         let numbers = fs::read_dir(&within).into_iter().flatten().flatten();
         let numbers = numbers.filter_map(|entry| entry.file_name().to_str()?.parse::<u64>().ok());
-        let kept = within.join((numbers.max().unwrap_or_default() + 1).to_string());
+        let last = numbers.max().unwrap_or_default();
+        let of = |number: u64| within.join(number.to_string());
+        let kept = if last > 0 && is_rest(folder, &of(last)) { of(last) } else { of(last + 1) };
         fs::create_dir_all(&kept).map_err(|source| Error::file(&kept, source))?;
         move_log(folder, &kept)?;
         Ok(Some(Self { folder: folder.to_owned(), kept }))
@@ -47,6 +49,12 @@ impl EarlierLog {
             let _ = fs::remove_dir(self.folder.join(EARLIER));
         }
     }
+}
+
+/// Whether a move to `kept` ended in the middle, so that `folder` has the rest of that log: `run.json` goes last.
+fn is_rest(folder: &Path, kept: &Path) -> bool {
+    let both = || files(folder).zip(files(kept));
+    folder.join(RUN).is_file() && !both().any(|(rest, moved)| rest.is_file() && moved.exists())
 }
 
 fn move_log(from: &Path, to: &Path) -> Result<()> {
@@ -74,6 +82,18 @@ mod tests {
         assert_eq!(of("earlier/1/conflicts.csv").as_deref(), Some("first"));
         assert_eq!(of("earlier/2/conflicts.csv").as_deref(), Some("second"));
         assert_eq!((of("mine.xml").as_deref(), of(CONFLICTS)), (Some("mine"), None));
+    }
+
+    #[test]
+    fn a_move_that_was_interrupted_is_completed() {
+        let folder = tempfile::tempdir().unwrap();
+        let of = |path: &str| fs::read_to_string(folder.path().join(path)).ok();
+        fs::create_dir_all(folder.path().join("earlier/1")).unwrap();
+        fs::write(folder.path().join("earlier/1").join(CONFLICTS), "first").unwrap();
+        fs::write(folder.path().join(RUN), "its record").unwrap();
+        EarlierLog::keep(folder.path()).unwrap();
+        assert_eq!(of("earlier/1/conflicts.csv").as_deref(), Some("first"));
+        assert_eq!((of("earlier/1/run.json").as_deref(), of(RUN)), (Some("its record"), None));
     }
 
     #[test]

@@ -2,6 +2,7 @@
 
 pub mod badness;
 pub mod earlier_log;
+pub mod folder;
 pub mod formats;
 pub mod input_hash;
 pub mod log;

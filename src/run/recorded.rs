@@ -8,10 +8,13 @@ use std::path::Path;
 use super::Run;
 use crate::detection::detector::LeftOut;
 use crate::output::earlier_log::EarlierLog;
+use crate::output::folder::LogFolder;
 use crate::output::formats::{OutputFiles, Outputs};
-use crate::output::log::Log;
+use crate::output::input_hash::Input;
+use crate::output::log::{self, Log};
 use crate::output::record::RunRecord;
 use crate::output::summary::Summary;
+use crate::util::output_file::same_file;
 use crate::util::panics;
 use crate::{Error, Result};
 
@@ -22,6 +25,8 @@ pub struct RecordedRun {
     /// None without a log.
     record: Option<Box<RunRecord>>,
     earlier: Option<EarlierLog>,
+    /// No other run writes to the log's folder.
+    folder: Option<LogFolder>,
 }
 
 /// How a run ended, and what its source adds to the summary.
@@ -42,27 +47,31 @@ impl RecordedRun {
     /// kept, unless it is to be replaced.
     ///
     /// # Errors
-    /// [`crate::Error::File`] that names what cannot be written, and the errors of `Outputs::create`.
-    pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
+    /// [`crate::Error::File`] that names what cannot be written, [`crate::Error::Value`] where the log would be written over
+    /// an input, and the errors of `Outputs::create`.
+    pub fn open(mut run: Run, record: RunRecord, folder: LogFolder, files: &OutputFiles) -> Result<Self> {
+        let path = folder.path();
+        check_keeps_inputs(path, &record.inputs)?;
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
-        let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
-        let mut log = Log::create(folder, record.options.series_file())?;
+        let earlier = if files.force { None } else { EarlierLog::keep(path)? };
         let record = RunRecord { csv_safe: files.csv_safe, ..record };
-        if files.csv_safe {
-            log.set_csv_safe();
+        match begin_log(path, &record) {
+            Ok(log) => run.set_log(log),
+            Err(error) => {
+                earlier.into_iter().for_each(EarlierLog::restore);
+                return Err(error);
+            }
         }
-        log.write_record(&record)?;
-        run.set_log(log);
         run.set_outputs(outputs);
         if let Some(length) = record.step_length {
             run.set_step_length(length);
         }
-        Ok(Self { run, record: Some(Box::new(record)), earlier })
+        Ok(Self { run, record: Some(Box::new(record)), earlier, folder: Some(folder) })
     }
 
     /// A run without a log, whose conflicts stay in memory.
     pub fn in_memory(run: Run) -> Self {
-        Self { run, record: None, earlier: None }
+        Self { run, record: None, earlier: None, folder: None }
     }
 
     /// Where the earlier log of the folder is now, if there was one, in a line for the user.
@@ -73,31 +82,35 @@ impl RecordedRun {
     /// Closes the open conflicts and completes the log; returns the summary.
     ///
     /// # Errors
-    /// [`crate::Error::File`] that names what cannot be written.
+    /// [`crate::Error::File`] that names what cannot be written; `run.json` then says so too, if it can be written itself.
     pub fn close(&mut self, ending: Ending) -> Result<Summary> {
         let Ending { error, left_out, remarks, spent } = ending;
-        let mut summary = self.run.finish()?;
+        let finished = self.run.finish();
+        let error = self.run.log_error().map(str::to_owned).or(error);
+        let mut summary = self.run.summary.clone();
         summary.left_out.extend(left_out);
         summary.remarks.extend(remarks.into_iter().chain(self.earlier_log()));
         summary.spent = spent;
         self.run.summary.clone_from(&summary);
-        if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
-            log.write_record(&RunRecord {
+        let recorded = match (self.run.writing.log.take(), self.record.take()) {
+            (Some(log), Some(record)) => log.write_record(&RunRecord {
                 step_length: self.run.step_length(),
                 summary: summary.clone(),
                 complete: error.is_none(),
                 error,
                 conflicts_sha256: Some(log.digest()),
                 ..*record
-            })?;
-        }
-        Ok(summary)
+            }),
+            _ => Ok(()),
+        };
+        self.folder = None;
+        finished.and(recorded).map(|()| summary)
     }
 
     /// Removes the log and the other files: the input could not be used after all.
     pub fn discard(mut self) {
-        std::mem::take(&mut self.run.outputs).discard();
-        if let Some(log) = self.run.log.take() {
+        self.run.writing.outputs = Outputs::default();
+        if let Some(log) = self.run.writing.log.take() {
             log.discard();
         }
         if let Some(earlier) = self.earlier.take() {
@@ -107,18 +120,35 @@ impl RecordedRun {
 
     /// Records that closecall itself failed within a step, which nothing can close any more; the rows so far stay.
     pub fn abandon(&mut self, error: String) {
-        if let (Some(log), Some(record)) = (self.run.log.take(), self.record.take()) {
+        if let (Some(mut log), Some(record)) = (self.run.writing.log.take(), self.record.take()) {
             let (step_length, summary) = (self.run.step_length(), self.run.summary.clone());
+            let conflicts_sha256 = Some(log.digest());
             // The error to report is the one that led here.
-            let _ = log.write_record(&RunRecord {
-                step_length,
-                summary,
-                error: Some(error),
-                conflicts_sha256: Some(log.digest()),
-                ..*record
-            });
+            let _ = log.sync();
+            let _ =
+                log.write_record(&RunRecord { step_length, summary, error: Some(error), conflicts_sha256, ..*record });
         }
+        self.folder = None;
     }
+}
+
+fn begin_log(folder: &Path, record: &RunRecord) -> Result<Log> {
+    let mut log = Log::create(folder, record.options.series_file())?;
+    if record.csv_safe {
+        log.set_csv_safe();
+    }
+    if let Err(error) = log.write_record(record) {
+        log.discard();
+        return Err(error);
+    }
+    Ok(log)
+}
+
+/// Checks that none of the log's files is one that the run reads.
+fn check_keeps_inputs(folder: &Path, inputs: &[Input]) -> Result<()> {
+    let files = log::files(folder).collect::<Vec<_>>();
+    let over = inputs.iter().find(|input| same_file(&input.path, files.iter().map(|file| &**file)).is_some());
+    over.map_or(Ok(()), |input| Err(Error::Value(format!("the log would be written over {}", input.path.display()))))
 }
 
 impl Drop for RecordedRun {

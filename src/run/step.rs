@@ -53,12 +53,13 @@ impl Run {
     ///
     /// # Errors
     /// [`Error::Step`] if a road user is where none can be, or too many are in one place; [`Error::File`] that names an
-    /// output that cannot be written.
+    /// output that cannot be written, once: the steps after that one are checked, and nothing more is written.
     pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
-        self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
+        // With the positions that SUMO has, before road users are moved back.
+        let states = self.writing.states(&self.frame, &self.roster, self.net.as_deref());
         self.detector.align(&mut self.frame, &self.roster);
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
@@ -69,7 +70,7 @@ impl Run {
         ended(StepPart::NarrowPhase);
         self.close_conflicts();
         ended(StepPart::Events);
-        self.write()?;
+        states.and(self.write())?;
         ended(StepPart::Log);
         Ok(())
     }
@@ -108,7 +109,7 @@ impl Run {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
-        count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
+        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }
 
@@ -117,19 +118,15 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     fn write(&mut self) -> Result<()> {
-        let closed = self.tracker.closed();
-        if let (Some(log), false) = (&mut self.log, closed.is_empty()) {
-            log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
-        }
-        self.outputs.write_conflicts(closed)?;
+        let written = self.writing.conflicts(self.tracker.closed(), &self.roster, self.net.as_deref());
         self.tracker.forget_closed();
         // The indices become free only now: this step's events had to see that the road users are gone.
         for user in self.leaving.drain(..) {
             self.roster.leave(user);
             self.detector.forget(user);
             self.tracker.forget(user);
-            self.outputs.forget(user);
+            self.writing.outputs.forget(user);
         }
-        Ok(())
+        written
     }
 }

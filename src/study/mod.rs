@@ -24,6 +24,7 @@ mod volume;
 
 use std::path::Path;
 
+use crate::util::output_file::{self, OutputFile};
 use crate::{Error, Result};
 use pareto::is_on_front;
 
@@ -56,20 +57,21 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
 /// # Errors
 /// An error that names the file that cannot be written.
 pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
     let path = folder.join("study.csv");
     let failed = |error: csv::Error| Error::content(&path, error.to_string());
-    let mut writer = csv::Writer::from_path(&path).map_err(failed)?;
+    let mut table = OutputFile::create(&path)?;
+    let mut writer = csv::Writer::from_writer(&mut table);
     rows.iter().try_for_each(|row| writer.serialize(row)).map_err(failed)?;
     writer.flush().map_err(|source| Error::file(&path, source))?;
+    drop(writer);
+    table.finish()?;
     for axis in Axis::ALL {
         let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
         if !of_axis.is_empty() {
             chart::draw(folder, axis.name(), &chart::panels(axis, &of_axis), chart::note(axis))?;
         }
     }
-    let path = folder.join("study.md");
-    std::fs::write(&path, page::of(rows)).map_err(|source| Error::file(&path, source))
+    output_file::write(&folder.join("study.md"), page::of(rows).as_bytes())
 }
 
 /// Marks the rows that no other row of the same scene beats in error, time or both.

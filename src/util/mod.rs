@@ -6,6 +6,7 @@ pub mod double_double;
 pub(crate) mod golden_section;
 pub(crate) mod input_file;
 pub mod limits;
+pub mod output_file;
 pub mod panics;
 #[cfg(feature = "parquet")]
 pub mod parquet_column;

@@ -101,6 +101,47 @@ fn an_earlier_log_is_kept_unless_it_is_to_be_replaced() {
 }
 
 #[test]
+fn an_earlier_log_is_where_it_was_if_no_new_one_can_begin() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    assert_eq!(closecall(folder.path(), &replay(&["--out", "out"])).status.code(), Some(0));
+    let log = || ["conflicts.csv", "run.json"].map(|name| fs::read(folder.path().join("out").join(name)).unwrap());
+    let first = log();
+    fs::create_dir(folder.path().join("out/series.csv")).unwrap();
+    let done = closecall(folder.path(), &replay(&["--out", "out", "--log-series"]));
+    assert_eq!(done.status.code(), Some(2), "{}", stdout(&done));
+    assert!(stderr(&done).starts_with("closecall: out/series.csv: "), "{}", stderr(&done));
+    assert_eq!(log(), first);
+    assert!(!folder.path().join("out/earlier").exists());
+}
+
+#[test]
+fn a_folder_that_another_run_writes_to_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    let other = closecall::LogFolder::claim(&folder.path().join("out")).unwrap();
+    let done = closecall(folder.path(), &replay(&["--out", "out"]));
+    assert_eq!((done.status.code(), stdout(&done).as_str()), (Some(2), ""));
+    let told = format!("closecall: out: another run writes its log there (process {}, begun ", std::process::id());
+    assert!(stderr(&done).starts_with(&told), "{}", stderr(&done));
+    drop(other);
+    assert_eq!(closecall(folder.path(), &replay(&["--out", "out"])).status.code(), Some(0));
+}
+
+#[test]
+fn a_new_folder_is_made_where_it_is_wanted() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    for number in 1..=2 {
+        let done = closecall(folder.path(), &replay(&["--out", "auto"]));
+        let made = format!("recorded/closecall-out-{number}");
+        assert!(stdout(&done).contains(&made), "{}{}", stdout(&done), stderr(&done));
+        assert!(folder.path().join(made).join("conflicts.csv").is_file());
+    }
+    assert!(!folder.path().join("auto").exists());
+}
+
+#[test]
 fn the_default_folder_is_here_where_it_cannot_be_there() {
     let folder = tempfile::tempdir().unwrap();
     record(&folder.path().join("recorded"));

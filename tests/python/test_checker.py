@@ -235,12 +235,6 @@ def test_plain_frames_give_one_conflict_per_pair_and_episode() -> None:
         checker.step(9.9, {**CAR, "x": [0.0, 40.0]})
 
 
-def test_a_row_that_is_not_finite_is_ignored() -> None:
-    checker = cc.Checker()
-    checker.step(0.0, {**CAR, "x": [0.0, np.nan]})
-    assert checker.conflicts == []
-
-
 @pytest.mark.parametrize(
     ("states", "message"),
     [

@@ -1,12 +1,12 @@
-"""`closecall sweep` with real Dask and SUMO loses no run, repeats none, and writes what other tools can read."""
+"""`closecall sweep` with real SUMO and Dask loses no run, repeats none, and writes what other tools can read."""
 
 from __future__ import annotations
 
 import csv
 import json
 import os
+import resource
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -67,20 +67,29 @@ def children(pid: int) -> dict[psutil.Process, str]:
 
 
 class Cluster(NamedTuple):
-    """A Dask scheduler with two worker processes, in a process of its own."""
+    """A Dask scheduler with two worker processes, in a process of its own; only their own certificate lets in."""
 
     address: str
     pid: int
 
 
 @pytest.fixture
-def cluster() -> Iterator[Cluster]:
-    """A cluster started outside closecall."""
+def cluster(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Cluster]:
+    """A cluster started outside closecall, and the settings of Dask that let this test in."""
+    key, certificate = str(tmp_path / "key.pem"), str(tmp_path / "cert.pem")
+    kind = ("-newkey", "ec", "-pkeyopt", "ec_paramgen_curve:P-256", "-nodes", "-days", "1", "-subj", "/CN=closecall")
+    subprocess.run(["openssl", "req", "-x509", *kind, "-keyout", key, "-out", certificate], check=True)
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__REQUIRE_ENCRYPTION", "true")
+    monkeypatch.setenv("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", certificate)
+    for role in ("SCHEDULER", "WORKER", "CLIENT"):
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{role}__CERT", certificate)
+        monkeypatch.setenv(f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY", key)
     script = """if True:
         import sys
-        from distributed import LocalCluster
+        from distributed import LocalCluster, Security
         if __name__ == "__main__":
-            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
+            tls = {"protocol": "tls://", "security": Security()}
+            with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None, **tls) as cluster:
                 print(cluster.scheduler_address, flush=True)
                 sys.stdin.read()
     """
@@ -97,12 +106,7 @@ def done(once: Once) -> Path:
 
     def fill(out: Path) -> None:
         varied = ("--vary", "mu=minimal,at-rest", "--vary", "sumo:scale=1,1.5")
-        with socket.socket() as other:
-            # Dask's usual port, which another sweep may use, as perhaps already here.
-            with suppress(OSError):
-                other.bind(("127.0.0.1", 8787))
-                other.listen()
-            result = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
+        result = sweep(LEFT_TURN, "--seeds", "1-2", *varied, "--out", out, "--workers", "2", *SHORT)
         assert result.stdout == f"8 runs in {out}/conflicts\n" and result.stderr == ""
 
     return once("sweep", fill)
@@ -242,9 +246,15 @@ def test_a_sweep_continues_and_repeats_nothing(scenario: Copy, tmp_path: Path) -
         sweep(config, "--seeds", "1", "--config", settings, *words)
         written.append(files(out)["seed-1"])
     assert written[0] != written[1]
-    # A run whose file is broken is done again.
-    (out / "conflicts" / "run=seed-2" / "conflicts.parquet").write_bytes(b"PAR1")
-    sweep(config, "--seeds", "2", "--epsilon", "1", *words)
+    # A run whose file is broken is done again, be it only in a page of its rows.
+    file = out / "conflicts" / "run=seed-2" / "conflicts.parquet"
+    whole = file.read_bytes()
+    in_a_page = len(whole) // 8
+    assert whole.find(b"closecall") > in_a_page
+    for broken in (b"PAR1", whole[:in_a_page] + bytes([whole[in_a_page] ^ 4]) + whole[in_a_page + 1 :]):
+        file.write_bytes(broken)
+        done = sweep(config, "--seeds", "2", "--epsilon", "1", *words)
+        assert "already" not in done.stdout and file.read_bytes() != broken
     assert stats(out)["runs"] == 3
     # Runs with other columns need a data set of their own.
     other = sweep(config, "--seeds", "1", "--vary", "epsilon=1,2", *words, status=2)
@@ -277,6 +287,46 @@ def test_a_failed_run_is_reported_and_the_others_continue(scenario: Copy, tmp_pa
     for line in lines:
         assert line.startswith("closecall: run sumo.step-length--1_seed-") and "failed twice: " in line
     assert "2 failed; the same command tries them again" in result.stdout
+
+
+def test_a_sweep_says_why_no_log_could_be_written(tmp_path: Path) -> None:
+    def fill_disk() -> None:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))
+
+    out = tmp_path / "out"
+    result = sweep(LEFT_TURN, "--seeds", "1", "--out", out, *SHORT, status=1, preexec_fn=fill_disk)
+    assert "run seed-1 failed twice: " in result.stderr and "File too large" in result.stderr
+    assert not files(out)
+
+
+def test_a_sweep_on_one_machine_opens_no_socket(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "distributed.py").write_text("raise ImportError('there is no Dask')\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    out = tmp_path / "out"
+    process = begin("sweep", LEFT_TURN, "--seeds", "1-4", "--out", out, "--workers", "2", *SHORT)
+    looked_at = 0
+    while process.poll() is None:
+        for one in (psutil.Process(process.pid), *simulations(psutil.Process(process.pid))):
+            with suppress(psutil.Error):
+                assert not one.net_connections("all")
+                looked_at += one.pid != process.pid
+    assert looked_at > 10 and len(files(out)) == 4, process.communicate()
+    refused = sweep(LEFT_TURN, "--seeds", "5", "--out", out, "--scheduler", "tls://127.0.0.1:9", *SHORT, status=2)
+    assert "pip install 'closecall[sweep]'" in refused.stderr
+
+
+def test_numbered_runs_side_by_side_make_one_sweep(tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    words = (LEFT_TURN, "--seeds", "3-5", "--out", out)
+    assert sweep(*words, "--list").stdout == "task,run,done\n1,seed-3,false\n2,seed-4,false\n3,seed-5,false\n"
+    side_by_side = [begin("sweep", *words, "--task", number, *SHORT) for number in ("1", "3")]
+    for process in side_by_side:
+        assert process.communicate() == (f"1 run in {out}/conflicts\n", "")
+    assert set(files(out)) == {"seed-3", "seed-5"} and [path.name for path in out.iterdir()] == ["conflicts"]
+    listed = sweep(*words, "--list", *SHORT).stdout
+    assert listed == "task,run,done\n1,seed-3,true\n2,seed-4,false\n3,seed-5,true\n"
+    assert "1 of them were there already" in sweep(*words, "--task", "3", *SHORT).stdout
+    assert "the numbers are 1 to 3" in sweep(*words, "--task", "4", *SHORT, status=2).stderr
 
 
 def simulations(of: psutil.Process) -> list[psutil.Process]:
@@ -379,7 +429,17 @@ def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -
 def test_help_lists_the_sweep_and_its_options() -> None:
     assert "  sweep " in closecall("--help").stdout
     text = closecall("sweep", "--help").stdout
-    for word in ("--seeds", "--vary", "--workers", "--scheduler", "--epsilon", "--end", "SUMO OPTIONS"):
+    for word in (
+        "--seeds",
+        "--vary",
+        "--workers",
+        "--scheduler",
+        "--list",
+        "--task",
+        "--epsilon",
+        "--end",
+        "SUMO OPTIONS",
+    ):
         assert word in text
 
 

@@ -21,8 +21,26 @@ class Checker(_Checker, StepListener):  # type: ignore[misc]
     [('a', 'b', 'rear_end')]
     """
 
+    def setID(self, ID: int) -> None:
+        """Note that a simulation calls each step; traci and libsumo call this method of a listener that is added.
+
+        Raises:
+            ValueError: it is a listener already, so that each step would be checked twice.
+        """
+        if self._id is not None:
+            raise ValueError("this checker is a step listener already")
+        self._id = ID
+        self._listen(True)
+
+    def getID(self) -> int | None:
+        return self._id
+
     def cleanUp(self) -> None:
-        """Do nothing: traci and libsumo call this method of their listeners when the simulation is closed."""
+        """Note that no simulation calls the steps any more; traci and libsumo call this method when they remove it."""
+        self._id = None
+        self._listen(False)
+
+    _id: int | None = None
 
     def __enter__(self) -> Checker:
         return self

@@ -1,22 +1,20 @@
-"""The runs of `closecall sweep` on Dask: each is a task that starts a process of its own.
+"""The runs of `closecall sweep`, each in a process of its own.
 
-libsumo allows one simulation per process, and a simulation that crashes must not take its worker along. Local workers
-are therefore threads of the sweep that wait for these processes. Worker processes of Dask would first have to start and
-import Dask, and then only wait as well.
+libsumo allows one simulation per process, and a simulation that crashes must not take the sweep or a worker along. A
+pool of threads waits for these processes, without a socket: a process ends when its standard input does.
 """
 
 from __future__ import annotations
 
-import logging
 import os
 import signal
 import subprocess
 import tempfile
 import threading
 import time
-import uuid
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, suppress
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import suppress
 from pathlib import Path
 
 from . import _start
@@ -25,8 +23,11 @@ from ._closecall import finish_run
 Task = tuple[str, list[str], str]
 """A run: its name, the arguments of `closecall run`, and the task for `finish_run`."""
 
+ATTEMPTS = 2
+"""How often a run that fails is tried."""
+
 ASKED_EVERY = 0.2
-"""Interval in s at which Dask is asked whether a run is still wanted."""
+"""Interval in s at which it is asked whether a run is still wanted."""
 
 MOST_SAID = 1 << 16
 """Bytes of a run's messages that are kept."""
@@ -41,41 +42,41 @@ def results(
     at once. No run outlives the iteration, however it ends.
 
     Raises:
-        ImportError: Dask is not installed.
+        ImportError: there is the address of a scheduler, but Dask is not installed.
         OSError: no scheduler answers at the address.
     """
-    from distributed import Client, LocalCluster, as_completed
+    if scheduler is None:
+        return on_this_machine(tasks, str(folder), workers)
+    from .sweep_cluster import on_cluster
 
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)
-    with ExitStack() as stack:
-        if scheduler is None:
-            cluster = LocalCluster(
-                n_workers=1,
-                threads_per_worker=workers,
-                processes=False,
-                memory_limit=0,
-                # The scheduler's server always listens; on its usual port it would warn of another sweep's.
-                dashboard_address="127.0.0.1:0",
-                scheduler_kwargs={"dashboard": False},
-                silence_logs=logging.CRITICAL,
-            )
-            stack.enter_context(cluster)
-        client = stack.enter_context(Client(scheduler or cluster))
-        # A running scheduler may know a run of the same name from an earlier sweep.
-        sweep = uuid.uuid4().hex
-        here = str(Path.cwd())
-        names = {}
-        for name, words, task in tasks:
-            key = f"closecall-{name}-{sweep}"
-            future = client.submit(run, name, words, task, str(folder), here, key=key, retries=1, pure=False)
-            names[future] = name
-        try:
-            for future in as_completed(list(names)):
-                error = future.exception()
-                yield names.pop(future), None if error is None else message(error)
-                future.release()
-        finally:
-            client.cancel(list(names), force=True)
+    return on_cluster(tasks, str(folder), scheduler)
+
+
+def on_this_machine(tasks: list[Task], folder: str, workers: int) -> Iterator[tuple[str, str | None]]:
+    """Do the tasks with `workers` processes at once."""
+    here = str(Path.cwd())
+    ended = threading.Event()
+
+    def attempts(task: Task) -> tuple[str, str | None]:
+        error = None
+        for _ in range(ATTEMPTS):
+            if ended.is_set():
+                break
+            try:
+                run(*task, folder, here, lambda: not ended.is_set())
+            except Exception as failed:
+                error = message(failed)
+            else:
+                return task[0], None
+        return task[0], error
+
+    pool = ThreadPoolExecutor(workers)
+    try:
+        for future in as_completed([pool.submit(attempts, task) for task in tasks]):
+            yield future.result()
+    finally:
+        ended.set()
+        pool.shutdown(cancel_futures=True)
 
 
 def message(error: BaseException) -> str:
@@ -83,8 +84,8 @@ def message(error: BaseException) -> str:
     return " ".join(str(error).split()) or type(error).__name__
 
 
-def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
-    """Do one run, on a worker.
+def run(name: str, words: list[str], task: str, folder: str, here: str, is_wanted: Callable[[], bool]) -> None:
+    """Do one run, and give it up once it is no longer wanted.
 
     Raises:
         RuntimeError: the run failed, with its error message.
@@ -104,7 +105,7 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
             # Ctrl-C must reach only the sweep, which then ends its runs.
             start_new_session=True,
         ) as process:
-            said, cpu = wait(process, wanted())
+            said, cpu = wait(process, is_wanted)
         wall = time.perf_counter() - begun
         if process.returncode != 0:
             raise RuntimeError(failure(said.decode(errors="replace"), process.returncode))
@@ -114,7 +115,8 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
 def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> tuple[bytes, float]:
     """Wait until the process has ended, and kill it once it is no longer wanted.
 
-    Returns the end of what it said and its processor time in s.
+    Returns:
+        The end of what it said, and its processor time in s.
     """
     ended = threading.Event()
 
@@ -137,23 +139,6 @@ def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> tup
     ended.set()
     watcher.join()
     return said, used.ru_utime + used.ru_stime
-
-
-def wanted() -> Callable[[], bool]:
-    """A function that tells whether this thread's task is still wanted.
-
-    When a sweep is gone, Dask forgets its tasks but does not stop them.
-    """
-    from distributed import get_worker
-
-    worker = get_worker()
-    key = worker.get_current_task()
-
-    def is_wanted() -> bool:
-        task = worker.state.tasks.get(key)
-        return task is not None and task.state in ("executing", "long-running")
-
-    return is_wanted
 
 
 def failure(text: str, status: int) -> str:

@@ -6,6 +6,7 @@ mod compiled;
 #[path = "not_compiled.rs"]
 mod compiled;
 mod getters;
+mod identity;
 mod libsumo;
 mod libsumo_domain;
 mod reading;
@@ -20,6 +21,7 @@ use pyo3::prelude::*;
 use self::libsumo::Libsumo;
 use self::traci::Traci;
 
+pub use identity::Identity;
 pub use sumo::{add_obstacles, net_of, option};
 
 /// A simulation that is being read.

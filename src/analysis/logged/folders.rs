@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashSet;
 
 use crate::output::earlier_log::EARLIER;
-use crate::output::log::CONFLICTS;
+use crate::output::log::{CONFLICTS, files};
+use crate::util::output_file::same_file;
 use crate::{Error, Result};
 
 /// The name of the conflicts' file in a sweep.
@@ -35,6 +36,19 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     known.sort();
     known.dedup_by(|a, b| a.0 == b.0);
     Ok(known.into_iter().map(|(_, folder)| folder).collect())
+}
+
+/// Checks that an output is written over none of the files that it is made of: those of the logs in these folders, and the
+/// net.
+///
+/// # Errors
+/// Those of [`log_folders`]; [`Error::Value`] that names the file.
+pub fn check_keeps_logs(out: &Path, folders: &[PathBuf], net: Option<&Path>) -> Result<()> {
+    let logs = log_folders(folders)?;
+    let read = logs.iter().flat_map(|log| files(log).chain([log.join(PARQUET)])).chain(net.map(Path::to_owned));
+    let read = read.collect::<Vec<_>>();
+    let over = same_file(out, read.iter().map(|file| &**file));
+    over.map_or(Ok(()), |over| Err(Error::Value(format!("--out would be written over {}", over.display()))))
 }
 
 /// The logs in a folder and below it, each as its real folder and as it was come to. A folder that links lead to more than

@@ -18,7 +18,7 @@ mod reader;
 mod reading;
 mod run;
 
-pub use folders::{PARQUET, SUMMARY, log_folders};
+pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
 pub use pack::{Label, LabelValue, pack};
 #[cfg(feature = "parquet")]

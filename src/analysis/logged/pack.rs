@@ -1,6 +1,5 @@
 //! A log as one Parquet file, for a data set of many runs.
 
-use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
 use std::sync::Arc;
@@ -19,6 +18,7 @@ use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
+use crate::util::output_file::OutputFile;
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
 
@@ -52,32 +52,14 @@ pub enum LabelValue {
 pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTime, out: &Path) -> Result<()> {
     let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
-    let within = out.parent().unwrap_or(Path::new(""));
-    fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
-    // Hidden, as it is not yet a part of the data set; its name is its own, as two processes may write the same run.
-    let draft = tempfile::Builder::new().prefix(".conflicts-").tempfile_in(within);
-    let draft = draft.map_err(|source| Error::file(within, source))?;
-    let file = draft.as_file().try_clone().map_err(|source| Error::file(out, source))?;
+    let mut file = OutputFile::create(out)?;
     let run_time = serde_json::to_string(&run_time).map_err(|error| Error::Value(error.to_string()))?;
     let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned()), (RUN_TIME_KEY, run_time)];
-    write(file, conflicts, labels, metadata).map_err(|fault| match fault {
+    write(&mut file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
         Fault::Parquet(error) => unreadable(out, &error),
     })?;
-    readable_by_all(draft.path()).map_err(|source| Error::file(out, source))?;
-    draft.persist(out).map(|_| ()).map_err(|error| Error::file(out, error.error))
-}
-
-/// Only its owner can read a temporary file; others read a data set too.
-#[cfg(unix)]
-fn readable_by_all(path: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    fs::set_permissions(path, fs::Permissions::from_mode(0o644))
-}
-
-#[cfg(not(unix))]
-fn readable_by_all(_: &Path) -> std::io::Result<()> {
-    Ok(())
+    file.finish()
 }
 
 enum Fault {
@@ -92,7 +74,7 @@ impl From<ParquetError> for Fault {
 }
 
 fn write(
-    file: File,
+    file: &mut OutputFile,
     mut conflicts: ConflictReader,
     labels: &[Label],
     metadata: [(&str, String); 3],
@@ -133,12 +115,12 @@ fn write(
 }
 
 /// A file that hashes what is written to it.
-struct HashedFile {
-    file: File,
+struct HashedFile<'a> {
+    file: &'a mut OutputFile,
     hasher: Hasher,
 }
 
-impl Write for HashedFile {
+impl Write for HashedFile<'_> {
     fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
         let written = self.file.write(bytes)?;
         self.hasher.add(&bytes[..written]);
@@ -243,6 +225,8 @@ fn repeat(
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use crate::analysis::logged::pack::*;
     use crate::analysis::logged::{PARQUET, Packed};
     use crate::output::log::{CONFLICTS, RUN};

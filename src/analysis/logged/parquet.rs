@@ -23,6 +23,8 @@ use crate::{Error, Result};
 pub(super) const RECORD_KEY: &str = "closecall.run.json";
 /// The key of the fingerprint in the file's metadata.
 pub(super) const FINGERPRINT_KEY: &str = "closecall.fingerprint";
+/// The key of the run time in the file's metadata.
+pub(super) const RUN_TIME_KEY: &str = "closecall.run_time";
 /// The key of the [`digest`] in the file's metadata; files of earlier versions have none.
 pub(super) const DIGEST_KEY: &str = "closecall.digest";
 
@@ -36,12 +38,12 @@ pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 3]) -> Str
 /// Whether the file is not as it was written.
 fn is_changed(path: &Path, file: &SerializedFileReader<File>) -> Result<bool> {
     let Some(known) = value(file, DIGEST_KEY) else { return Ok(false) };
-    let texts = [RECORD_KEY, FINGERPRINT_KEY, RUN_TIME_KEY].map(|key| value(file, key).unwrap_or_default());
     let bytes = known.split(' ').next().and_then(|bytes| bytes.parse::<u64>().ok()).unwrap_or_default();
     let mut rows = Hasher::default();
     let copied = std::io::copy(&mut input_file::file(path)?.take(bytes), &mut rows);
     copied.map_err(|source| Error::file(path, source))?;
-    Ok(digest(bytes as usize, rows, texts.each_ref().map(String::as_str)) != known)
+    let metadata = [RECORD_KEY, FINGERPRINT_KEY, RUN_TIME_KEY].map(|key| value(file, key).unwrap_or_default());
+    Ok(digest(bytes as usize, rows, metadata.each_ref().map(String::as_str)) != known)
 }
 
 /// The value of a key in the file's metadata.
@@ -49,8 +51,6 @@ fn value(file: &SerializedFileReader<File>, key: &str) -> Option<String> {
     let pairs = file.metadata().file_metadata().key_value_metadata().into_iter().flatten();
     pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
 }
-/// The key of the run time in the file's metadata.
-pub(super) const RUN_TIME_KEY: &str = "closecall.run_time";
 
 /// Rows in memory at once.
 const BATCH: usize = 4096;

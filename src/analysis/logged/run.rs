@@ -116,6 +116,7 @@ impl LoggedRun {
 mod tests {
     use super::*;
     use crate::options::Options;
+    use crate::output::folder::LogFolder;
     use crate::output::formats::OutputFiles;
     use crate::output::record::RunRecord;
     use crate::run::Run;
@@ -130,7 +131,8 @@ mod tests {
         let options = Options::default();
         let record = RunRecord { step_length, ..RunRecord::new(PathBuf::new(), options.clone()) };
         let run = Run::new(&options, None).unwrap();
-        let mut recorded = RecordedRun::open(run, record, folder.path(), &OutputFiles::default()).unwrap();
+        let mut recorded =
+            RecordedRun::open(run, record, LogFolder::claim(folder.path()).unwrap(), &OutputFiles::default()).unwrap();
         let run = &mut recorded.run;
         let profile = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
         let car = run.enter("car", profile);

@@ -1,13 +1,12 @@
-//! Pictures are drawn in memory and then written, so that an error in writing carries the system's own message.
+//! Pictures are drawn in memory and then written.
 
 use std::fmt::Display;
-use std::fs::{self, File};
-use std::io::BufWriter;
 use std::path::Path;
 
 use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend};
 
+use crate::util::output_file;
 use crate::{Error, Result};
 
 /// Writes a PNG with red, green and blue of one byte each.
@@ -21,14 +20,15 @@ pub(crate) fn png<E: Display>(
 ) -> Result<()> {
     let mut pixels = vec![0; 3 * size.0 as usize * size.1 as usize];
     draw(BitMapBackend::with_buffer(&mut pixels, size).into_drawing_area()).map_err(|error| undrawn(path, &error))?;
-    let file = File::create(path).map_err(|source| Error::file(path, source))?;
-    let mut encoder = png::Encoder::new(BufWriter::new(file), size.0, size.1);
+    let mut encoded = Vec::new();
+    let mut encoder = png::Encoder::new(&mut encoded, size.0, size.1);
     encoder.set_color(png::ColorType::Rgb);
     let written = encoder.write_header().and_then(|mut writer| {
         writer.write_image_data(&pixels)?;
         writer.finish()
     });
-    written.map_err(|error| Error::file(path, error.into()))
+    written.map_err(|error| undrawn(path, &error))?;
+    output_file::write(path, &encoded)
 }
 
 /// Writes an SVG.
@@ -42,7 +42,7 @@ pub(crate) fn svg<E: Display>(
 ) -> Result<()> {
     let mut text = String::new();
     draw(SVGBackend::with_string(&mut text, size).into_drawing_area()).map_err(|error| undrawn(path, &error))?;
-    fs::write(path, text).map_err(|source| Error::file(path, source))
+    output_file::write(path, text.as_bytes())
 }
 
 fn undrawn(path: &Path, message: &impl Display) -> Error {

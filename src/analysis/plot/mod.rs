@@ -16,7 +16,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
 use super::dataset::{self, Conflicts};
-use super::logged::{LostRows, Progress};
+use super::logged::{LostRows, Progress, check_keeps_logs};
 use crate::{Error, Result};
 use chart::{Chart, message};
 
@@ -38,7 +38,7 @@ pub enum PictureFormat {
 /// the logs that lack rows.
 ///
 /// # Errors
-/// Those of [`dataset::read`], and [`Error::File`] if a picture cannot be written.
+/// Those of [`dataset::read`], [`check_keeps_logs`], and of writing a picture.
 pub fn write(
     folders: &[PathBuf],
     net: Option<&Path>,
@@ -49,10 +49,11 @@ pub fn write(
     let conflicts = dataset::read(folders, net, progress)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
     font::register()?;
-    let mut files = vec![picture(out, "map", format, MAP_SIZE, &conflicts, map::Map)?];
-    files.push(picture(out, "time", format, CHART_SIZE, &conflicts, charts::TimeLine)?);
+    let from = (&conflicts, net);
+    let mut files = vec![picture(out, "map", format, MAP_SIZE, from, map::Map)?];
+    files.push(picture(out, "time", format, CHART_SIZE, from, charts::TimeLine)?);
     for measure in &charts::MEASURES {
-        files.push(picture(out, measure.name, format, CHART_SIZE, &conflicts, charts::Distribution(measure))?);
+        files.push(picture(out, measure.name, format, CHART_SIZE, from, charts::Distribution(measure))?);
     }
     Ok((files, conflicts.lost))
 }
@@ -63,13 +64,14 @@ fn picture(
     name: &str,
     format: PictureFormat,
     size: (u32, u32),
-    conflicts: &Conflicts,
+    (conflicts, net): (&Conflicts, Option<&Path>),
     chart: impl Chart,
 ) -> Result<PathBuf> {
     let path = out.join(match format {
         PictureFormat::Png => format!("{name}.png"),
         PictureFormat::Svg => format!("{name}.svg"),
     });
+    check_keeps_logs(&path, &conflicts.logs, net)?;
     match format {
         PictureFormat::Png => file::png(&path, size, |area| on(&area, conflicts, &chart))?,
         PictureFormat::Svg => file::svg(&path, size, |area| on(&area, conflicts, &chart))?,

@@ -7,12 +7,12 @@ mod contact;
 mod data;
 mod roads;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::dataset::read;
-use super::logged::{LostRows, Progress};
-use crate::{Error, Result};
+use super::logged::{LostRows, Progress, check_keeps_logs};
+use crate::Result;
+use crate::util::output_file;
 
 /// The template, with a mark for each part.
 const PAGE: &str = include_str!("page.html");
@@ -51,14 +51,15 @@ pub struct Made {
 /// The net is read from `net`, or from the path in the first log.
 ///
 /// # Errors
-/// Those of [`fn@read`], and [`Error::File`] if `out` cannot be written.
+/// Those of [`fn@read`], [`check_keeps_logs`], and of writing `out`.
 pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut Progress) -> Result<Made> {
+    check_keeps_logs(out, folders, net)?;
     let conflicts = read(folders, net, progress)?;
     let runs = conflicts.logs.len();
     let seen = conflicts.seen;
     let lost = conflicts.lost.clone();
     let page = page(&data::json(conflicts));
-    fs::write(out, &page).map_err(|source| Error::file(out, source))?;
+    output_file::write(out, page.as_bytes())?;
     Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
 }
 

@@ -2,49 +2,51 @@
 
 use std::path::Path;
 
-use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+use quick_xml::escape::escape;
 
 use super::Report;
-use crate::{Error, Result};
+use crate::Result;
+use crate::util::output_file;
 
 /// Writes the reports, one test case per scenario.
 ///
 /// # Errors
 /// [`Error::File`] if the file cannot be written.
 pub fn write(path: &Path, reports: &[Report]) -> Result<()> {
-    let fail = |source| Error::file(path, source);
-    let text = document(reports).to_string().map_err(|error| fail(std::io::Error::other(error.to_string())))?;
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(fail)?;
-    }
-    std::fs::write(path, text).map_err(fail)
+    output_file::write(path, document(reports).as_bytes())
 }
 
-fn document(reports: &[Report]) -> quick_junit::Report {
-    let mut suite = TestSuite::new("closecall regress");
-    suite.add_test_cases(reports.iter().map(case));
-    let mut document = quick_junit::Report::new("closecall regress");
-    document.add_test_suite(suite);
-    document
+fn document(reports: &[Report]) -> String {
+    let count = |is_one: fn(u8) -> bool| reports.iter().filter(|report| is_one(report.exit_status())).count();
+    let (failures, errors) = (count(|status| status == 1), count(|status| status > 1));
+    let counts = format!("tests=\"{}\" failures=\"{failures}\" errors=\"{errors}\"", reports.len());
+    let cases = reports.iter().map(case).collect::<String>();
+    format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"closecall regress\" {counts}>\n\
+         <testsuite name=\"closecall regress\" {counts}>\n{cases}</testsuite>\n</testsuites>\n"
+    )
 }
 
-fn case(report: &Report) -> TestCase {
-    let headline = report.headline();
-    let details = report.details().join("\n");
-    let kind = match report.exit_status() {
-        0 => None,
-        1 => Some((NonSuccessKind::Failure, "difference")),
-        _ => Some((NonSuccessKind::Error, "error")),
+fn case(report: &Report) -> String {
+    let headline = xml(&report.headline());
+    let details = xml(&report.details().join("\n"));
+    let problem = |element: &str, kind: &str| {
+        format!("<{element} type=\"{kind}\" message=\"{headline}\">{headline}\n{details}</{element}>\n")
     };
-    let status = match kind {
-        None => TestCaseStatus::success(),
-        Some((kind, name)) => {
-            let mut status = TestCaseStatus::non_success(kind);
-            status.set_type(name).set_message(&headline).set_description(format!("{headline}\n{details}"));
-            status
-        }
+    let problem = match report.exit_status() {
+        0 => String::new(),
+        1 => problem("failure", "difference"),
+        _ => problem("error", "error"),
     };
-    let mut case = TestCase::new(report.name.clone(), status);
-    case.set_classname("closecall.regress").set_system_out(format!("{report}"));
-    case
+    format!(
+        "<testcase name=\"{}\" classname=\"closecall.regress\">\n{problem}<system-out>{}</system-out>\n</testcase>\n",
+        xml(&report.name),
+        xml(&report.to_string())
+    )
+}
+
+/// A text within XML, without the control characters that XML cannot hold.
+fn xml(text: &str) -> String {
+    let text = text.chars().filter(|sign| !sign.is_control() || matches!(sign, '\n' | '\t')).collect::<String>();
+    escape(&text).into_owned()
 }

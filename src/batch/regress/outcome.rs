@@ -14,8 +14,8 @@ use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
 use crate::output::schema::{COLUMNS, LoggedConflict};
 use crate::output::summary::{Count, Exposure};
-use crate::util::input_file;
 use crate::util::units::Second;
+use crate::util::{input_file, output_file};
 use crate::{Error, Result};
 
 /// The results of a scenario's runs.
@@ -168,12 +168,10 @@ impl Outcome {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     pub fn write(&self, expected: &Path) -> Result<()> {
-        std::fs::create_dir_all(expected).map_err(|source| Error::file(expected, source))?;
         let text =
             serde_json::to_string_pretty(&self.summary).map_err(|error| Error::content(expected, error.to_string()))?;
         for (name, bytes) in [(log::CONFLICTS, self.csv.clone()), (SUMMARY, (text + "\n").into_bytes())] {
-            let path = expected.join(name);
-            std::fs::write(&path, bytes).map_err(|source| Error::file(&path, source))?;
+            output_file::write(&expected.join(name), &bytes)?;
         }
         Ok(())
     }

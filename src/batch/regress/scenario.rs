@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use crate::analysis::logged::SUMMARY;
 use crate::options::{Options, OptionsFile};
+use crate::output::log::CONFLICTS;
 use crate::util::input_file;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
@@ -186,6 +188,13 @@ impl Scenario {
     /// The folder of the expected outcome.
     pub fn expected(&self) -> PathBuf {
         self.folder.join("expected")
+    }
+
+    /// The files that are read to run and compare it, without those that SUMO reads.
+    pub fn files(&self) -> [PathBuf; 4] {
+        let expected = self.expected();
+        let [settings, sumocfg] = [Path::new(SETTINGS), &self.sumocfg].map(|file| self.folder.join(file));
+        [settings, sumocfg, expected.join(CONFLICTS), expected.join(SUMMARY)]
     }
 }
 

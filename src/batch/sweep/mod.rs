@@ -98,6 +98,19 @@ impl Sweep {
         Ok(Self { tasks, out: out.to_owned() })
     }
 
+    /// The sweep of one of the runs, which are numbered from 1 on.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if no run has this number.
+    pub fn only(mut self, number: usize) -> Result<Self> {
+        let last = self.tasks.len();
+        if !(1..=last).contains(&number) {
+            return Err(Error::Value(format!("there is no run {number}: the numbers are 1 to {last}")));
+        }
+        self.tasks = vec![self.tasks.swap_remove(number - 1)];
+        Ok(self)
+    }
+
     /// The runs to be done: those without a file in the folder, and those whose file no longer fits.
     ///
     /// # Errors

@@ -1,6 +1,5 @@
 //! Files in the formats of other tools, written next to the log: SUMO's SSM device, FHWA's SSAM.
 
-mod file;
 mod ssm;
 mod trajectories;
 
@@ -12,6 +11,7 @@ use crate::traffic::frame::Frame;
 use crate::traffic::net::Net;
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::output_file::same_file;
 use crate::{Error, Result};
 use ssm::Ssm;
 use trajectories::Trajectories;
@@ -44,34 +44,21 @@ impl OutputFiles {
         let refused =
             |option: &str, over: &Path| Err(Error::Value(format!("{option} would be written over {}", over.display())));
         for (option, path) in [("--ssm-output", ssm), ("--trj-output", trajectories)] {
-            let over = path.iter().find_map(|path| kept.iter().map(P::as_ref).find(|kept| are_same(path, kept)));
+            let over = path.iter().find_map(|path| same_file(path, kept.iter().map(P::as_ref)));
             if let Some(over) = over {
                 return refused(option, over);
             }
         }
         match (ssm, trajectories) {
-            (Some(ssm), Some(trajectories)) if are_same(ssm, trajectories) => refused("--ssm-output", trajectories),
+            (Some(ssm), Some(trajectories)) if same_file(ssm, [&**trajectories]).is_some() => {
+                refused("--ssm-output", trajectories)
+            }
             _ => Ok(()),
         }
     }
 }
 
-/// Whether two paths name the same regular file. Devices such as /dev/null may be named twice.
-fn are_same(a: &Path, b: &Path) -> bool {
-    let is_device = a.exists() && !a.is_file();
-    !is_device && (a == b || canonical(a).is_some_and(|a| canonical(b) == Some(a)))
-}
-
-/// The canonical path of a file, which need not exist yet if its folder does.
-fn canonical(path: &Path) -> Option<PathBuf> {
-    let in_its_folder = || {
-        let folder = Path::new(".").join(path.parent()?);
-        Some(folder.canonicalize().ok()?.join(path.file_name()?))
-    };
-    path.canonicalize().ok().or_else(in_its_folder)
-}
-
-/// The files of a run besides its log; the default has none.
+/// The files of a run besides its log; the default has none. Until they are complete there is nothing under their names.
 #[derive(Debug, Default)]
 pub struct Outputs {
     ssm: Option<Ssm>,
@@ -79,7 +66,7 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Creates the files.
+    /// Begins the files.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written; [`Error::Value`] if trajectories are wanted without a net, or if a
@@ -128,17 +115,7 @@ impl Outputs {
 
     /// Completes the files.
     pub(crate) fn finish(&mut self) -> Result<()> {
-        self.ssm.as_mut().map_or(Ok(()), Ssm::finish)?;
-        self.trajectories.as_mut().map_or(Ok(()), Trajectories::finish)
-    }
-
-    /// Removes the files.
-    pub(crate) fn discard(self) {
-        let files = [self.ssm.map(|ssm| ssm.file), self.trajectories.map(|trajectories| trajectories.file)];
-        // Only regular files: root could remove /dev/null.
-        for file in files.into_iter().flatten().filter(|file| file.path.is_file()) {
-            // A file that cannot be removed stays: the error that led here is the one to report.
-            let _ = std::fs::remove_file(file.path);
-        }
+        self.ssm.take().map_or(Ok(()), Ssm::finish)?;
+        self.trajectories.take().map_or(Ok(()), Trajectories::finish)
     }
 }

@@ -8,11 +8,11 @@ use std::path::Path;
 
 use quick_xml::escape::escape;
 
-use super::file::OutputFile;
 use crate::Result;
 use crate::detection::kind::Kind;
 use crate::events::{Conflict, Moment};
 use crate::util::decimal::shortest;
+use crate::util::output_file::OutputFile;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;
@@ -28,7 +28,7 @@ const COLLISION: u32 = 111;
 /// The SSM file of a run.
 #[derive(Debug)]
 pub struct Ssm {
-    pub(super) file: OutputFile,
+    file: OutputFile,
 }
 
 impl Ssm {
@@ -36,19 +36,19 @@ impl Ssm {
     pub fn create(path: &Path) -> Result<Self> {
         let mut file = OutputFile::create(path)?;
         let made_by = concat!("<!-- closecall ", env!("CARGO_PKG_VERSION"), " -->\n");
-        file.write(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\n{made_by}\n<SSMLog>\n").as_bytes())?;
+        file.append(format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\n{made_by}\n<SSMLog>\n").as_bytes())?;
         Ok(Self { file })
     }
 
     /// Appends a conflict.
     pub fn write_conflict(&mut self, conflict: &Conflict) -> Result<()> {
-        self.file.write(element(conflict).as_bytes())
+        self.file.append(element(conflict).as_bytes())
     }
 
     /// Completes the file.
-    pub fn finish(&mut self) -> Result<()> {
-        self.file.write(b"</SSMLog>\n")?;
-        self.file.flush()
+    pub fn finish(mut self) -> Result<()> {
+        self.file.append(b"</SSMLog>\n")?;
+        self.file.finish()
     }
 }
 

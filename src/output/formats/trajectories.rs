@@ -14,7 +14,6 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::file::OutputFile;
 use crate::Result;
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Bounds, Point, Vector};
@@ -22,6 +21,7 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::output_file::OutputFile;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
 /// The first byte of each record.
@@ -45,7 +45,7 @@ const NO_LINK: i32 = -1;
 /// The trajectory file, and the state of the previous step that the next one needs.
 #[derive(Debug)]
 pub struct Trajectories {
-    pub(super) file: OutputFile,
+    file: OutputFile,
     origin: Vector,
     /// Midnight before the first step; none before it.
     midnight: Option<Second>,
@@ -69,19 +69,19 @@ impl Trajectories {
     /// Creates the file with its first two records.
     pub fn create(path: &Path, net: &Net) -> Result<Self> {
         let mut file = OutputFile::create(path)?;
-        file.write(&[FORMAT, b'L'])?;
-        file.write(&VERSION.to_le_bytes())?;
+        file.append(&[FORMAT, b'L'])?;
+        file.append(&VERSION.to_le_bytes())?;
         // The flag that records have heights.
-        file.write(&[1])?;
+        file.append(&[1])?;
         let mut bounds = Bounds::EMPTY;
         net.lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
         let is_far = bounds.low.coords.amax().max(bounds.high.coords.amax()) > FAR;
         let origin = if is_far { bounds.low.coords.map(f64::floor) } else { Vector::zeros() };
         let (low, high) = (bounds.low - origin, bounds.high - origin);
-        file.write(&[DIMENSIONS, METRIC])?;
-        file.write(&SCALE.to_le_bytes())?;
+        file.append(&[DIMENSIONS, METRIC])?;
+        file.append(&SCALE.to_le_bytes())?;
         for bound in [low.x - MARGIN, low.y - MARGIN, high.x + MARGIN, high.y + MARGIN] {
-            file.write(&(bound.round() as i32).to_le_bytes())?;
+            file.append(&(bound.round() as i32).to_le_bytes())?;
         }
         Ok(Self {
             file,
@@ -141,12 +141,12 @@ impl Trajectories {
             }
         }
         self.placed.clear();
-        self.file.write(&self.record)
+        self.file.append(&self.record)
     }
 
     /// Completes the file.
-    pub fn finish(&mut self) -> Result<()> {
-        self.file.flush()
+    pub fn finish(self) -> Result<()> {
+        self.file.finish()
     }
 }
 
