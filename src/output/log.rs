@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 
 use super::input_hash::Hasher;
 use super::record::RunRecord;
-use super::schema::{COLUMNS, Context, LoggedConflict, Value};
+use super::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
 use super::series;
 use crate::events::Conflict;
-use crate::options::{ENCOUNTERS, SERIES};
+use crate::options::measures::Measures;
+use crate::options::{ENCOUNTERS, Options, SERIES};
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
 use crate::util::csv_safe::safe;
@@ -23,6 +24,11 @@ use crate::{Error, Result};
 pub const CONFLICTS: &str = "conflicts.csv";
 /// The name of the file that records how the run was made.
 pub const RUN: &str = "run.json";
+
+/// The columns of a log with these added measures.
+fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
+    COLUMNS.iter().filter(move |column| column.is_in(measures))
+}
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
@@ -36,15 +42,16 @@ pub struct Log {
     made_folder: bool,
     conflicts: CsvFile,
     series: Option<CsvFile>,
+    measures: Measures,
     written: u64,
 }
 
 impl Log {
-    /// Makes the folder if it does not exist, and in it the files with their first lines.
+    /// Makes the folder if it does not exist, and in it the files that the options ask for, with their first lines.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
-    pub fn create(folder: &Path, series: Option<&str>) -> Result<Self> {
+    pub fn create(folder: &Path, options: &Options) -> Result<Self> {
         let made_folder = !folder.exists();
         fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
         // An earlier run's files would be taken for this run's.
@@ -54,9 +61,12 @@ impl Log {
                 fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
             }
         }
+        let measures = options.measures;
+        let series = options.series_file().map(|name| CsvFile::create(folder.join(name), series::names(measures)));
         Ok(Self {
-            conflicts: CsvFile::create(folder.join(CONFLICTS), COLUMNS.iter().map(|column| column.name))?,
-            series: series.map(|name| CsvFile::create(folder.join(name), series::names())).transpose()?,
+            conflicts: CsvFile::create(folder.join(CONFLICTS), columns(measures).map(|column| column.name))?,
+            series: series.transpose()?,
+            measures,
             folder: folder.to_owned(),
             made_folder,
             written: 0,
@@ -71,11 +81,11 @@ impl Log {
         for conflict in conflicts {
             self.written += 1;
             let logged = LoggedConflict::new(conflict, Context { number: self.written, net, roster });
-            self.conflicts.write_row(COLUMNS.iter().map(|column| (column.get)(&logged)))?;
+            self.conflicts.write_row(columns(self.measures).map(|column| (column.get)(&logged)))?;
             if let Some(series) = &mut self.series {
                 for step in &conflict.steps {
                     let logged = LoggedConflict::new(step, Context { number: self.written, net, roster });
-                    series.write_row(series::values(&logged))?;
+                    series.write_row(series::values(&logged, self.measures))?;
                 }
             }
         }
@@ -219,7 +229,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {
-        let message = Log::create(Path::new("/proc/closecall"), None).unwrap_err().to_string();
+        let message = Log::create(Path::new("/proc/closecall"), &Options::default()).unwrap_err().to_string();
         assert!(message.starts_with("/proc/closecall: "), "{message}");
     }
 }

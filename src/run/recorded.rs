@@ -46,7 +46,7 @@ impl RecordedRun {
     pub fn open(mut run: Run, record: RunRecord, folder: &Path, files: &OutputFiles) -> Result<Self> {
         let outputs = Outputs::create(files, run.net(), &record.inputs)?;
         let earlier = if files.force { None } else { EarlierLog::keep(folder)? };
-        let mut log = Log::create(folder, record.options.series_file())?;
+        let mut log = Log::create(folder, &record.options)?;
         let record = RunRecord { csv_safe: files.csv_safe, ..record };
         if files.csv_safe {
             log.set_csv_safe();
