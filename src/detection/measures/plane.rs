@@ -1,20 +1,16 @@
 //! Measures of two that keep their velocities in the plane, whatever their paths are: SSAM's DeltaS (Gettman, Pu, Sayed and
-//! Shelby 2008), the anticipated collision time (ACT, Venthuruthiyil and Chunchu 2022) and the emergency index (EI, Cheng,
-//! Jiang, Zhang et al. 2024).
+//! Shelby 2008) and the anticipated collision time (ACT, Venthuruthiyil and Chunchu 2022).
 //!
 //! ```text
 //! DeltaS = |v − vᵢ|
 //! ACT    = S / (closing speed along S),  S the shortest line between the two rectangles
-//! EI     = InDepth / TDM:  TDM the time until the centres are nearest, InDepth how deep the rectangles then overlap across
-//!          the relative velocity
 //! ```
 //!
-//! ACT is published with accelerations and yaw rates; here both are 0, as in SSMsOnPlane (Jiao). The published EI adds a
-//! safe distance to InDepth, 0 in its authors' code, and so here.
+//! ACT is published with accelerations and yaw rates; here both are 0, as in SSMsOnPlane (Jiao).
 
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Point, Vector, cross, left_of};
-use crate::util::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{MetrePerSecond, Second};
 
 /// A road user that keeps its velocity.
 #[derive(Clone, Copy, Debug)]
@@ -26,7 +22,8 @@ pub struct Moving {
 }
 
 impl Moving {
-    fn velocity(&self) -> Vector {
+    /// Its velocity in m/s.
+    pub fn velocity(&self) -> Vector {
         self.rectangle.axis * self.speed
     }
 }
@@ -60,28 +57,14 @@ fn nearest(rectangle: &Rectangle, point: Point) -> Point {
     rectangle.centre + rectangle.axis * along + left_of(&rectangle.axis) * across
 }
 
-/// EI in m/s; none if the two would pass each other, or are nearest already.
-pub fn emergency_index(a: &Moving, b: &Moving) -> Option<MetrePerSecond> {
-    let (between, relative) = (b.rectangle.centre - a.rectangle.centre, b.velocity() - a.velocity());
-    let nearest_after = -between.dot(&relative) / relative.norm_squared();
-    if nearest_after.is_nan() || nearest_after <= 0.0 {
-        return None;
-    }
-    let direction = relative.normalize();
-    let reach = |of: &Rectangle| -> Metre {
-        cross(&of.axis, &direction).abs() * of.half_length + of.axis.dot(&direction).abs() * of.half_width
-    };
-    let depth = reach(&a.rectangle) + reach(&b.rectangle) - cross(&direction, &between).abs();
-    Some(depth / nearest_after).filter(|index| *index > 0.0 && index.is_finite())
-}
-
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::geometry::contact;
     use fastrand::Rng;
 
-    fn random(chance: &mut Rng) -> Moving {
+    /// A road user anywhere, with any heading and size.
+    pub(in crate::detection::measures) fn random(chance: &mut Rng) -> Moving {
         let mut between = |low: f64, high: f64| low + (high - low) * chance.f64();
         let centre = Point::new(between(-30.0, 30.0), between(-30.0, 30.0));
         let (length, width) = (between(1.0, 12.0), between(0.5, 2.5));
@@ -116,38 +99,9 @@ mod tests {
     }
 
     #[test]
-    fn ei_parts_the_two_until_they_are_nearest() {
-        // By the corners, as its authors compute it.
-        let mut chance = Rng::with_seed(4);
-        let mut intruding = 0;
-        for _ in 0..500 {
-            let (a, b) = (random(&mut chance), random(&mut chance));
-            let relative = b.velocity() - a.velocity();
-            let theta = relative / relative.norm();
-            let delta = b.rectangle.centre - a.rectangle.centre;
-            let tdm = -delta.dot(&theta) / relative.norm();
-            let off = |vector: Vector| (vector - theta * vector.dot(&theta)).norm();
-            let reach = |of: &Moving| {
-                let corners = of.rectangle.corners().map(|corner| off(corner - of.rectangle.centre));
-                corners.into_iter().fold(0.0, f64::max)
-            };
-            let depth = reach(&a) + reach(&b) - off(delta);
-            let expected = Some(depth / tdm).filter(|_| tdm > 0.0 && depth > 0.0);
-            let found = emergency_index(&a, &b);
-            assert_eq!(found.is_some(), expected.is_some());
-            if let (Some(found), Some(expected)) = (found, expected) {
-                intruding += 1;
-                assert!((found / expected - 1.0).abs() < 1e-9, "{found}, not {expected}");
-            }
-        }
-        assert!(intruding > 50, "{intruding}");
-    }
-
-    #[test]
-    fn two_that_keep_their_distance_have_neither() {
+    fn two_that_keep_their_distance_have_none() {
         let car = |x, speed| Moving { rectangle: Rectangle::new(Point::new(x, 0.0), 0.0, 5.0, 2.0), speed };
         assert_eq!(anticipated_collision_time(&car(0.0, 9.0), &car(20.0, 9.0)), None);
-        assert_eq!(emergency_index(&car(0.0, 9.0), &car(20.0, 9.0)), None);
         assert_eq!(anticipated_collision_time(&car(0.0, 20.0), &car(25.0, 10.0)), Some(2.0));
         assert_eq!((delta_s(&car(0.0, 20.0), &car(25.0, 10.0)), delta_s(&car(0.0, 9.0), &car(20.0, 9.0))), (10.0, 0.0));
     }
