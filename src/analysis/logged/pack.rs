@@ -338,6 +338,21 @@ mod tests {
     }
 
     #[test]
+    fn a_packed_log_has_the_added_columns_that_it_was_told_to_have() {
+        let folder = tempfile::tempdir().unwrap();
+        let [log, packed] = ["log", "p"].map(|name| folder.path().join(name));
+        fs::create_dir(&log).unwrap();
+        let columns =
+            COLUMNS.iter().filter(|column| column.is_in("t2,ei".parse().unwrap())).map(|column| column.name);
+        let columns = columns.collect::<Vec<_>>();
+        fs::write(log.join(CONFLICTS), columns.join(",") + "\n").unwrap();
+        fs::write(log.join(RUN), "{}\n").unwrap();
+        pack(&log, &labels(), "abc", RunTime::default(), &packed.join(PARQUET)).unwrap();
+        assert_eq!(ConflictReader::open(&packed).unwrap().columns(), columns);
+        assert!(columns.ends_with(&["t2", "ei"]));
+    }
+
+    #[test]
     fn a_file_that_is_cut_short_is_named() {
         let path = std::env::temp_dir().join(format!("closecall-cut-{}", std::process::id()));
         fs::write(&path, "PAR1 and no more").unwrap();

@@ -2,8 +2,8 @@
 //! 1998): the time left until contact, and the speed of the road user that evades, when its evasive action begins.
 //!
 //! The levels are lines in the diagram of TA and conflicting speed V (in m/s), each half a second apart; from level 26 on a
-//! conflict is serious. The border of level 26 is taken second-hand, from the fit that later studies with the technique use
-//! (Madsen and Lahrmann 2017):
+//! conflict is serious. The border of level 26 and the distance between the lines are second-hand: neither could be checked in
+//! a primary text.
 //!
 //! ```text
 //! TA_border = 1.5 V / (16.7 exp(−0.0306 V/2)),   level = 26 + ⌊(TA_border − TA) / 0.5⌋, from 1 to 30
