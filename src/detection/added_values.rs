@@ -35,6 +35,8 @@ pub(super) struct PairInStep<'a> {
     pub foe: UserInStep<'a>,
     /// Paths that meet at a smaller angle do not cross.
     pub crossing: Radian,
+    /// How long the step lasted.
+    pub step: Second,
 }
 
 /// Whether any of the chosen measures follows both along their paths.
@@ -156,7 +158,8 @@ impl PairInStep<'_> {
     /// TA and conflicting speed, if one evades.
     fn evasion(&self) -> Option<(Second, f64)> {
         let Self { ego, foe, .. } = self;
-        let speed = conflicting_speed([ego.moving.speed, foe.moving.speed], [ego.acceleration, foe.acceleration])?;
+        let speeds = [ego.moving.speed, foe.moving.speed];
+        let speed = conflicting_speed(speeds, [ego.acceleration, foe.acceleration], self.step)?;
         Some((self.ttc().filter(|ttc| *ttc > 0.0)?, speed))
     }
 }

@@ -227,7 +227,7 @@ columns! { |conflict, context|
     [Chosen] stn: Option<Ratio> = conflict.added(AddedMeasure::Stn);
     /// time to accident: the TTC when the first of both brakes with at least 1.3 m/s²
     [Chosen] ta: Option<Second> = conflict.added(AddedMeasure::Ta);
-    /// speed of the one that brakes then
+    /// speed of the one that brakes then, before it does
     [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.added(AddedMeasure::ConflictingSpeed);
     /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
     [Chosen] ta_level: Option<Ratio> = conflict.added(AddedMeasure::TaLevel);

@@ -16,6 +16,7 @@ import closecall as cc
 import numpy as np
 import pytest
 import shapely
+from closecall._closecall import read_log
 from conftest import NETS, Once, Row, closecall, rows
 from shapely.affinity import translate
 
@@ -180,9 +181,9 @@ def test_the_measures_of_a_step_are_what_its_formulas_give(net: str, measured: C
                 found = number(row, measure)
                 assert is_near(found, expected, measure), (measure, found, expected, row)
                 compared[measure] += found is not None
-    needed = {"act", "br", "delta_s", "ei", "max_d", "max_s", "rss_distance"}
-    needed |= {"crash_index", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
-    assert all(compared[measure] > 10 for measure in needed), compared
+    needed = {"act", "delta_s", "ei", "max_d", "max_s", "rss_distance"}
+    needed |= {"br", "crash_index", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
+    assert all(compared[measure] >= 10 for measure in needed), compared
 
 
 LEAST = ("tadv", "t2", "thw", "sgap", "mttc", "max_d", "act")
@@ -232,10 +233,12 @@ def evasion(steps: list[Row], run: Run) -> dict[str, float | None]:
     """TA, conflicting speed and severity level of the first step in which somebody brakes."""
     for row in steps:
         time = round(float(row["time"]), 3)
-        brakes = [run.accelerations.get((time, row[who]), 0.0) <= -1.3 for who in ("ego", "foe")]
-        speeds = [float(row[f"{who}_speed"]) for who, brake in zip(("ego", "foe"), brakes) if brake]
-        if speeds and float(row["ttc"] or 0) > 0:
-            ta, speed = float(row["ttc"]), max(speeds)
+        changes = {who: run.accelerations.get((time, row[who]), 0.0) for who in ("ego", "foe")}
+        before = [
+            float(row[f"{who}_speed"]) - change * run.step_length for who, change in changes.items() if change <= -1.3
+        ]
+        if before and float(row["ttc"] or 0) > 0:
+            ta, speed = float(row["ttc"]), max(before)
             border = 1.5 * speed / (16.7 * math.exp(-0.0306 * 0.5 * speed))
             level = min(max(26 + math.floor((border - ta) / 0.5), 1), 30)
             return {"ta": ta, "conflicting_speed": speed, "ta_level": float(level)}
@@ -249,7 +252,7 @@ def test_the_crash_potential_is_the_mean_probability_of_the_steps(measured: Call
     compared = 0
     for conflict in run.conflicts:
         steps = run.steps[conflict["id"]]
-        if conflict["collision"] == "true" or conflict["ego_type"] != "car":
+        if conflict["collision"] == "true":
             continue
         expected = sum(float(brakes.cdf(float(row["drac"] or 0))) for row in steps) / len(steps)
         assert float(conflict["cpi"]) == pytest.approx(expected, abs=1e-4), conflict["id"]
@@ -284,7 +287,7 @@ def test_every_reader_takes_logs_with_and_without_them(tmp_path: Path) -> None:
         for command in ("stats", "report"):
             done = closecall(command, tmp_path / name, *(("--out", tmp_path / f"{name}.html") * (command == "report")))
             assert done.returncode == 0, done.stderr
-    without, with_all = (cc.read_log(tmp_path / name) for name in ("default", "all"))
+    without, with_all = (read_log(tmp_path / name) for name in ("default", "all"))
     assert [one.tadv for one in without] == [None] * len(without)
     assert any(one.t2 is not None for one in with_all)
     assert [one.margin for one in without] == [one.margin for one in with_all]

@@ -125,8 +125,9 @@ def test_the_safe_distances_are_those_of_ad_rss(kind: str) -> None:
         function = getattr(rss.structured, f"calculateSafeLongitudinalDistance{name}")
         wanted = safe_distance(function, foe if same else ego, ego if same else foe)
         assert conflict.rss_distance == pytest.approx(wanted, rel=1e-9, abs=1e-9)
-        # The foe is on the left; to the left is away.
+        # The foe on the left; mirrored where its centre, 2.5 m behind its front, is on the right.
         to_the_left = foe_speed * math.sin(turn) * (1 if same else -1)
-        beside = by_the_values_of_closecall(foe_speed, -to_the_left)
+        side = math.copysign(1, 0.3 - 2.5 * math.sin(turn) * (1 if same else -1))
+        beside = by_the_values_of_closecall(foe_speed, -side * to_the_left)
         lateral = safe_distance(rss.structured.calculateSafeLateralDistance, beside, ego)
         assert conflict.rss_lateral_distance == pytest.approx(lateral, rel=1e-9, abs=1e-9)

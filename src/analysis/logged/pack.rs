@@ -342,8 +342,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let [log, packed] = ["log", "p"].map(|name| folder.path().join(name));
         fs::create_dir(&log).unwrap();
-        let columns =
-            COLUMNS.iter().filter(|column| column.is_in("t2,ei".parse().unwrap())).map(|column| column.name);
+        let columns = COLUMNS.iter().filter(|column| column.is_in("t2,ei".parse().unwrap())).map(|column| column.name);
         let columns = columns.collect::<Vec<_>>();
         fs::write(log.join(CONFLICTS), columns.join(",") + "\n").unwrap();
         fs::write(log.join(RUN), "{}\n").unwrap();

@@ -41,6 +41,6 @@ impl Detector {
             }
         });
         let crossing = self.options.kind_bounds().rear_end_below;
-        Some(Box::new(PairInStep { found, ego, foe, crossing }.values(measures)))
+        Some(Box::new(PairInStep { found, ego, foe, crossing, step: self.step }.values(measures)))
     }
 }

@@ -22,13 +22,15 @@ const HIGHEST: f64 = 30.0;
 /// The time between the lines of two levels, in s.
 const APART: Second = 0.5;
 
-/// The conflicting speed: that of the one that evades by braking, the faster one if both do; none if neither does.
+/// The conflicting speed: that of the one that evades by braking, before this step in which it does; that of the faster one if
+/// both do, none if neither does.
 pub fn conflicting_speed(
     speeds: [MetrePerSecond; 2],
     accelerations: [MetrePerSecondSquared; 2],
+    step: Second,
 ) -> Option<MetrePerSecond> {
     let evading = speeds.into_iter().zip(accelerations).filter(|(_, acceleration)| *acceleration <= -BRAKES);
-    evading.map(|(speed, _)| speed).reduce(f64::max)
+    evading.map(|(speed, acceleration)| speed - acceleration * step).reduce(f64::max)
 }
 
 /// The severity level of a TA and a conflicting speed.
@@ -50,9 +52,9 @@ mod tests {
 
     #[test]
     fn the_one_that_brakes_has_the_conflicting_speed() {
-        let speed = |accelerations| conflicting_speed([10.0, 7.0], accelerations);
-        assert_eq!(speed([-0.5, -2.0]), Some(7.0));
-        assert_eq!(speed([-1.3, -4.0]), Some(10.0));
+        let speed = |accelerations| conflicting_speed([10.0, 7.0], accelerations, 0.1);
+        assert_eq!(speed([-0.5, -2.0]), Some(7.2));
+        assert_eq!(speed([-1.3, -4.0]), Some(10.13));
         assert_eq!(speed([0.0, -1.2]), None);
     }
 }

@@ -5,11 +5,12 @@
 //! ```text
 //! same direction:      d = [ V ρ + a⁺ ρ²/2 + (V + ρ a⁺)²/(2b) − Vᵢ²/(2B) ]₊
 //! opposite directions: d = V ρ + a⁺ ρ²/2 + (V + ρ a⁺)²/(2b) + the same of the foe
-//! lateral:             d = m + [ u ρ + a ρ²/2 + (u + ρ a)²/(2c) + the same of the foe ]₊
+//! lateral:             d = [ m + u ρ + a ρ²/2 + (u + ρ a)²/(2c) + the same of the foe ]₊
 //! ```
 //!
 //! with the lateral speeds u towards each other, 0 or more, the lateral acceleration a and braking c, and the margin m. A road
-//! user that moves away sideways counts with what it moves away within ρ. The paper leaves the values open; these are the
+//! user that moves away sideways counts with what it moves away within ρ. As in Intel's ad-rss-lib, the margin is within the
+//! brackets; in the paper it stands before them. The paper leaves the values open; these are the
 //! ones of CARLA's RSS sensor and Intel's ad-rss-lib. Which of two oncoming ones keeps to its lane is not known here, so both
 //! brake with b.
 
@@ -46,13 +47,13 @@ pub fn opposite_directions(speed: MetrePerSecond, foe: MetrePerSecond) -> Metre 
     way(speed, ACCELERATION, LEAST_BRAKING) + way(foe, ACCELERATION, LEAST_BRAKING)
 }
 
-/// The safe lateral distance in m of two with these lateral speeds towards each other; below 0 for one that moves away.
+/// The safe lateral distance in m of two with these lateral speeds towards each other, below 0 for one that moves away.
 pub fn lateral(speeds: [MetrePerSecond; 2]) -> Metre {
     let approach = speeds.map(|speed| {
         let then = speed + RESPONSE * LATERAL_ACCELERATION;
         if then >= 0.0 { way(speed, LATERAL_ACCELERATION, LATERAL_BRAKING) } else { (speed + then) / 2.0 * RESPONSE }
     });
-    LATERAL_MARGIN + approach.iter().sum::<f64>().max(0.0)
+    (LATERAL_MARGIN + approach.iter().sum::<f64>()).max(0.0)
 }
 
 #[cfg(test)]
@@ -86,6 +87,6 @@ mod tests {
     #[test]
     fn a_leader_that_is_much_faster_needs_no_distance() {
         assert_eq!(same_direction(1.0, 40.0), 0.0);
-        assert_eq!(lateral([0.0, -3.0]), LATERAL_MARGIN);
+        assert_eq!(lateral([0.0, -3.0]), 0.0);
     }
 }
