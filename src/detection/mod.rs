@@ -3,7 +3,9 @@
 //! The broad phase finds the pairs that may meet. The narrow phase finds their conflict points. The measures tell how
 //! close a pair is.
 
+mod added_values;
 pub mod broad_phase;
+
 pub mod detector;
 pub mod encounter;
 pub mod kind;

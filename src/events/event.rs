@@ -6,10 +6,11 @@ use serde::Serialize;
 use super::Snapshot;
 use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
-use super::pet::Pet;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
+use crate::detection::measures::pet::Pet;
+use crate::options::measures::{AddedMeasure, AddedValues};
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
@@ -103,6 +104,9 @@ pub struct Conflict {
     /// When and where `ttc`, `drac` and `pet` were found.
     #[serde(skip)]
     pub found: [Option<Moment>; 3],
+    /// The measures that are logged only if they are chosen; none where none is.
+    #[serde(skip)]
+    pub(crate) added: Option<Box<AddedValues>>,
     /// Each of its steps as a conflict of its own, without paths and PET, where a series is wanted.
     #[serde(skip)]
     pub steps: Vec<Self>,
@@ -129,6 +133,7 @@ impl Conflict {
             extended_delta_v,
             ref found,
             ref worst,
+            ref added,
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
@@ -178,7 +183,13 @@ impl Conflict {
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],
+            added: added.as_ref().map(|added| Box::new(added.values())),
             steps: Vec::new(),
         }
+    }
+
+    /// The value of a measure that is logged only if it is chosen.
+    pub(crate) fn added(&self, measure: AddedMeasure) -> Option<f64> {
+        self.added.as_ref().and_then(|values| values[measure as usize])
     }
 }

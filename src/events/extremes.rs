@@ -1,10 +1,12 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
+use super::added::{Added, Step};
 use super::moment::Moment;
 use super::snapshot::Snapshot;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
+use crate::options::measures::AddedValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{Roster, UserIndex};
@@ -19,6 +21,10 @@ pub(super) struct Observation<'a> {
     pub frame: &'a Frame,
     pub roster: &'a Roster,
     pub found: &'a Encounter,
+    /// The chosen measures of this step; none where none is chosen.
+    pub added: Option<&'a AddedValues>,
+    /// Since the step before, in s; 0 in the first of a run.
+    pub lasted: Second,
 }
 
 /// The extremes so far; [`super::Conflict`] describes the values.
@@ -43,6 +49,8 @@ pub(super) struct Extremes {
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
+    /// The chosen measures; none where none is chosen.
+    pub added: Option<Box<Added>>,
 }
 
 /// The step with the smallest margin.
@@ -107,6 +115,10 @@ impl Observation<'_> {
         self.found.nearness?.extended_delta_v
     }
 
+    fn added_step(&self) -> Option<Step<'_>> {
+        self.added.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -115,7 +127,7 @@ impl Observation<'_> {
 
 impl WorstStep {
     /// This step; `path` has the path of a row's front bumper.
-    fn of(&Observation { frame, roster, found }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    fn of(&Observation { frame, roster, found, .. }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let Encounter { ego, foe, kind, gap, mu, margin, angle, x, y, lane, .. } = *found;
         let speeds = [found.ego_row, found.foe_row].map(|row| frame.state(row).speed);
         let snapshots = [(ego, found.ego_row), (foe, found.foe_row)]
@@ -146,14 +158,19 @@ impl Extremes {
             extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
+            added: seen.added_step().map(|step| Box::new(Added::of(&step))),
         }
     }
 
     /// Adds a later step of the same event.
     pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
         // Of margins that differ by rounding only, the first is kept.
-        if seen.found.margin < self.worst.margin - SAME_MARGIN {
+        let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN;
+        if is_worst {
             self.worst = WorstStep::of(seen, path);
+        }
+        if let (Some(added), Some(step)) = (&mut self.added, seen.added_step()) {
+            added.take(&step, is_worst);
         }
         self.end = seen.frame.time;
         self.severity = self.severity.max(seen.severity());

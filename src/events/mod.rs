@@ -7,11 +7,11 @@
 //! it is, is known at the end: then the whole event is one conflict. Otherwise only what meets the rest of the condition is
 //! logged, each run of such steps as a conflict of its own.
 
+mod added;
 mod event;
 mod extremes;
 mod moment;
 mod past;
-pub mod pet;
 mod snapshot;
 mod span;
 
@@ -20,9 +20,11 @@ pub use moment::Moment;
 
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
+use crate::detection::measures::pet;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::options::Options;
+use crate::options::measures::AddedValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
@@ -61,6 +63,8 @@ pub struct Tracker {
     /// Whether each step of a conflict is kept.
     keeps_steps: bool,
     past: Past,
+    /// The time of the last step; not a number before the first.
+    last_time: Second,
     /// In the order of the pairs.
     events: Vec<(Pair, Box<Event>)>,
     /// Closed, but its PET is not known yet.
@@ -125,6 +129,7 @@ impl Tracker {
             needs_pet: options.log.needs_pet(),
             keeps_steps: options.series_file().is_some(),
             past: Past::default(),
+            last_time: Second::NAN,
             events: Vec::new(),
             waiting: Vec::new(),
             closed: Vec::new(),
@@ -132,7 +137,8 @@ impl Tracker {
     }
 
     /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
-    /// `path` returns the path of a row's front bumper, from where it is; `collided` are the pairs of ids of which SUMO
+    /// `path` returns the path of a row's front bumper, from where it is; `added` the chosen measures of an encounter, if any
+    /// is chosen; `collided` are the pairs of ids of which SUMO
     /// reports a collision, if that is known.
     pub fn step<'a>(
         &mut self,
@@ -140,12 +146,16 @@ impl Tracker {
         roster: &Roster,
         encounters: impl Iterator<Item = &'a Encounter> + Clone,
         path: impl Fn(u32) -> Vec<Point>,
+        added: impl Fn(&Encounter) -> Option<Box<AddedValues>>,
         collided: Option<&[[String; 2]]>,
     ) -> &[Conflict] {
         self.forget_closed();
+        let lasted = if self.last_time.is_nan() { 0.0 } else { frame.time - self.last_time };
+        self.last_time = frame.time;
         if !self.events.is_empty() || !self.waiting.is_empty() || encounters.clone().any(Encounter::may_be_logged) {
             for found in encounters.filter(|found| found.may_be_logged()) {
-                self.take(&Observation { frame, roster, found }, &path);
+                let added = added(found);
+                self.take(&Observation { frame, roster, found, added: added.as_deref(), lasted }, &path);
             }
             if let Some(collided) = collided {
                 self.mark(collided, roster);
@@ -386,7 +396,9 @@ mod tests {
             };
             let encounter = self.encounter(kind, margin, pet_below);
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker.step(&frame, &self.roster, found.iter(), |_| Vec::new(), self.collided.as_deref()).to_vec()
+            self.tracker
+                .step(&frame, &self.roster, found.iter(), |_| Vec::new(), |_| None, self.collided.as_deref())
+                .to_vec()
         }
     }
 
@@ -473,7 +485,14 @@ mod tests {
             let pet_below = if margin < 0.0 { f64::INFINITY } else { PET };
             let encounter = scene.encounter(Kind::Side, margin, pet_below);
             let seen = (margin < f64::INFINITY).then_some(encounter);
-            found.extend_from_slice(scene.tracker.step(&frame, &scene.roster, seen.iter(), |_| Vec::new(), None));
+            found.extend_from_slice(scene.tracker.step(
+                &frame,
+                &scene.roster,
+                seen.iter(),
+                |_| Vec::new(),
+                |_| None,
+                None,
+            ));
         }
         found
     }

@@ -2,7 +2,7 @@
 
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
-use super::pet::Pet;
+use crate::detection::measures::pet::Pet;
 use crate::geometry::Point;
 use crate::traffic::roster::Roster;
 

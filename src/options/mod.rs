@@ -6,6 +6,7 @@
 mod align;
 pub mod condition;
 mod driver;
+pub mod measures;
 #[cfg(feature = "cli")]
 mod settings;
 mod severity_rule;
@@ -27,6 +28,7 @@ use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 use condition::Condition;
+use measures::Measures;
 use shortcut::Shortcut;
 
 pub use align::Align;
@@ -174,6 +176,10 @@ pub struct Options {
     /// `ttc < 3 or pet < 2 or margin < 0`.
     #[cfg_attr(feature = "cli", arg(long, value_name = "CONDITION", default_value_t))]
     pub log: Condition,
+    /// Measures that the log has besides its default columns: `all`, or names such as `tadv,t2` (docs/measures.md).
+    #[cfg_attr(feature = "cli", arg(long, value_name = "default|all|NAME,…", default_value_t))]
+    #[serde(skip_serializing_if = "Measures::is_empty")]
+    pub measures: Measures,
     /// Count traffic and log conflicts only after this time from the begin, in s.
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = duration))]
     pub warmup: Second,
@@ -223,6 +229,7 @@ impl Default for Options {
             obstacles: Vec::new(),
             filter: None,
             log: Condition::default(),
+            measures: Measures::default(),
             warmup: 0.0,
             log_series: false,
             log_encounters: false,

@@ -12,10 +12,11 @@ use std::time::{Duration, Instant};
 
 use super::input_hash::Hasher;
 use super::record::RunRecord;
-use super::schema::{COLUMNS, Context, LoggedConflict, Value};
+use super::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
 use super::series;
 use crate::events::Conflict;
-use crate::options::{ENCOUNTERS, SERIES};
+use crate::options::measures::Measures;
+use crate::options::{ENCOUNTERS, Options, SERIES};
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
 use crate::util::csv_safe::safe;
@@ -30,6 +31,11 @@ pub const RUN: &str = "run.json";
 /// How long rows may wait before they are forced to disk (docs/log.md). Each time takes 1.5 ms on an SSD.
 const SYNC_EVERY: Duration = Duration::from_secs(5);
 
+/// The columns of a log with these added measures.
+fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
+    COLUMNS.iter().filter(move |column| column.is_in(measures))
+}
+
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
     [CONFLICTS, SERIES, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
@@ -41,25 +47,29 @@ pub struct Log {
     folder: PathBuf,
     conflicts: CsvFile,
     series: Option<CsvFile>,
+    measures: Measures,
     written: u64,
     /// When rows were last forced to disk.
     synced: Instant,
 }
 
 impl Log {
-    /// Makes the folder if it does not exist, and in it the files with their first lines.
+    /// Makes the folder if it does not exist, and in it the files that the options ask for, with their first lines.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
-    pub fn create(folder: &Path, series: Option<&str>) -> Result<Self> {
+    pub fn create(folder: &Path, options: &Options) -> Result<Self> {
         fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
         // An earlier run's files would be taken for this run's; what a link leads to is somebody else's.
         for path in files(folder).filter(|path| path.is_file() || path.is_symlink()) {
             fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
         }
+        let measures = options.measures;
+        let series = options.series_file().map(|name| CsvFile::create(folder.join(name), series::names(measures)));
         Ok(Self {
-            conflicts: CsvFile::create(folder.join(CONFLICTS), COLUMNS.iter().map(|column| column.name))?,
-            series: series.map(|name| CsvFile::create(folder.join(name), series::names())).transpose()?,
+            conflicts: CsvFile::create(folder.join(CONFLICTS), columns(measures).map(|column| column.name))?,
+            series: series.transpose()?,
+            measures,
             folder: folder.to_owned(),
             written: 0,
             synced: Instant::now(),
@@ -73,11 +83,11 @@ impl Log {
     pub fn append_conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for (number, conflict) in (self.written + 1..).zip(conflicts) {
             let logged = LoggedConflict::new(conflict, Context { number, net, roster });
-            self.conflicts.write_row(COLUMNS.iter().map(|column| (column.get)(&logged)))?;
+            self.conflicts.write_row(columns(self.measures).map(|column| (column.get)(&logged)))?;
             if let Some(series) = &mut self.series {
                 for step in &conflict.steps {
                     let logged = LoggedConflict::new(step, Context { number, net, roster });
-                    series.write_row(series::values(&logged))?;
+                    series.write_row(series::values(&logged, self.measures))?;
                 }
             }
         }
@@ -286,7 +296,7 @@ mod tests {
             if is_there {
                 fs::write(&mine, "mine").unwrap();
             }
-            let created = Log::create(&log, Some(SERIES)).unwrap();
+            let created = Log::create(&log, &options).unwrap();
             created.write_record(&RunRecord::new(PathBuf::new(), crate::options::Options::default())).unwrap();
             assert_eq!(fs::read_to_string(&mine).ok().as_deref(), is_there.then_some("mine"));
             let _ = fs::remove_file(&mine);
@@ -295,7 +305,7 @@ mod tests {
 
     #[test]
     fn a_folder_that_cannot_be_made_is_named() {
-        let message = Log::create(Path::new("/proc/closecall"), None).unwrap_err().to_string();
+        let message = Log::create(Path::new("/proc/closecall"), &Options::default()).unwrap_err().to_string();
         assert!(message.starts_with("/proc/closecall: "), "{message}");
     }
 }

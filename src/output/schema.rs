@@ -2,7 +2,8 @@
 //!
 //! The log, both readers, the Parquet files of a sweep, the report's data and Python's `Conflict` loop over [`COLUMNS`];
 //! a test compares the table in docs/log.md and the Python stub with it. To add a measure, write its formula in
-//! [`crate::detection::measures`] and add an `Optional` row here; logs of earlier versions have no such column.
+//! [`crate::detection::measures`] and add an `Optional` row here (logs of earlier versions have no such column), or a `Chosen`
+//! one and its name in [`crate::options::measures`]: then only logs of runs that ask for it have it.
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -10,10 +11,14 @@ use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
 use crate::events::{Conflict, Snapshot};
+use crate::options::measures::{AddedMeasure, Measures};
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::decimal;
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Probability, Radian, Second};
+use crate::util::units::{
+    Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio, Second,
+    SecondSquared,
+};
 
 pub use super::value::{ColumnType, Value};
 
@@ -180,6 +185,64 @@ columns! { |conflict, context|
     /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
     /// would not touch
     [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
+    /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
+    /// course; side and frontal conflicts only
+    [Chosen] tadv: Option<Second> = conflict.added(AddedMeasure::Tadv);
+    /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their paths; the
+    /// TTC on a collision course; side and frontal conflicts only
+    [Chosen] t2: Option<Second> = conflict.added(AddedMeasure::T2);
+    /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
+    [Chosen] rss_distance: Option<Metre> = conflict.added(AddedMeasure::RssDistance);
+    /// safe lateral distance by RSS; rear-end and frontal conflicts only
+    [Chosen] rss_lateral_distance: Option<Metre> = conflict.added(AddedMeasure::RssLateralDistance);
+    /// how long of the conflict the gap was below `rss_distance`
+    [Chosen] rss_violation: Option<Second> = conflict.added(AddedMeasure::RssViolation);
+    /// time headway from front to front: smallest of all steps; rear-end conflicts only
+    [Chosen] thw: Option<Second> = conflict.added(AddedMeasure::Thw);
+    /// space gap: smallest gap of all steps; rear-end conflicts only
+    [Chosen] sgap: Option<Metre> = conflict.added(AddedMeasure::Sgap);
+    /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
+    [Chosen] br: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Br);
+    /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²;
+    /// rear-end conflicts only
+    [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Mdrac);
+    /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
+    [Chosen] mttc: Option<Second> = conflict.added(AddedMeasure::Mttc);
+    /// crash index: largest of all steps; rear-end conflicts only
+    [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.added(AddedMeasure::CrashIndex);
+    /// time exposed to a TTC of at most 3 s
+    [Chosen] tet: Option<Second> = conflict.added(AddedMeasure::Tet);
+    /// integral over time of what the TTC lacks to 3 s
+    [Chosen] tit: Option<SecondSquared> = conflict.added(AddedMeasure::Tit);
+    /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
+    [Chosen] cpi: Option<Probability> = conflict.added(AddedMeasure::Cpi);
+    /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most 12.68 m/s²
+    [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::ALongReq);
+    /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²; rear-end and
+    /// frontal conflicts only
+    [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::ALatReq);
+    /// brake threat number: `a_long_req` over the ego's braking deceleration
+    [Chosen] btn: Option<Ratio> = conflict.added(AddedMeasure::Btn);
+    /// steer threat number: `a_lat_req` over the ego's braking deceleration
+    [Chosen] stn: Option<Ratio> = conflict.added(AddedMeasure::Stn);
+    /// time to accident: the TTC when the first of both brakes with at least 1.3 m/s²
+    [Chosen] ta: Option<Second> = conflict.added(AddedMeasure::Ta);
+    /// speed of the one that brakes then, before it does
+    [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.added(AddedMeasure::ConflictingSpeed);
+    /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
+    [Chosen] ta_level: Option<Ratio> = conflict.added(AddedMeasure::TaLevel);
+    /// SSAM's MaxS: the largest speed of both in any step
+    [Chosen] max_s: Option<MetrePerSecond> = conflict.added(AddedMeasure::MaxS);
+    /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
+    [Chosen] delta_s: Option<MetrePerSecond> = conflict.added(AddedMeasure::DeltaS);
+    /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
+    [Chosen] dr: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Dr);
+    /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
+    [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::MaxD);
+    /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
+    [Chosen] act: Option<Second> = conflict.added(AddedMeasure::Act);
+    /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
+    [Chosen] ei: Option<MetrePerSecond> = conflict.added(AddedMeasure::Ei);
 }
 
 impl LoggedConflict {
@@ -215,6 +278,8 @@ pub enum Presence {
     Optional,
     /// The same; read only on request, as drawings need it and statistics do not.
     Snapshot,
+    /// Only logs whose run was told to add it.
+    Chosen,
 }
 
 /// Columns that logs of earlier versions have under another name: the name now, and the one then.
@@ -239,9 +304,16 @@ impl Column {
             "MetrePerSecond" => "m/s",
             "MetrePerSecondSquared" => "m/s²",
             "Radian" => "rad",
-            "Probability" => "1",
+            "SecondSquared" => "s²",
+            "MetreSquaredPerSecondCubed" => "m²/s³",
+            "Probability" | "Ratio" => "1",
             _ => "",
         }
+    }
+
+    /// Whether the log of a run with these measures has it.
+    pub fn is_in(&self, measures: Measures) -> bool {
+        self.presence != Presence::Chosen || measures.chosen().any(|measure| measure.name() == self.name)
     }
 
     /// Whether a value may be missing: the type is an `Option` or [`OptionalText`].
@@ -285,12 +357,15 @@ fn path(snapshot: &Snapshot) -> String {
     text
 }
 
-/// Without the snapshots.
+/// Without the snapshots, and without what the run was not told to add.
 impl Serialize for LoggedConflict {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(None)?;
         for column in COLUMNS.iter().filter(|column| column.presence != Presence::Snapshot) {
-            map.serialize_entry(column.name, &(column.get)(self))?;
+            let value = (column.get)(self);
+            if column.presence != Presence::Chosen || value != Value::Missing {
+                map.serialize_entry(column.name, &value)?;
+            }
         }
         map.end()
     }
@@ -346,6 +421,18 @@ mod tests {
     fn what_a_log_may_lack_may_be_missing() {
         let may_lack = |column: &&Column| column.presence != Presence::Required;
         assert!(COLUMNS.iter().filter(may_lack).all(Column::is_optional));
+    }
+
+    #[test]
+    fn what_may_be_added_is_a_column_in_this_order() {
+        let chosen = COLUMNS.iter().filter(|column| column.presence == Presence::Chosen).map(|column| column.name);
+        assert_eq!(chosen.collect::<Vec<_>>(), AddedMeasure::ALL.map(AddedMeasure::name));
+        let in_log = |measures: &str| COLUMNS.iter().filter(|column| column.is_in(measures.parse().unwrap())).count();
+        let all = COLUMNS.len();
+        assert_eq!(
+            ["all", "default", "t2"].map(in_log),
+            [all, all - AddedMeasure::ALL.len(), all - AddedMeasure::ALL.len() + 1]
+        );
     }
 
     #[test]

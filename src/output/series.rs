@@ -2,12 +2,13 @@
 //! of the log that a single step has.
 
 use super::schema::{COLUMNS, Column, LoggedConflict, Value};
+use crate::options::measures::Measures;
 
 /// The number of the conflict, which is its `id` in the log.
 const CONFLICT: &str = "conflict";
 
 /// The columns of the log that the series lacks: what only a whole event has, and what is the same in each of its steps.
-const OF_THE_EVENT: [&str; 13] = [
+const OF_THE_EVENT: [&str; 21] = [
     "id",
     "begin",
     "end",
@@ -21,20 +22,28 @@ const OF_THE_EVENT: [&str; 13] = [
     "foe_length",
     "foe_width",
     "foe_path",
+    "rss_violation",
+    "tet",
+    "tit",
+    "cpi",
+    "ta",
+    "conflicting_speed",
+    "ta_level",
+    "dr",
 ];
 
-fn columns() -> impl Iterator<Item = &'static Column> {
-    COLUMNS.iter().filter(|column| !OF_THE_EVENT.contains(&column.name))
+fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
+    COLUMNS.iter().filter(move |column| column.is_in(measures) && !OF_THE_EVENT.contains(&column.name))
 }
 
-/// The names of the columns.
-pub(super) fn names() -> impl Iterator<Item = &'static str> {
-    [CONFLICT].into_iter().chain(columns().map(|column| column.name))
+/// The names of the columns, with these added measures.
+pub(super) fn names(measures: Measures) -> impl Iterator<Item = &'static str> {
+    [CONFLICT].into_iter().chain(columns(measures).map(|column| column.name))
 }
 
 /// The values of a step, as a conflict of its own that has the number of the whole one.
-pub(super) fn values(step: &LoggedConflict) -> impl Iterator<Item = Value<'_>> {
-    [Value::Count(step.id)].into_iter().chain(columns().map(|column| (column.get)(step)))
+pub(super) fn values(step: &LoggedConflict, measures: Measures) -> impl Iterator<Item = Value<'_>> {
+    [Value::Count(step.id)].into_iter().chain(columns(measures).map(|column| (column.get)(step)))
 }
 
 #[cfg(test)]
@@ -45,7 +54,7 @@ mod tests {
     #[test]
     fn every_column_that_it_lacks_is_one_of_the_log() {
         assert!(OF_THE_EVENT.iter().all(|name| Column::named(name).is_some()));
-        assert_eq!(names().count(), 1 + COLUMNS.len() - OF_THE_EVENT.len());
+        assert_eq!(names(Measures::ALL).count(), 1 + COLUMNS.len() - OF_THE_EVENT.len());
     }
 
     #[test]

@@ -133,7 +133,7 @@ impl RecordedRun {
 }
 
 fn begin_log(folder: &Path, record: &RunRecord) -> Result<Log> {
-    let mut log = Log::create(folder, record.options.series_file())?;
+    let mut log = Log::create(folder, &record.options)?;
     if record.csv_safe {
         log.set_csv_safe();
     }

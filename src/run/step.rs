@@ -1,6 +1,7 @@
 //! One step of a run, in the order of the flow: paths, placements, broad phase, narrow phase, events, log.
 
 use super::{Run, count};
+use crate::detection::encounter::Encounter;
 use crate::geometry::Point;
 use crate::{Error, Result};
 
@@ -108,7 +109,8 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
+        let added = |found: &Encounter| detector.added(frame, roster, found);
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path, added, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }

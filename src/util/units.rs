@@ -10,6 +10,12 @@ pub const SAME_MOMENT: Second = 1e-6;
 pub type MetrePerSecond = f64;
 /// A deceleration or acceleration in m/s².
 pub type MetrePerSecondSquared = f64;
+/// A duration times a duration, in s².
+pub type SecondSquared = f64;
+/// A change of kinetic energy per mass and time, in m²/s³.
+pub type MetreSquaredPerSecondCubed = f64;
+/// A number without unit.
+pub type Ratio = f64;
 /// An angle in rad, counter-clockwise from +x.
 pub type Radian = f64;
 /// A probability, 0 to 1.

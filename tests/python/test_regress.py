@@ -121,6 +121,19 @@ def test_a_changed_vehicle_length_is_named(blessed: Copy) -> None:
     assert "changed since blessed: roundabout.rou.xml: vType car: length 4.6 → 4.7" in report
 
 
+def test_a_scenario_may_be_blessed_with_added_measures(blessed: Copy) -> None:
+    folder = blessed("side")
+    settings(folder, 'measures = "t2,ei"\n[regress]\nlevel = "exact"\n')
+    assert closecall("regress", folder, "--bless").returncode == 0
+    done = closecall("regress", folder)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (table,) = folder.rglob("conflicts.csv")
+    header, first = table.read_text().splitlines()[:2]
+    assert header.endswith(",t2,ei")
+    table.write_text(header + "\n" + first.rsplit(",", 1)[0] + ",77\n")
+    assert re.search(r"ei 77 → [\d.]+", differs(folder))
+
+
 def test_a_difference_without_changed_inputs_is_reported_as_such(blessed: Copy) -> None:
     folder = blessed("rear_end")
     edit(folder / "expected" / "conflicts.csv", "rear_end,caution", "rear_end,critical")

@@ -1,7 +1,8 @@
-"""μ against ad-rss, Intel's library of the RSS model, without acceleration during the response, build-up and ε."""
+"""μ and the RSS distances against ad-rss, Intel's library of the RSS model."""
 
 from __future__ import annotations
 
+import math
 import random
 import warnings
 from typing import Any
@@ -87,3 +88,46 @@ def test_mu_equals_the_rss_safe_distance(kind: str, model: str, name: str) -> No
             model=model,
         )
         assert float(found) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+
+
+def by_the_values_of_closecall(speed: float, aside: float = 0.0) -> Any:
+    """A road user with the accelerations that closecall's RSS distances assume; `aside` is its speed to the right."""
+    state = road_user(speed, 4.0, 1.0)
+    fill(state.dynamics.alpha_lon, accel_max=3.5, brake_max=-8.0)
+    fill(state.dynamics, lateral_fluctuation_margin=0.1)
+    fill(state.structured_object_state.velocity, speed_lat_min=aside, speed_lat_max=aside)
+    return state
+
+
+@pytest.mark.parametrize("kind", ["rear_end", "frontal"])
+def test_the_safe_distances_are_those_of_ad_rss(kind: str) -> None:
+    chance = random.Random(3)
+    pairs = 200
+    speeds = [(chance.uniform(5, 40), chance.uniform(0, 30)) for _ in range(pairs)]
+    turned = [chance.uniform(-0.3, 0.3) for _ in range(pairs)]
+    # Each pair is by itself; the foe is ahead, a little to the left.
+    frame: dict[str, list[Any]] = {name: [] for name in ("id", "x", "y", "heading", "speed")}
+    for number, ((speed, foe_speed), turn) in enumerate(zip(speeds, turned)):
+        ahead = turn if kind == "rear_end" else math.pi + turn
+        for who, x, y, heading, v in (("ego", 0, 0, 0, speed), ("foe", 25, 0.3, ahead, foe_speed)):
+            values = {"id": f"{who}{number}", "x": x, "y": y + 1e3 * number, "heading": heading, "speed": v}
+            for name, value in values.items():
+                frame[name].append(value)
+    with cc.Checker(path="straight", measures="rss_distance,rss_lateral_distance", log="gap < 50") as checker:
+        checker.step(0.0, frame)
+        found = {int(one.ego[3:]): one for one in checker.conflicts if one.ego.startswith("ego") and one.kind == kind}
+    assert len(found) > pairs / 4
+    for number, conflict in found.items():
+        (speed, foe_speed), turn = speeds[number], turned[number]
+        ego, foe = by_the_values_of_closecall(speed), by_the_values_of_closecall(foe_speed)
+        same = kind == "rear_end"
+        name = "SameDirection" if same else "OppositeDirection"
+        function = getattr(rss.structured, f"calculateSafeLongitudinalDistance{name}")
+        wanted = safe_distance(function, foe if same else ego, ego if same else foe)
+        assert conflict.rss_distance == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+        # The foe on the left; mirrored where its centre, 2.5 m behind its front, is on the right.
+        to_the_left = foe_speed * math.sin(turn) * (1 if same else -1)
+        side = math.copysign(1, 0.3 - 2.5 * math.sin(turn) * (1 if same else -1))
+        beside = by_the_values_of_closecall(foe_speed, -side * to_the_left)
+        lateral = safe_distance(rss.structured.calculateSafeLateralDistance, beside, ego)
+        assert conflict.rss_lateral_distance == pytest.approx(lateral, rel=1e-9, abs=1e-9)

@@ -17,7 +17,7 @@ use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunT
 use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
-use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Value};
+use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::output_file::OutputFile;
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
@@ -81,7 +81,11 @@ fn write(
 ) -> std::result::Result<(), Fault> {
     let properties = Arc::new(WriterProperties::builder().set_compression(Compression::SNAPPY).build());
     let file = HashedFile { file, hasher: Hasher::default() };
-    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(labels)?), properties)?;
+    let logged = conflicts.columns();
+    let is_there =
+        |column: &&Column| column.presence != Presence::Chosen || logged.iter().any(|name| name == column.name);
+    let columns = COLUMNS.iter().filter(is_there).collect::<Vec<_>>();
+    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(&columns, labels)?), properties)?;
     let mut rows = Vec::with_capacity(1024);
     loop {
         rows.clear();
@@ -95,9 +99,9 @@ fn write(
         let mut group = writer.next_row_group()?;
         let mut written = 0;
         while let Some(mut column) = group.next_column()? {
-            match COLUMNS.get(written) {
+            match columns.get(written) {
                 Some(of_log) => fill(&mut column, &rows, of_log)?,
-                None => repeat(&mut column, rows.len(), &labels[written - COLUMNS.len()].value)?,
+                None => repeat(&mut column, rows.len(), &labels[written - columns.len()].value)?,
             }
             column.close()?;
             written += 1;
@@ -132,7 +136,7 @@ impl Write for HashedFile<'_> {
     }
 }
 
-fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
+fn schema(of_log: &[&Column], labels: &[Label]) -> std::result::Result<Type, ParquetError> {
     let column = |name: &str, physical: Physical, repetition: Repetition| {
         let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
         let column = if physical == Physical::BYTE_ARRAY {
@@ -142,8 +146,8 @@ fn schema(labels: &[Label]) -> std::result::Result<Type, ParquetError> {
         };
         column.build().map(Arc::new)
     };
-    let mut columns = Vec::with_capacity(COLUMNS.len() + labels.len());
-    for Column { name, column_type, .. } in COLUMNS {
+    let mut columns = Vec::with_capacity(of_log.len() + labels.len());
+    for &&Column { name, column_type, .. } in of_log {
         let repetition = match column_type {
             ColumnType::Count => Repetition::REQUIRED,
             ColumnType::Text | ColumnType::Number | ColumnType::Flag => Repetition::OPTIONAL,
@@ -315,6 +319,20 @@ mod tests {
             let names = beside.labels.iter().map(|(name, number)| (name.as_str(), *number)).collect::<Vec<_>>();
             assert_eq!(names, [("option_epsilon", true), ("sumo_x", false), ("seed", true)]);
         }
+    }
+
+    #[test]
+    fn a_packed_log_has_the_added_columns_that_it_was_told_to_have() {
+        let folder = tempfile::tempdir().unwrap();
+        let [log, packed] = ["log", "p"].map(|name| folder.path().join(name));
+        fs::create_dir(&log).unwrap();
+        let columns = COLUMNS.iter().filter(|column| column.is_in("t2,ei".parse().unwrap())).map(|column| column.name);
+        let columns = columns.collect::<Vec<_>>();
+        fs::write(log.join(CONFLICTS), columns.join(",") + "\n").unwrap();
+        fs::write(log.join(RUN), "{}\n").unwrap();
+        pack(&log, &labels(), "abc", RunTime::default(), &packed.join(PARQUET)).unwrap();
+        assert_eq!(ConflictReader::open(&packed).unwrap().columns(), columns);
+        assert!(columns.ends_with(&["t2", "ei"]));
     }
 
     #[test]

@@ -90,7 +90,10 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     for (place, name) in ["ego_part", "foe_part"].into_iter().enumerate() {
         add(name, touching.iter().map(|parts| parts.map(|parts| parts[place] as u8)).collect());
     }
-    for column in COLUMNS.iter().filter(|column| is_shown_number(column)) {
+    let is_there = |column: &&Column| {
+        column.presence != Presence::Chosen || conflicts().any(|conflict| (column.get)(conflict) != Cell::Missing)
+    };
+    for column in COLUMNS.iter().filter(|column| is_shown_number(column)).filter(is_there) {
         let number = |conflict| match (column.get)(conflict) {
             Cell::Number(number) => Some(rounded(number, decimals(column))),
             _ => None,

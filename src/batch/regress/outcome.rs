@@ -12,7 +12,7 @@ use super::fingerprint::Fingerprint;
 use crate::analysis::logged::{LoggedRun, SUMMARY};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
-use crate::output::schema::{COLUMNS, LoggedConflict};
+use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
 use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
 use crate::util::{input_file, output_file};
@@ -82,13 +82,15 @@ pub struct SeedConflict {
     pub begin: Second,
     /// Last step that meets it, in s.
     pub end: Second,
-    /// The cells of the row, the seed first.
+    /// The seed, and a cell for each of the [`COLUMNS`]; empty where the file lacks one.
     cells: csv::StringRecord,
 }
 
 impl SeedConflict {
-    /// The conflict in a row; none where a cell does not fit its column.
-    fn new(cells: csv::StringRecord) -> Option<Self> {
+    /// The conflict in a row, of which `places` tells where the seed and each of the [`COLUMNS`] is; none where a cell does not fit its column.
+    fn new(places: &[Option<usize>], row: &csv::StringRecord) -> Option<Self> {
+        let cells = places.iter().map(|place| place.and_then(|place| row.get(place)).unwrap_or_default());
+        let cells = cells.collect::<csv::StringRecord>();
         let cell = |column: usize| COLUMNS[column].column_type.parse(cells.get(column + 1).unwrap_or_default());
         let LoggedConflict { ego, foe, kind, severity, begin, end, .. } = LoggedConflict::from_cells(cell).ok()?;
         Some(Self { seed: cells.get(0)?.parse().ok()?, ego, foe, kind, severity, begin, end, cells })
@@ -200,15 +202,22 @@ fn conflicts(csv: &[u8], path: &Path) -> Result<Vec<SeedConflict>> {
     let fail = |error: csv::Error| Error::content(path, error.to_string());
     let mut reader = csv::Reader::from_reader(csv);
     let header = reader.headers().map_err(fail)?;
-    if !header.iter().eq(std::iter::once("seed").chain(COLUMNS.map(|column| column.name))) {
+    // Only runs that are told to have the columns that may be added.
+    let is_there =
+        |column: &&Column| column.presence != Presence::Chosen || header.iter().any(|name| name == column.name);
+    let there = COLUMNS.iter().filter(is_there).map(|column| column.name);
+    if !header.iter().eq(std::iter::once("seed").chain(there)) {
         return Err(Error::line(path, 1, "these are not the columns of this version; bless again"));
     }
+    let place = |name| header.iter().position(|known| known == name);
+    let places = std::iter::once("seed").chain(COLUMNS.map(|column| column.name)).map(place).collect::<Vec<_>>();
     reader
         .records()
         .map(|record| {
             let record = record.map_err(fail)?;
             let line = record.position().map_or(1, csv::Position::line);
-            SeedConflict::new(record).ok_or_else(|| Error::line(path, line, "this is not the row of a conflict"))
+            SeedConflict::new(&places, &record)
+                .ok_or_else(|| Error::line(path, line, "this is not the row of a conflict"))
         })
         .collect()
 }

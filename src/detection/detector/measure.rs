@@ -10,6 +10,7 @@ use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader};
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
+use crate::detection::measures::accident::BRAKES;
 use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::drac;
 use crate::detection::measures::ttb::{self, Evasion};
@@ -264,10 +265,6 @@ fn steady<'a>(of: &Participant, poses: &'a [Pose], deceleration: MetrePerSecondS
 fn set_back(course: &mut [Pose], by: Metre) {
     course.iter_mut().for_each(|pose| pose.front -= pose.axis * by);
 }
-
-/// A driver that slows down by at least this, in m/s², has responded: from here on, a vehicle has to light its brake lamps
-/// (UN R13-H, 5.2.22.4).
-const BRAKES: MetrePerSecondSquared = 1.3;
 
 /// The measures of a pair that follow from the courses of both.
 #[derive(Clone, Copy)]

@@ -5,6 +5,7 @@
 //! `encounters`, `measure`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
+mod added;
 mod align;
 mod candidates;
 mod cover;

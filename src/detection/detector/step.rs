@@ -106,7 +106,7 @@ impl StepInputs<'_> {
 
     /// Its deceleration since the last step, 0 or more.
     pub fn deceleration(&self, user: &User) -> MetrePerSecondSquared {
-        self.speeds[user.index.0 as usize].deceleration
+        self.speeds[user.index.0 as usize].deceleration()
     }
 
     pub fn profile(&self, user: &User) -> &Profile {

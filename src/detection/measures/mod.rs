@@ -1,12 +1,22 @@
-//! Surrogate safety measures of a pair in one step: ΔV and severity. The other measures have files of their own; PET is in
-//! [`crate::events`].
+//! Surrogate safety measures of a pair in one step: ΔV and severity. The other measures have files of their own.
 
+pub mod accident;
+pub mod advantage;
 mod blocked_path;
+pub mod crash_potential;
 pub mod crash_probability;
 pub mod drac;
 mod drac_straight;
+pub mod emergency_index;
+pub mod exposure;
 pub mod headway;
 pub mod injury;
+pub mod mdrac;
+pub mod mttc;
+pub mod pet;
+pub mod plane;
+pub mod rss;
+pub mod threat;
 pub mod ttb;
 pub mod ttc;
 

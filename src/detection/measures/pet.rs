@@ -196,7 +196,7 @@ pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &Driven
 
 #[cfg(test)]
 mod tests {
-    use crate::events::pet::*;
+    use crate::detection::measures::pet::*;
 
     /// The bound below which a conflict is rear-end.
     const CROSSING: Radian = std::f64::consts::FRAC_PI_6;

@@ -1,0 +1,165 @@
+//! The values of a pair in a step of the measures that a log has only if they are chosen.
+//!
+//! What an event makes of the values of its steps (the smallest, the integral, …) is in [`crate::events`].
+
+use super::encounter::Encounter;
+use super::kind::Kind;
+use super::measures::accident::conflicting_speed;
+use super::measures::advantage::{Advantage, advantage};
+use super::measures::emergency_index::emergency_index;
+use super::measures::mttc::{Accelerating, mttc};
+use super::measures::plane::{Moving, anticipated_collision_time, delta_s};
+use super::measures::ttc::SteadyMotion;
+use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss, threat};
+use crate::geometry::{cross, left_of};
+use crate::options::measures::{AddedMeasure, AddedValues, Measures};
+use crate::traffic::profile::{Category, Profile};
+use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+
+/// One road user of a pair in a step.
+#[derive(Clone, Copy)]
+pub(super) struct UserInStep<'a> {
+    pub moving: Moving,
+    /// Below 0 where it brakes.
+    pub acceleration: MetrePerSecondSquared,
+    pub of: &'a Profile,
+    /// As it goes on if it keeps its speed; none where nobody asks.
+    pub course: Option<SteadyMotion<'a>>,
+}
+
+/// A pair in a step.
+#[derive(Clone, Copy)]
+pub(super) struct PairInStep<'a> {
+    pub found: &'a Encounter,
+    pub ego: UserInStep<'a>,
+    pub foe: UserInStep<'a>,
+    /// Paths that meet at a smaller angle do not cross.
+    pub crossing: Radian,
+    /// How long the step lasted.
+    pub step: Second,
+}
+
+/// Whether any of the chosen measures follows both along their paths.
+pub(super) fn need_courses(measures: Measures) -> bool {
+    use AddedMeasure::{ALatReq, Stn, T2, Tadv};
+    [Tadv, T2, ALatReq, Stn].into_iter().any(|measure| measures.has(measure))
+}
+
+impl PairInStep<'_> {
+    /// The values of the chosen measures.
+    pub fn values(&self, measures: Measures) -> AddedValues {
+        let is_ahead = measures.has(AddedMeasure::Tadv) || measures.has(AddedMeasure::T2);
+        let advantage = if is_ahead { self.advantage() } else { None };
+        AddedMeasure::ALL.map(|measure| {
+            if measures.has(measure) { self.value(measure, advantage).filter(|value| value.is_finite()) } else { None }
+        })
+    }
+
+    fn value(&self, measure: AddedMeasure, advantage: Option<Advantage>) -> Option<f64> {
+        let Self { found, ego, foe, .. } = *self;
+        let kind = found.kind;
+        let speeds = [ego.moving.speed, foe.moving.speed];
+        let drac = || found.nearness?.drac;
+        match measure {
+            AddedMeasure::Tadv => advantage.map(|advantage| advantage.tadv),
+            AddedMeasure::T2 => advantage.map(|advantage| advantage.t2),
+            AddedMeasure::RssDistance => self.rss_distance(),
+            AddedMeasure::RssLateralDistance => self.rss_lateral_distance(),
+            AddedMeasure::RssViolation => self.rss_distance().map(|safe| f64::from(found.gap < safe)),
+            AddedMeasure::Thw => headway::time_headway(kind, found.gap, foe.of.length, speeds[0]),
+            AddedMeasure::Sgap => self.behind().map(|_| found.gap),
+            AddedMeasure::Br => Some(-ego.acceleration).filter(|braking| *braking > 0.0),
+            AddedMeasure::Mdrac => mdrac::mdrac(found.gap, speeds[0] - self.behind()?.speed),
+            AddedMeasure::Mttc => self.mttc().map(|(time, _)| time),
+            AddedMeasure::CrashIndex => self.mttc()?.1,
+            AddedMeasure::Tet => Some(exposure::exposed(self.ttc())),
+            AddedMeasure::Tit => Some(exposure::lacks(self.ttc())),
+            AddedMeasure::Cpi if found.collision => Some(1.0),
+            AddedMeasure::Cpi => Some(crash_potential::exceeds_brakes(&ego.of.driver, drac())),
+            AddedMeasure::ALongReq => self.required_braking(),
+            AddedMeasure::ALatReq => self.required_steering(),
+            AddedMeasure::Btn => self.required_braking().map(|needed| needed / ego.of.brakes.deceleration),
+            AddedMeasure::Stn => self.required_steering().map(|needed| needed / ego.of.brakes.deceleration),
+            AddedMeasure::Ta => self.evasion().map(|(ta, _)| ta),
+            AddedMeasure::ConflictingSpeed => self.evasion().map(|(_, speed)| speed),
+            AddedMeasure::TaLevel => self.evasion().map(|(ta, speed)| accident::level(ta, speed)),
+            AddedMeasure::MaxS => Some(speeds[0].max(speeds[1])),
+            AddedMeasure::DeltaS => self.ttc().map(|_| delta_s(&ego.moving, &foe.moving)),
+            AddedMeasure::Dr | AddedMeasure::MaxD => Some(ego.acceleration),
+            AddedMeasure::Act => self.in_plane().and_then(|[ego, foe]| anticipated_collision_time(ego, foe)),
+            AddedMeasure::Ei => self.in_plane().and_then(|[ego, foe]| emergency_index(ego, foe)),
+        }
+    }
+
+    fn ttc(&self) -> Option<Second> {
+        self.found.nearness?.ttc
+    }
+
+    /// The foe's motion along the ego's path, if the ego follows it.
+    fn behind(&self) -> Option<Accelerating> {
+        let sigma = self.found.angle.cos();
+        let Self { foe: UserInStep { moving, acceleration, .. }, .. } = self;
+        let leader = Accelerating { speed: sigma * moving.speed, acceleration: sigma * acceleration };
+        (self.found.kind == Kind::RearEnd).then_some(leader)
+    }
+
+    fn mttc(&self) -> Option<(Second, Option<f64>)> {
+        let UserInStep { moving, acceleration, .. } = self.ego;
+        mttc(self.found.gap, Accelerating { speed: moving.speed, acceleration }, self.behind()?)
+    }
+
+    /// The rectangles of both with their speeds; none with an obstacle, whose shape is a polygon.
+    fn in_plane(&self) -> Option<[&Moving; 2]> {
+        (self.foe.of.category != Category::Obstacle).then_some([&self.ego.moving, &self.foe.moving])
+    }
+
+    fn advantage(&self) -> Option<Advantage> {
+        let (ego, foe) = (self.ego.course?, self.foe.course?);
+        let may_cross = self.found.kind != Kind::RearEnd && self.in_plane().is_some();
+        may_cross.then(|| advantage([&ego, &foe], self.ttc(), self.crossing)).flatten()
+    }
+
+    fn rss_distance(&self) -> Option<Metre> {
+        let [ego, foe] = [self.ego.moving.speed, self.foe.moving.speed];
+        match self.found.kind {
+            Kind::RearEnd => Some(rss::same_direction(ego, foe)),
+            Kind::Frontal => Some(rss::opposite_directions(ego, foe)),
+            Kind::Side => None,
+        }
+    }
+
+    /// The ego moves along its own heading, so only the foe moves sideways.
+    fn rss_lateral_distance(&self) -> Option<Metre> {
+        let [ego, foe] = self.in_plane()?;
+        let axis = &ego.rectangle.axis;
+        let side = (foe.rectangle.centre - ego.rectangle.centre).dot(&left_of(axis)).signum();
+        let leaves = side * cross(axis, &foe.rectangle.axis) * foe.speed;
+        (self.found.kind != Kind::Side).then(|| rss::lateral([0.0, -leaves]))
+    }
+
+    fn required_braking(&self) -> Option<MetrePerSecondSquared> {
+        match self.behind() {
+            Some(Accelerating { speed, acceleration }) if !self.found.collision => {
+                let braking = (-acceleration).max(0.0);
+                Some(threat::behind(self.found.gap, self.ego.moving.speed, speed, braking))
+            }
+            Some(_) => None,
+            None => self.found.nearness?.drac,
+        }
+    }
+
+    fn required_steering(&self) -> Option<MetrePerSecondSquared> {
+        let (ego, foe) = (self.ego.course?, self.foe.course?);
+        let ttc = self.ttc().filter(|ttc| *ttc > 0.0)?;
+        self.in_plane().filter(|_| self.found.kind != Kind::Side)?;
+        Some(threat::aside(&ego.at(ttc), &foe.at(ttc), ttc))
+    }
+
+    /// TA and conflicting speed, if one evades.
+    fn evasion(&self) -> Option<(Second, f64)> {
+        let Self { ego, foe, .. } = self;
+        let speeds = [ego.moving.speed, foe.moving.speed];
+        let speed = conflicting_speed(speeds, [ego.acceleration, foe.acceleration], self.step)?;
+        Some((self.ttc().filter(|ttc| *ttc > 0.0)?, speed))
+    }
+}

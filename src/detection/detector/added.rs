@@ -1,0 +1,46 @@
+//! What the detector knows of a pair for the measures that a log has only if they are chosen.
+
+use super::Detector;
+use super::reach::User;
+use crate::detection::added_values::{PairInStep, UserInStep, need_courses};
+use crate::detection::encounter::Encounter;
+use crate::detection::measures::plane::Moving;
+use crate::detection::measures::ttc::{HORIZON, SteadyMotion};
+use crate::geometry::rectangle::Rectangle;
+use crate::options::measures::AddedValues;
+use crate::traffic::frame::Frame;
+use crate::traffic::roster::Roster;
+
+impl Detector {
+    /// The values of the chosen measures of a pair in this step; none where none is chosen.
+    pub fn added(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<AddedValues>> {
+        let measures = self.options.measures;
+        if measures.is_empty() {
+            return None;
+        }
+        let (sight, scene) = (self.sight(frame, roster), self.scene(frame, roster));
+        let users = [found.ego_row, found.foe_row].map(|row| sight.user(row, &sight.see(row), &User::default()));
+        let mut courses = [Vec::new(), Vec::new()];
+        if need_courses(measures) {
+            for (user, poses) in users.iter().zip(&mut courses) {
+                if let Some(first) = scene.carriages(user).next() {
+                    scene.course(user, first, &[scene.state(user).speed * HORIZON], true, poses);
+                }
+            }
+        }
+        let [ego, foe] = [0, 1].map(|one| {
+            let (user, poses) = (&users[one], &courses[one]);
+            let (state, of, length) = (scene.state(user), scene.profile(user), scene.drawn_length(user));
+            let rectangle = Rectangle::behind(state.front(), user.axis, length, of.width);
+            let steady = SteadyMotion { poses, speed: state.speed, deceleration: 0.0, length, width: of.width };
+            UserInStep {
+                moving: Moving { rectangle, speed: state.speed },
+                acceleration: self.speeds[user.index.0 as usize].acceleration,
+                of,
+                course: (!poses.is_empty()).then_some(steady),
+            }
+        });
+        let crossing = self.options.kind_bounds().rear_end_below;
+        Some(Box::new(PairInStep { found, ego, foe, crossing, step: self.step }.values(measures)))
+    }
+}

@@ -1,0 +1,168 @@
+//! The measures of an event that a log has only if they are chosen: what it makes of the values of its steps.
+
+use crate::options::measures::{AddedMeasure, AddedValues};
+use crate::util::units::Second;
+
+/// What an event makes of the values of its steps.
+#[derive(Clone, Copy, PartialEq)]
+enum Over {
+    /// The smallest.
+    Least,
+    /// The largest.
+    Most,
+    /// That of the step with the smallest margin.
+    Worst,
+    /// That of the step with the smallest TTC.
+    LeastTtc,
+    /// That of the first step that has one.
+    First,
+    /// The first below 0, or else the smallest.
+    FirstBelowZero,
+    /// Their integral over time.
+    Integral,
+    /// Their mean over time.
+    Mean,
+}
+
+fn over(measure: AddedMeasure) -> Over {
+    match measure {
+        AddedMeasure::Tadv
+        | AddedMeasure::T2
+        | AddedMeasure::Thw
+        | AddedMeasure::Sgap
+        | AddedMeasure::Mttc
+        | AddedMeasure::MaxD
+        | AddedMeasure::Act => Over::Least,
+        AddedMeasure::Br
+        | AddedMeasure::Mdrac
+        | AddedMeasure::CrashIndex
+        | AddedMeasure::ALongReq
+        | AddedMeasure::ALatReq
+        | AddedMeasure::Btn
+        | AddedMeasure::Stn
+        | AddedMeasure::MaxS
+        | AddedMeasure::Ei => Over::Most,
+        AddedMeasure::RssDistance | AddedMeasure::RssLateralDistance => Over::Worst,
+        AddedMeasure::DeltaS => Over::LeastTtc,
+        AddedMeasure::Ta | AddedMeasure::ConflictingSpeed | AddedMeasure::TaLevel => Over::First,
+        AddedMeasure::Dr => Over::FirstBelowZero,
+        AddedMeasure::RssViolation | AddedMeasure::Tet | AddedMeasure::Tit => Over::Integral,
+        AddedMeasure::Cpi => Over::Mean,
+    }
+}
+
+/// The chosen measures of an event so far.
+#[derive(Clone, Debug)]
+pub(super) struct Added {
+    /// Of an integral or a mean, the integral.
+    values: AddedValues,
+    /// How long the steps so far lasted together.
+    lasted: Second,
+    /// The smallest TTC so far.
+    ttc: Second,
+}
+
+/// What a step adds.
+pub(super) struct Step<'a> {
+    pub values: &'a AddedValues,
+    pub ttc: Option<Second>,
+    /// Since the step before, in s.
+    pub lasted: Second,
+}
+
+impl Added {
+    /// Those of a first step.
+    pub fn of(step: &Step) -> Self {
+        let mut added = Self { values: [None; AddedMeasure::ALL.len()], lasted: 0.0, ttc: f64::INFINITY };
+        added.take(step, true);
+        added
+    }
+
+    /// Adds a step, which may be the one with the smallest margin so far.
+    pub fn take(&mut self, step: &Step, is_worst: bool) {
+        let has_least_ttc = step.ttc.is_some_and(|ttc| ttc < self.ttc);
+        self.ttc = step.ttc.map_or(self.ttc, |ttc| ttc.min(self.ttc));
+        self.lasted += step.lasted;
+        for (measure, (known, now)) in AddedMeasure::ALL.into_iter().zip(self.values.iter_mut().zip(step.values)) {
+            *known = match (over(measure), *known, *now) {
+                (Over::Worst, _, now) if is_worst => now,
+                (Over::LeastTtc, _, now) if has_least_ttc => now,
+                (Over::Integral | Over::Mean, known, Some(now)) => Some(known.unwrap_or(0.0) + now * step.lasted),
+                (Over::Least, Some(known), Some(now)) => Some(known.min(now)),
+                (Over::FirstBelowZero, Some(known), Some(now)) if known >= 0.0 => Some(known.min(now)),
+                (Over::Most, Some(known), Some(now)) => Some(known.max(now)),
+                (Over::Least | Over::Most | Over::First | Over::FirstBelowZero, None, now) => now,
+                (_, known, _) => known,
+            };
+        }
+    }
+
+    /// The measures of the event.
+    pub fn values(&self) -> AddedValues {
+        let mut values = self.values;
+        for (measure, value) in AddedMeasure::ALL.into_iter().zip(&mut values) {
+            if over(measure) == Over::Mean {
+                *value = value.map(|sum| sum / self.lasted).filter(|mean| mean.is_finite());
+            }
+        }
+        values
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::measures::AddedMeasure::{Cpi, DeltaS, Dr, MaxD, RssDistance, RssViolation, Ta, Tadv, Tet};
+
+    /// A measure over steps of 0.1 s, the first of them the first of the run; each has a TTC and a margin.
+    fn over_steps(measure: AddedMeasure, steps: &[(Option<f64>, f64)]) -> Option<f64> {
+        let mut added: Option<Added> = None;
+        let mut ttcs = (1..).map(|number| f64::from((number * 5) % 7));
+        let mut least = f64::INFINITY;
+        for (number, (value, margin)) in steps.iter().enumerate() {
+            let mut values = [None; AddedMeasure::ALL.len()];
+            values[measure as usize] = *value;
+            let step = Step { values: &values, ttc: ttcs.next(), lasted: if number == 0 { 0.0 } else { 0.1 } };
+            let is_worst = *margin < least;
+            least = least.min(*margin);
+            match &mut added {
+                Some(added) => added.take(&step, is_worst),
+                None => added = Some(Added::of(&step)),
+            }
+        }
+        added?.values()[measure as usize]
+    }
+
+    #[test]
+    fn each_measure_is_what_its_rule_makes_of_the_steps() {
+        let steps = [(Some(2.0), -1.0), (None, -3.0), (Some(1.0), -4.0), (Some(4.0), -2.0)];
+        let found = |measure| over_steps(measure, &steps);
+        assert_eq!(found(Tadv), Some(1.0));
+        assert_eq!(found(RssDistance), Some(1.0));
+        assert_eq!(found(Ta), Some(2.0));
+        // The TTCs are 5, 3, 1 and 6 s.
+        assert_eq!(found(DeltaS), Some(1.0));
+        let close = |measure, expected: f64| assert!((found(measure).unwrap() - expected).abs() < 1e-12);
+        close(Tet, 0.5);
+        close(Cpi, 0.5 / 0.3);
+        assert_eq!(over_steps(Tadv, &[(None, -1.0)]), None);
+    }
+
+    #[test]
+    fn the_first_braking_is_the_rate_if_there_is_one() {
+        let rates = |accelerations: &[f64]| {
+            let steps = accelerations.iter().map(|value| (Some(*value), 0.0)).collect::<Vec<_>>();
+            [Dr, MaxD].map(|measure| over_steps(measure, &steps).unwrap())
+        };
+        assert_eq!(rates(&[1.0, -0.5, -4.0, 2.0]), [-0.5, -4.0]);
+        assert_eq!(rates(&[1.0, 0.5, 2.0]), [0.5, 0.5]);
+    }
+
+    #[test]
+    fn a_step_counts_as_long_as_it_lasted() {
+        let long = [(Some(1.0), 0.0), (Some(0.0), 0.0), (Some(1.0), 0.0)];
+        assert!((over_steps(RssViolation, &long).unwrap() - 0.1).abs() < 1e-12);
+        // The first step of a run lasted nothing.
+        assert_eq!(over_steps(Cpi, &[(Some(0.5), 0.0)]), None);
+    }
+}

@@ -1,0 +1,142 @@
+//! The measures that a log has only if they are chosen.
+
+use std::fmt;
+use std::str::FromStr;
+
+use serde::{Serialize, Serializer};
+
+/// Makes [`AddedMeasure`], with the name of its column in the log.
+macro_rules! measures {
+    ($($variant:ident $name:literal),+ $(,)?) => {
+        /// A measure that is computed and logged only if it is chosen; docs/measures.md describes each.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub enum AddedMeasure {
+            $( #[doc = concat!("The column `", $name, "`.")] $variant, )+
+        }
+
+        impl AddedMeasure {
+            /// All, in the order of their columns.
+            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
+
+            /// The name of its column.
+            pub fn name(self) -> &'static str {
+                match self { $( Self::$variant => $name, )+ }
+            }
+        }
+    };
+}
+
+measures! {
+    Tadv "tadv",
+    T2 "t2",
+    RssDistance "rss_distance",
+    RssLateralDistance "rss_lateral_distance",
+    RssViolation "rss_violation",
+    Thw "thw",
+    Sgap "sgap",
+    Br "br",
+    Mdrac "mdrac",
+    Mttc "mttc",
+    CrashIndex "crash_index",
+    Tet "tet",
+    Tit "tit",
+    Cpi "cpi",
+    ALongReq "a_long_req",
+    ALatReq "a_lat_req",
+    Btn "btn",
+    Stn "stn",
+    Ta "ta",
+    ConflictingSpeed "conflicting_speed",
+    TaLevel "ta_level",
+    MaxS "max_s",
+    DeltaS "delta_s",
+    Dr "dr",
+    MaxD "max_d",
+    Act "act",
+    Ei "ei",
+}
+
+/// A value of each [`AddedMeasure`], in their order; none where it is not chosen or does not exist.
+pub type AddedValues = [Option<f64>; AddedMeasure::ALL.len()];
+
+/// The measures that are chosen: a bit for each [`AddedMeasure`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Measures(u32);
+
+impl Measures {
+    /// All of them.
+    pub const ALL: Self = Self((1 << AddedMeasure::ALL.len()) - 1);
+
+    /// Whether none is chosen.
+    pub fn is_empty(&self) -> bool {
+        self.0 == 0
+    }
+
+    /// Whether a measure is chosen.
+    pub fn has(self, measure: AddedMeasure) -> bool {
+        self.0 & (1 << measure as u32) != 0
+    }
+
+    /// The chosen ones, in the order of their columns.
+    pub fn chosen(self) -> impl Iterator<Item = AddedMeasure> {
+        AddedMeasure::ALL.into_iter().filter(move |measure| self.has(*measure))
+    }
+}
+
+impl FromStr for Measures {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let mut measures = Self::default();
+        for name in text.split(',').map(str::trim) {
+            measures.0 |= match name {
+                "default" => 0,
+                "all" => Self::ALL.0,
+                _ => match AddedMeasure::ALL.into_iter().find(|measure| measure.name() == name) {
+                    Some(measure) => 1 << measure as u32,
+                    None => {
+                        let names = AddedMeasure::ALL.map(AddedMeasure::name).join(", ");
+                        return Err(format!("there is no measure \"{name}\" to add; there are {names}"));
+                    }
+                },
+            };
+        }
+        Ok(measures)
+    }
+}
+
+impl fmt::Display for Measures {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match *self {
+            Self(0) => f.write_str("default"),
+            Self::ALL => f.write_str("all"),
+            _ => f.write_str(&self.chosen().map(AddedMeasure::name).collect::<Vec<_>>().join(",")),
+        }
+    }
+}
+
+impl Serialize for Measures {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_choice_is_written_as_it_is_read() {
+        for (text, written) in
+            [("default", "default"), ("all", "all"), ("t2, tadv", "tadv,t2"), ("default,ei", "ei"), ("ei,all", "all")]
+        {
+            assert_eq!(text.parse::<Measures>().unwrap().to_string(), written);
+        }
+    }
+
+    #[test]
+    fn an_unknown_measure_is_named() {
+        let error = "t2,picud".parse::<Measures>().unwrap_err();
+        assert!(error.starts_with("there is no measure \"picud\" to add; there are tadv, t2, "), "{error}");
+    }
+}
