@@ -4,6 +4,7 @@
 //! close a pair is.
 
 pub mod broad_phase;
+pub mod course;
 pub mod detector;
 pub mod encounter;
 pub mod kind;

@@ -1,7 +1,9 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
 use super::moment::Moment;
+use super::past::Past;
 use super::snapshot::Snapshot;
+use super::why::{Surroundings, Why};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
@@ -19,6 +21,8 @@ pub(super) struct Observation<'a> {
     pub frame: &'a Frame,
     pub roster: &'a Roster,
     pub found: &'a Encounter,
+    pub around: Surroundings<'a>,
+    pub past: &'a Past,
 }
 
 /// The extremes so far; [`super::Conflict`] describes the values.
@@ -43,6 +47,8 @@ pub(super) struct Extremes {
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
+    /// The manoeuvre of that step, and the causes of all steps that were the worst so far.
+    pub why: Why,
 }
 
 /// The step with the smallest margin.
@@ -107,6 +113,10 @@ impl Observation<'_> {
         self.found.nearness?.extended_delta_v
     }
 
+    fn why(&self) -> Why {
+        Why::of((self.frame, self.roster, self.found), self.around, self.past)
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -115,7 +125,7 @@ impl Observation<'_> {
 
 impl WorstStep {
     /// This step; `path` has the path of a row's front bumper.
-    fn of(&Observation { frame, roster, found }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    fn of(&Observation { frame, roster, found, .. }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
         let Encounter { ego, foe, kind, gap, mu, margin, angle, x, y, lane, .. } = *found;
         let speeds = [found.ego_row, found.foe_row].map(|row| frame.state(row).speed);
         let snapshots = [(ego, found.ego_row), (foe, found.foe_row)]
@@ -146,6 +156,7 @@ impl Extremes {
             extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
+            why: seen.why(),
         }
     }
 
@@ -154,6 +165,8 @@ impl Extremes {
         // Of margins that differ by rounding only, the first is kept.
         if seen.found.margin < self.worst.margin - SAME_MARGIN {
             self.worst = WorstStep::of(seen, path);
+            let before = std::mem::replace(&mut self.why, seen.why()).causes;
+            self.why.causes.add(before);
         }
         self.end = seen.frame.time;
         self.severity = self.severity.max(seen.severity());

@@ -14,9 +14,11 @@ mod past;
 pub mod pet;
 mod snapshot;
 mod span;
+mod why;
 
 pub use event::Conflict;
 pub use moment::Moment;
+pub use why::{Cause, Causes, Manoeuvre, Surroundings};
 
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
@@ -134,7 +136,7 @@ impl Tracker {
     }
 
     /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
-    /// `path` returns the path of a row's front bumper, from where it is; `collided` are the pairs of ids of which SUMO
+    /// `path` returns the path of a row's front bumper, from where it is; `around` is what else is known; `collided` are the pairs of ids of which SUMO
     /// reports a collision, if that is known.
     pub fn step<'a>(
         &mut self,
@@ -142,13 +144,16 @@ impl Tracker {
         roster: &Roster,
         encounters: impl Iterator<Item = &'a Encounter> + Clone,
         path: impl Fn(u32) -> Vec<Point>,
+        around: Surroundings,
         collided: Option<&[[String; 2]]>,
     ) -> &[Conflict] {
         self.forget_closed();
         if !self.events.is_empty() || !self.waiting.is_empty() || encounters.clone().any(Encounter::may_be_logged) {
+            let past = std::mem::take(&mut self.past);
             for found in encounters.filter(|found| found.may_be_logged()) {
-                self.take(&Observation { frame, roster, found }, &path);
+                self.take(&Observation { frame, roster, found, around, past: &past }, &path);
             }
+            self.past = past;
             if let Some(collided) = collided {
                 self.mark(collided, roster);
             }
@@ -230,7 +235,7 @@ impl Tracker {
                 let profile = seen.roster.profile_of(user);
                 let mut path = pet::DrivenPath::new(profile.length, profile.width);
                 if profile.category != Category::Obstacle {
-                    self.past
+                    seen.past
                         .of(user, seen.frame.time)
                         .for_each(|(time, front, heading)| path.push(time, front, heading));
                 }
@@ -325,6 +330,13 @@ mod tests {
     /// The bound of the PET in the condition of these tests.
     const PET: f64 = 2.0;
 
+    /// Surroundings of which nothing is known.
+    fn nothing() -> Surroundings<'static> {
+        static SIGNALS: std::sync::LazyLock<crate::traffic::signals::Signals> =
+            std::sync::LazyLock::new(Default::default);
+        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default() }
+    }
+
     struct TrackedPair {
         tracker: Tracker,
         roster: Roster,
@@ -388,7 +400,9 @@ mod tests {
             };
             let encounter = self.encounter(kind, margin, pet_below);
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker.step(&frame, &self.roster, found.iter(), |_| Vec::new(), self.collided.as_deref()).to_vec()
+            self.tracker
+                .step(&frame, &self.roster, found.iter(), |_| Vec::new(), nothing(), self.collided.as_deref())
+                .to_vec()
         }
     }
 
@@ -475,7 +489,14 @@ mod tests {
             let pet_below = if margin < 0.0 { f64::INFINITY } else { PET };
             let encounter = scene.encounter(Kind::Side, margin, pet_below);
             let seen = (margin < f64::INFINITY).then_some(encounter);
-            found.extend_from_slice(scene.tracker.step(&frame, &scene.roster, seen.iter(), |_| Vec::new(), None));
+            found.extend_from_slice(scene.tracker.step(
+                &frame,
+                &scene.roster,
+                seen.iter(),
+                |_| Vec::new(),
+                nothing(),
+                None,
+            ));
         }
         found
     }

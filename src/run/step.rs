@@ -1,6 +1,7 @@
 //! One step of a run, in the order of the flow: paths, placements, broad phase, narrow phase, events, log.
 
 use super::{Run, count};
+use crate::events::Surroundings;
 use crate::geometry::Point;
 use crate::{Error, Result};
 
@@ -106,7 +107,9 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path, self.collided.as_deref());
+        let course = |row| detector.course(frame, row);
+        let around = Surroundings { net: self.net.as_deref(), signals: &self.signals, course: &course };
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }

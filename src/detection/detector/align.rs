@@ -21,7 +21,7 @@ const LEAST_JUMP: Metre = 0.5;
 
 /// A road user that has jumped to another lane.
 pub(super) struct Jump {
-    row: u32,
+    pub row: u32,
     aside: Vector,
     /// The heading of its former path beside which it is now.
     heading: Radian,

@@ -1,0 +1,35 @@
+//! What the two of a conflict were doing, and why it came about.
+//!
+//! Evaluated in the steps in which an event gets worse. The manoeuvre is that of the step with the smallest margin; a cause
+//! holds for the conflict if it holds in any of these steps.
+
+mod cause;
+mod manoeuvre;
+mod pair;
+
+pub use cause::{Cause, Causes};
+pub use manoeuvre::Manoeuvre;
+pub use pair::Surroundings;
+
+use super::past::Past;
+use crate::detection::encounter::Encounter;
+use crate::traffic::frame::Frame;
+use crate::traffic::roster::Roster;
+use pair::Pair;
+
+/// What the two of a conflict were doing, and why it came about.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Why {
+    /// None where it is not known.
+    pub manoeuvre: Option<Manoeuvre>,
+    pub causes: Causes,
+}
+
+impl Why {
+    /// That of one step.
+    pub fn of(step: (&Frame, &Roster, &Encounter), around: Surroundings, past: &Past) -> Self {
+        let pair = Pair::of(step, around, past);
+        let manoeuvre = Manoeuvre::of(&pair);
+        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre) }
+    }
+}
