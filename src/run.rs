@@ -292,6 +292,11 @@ impl Run {
         self.tracker.alarms()
     }
 
+    /// The closed conflicts that are kept in memory, in the order in which they closed.
+    pub fn closed(&self) -> &[Conflict] {
+        &self.conflicts
+    }
+
     /// The closed conflicts that are kept in memory, then the open ones as they are now.
     pub fn conflicts(&self) -> Vec<Conflict> {
         self.conflicts.iter().cloned().chain(self.tracker.open(&self.roster)).collect()

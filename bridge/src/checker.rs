@@ -9,6 +9,7 @@ use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueErr
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::alarm::{self, Alarm, Listeners};
 use crate::conflict::Conflict;
 use crate::error::exception;
 use crate::frames::Frames;
@@ -26,6 +27,9 @@ use crate::pull::{self, Source};
 ///         no log is written. An earlier log is kept in its folder `earlier`.
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
+///     on_conflict: called with each `Conflict` when it has closed and is settled: 1 s after the last step that meets the log's
+///         condition, up to 5 s later where a PET is waited for.
+///     on_alarm: called with an `Alarm` in the step in which a conflict opens.
 ///     **options: the long options of the command line, with underscores: `mu="at_rest"`, `epsilon=1.0`.
 ///
 /// Raises:
@@ -38,6 +42,7 @@ pub struct Checker {
     recorded: RecordedRun,
     feed: Feed,
     painter: Option<Painter>,
+    listeners: Listeners,
     is_closed: bool,
 }
 
@@ -50,7 +55,9 @@ enum Feed {
 #[pymethods]
 impl Checker {
     #[new]
-    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, **options))]
+    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, on_conflict=None, on_alarm=None,
+        **options))]
+    #[allow(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
         py: Python,
         source: Option<&Bound<PyAny>>,
@@ -58,6 +65,8 @@ impl Checker {
         out: Option<PathBuf>,
         force: bool,
         paint: Option<bool>,
+        on_conflict: Option<Py<PyAny>>,
+        on_alarm: Option<Py<PyAny>>,
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
@@ -92,7 +101,8 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        Ok(Self { recorded, feed, painter, is_closed: false })
+        let listeners = Listeners::new(on_conflict, on_alarm);
+        Ok(Self { recorded, feed, painter, listeners, is_closed: false })
     }
 
     /// Check one step. A simulation calls this itself if the checker is its step listener.
@@ -133,10 +143,17 @@ impl Checker {
             return Ok(());
         }
         self.recorded.close(Ending { error, ..Ending::default() }).map_err(exception)?;
+        self.listeners.tell(py, &self.recorded.run)?;
         match &mut self.painter {
             Some(painter) => painter.clear(py),
             None => Ok(()),
         }
+    }
+
+    /// The conflicts that are open now, for a script that reacts while the simulation runs.
+    #[getter]
+    fn active(&self) -> Vec<Alarm> {
+        alarm::active(&self.recorded.run)
     }
 
     /// All conflicts so far; the open ones as they are now.
@@ -197,6 +214,7 @@ impl Checker {
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.recorded.run)?;
         }
+        self.listeners.tell(py, &self.recorded.run)?;
         Ok(true)
     }
 }

@@ -20,7 +20,7 @@ pub use event::Conflict;
 pub use moment::Moment;
 pub use why::{Cause, Causes, Manoeuvre, Surroundings};
 
-use crate::detection::encounter::Encounter;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
@@ -28,7 +28,7 @@ use crate::options::Options;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Radian, Second};
+use crate::util::units::{Metre, Radian, Second};
 use extremes::{Extremes, Observation};
 use past::Past;
 use span::Span;
@@ -53,6 +53,12 @@ pub struct Alarm {
     pub kind: Kind,
     /// The ego's front at the conflict point of that step, or that of its carriage that touches.
     pub at: Point,
+    /// That step, in s.
+    pub time: Second,
+    /// The margin in that step, in m.
+    pub margin: Metre,
+    /// The measures of that step.
+    pub nearness: Option<Nearness>,
 }
 
 /// Follows the pairs that meet the log's condition over the steps.
@@ -204,8 +210,9 @@ impl Tracker {
     }
 
     fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
-        let Encounter { ego, foe, kind, x, y, pet_below, .. } = *seen.found;
-        let alarm = Alarm { ego, foe, severity: seen.severity(), kind, at: Point::new(x, y) };
+        let Encounter { ego, foe, kind, x, y, margin, nearness, pet_below, .. } = *seen.found;
+        let (severity, time, at) = (seen.severity(), seen.frame.time, Point::new(x, y));
+        let alarm = Alarm { ego, foe, severity, kind, at, time, margin, nearness };
         let alarm = Some(alarm).filter(|_| seen.found.is_logged());
         let pair = [ego.min(foe), ego.max(foe)];
         let place = match self.events.binary_search_by_key(&pair, |(known, _)| *known) {

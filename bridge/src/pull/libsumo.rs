@@ -114,7 +114,7 @@ impl Libsumo {
         let lights = match &mut self.known_lights {
             Some(known) => known,
             unknown => {
-                let ids = ids.bind(py).call0()?.extract::<HashSet<String>>()?;
+                let ids = ids.bind(py).call0()?.extract::<Vec<String>>()?.into_iter().collect::<HashSet<_>>();
                 let of_net = run.net().map_or(&[][..], |net| &net.lights);
                 let known = (0..).zip(of_net).filter(|(_, id)| ids.contains(*id));
                 unknown.insert(known.map(|(light, id)| (light, PyString::new(py, id).unbind())).collect())
