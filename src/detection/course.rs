@@ -34,6 +34,8 @@ pub struct Course {
     pub stretches: SmallVec<[Stretch; 6]>,
     /// Whether it drives against the direction of its lane.
     pub is_against: bool,
+    /// Whether it has jumped to these lanes at the end of the step, and was on others at the moment of its speed.
+    pub has_jumped: bool,
     /// Its last change of lanes.
     pub change: Option<LaneChange>,
     /// Its lateral speed, positive to the left.

@@ -134,7 +134,7 @@ impl Conflict {
             extended_delta_v,
             ref found,
             ref worst,
-            why: Why { manoeuvre, causes },
+            why: Why { manoeuvre, causes, .. },
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);

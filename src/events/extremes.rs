@@ -165,8 +165,10 @@ impl Extremes {
         // Of margins that differ by rounding only, the first is kept.
         if seen.found.margin < self.worst.margin - SAME_MARGIN {
             self.worst = WorstStep::of(seen, path);
-            let before = std::mem::replace(&mut self.why, seen.why()).causes;
-            self.why.causes.add(before);
+            self.why = self.why.then(seen.why());
+        } else if seen.found.kind != Kind::RearEnd {
+            // Who enters a junction first, and on what light, may show only after the smallest margin.
+            self.why.causes.add(seen.why().causes);
         }
         self.end = seen.frame.time;
         self.severity = self.severity.max(seen.severity());

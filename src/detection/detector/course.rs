@@ -18,11 +18,10 @@ impl Detector {
             return Course::default();
         };
         let deceleration = self.speeds.get(user.0 as usize).map_or(0.0, |last| last.deceleration);
-        let known = !path.track.is_empty()
-            && ((path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH
-                || self.jumps.iter().any(|jump| jump.row == row));
-        let mut course = Course { deceleration, ..Course::default() };
-        if known {
+        let has_jumped = self.jumps.iter().any(|jump| jump.row == row);
+        let is_on = || (path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH;
+        let mut course = Course { has_jumped, deceleration, ..Course::default() };
+        if !path.track.is_empty() && (has_jumped || is_on()) {
             path.each_lane(&net.lines, |lane, [begin, end]| course.stretches.push(Stretch { lane, begin, end }));
             course.is_against = path.is_against();
             course.lateral_speed = path.lateral_speed();

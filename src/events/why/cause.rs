@@ -222,13 +222,13 @@ fn entered_crossing(pair: &Pair, party: &Party) -> Option<Second> {
     Some(places.get(before + 1).map_or(pair.time, |(time, ..)| *time))
 }
 
-/// Whether a road user that has to yield on its way drives on: it has passed the place to wait, or can no longer stop there.
+/// Whether a road user that has to yield on its way goes on: it has passed the place to wait, or can no longer stop there.
 fn did_not_yield(net: &Net, pair: &Pair, (party, passage, other): (&Party, &Passage, &Passage)) -> bool {
-    let waits_at = passage.lanes.last().and_then(|lane| party.way_to(*lane));
-    party.is_vehicle()
-        && net.yields(passage, other)
-        && (passage.signal.is_none() || [passage, other].iter().all(|way| is_open(pair, way)))
-        && waits_at.is_some_and(|way| party.passes(way))
+    let goes_on = || match party.category {
+        Category::Person => net.crossing_at(party.front, 0.0).is_some(),
+        _ => passage.lanes.last().and_then(|lane| party.way_to(*lane)).is_some_and(|way| party.passes(way)),
+    };
+    net.yields(passage, other) && [passage, other].iter().all(|way| is_open(pair, way)) && goes_on()
 }
 
 /// Whether a traffic light leaves it to the right of way who drives first; not where it is not known what it shows.

@@ -187,7 +187,8 @@ fn through_a_junction(net: &Net, pair: &Pair, passages: [&Passage; 2]) -> Manoeu
     }
     if edge_of(net, one.to) == edge_of(net, other.to) {
         return match (edge_of(net, one.from) == edge_of(net, other.from), turns) {
-            (true, _) => in_one_direction(pair),
+            (true, _) if one.to != other.to => in_one_direction(pair),
+            (true, _) => Manoeuvre::Merge,
             (false, [false, false]) => Manoeuvre::Merge,
             _ => Manoeuvre::TurnInto,
         };

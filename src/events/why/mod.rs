@@ -1,7 +1,7 @@
 //! What the two of a conflict were doing, and why it came about.
 //!
-//! Evaluated in the steps in which an event gets worse. The manoeuvre is that of the step with the smallest margin; a cause
-//! holds for the conflict if it holds in any of these steps.
+//! Evaluated in the steps in which an event gets worse, and in each step of frontal and side conflicts. The manoeuvre is that
+//! of the step with the smallest margin; a cause holds for the conflict if it holds in any of these steps.
 
 mod cause;
 mod manoeuvre;
@@ -23,6 +23,8 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
+    /// Whether one of them has jumped to the lanes that the manoeuvre follows from.
+    has_jumped: bool,
 }
 
 impl Why {
@@ -30,6 +32,15 @@ impl Why {
     pub fn of(step: (&Frame, &Roster, &Encounter), around: Surroundings, past: &Past) -> Self {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
-        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre) }
+        let has_jumped = pair.both().iter().any(|(party, _)| party.course.has_jumped);
+        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), has_jumped }
+    }
+
+    /// The same with a later step that is worse.
+    pub fn then(self, later: Self) -> Self {
+        let [first, second] = if later.has_jumped { [self, later] } else { [later, self] };
+        let mut causes = self.causes;
+        causes.add(later.causes);
+        Self { manoeuvre: first.manoeuvre.or(second.manoeuvre), causes, ..later }
     }
 }
