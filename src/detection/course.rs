@@ -45,6 +45,13 @@ pub struct Course {
 }
 
 impl Course {
+    /// Puts the road user back on the lane from which it has just changed; where it goes from there is not known then.
+    pub fn undo(&mut self, change: LaneChange) {
+        let on = self.of(change.to).copied();
+        self.stretches = on.map(|stretch| Stretch { lane: change.from, ..stretch }).into_iter().collect();
+        (self.change, self.has_jumped) = (None, false);
+    }
+
     /// The lane at a distance ahead of the front bumper; the first or last beyond either end.
     pub fn at(&self, way: Metre) -> Option<LaneIndex> {
         let found = self.stretches.iter().find(|stretch| stretch.end > way);

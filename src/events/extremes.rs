@@ -168,7 +168,7 @@ impl Extremes {
             self.why = self.why.then(seen.why());
         } else if seen.found.kind != Kind::RearEnd {
             // Who enters a junction first, and on what light, may show only after the smallest margin.
-            self.why.causes.add(seen.why().causes);
+            self.why.causes.add(seen.why().causes.at_the_entry());
         }
         self.end = seen.frame.time;
         self.severity = self.severity.max(seen.severity());

@@ -26,6 +26,9 @@ impl Detector {
             course.is_against = path.is_against();
             course.lateral_speed = path.lateral_speed();
             course.change = self.lane_changes.get(user.0 as usize).copied().flatten();
+            if let Some(change) = course.change.filter(|change| has_jumped && change.time == self.time) {
+                course.undo(change);
+            }
         } else if let (false, Some(lane)) = (state.moves(), net.lane_at(state.front())) {
             // One that has not moved since it entered the scene has no path.
             course.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });

@@ -105,6 +105,12 @@ impl Causes {
         self.0 |= others.0;
     }
 
+    /// Those that tell how one entered the junction.
+    pub(in crate::events) fn at_the_entry(self) -> Self {
+        let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield];
+        Self(self.0 & entry.iter().fold(0, |bits, cause| bits | 1 << *cause as u16))
+    }
+
     fn add_if(&mut self, cause: Cause, is_there: bool) {
         self.0 |= u16::from(is_there) << cause as u16;
     }
@@ -240,7 +246,9 @@ fn is_open(pair: &Pair, passage: &Passage) -> bool {
 
 fn is_outside_crossing(pair: &Pair) -> bool {
     let moves = pair.both().iter().all(|(party, _)| party.is_vehicle() || party.speed > 0.0);
-    moves && pair.around.net.is_some_and(|net| net.has_crossings() && !net.is_for_persons(pair.at, BESIDE_A_CROSSING))
+    moves
+        && pair.passages.is_none()
+        && pair.around.net.is_some_and(|net| net.has_crossings() && !net.is_for_persons(pair.at, BESIDE_A_CROSSING))
 }
 
 fn is_too_fast(pair: &Pair, party: &Party) -> bool {

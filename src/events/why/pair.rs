@@ -88,7 +88,14 @@ impl Party {
 
 impl<'a> Pair<'a> {
     pub fn of((frame, roster, found): (&Frame, &Roster, &Encounter), around: Surroundings<'a>, past: &'a Past) -> Self {
-        let party = |user, row, way| Party::of(frame, roster, (user, row, way), (around.course)(row));
+        let party = |user, row, way| {
+            let mut course = (around.course)(row);
+            if past.is_new(user, frame.time) {
+                // It has not driven the lanes behind it.
+                course.stretches.retain(|stretch| stretch.end > 0.0);
+            }
+            Party::of(frame, roster, (user, row, way), course)
+        };
         let ego = party(found.ego, found.ego_row, found.ego_distance);
         let foe = party(found.foe, found.foe_row, found.foe_distance);
         let at = Point::new(found.x, found.y);
