@@ -9,7 +9,6 @@ import pytest
 from conftest import NETS, Row, closecall, rows
 
 
-
 def logged(scene: str, out: Path, *words: str | Path) -> list[Row]:
     """The conflicts of a scene."""
     done = closecall("run", NETS / scene / f"{scene}.sumocfg", "--out", out, "--quiet", *words, "--", "--no-warnings")

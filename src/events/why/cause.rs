@@ -101,12 +101,12 @@ impl Causes {
     }
 
     /// Adds those of another step.
-    pub(in crate::events) fn add(&mut self, others: Self) {
+    pub fn add(&mut self, others: Self) {
         self.0 |= others.0;
     }
 
     /// Those that tell how one entered the junction.
-    pub(in crate::events) fn at_the_entry(self) -> Self {
+    pub fn at_the_entry(self) -> Self {
         let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield];
         Self(self.0 & entry.iter().fold(0, |bits, cause| bits | 1 << *cause as u16))
     }
