@@ -107,7 +107,7 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let course = |row| detector.course(frame, row);
+        let course = |row| detector.course(frame, roster, row);
         let around = Surroundings { net: self.net.as_deref(), signals: &self.signals, course: &course };
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, self.keeps_conflicts.then_some(&mut self.conflicts));

@@ -39,7 +39,7 @@ def test_who_overtakes_against_oncoming_traffic_is_named(tmp_path: Path) -> None
     assert {(row["manoeuvre"], row["cause"].split()[0]) for row in found} == {("overtaking_oncoming", "overtook")}
 
 
-def test_the_runner_of_a_red_light_is_told_by_libsumo_only(tmp_path: Path) -> None:
+def test_the_runner_of_a_red_light_is_is_named(tmp_path: Path) -> None:
     crossing = [row for row in logged("signals", tmp_path / "out") if row["kind"] == "side"]
     assert crossing
     assert {(row["manoeuvre"], row["cause"]) for row in crossing} == {("crossing", "ran_red")}

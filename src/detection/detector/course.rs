@@ -2,9 +2,10 @@
 
 use super::Detector;
 use crate::detection::course::{Course, LaneChange, Stretch};
+use crate::detection::path::lanes::KEPT_BEHIND;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::{EdgeFunction, LaneIndex};
-use crate::traffic::roster::UserIndex;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::Metre;
 
 /// A path of which the front bumper is further away than this is not that of the road user now, in m.
@@ -12,8 +13,12 @@ const ON_THE_PATH: Metre = 1.0;
 
 impl Detector {
     /// The course of the road user of a row.
-    pub fn course(&self, frame: &Frame, row: u32) -> Course {
+    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32) -> Course {
         let (user, state) = (frame.user(row), frame.state(row));
+        let profile = roster.profile_of(user);
+        // Beyond, how far a path leads depends on when it was last extended.
+        let behind = -(profile.length + KEPT_BEHIND);
+        let ahead = self.cover().reach(state, profile, self.options.epsilon);
         let Some((net, path)) = self.net.as_deref().zip(self.paths.get(user.0 as usize)) else {
             return Course::default();
         };
@@ -22,7 +27,11 @@ impl Detector {
         let is_on = || (path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH;
         let mut course = Course { has_jumped, deceleration, ..Course::default() };
         if !path.track.is_empty() && (has_jumped || is_on()) {
-            path.each_lane(&net.lines, |lane, [begin, end]| course.stretches.push(Stretch { lane, begin, end }));
+            path.each_lane(&net.lines, |lane, [begin, end]| {
+                if end > behind && begin <= ahead {
+                    course.stretches.push(Stretch { lane, begin, end });
+                }
+            });
             course.is_against = path.is_against();
             course.lateral_speed = path.lateral_speed();
             course.change = self.lane_changes.get(user.0 as usize).copied().flatten();

@@ -24,7 +24,7 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 /// A path is built this much longer than needed, in m, so that it is not extended in every step.
 const SPARE: Metre = 30.0;
 /// Lanes further behind the rear bumper than this are removed, in m.
-const KEPT_BEHIND: Metre = 5.0;
+pub(crate) const KEPT_BEHIND: Metre = 5.0;
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
 pub struct LanePath {
