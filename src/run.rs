@@ -32,6 +32,7 @@ use crate::traffic::net::filter::Filter;
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
+use crate::traffic::signals::Signals;
 use crate::util::units::Second;
 use crate::{Error, Result};
 use warm_up::WarmUp;
@@ -62,6 +63,8 @@ pub struct Run {
     unplaced: Vec<u32>,
     /// The pairs of ids of which SUMO reports a collision in the step under way; none where it is not asked.
     collided: Option<Vec<[String; 2]>>,
+    /// What the traffic lights show; empty where that is not known.
+    signals: Signals,
     /// All such pairs so far, each in the order of the ids.
     collided_so_far: FxHashSet<[String; 2]>,
     /// Placements asked for so far.
@@ -102,6 +105,7 @@ impl Run {
             obstacles: Vec::new(),
             unplaced: Vec::new(),
             collided: None,
+            signals: Signals::default(),
             collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
             type_settings: type_settings(options),
@@ -249,6 +253,11 @@ impl Run {
         self.collided = Some(collided);
     }
 
+    /// States what a traffic light, by its place in [`Net::lights`], shows in the step under way.
+    pub fn set_signal(&mut self, light: u32, state: &str) {
+        self.signals.set(light, self.frame.time, state);
+    }
+
     /// The time of the step under way, if one has begun.
     pub fn time(&self) -> Option<Second> {
         self.warm_up.has_begun().then_some(self.frame.time)
@@ -298,6 +307,11 @@ impl Run {
     /// The number of the first of [`Run::conflicts`], as in the log: closed conflicts before it are no longer in memory.
     pub fn first_number(&self) -> u64 {
         self.closed_conflicts() + 1 - self.conflicts.len() as u64
+    }
+
+    /// The closed conflicts that are kept in memory, in the order in which they closed.
+    pub fn closed(&self) -> impl Iterator<Item = &Conflict> {
+        self.conflicts.iter()
     }
 
     /// The closed conflicts that are kept in memory, then the open ones as they are now.

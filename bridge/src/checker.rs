@@ -9,6 +9,7 @@ use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueErr
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
+use crate::alarm::{self, Alarm, Listeners};
 use crate::conflict::Conflict;
 use crate::error::exception;
 use crate::exclusive::Exclusive;
@@ -34,6 +35,9 @@ const AUTO: &str = "closecall-out";
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
+///     on_conflict: called with each `Conflict` when it has closed and is settled: 1 s after the last step that meets the log's
+///         condition, up to 5 s later where a PET is waited for.
+///     on_alarm: called with an `Alarm` in the step in which a conflict opens.
 ///     **options: the long options of the command line, with underscores: `mu="at_rest"`, `epsilon=1.0`.
 ///
 /// Raises:
@@ -52,6 +56,7 @@ struct State {
     recorded: RecordedRun,
     feed: Feed,
     painter: Option<Painter>,
+    listeners: Listeners,
     is_closed: bool,
     /// Whether the simulation calls each step, and has called the last one.
     listens: bool,
@@ -73,7 +78,8 @@ struct Stepped {
 #[pymethods]
 impl Checker {
     #[new]
-    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, keep=None, **options))]
+    #[pyo3(signature = (source=None, *, net=None, out=None, force=false, paint=None, keep=None, on_conflict=None,
+        on_alarm=None, **options))]
     #[expect(clippy::too_many_arguments, reason = "each is a keyword in Python")]
     fn new(
         py: Python,
@@ -83,6 +89,8 @@ impl Checker {
         force: bool,
         paint: Option<bool>,
         keep: Option<usize>,
+        on_conflict: Option<Py<PyAny>>,
+        on_alarm: Option<Py<PyAny>>,
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
@@ -122,7 +130,8 @@ impl Checker {
             (Some(source), Some(true)) => Some(Painter::new(source)),
             _ => None,
         };
-        let state = State { recorded, feed, painter, is_closed: false, listens: false, has_listened: false };
+        let listeners = Listeners::new(on_conflict, on_alarm);
+        let state = State { recorded, feed, painter, listeners, is_closed: false, listens: false, has_listened: false };
         Ok(Self { state: Exclusive::new(state), has_simulation: source.is_some() })
     }
 
@@ -167,18 +176,20 @@ impl Checker {
         if let Some(warning) = stepped.warning {
             py.import("warnings")?.call_method1("warn", (warning, py.get_type::<PyRuntimeWarning>()))?;
         }
+        self.tell(py)?;
         Ok(stepped.goes_on)
     }
 
     /// End the run: close and write the open conflicts, and restore the colours of painted vehicles.
     fn close(&self, py: Python) -> PyResult<()> {
-        self.state.with(py, |state| state.end(py, None))
+        self.end(py, None)
     }
 
     /// The same, with the error that ended the run early, if there was one.
     #[pyo3(name = "_end")]
     fn end(&self, py: Python, error: Option<String>) -> PyResult<()> {
-        self.state.with(py, |state| state.end(py, error))
+        self.state.with(py, |state| state.end(py, error))?;
+        self.tell(py)
     }
 
     /// Whether a simulation calls each step from now on.
@@ -188,6 +199,12 @@ impl Checker {
             (state.listens, state.has_listened) = (listens, false);
             Ok(())
         })
+    }
+
+    /// The conflicts that are open now, for a script that reacts while the simulation runs.
+    #[getter]
+    fn active(&self, py: Python) -> PyResult<Vec<Alarm>> {
+        self.state.with(py, |state| Ok(alarm::active(&state.recorded.run)))
     }
 
     /// The conflicts so far; the open ones as they are now. Of the closed ones, the latest `keep`.
@@ -214,6 +231,14 @@ impl Checker {
     #[getter]
     fn log_error(&self, py: Python) -> PyResult<Option<String>> {
         self.state.with(py, |state| Ok(state.recorded.run.log_error().map(str::to_owned)))
+    }
+}
+
+impl Checker {
+    /// Tells the script what is new; its functions may use the checker.
+    fn tell(&self, py: Python) -> PyResult<()> {
+        let news = self.state.with(py, |state| state.listeners.news(py, &state.recorded.run))?;
+        news.into_iter().try_for_each(|(listener, what)| listener.call1(py, (what,)).map(drop))
     }
 }
 

@@ -3,6 +3,7 @@
 //! The bridge moves data and decides nothing: [`pull`] reads road users from libsumo or traci, the crate `closecall` finds
 //! the conflicts, [`paint`] shows them in sumo-gui.
 
+mod alarm;
 mod checker;
 mod conflict;
 mod error;
@@ -26,6 +27,8 @@ use pyo3::prelude::*;
 /// What `import closecall` loads from Rust.
 #[pymodule]
 mod _closecall {
+    #[pymodule_export]
+    use super::alarm::Alarm;
     #[pymodule_export]
     use super::checker::Checker;
     #[pymodule_export]

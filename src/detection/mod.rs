@@ -5,7 +5,7 @@
 
 mod added_values;
 pub mod broad_phase;
-
+pub mod course;
 pub mod detector;
 pub mod encounter;
 pub mod kind;

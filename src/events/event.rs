@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Snapshot;
 use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
+use super::why::{Causes, Manoeuvre, Why};
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
@@ -95,6 +96,10 @@ pub struct Conflict {
     pub overlap: Metre,
     /// Whether SUMO reported a collision of the two meanwhile; none where it is not known what SUMO reports.
     pub collision_sumo: Option<bool>,
+    /// What the two were doing; none where it is not known.
+    pub manoeuvre: Option<Manoeuvre>,
+    /// Why it came about, as far as it is known.
+    pub causes: Causes,
     /// Where the ego was and would go.
     #[serde(skip)]
     pub ego_snapshot: Snapshot,
@@ -134,6 +139,7 @@ impl Conflict {
             ref found,
             ref worst,
             ref added,
+            why: Why { manoeuvre, causes, .. },
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
@@ -180,6 +186,8 @@ impl Conflict {
             collision,
             overlap,
             collision_sumo,
+            manoeuvre,
+            causes,
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],

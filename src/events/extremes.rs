@@ -2,7 +2,9 @@
 
 use super::added::{Added, Step};
 use super::moment::Moment;
+use super::past::Past;
 use super::snapshot::Snapshot;
+use super::why::{Surroundings, Why};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
@@ -25,6 +27,8 @@ pub(super) struct Observation<'a> {
     pub added: Option<&'a AddedValues>,
     /// Since the step before, in s; 0 in the first of a run.
     pub lasted: Second,
+    pub around: Surroundings<'a>,
+    pub past: &'a Past,
 }
 
 /// The extremes so far; [`super::Conflict`] describes the values.
@@ -51,6 +55,8 @@ pub(super) struct Extremes {
     pub worst: WorstStep,
     /// The chosen measures; none where none is chosen.
     pub added: Option<Box<Added>>,
+    /// The manoeuvre of that step, and the causes of all steps that were the worst so far.
+    pub why: Why,
 }
 
 /// The step with the smallest margin.
@@ -119,6 +125,10 @@ impl Observation<'_> {
         self.added.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
     }
 
+    fn why(&self) -> Why {
+        Why::of((self.frame, self.roster, self.found), self.around, self.past)
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -159,6 +169,7 @@ impl Extremes {
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, path),
             added: seen.added_step().map(|step| Box::new(Added::of(&step))),
+            why: seen.why(),
         }
     }
 
@@ -168,6 +179,10 @@ impl Extremes {
         let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN;
         if is_worst {
             self.worst = WorstStep::of(seen, path);
+            self.why = self.why.then(seen.why());
+        } else if seen.found.kind != Kind::RearEnd {
+            // Who enters a junction first, and on what light, may show only after the smallest margin.
+            self.why.causes.add(seen.why().causes.at_the_entry());
         }
         if let (Some(added), Some(step)) = (&mut self.added, seen.added_step()) {
             added.take(&step, is_worst);

@@ -14,21 +14,22 @@ mod moment;
 mod past;
 mod snapshot;
 mod span;
+mod why;
 
 pub use event::Conflict;
 pub use moment::Moment;
+pub use why::{Cause, Causes, Manoeuvre, Surroundings};
 
-use crate::detection::encounter::Encounter;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::pet;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::options::Options;
-use crate::options::measures::AddedValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Radian, SAME_MOMENT, Second};
+use crate::util::units::{Metre, Radian, SAME_MOMENT, Second};
 use extremes::{Extremes, Observation};
 use past::Past;
 use span::Span;
@@ -51,6 +52,12 @@ pub struct Alarm {
     pub kind: Kind,
     /// The ego's front at the conflict point of that step, or that of its carriage that touches.
     pub at: Point,
+    /// That step, in s.
+    pub time: Second,
+    /// The margin in that step, in m.
+    pub margin: Metre,
+    /// The measures of that step.
+    pub nearness: Option<Nearness>,
 }
 
 /// Follows the pairs that meet the log's condition over the steps.
@@ -137,8 +144,8 @@ impl Tracker {
     }
 
     /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
-    /// `path` returns the path of a row's front bumper, from where it is; `added` the chosen measures of an encounter, if any
-    /// is chosen; `collided` are the pairs of ids of which SUMO
+    /// `path` returns the path of a row's front bumper, from where it is; `around` is what else is known; `collided` are the
+    /// pairs of ids of which SUMO
     /// reports a collision, if that is known.
     pub fn step<'a>(
         &mut self,
@@ -146,17 +153,20 @@ impl Tracker {
         roster: &Roster,
         encounters: impl Iterator<Item = &'a Encounter> + Clone,
         path: impl Fn(u32) -> Vec<Point>,
-        added: impl Fn(&Encounter) -> Option<Box<AddedValues>>,
+        around: Surroundings,
         collided: Option<&[[String; 2]]>,
     ) -> &[Conflict] {
         self.forget_closed();
         let lasted = if self.last_time.is_nan() { 0.0 } else { frame.time - self.last_time };
         self.last_time = frame.time;
         if !self.events.is_empty() || !self.waiting.is_empty() || encounters.clone().any(Encounter::may_be_logged) {
+            let past = std::mem::take(&mut self.past);
             for found in encounters.filter(|found| found.may_be_logged()) {
-                let added = added(found);
-                self.take(&Observation { frame, roster, found, added: added.as_deref(), lasted }, &path);
+                let added = (around.added)(found);
+                let added = added.as_deref();
+                self.take(&Observation { frame, roster, found, added, lasted, around, past: &past }, &path);
             }
+            self.past = past;
             if let Some(collided) = collided {
                 self.mark(collided, roster);
             }
@@ -207,8 +217,9 @@ impl Tracker {
     }
 
     fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
-        let Encounter { ego, foe, kind, x, y, pet_below, .. } = *seen.found;
-        let alarm = Alarm { ego, foe, severity: seen.severity(), kind, at: Point::new(x, y) };
+        let Encounter { ego, foe, kind, x, y, margin, nearness, pet_below, .. } = *seen.found;
+        let (severity, time, at) = (seen.severity(), seen.frame.time, Point::new(x, y));
+        let alarm = Alarm { ego, foe, severity, kind, at, time, margin, nearness };
         let alarm = Some(alarm).filter(|_| seen.found.is_logged());
         let pair = [ego.min(foe), ego.max(foe)];
         let place = match self.events.binary_search_by_key(&pair, |(known, _)| *known) {
@@ -238,7 +249,7 @@ impl Tracker {
                 let profile = seen.roster.profile_of(user);
                 let mut path = pet::DrivenPath::new(profile.length, profile.width);
                 if profile.category != Category::Obstacle {
-                    self.past
+                    seen.past
                         .of(user, seen.frame.time)
                         .for_each(|(time, front, heading)| path.push(time, front, heading));
                 }
@@ -333,6 +344,13 @@ mod tests {
     /// The bound of the PET in the condition of these tests.
     const PET: f64 = 2.0;
 
+    /// Surroundings of which nothing is known.
+    fn nothing() -> Surroundings<'static> {
+        static SIGNALS: std::sync::LazyLock<crate::traffic::signals::Signals> =
+            std::sync::LazyLock::new(Default::default);
+        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default(), added: &|_| None }
+    }
+
     struct TrackedPair {
         tracker: Tracker,
         roster: Roster,
@@ -397,7 +415,7 @@ mod tests {
             let encounter = self.encounter(kind, margin, pet_below);
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
             self.tracker
-                .step(&frame, &self.roster, found.iter(), |_| Vec::new(), |_| None, self.collided.as_deref())
+                .step(&frame, &self.roster, found.iter(), |_| Vec::new(), nothing(), self.collided.as_deref())
                 .to_vec()
         }
     }
@@ -490,7 +508,7 @@ mod tests {
                 &scene.roster,
                 seen.iter(),
                 |_| Vec::new(),
-                |_| None,
+                nothing(),
                 None,
             ));
         }

@@ -14,6 +14,9 @@ const STEPS: usize = 10;
 /// from it by rounding.
 const APART: Second = 0.5 - 1e-6;
 
+/// A road user that has been in the scene for less than this has just appeared, in s: less than a driver's response time.
+const NEW: Second = 1.0;
+
 /// The x, y and heading of a road user that is not there.
 const ABSENT: [f64; 3] = [f64::NAN; 3];
 
@@ -60,6 +63,13 @@ impl Past {
         let away = self.steps.iter().rposition(|step| step.of(user).is_none());
         let since = self.steps.range(away.map_or(0, |away| away + 1)..);
         since.filter_map(move |step| step.of(user)).take_while(move |(time, ..)| *time < before)
+    }
+
+    /// Whether a road user has been in the scene for less than [`NEW`], although the run has lasted longer.
+    pub fn is_new(&self, user: UserIndex, time: Second) -> bool {
+        let then = time - NEW;
+        self.steps.front().is_some_and(|step| step.time <= then)
+            && self.of(user, time).next().is_none_or(|(first, ..)| first > then)
     }
 
     /// Forgets a road user that has left, as its index may be given to another.

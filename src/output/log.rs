@@ -296,8 +296,9 @@ mod tests {
             if is_there {
                 fs::write(&mine, "mine").unwrap();
             }
+            let options = Options { log_series: true, ..Options::default() };
             let created = Log::create(&log, &options).unwrap();
-            created.write_record(&RunRecord::new(PathBuf::new(), crate::options::Options::default())).unwrap();
+            created.write_record(&RunRecord::new(PathBuf::new(), options)).unwrap();
             assert_eq!(fs::read_to_string(&mine).ok().as_deref(), is_there.then_some("mine"));
             let _ = fs::remove_file(&mine);
         }

@@ -10,7 +10,7 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
-use crate::events::{Conflict, Snapshot};
+use crate::events::{Conflict, Manoeuvre, Snapshot};
 use crate::options::measures::{AddedMeasure, Measures};
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -185,6 +185,14 @@ columns! { |conflict, context|
     /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
     /// would not touch
     [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
+    /// what the two were doing: `following`, `cut_in`, `lane_change`, `merge`, `crossing`, `left_turn_across`,
+    /// `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`, `person_along`, `object`
+    /// ([rules](causes.md)); empty where the lanes of the two are not known
+    [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
+    /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
+    /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`
+    /// ([rules](causes.md)); empty where none of them is known
+    [Optional] cause: OptionalText = conflict.causes.to_string();
     /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
     /// course; side and frontal conflicts only
     [Chosen] tadv: Option<Second> = conflict.added(AddedMeasure::Tadv);

@@ -2,6 +2,7 @@
 
 use super::{Run, count};
 use crate::detection::encounter::Encounter;
+use crate::events::Surroundings;
 use crate::geometry::Point;
 use crate::{Error, Result};
 
@@ -109,8 +110,10 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
+        let course = |row| detector.course(frame, roster, row);
         let added = |found: &Encounter| detector.added(frame, roster, found);
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path, added, self.collided.as_deref());
+        let around = Surroundings { net: self.net.as_deref(), signals: &self.signals, course: &course, added: &added };
+        let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
     }

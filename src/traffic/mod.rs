@@ -6,4 +6,5 @@ pub mod net;
 pub mod placement;
 pub mod profile;
 pub mod roster;
+pub mod signals;
 pub mod sumo_type;

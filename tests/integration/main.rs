@@ -19,3 +19,4 @@ mod street;
 mod sublane;
 mod time_to_collision;
 mod way;
+mod why;

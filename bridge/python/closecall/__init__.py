@@ -10,12 +10,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import geometry
-from ._closecall import Conflict, __version__, mu
+from ._closecall import Alarm, Conflict, __version__, mu
 
 if TYPE_CHECKING:
     from ._checker import Checker
 
-__all__ = ["Checker", "Conflict", "__version__", "geometry", "mu"]
+__all__ = ["Alarm", "Checker", "Conflict", "__version__", "geometry", "mu"]
 
 
 def __getattr__(name: str) -> type[Checker]:

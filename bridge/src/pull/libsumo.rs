@@ -6,6 +6,7 @@
 use closecall::internals::util::Second;
 use closecall::{Options, Placement, Run};
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 
 use super::libsumo_domain::LibsumoDomain;
 use super::reading::Domain;
@@ -22,6 +23,10 @@ pub struct Libsumo {
     types: TypeProfiles,
     step_length: Second,
     get: PlacementGetters,
+    /// The ids of the traffic lights, and what they show.
+    lights: [Py<PyAny>; 2],
+    /// The traffic lights of the run's net that the simulation has; none before the first step.
+    known_lights: Option<Vec<(u32, Py<PyString>)>>,
 }
 
 /// The getters of a vehicle's placement and route.
@@ -54,6 +59,8 @@ impl Libsumo {
             ],
             types: TypeProfiles::new(module, options)?,
             step_length: module.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
+            lights: [function("trafficlight_getIDList")?, function("trafficlight_getRedYellowGreenState")?],
+            known_lights: None,
             get: PlacementGetters {
                 lane: function("vehicle_getLaneID")?,
                 lane_position: function("vehicle_getLanePosition")?,
@@ -82,6 +89,7 @@ impl Libsumo {
         let jumped = last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin_step(time);
         run.set_collisions_of_sumo(sumo::collisions(&self.collisions.bind(py).call0()?)?);
+        self.read_lights(py, run)?;
         if let (true, Some(last)) = (jumped, last) {
             self.remove_replaced(py, run, last)?;
         }
@@ -96,6 +104,22 @@ impl Libsumo {
         self.park(py, run, jumped)?;
         self.vehicles.read(py, run)?;
         self.persons.read(py, run)
+    }
+
+    /// Reads what the traffic lights show.
+    fn read_lights(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        let [ids, state] = &self.lights;
+        let lights = match &mut self.known_lights {
+            Some(known) => known,
+            unknown => {
+                let known = sumo::lights(run, &ids.bind(py).call0()?)?;
+                unknown.insert(known)
+            }
+        };
+        for (light, id) in lights {
+            run.set_signal(*light, state.bind(py).call1((&*id,))?.extract::<&str>()?);
+        }
+        Ok(())
     }
 
     /// Removes the vehicles whose id belongs to another vehicle, which departed after this time.

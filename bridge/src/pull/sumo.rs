@@ -1,5 +1,6 @@
 //! Requests that are the same for libsumo and traci: options, types, polygons, routes.
 
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,6 +9,7 @@ use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, Run, Sumo
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::intern;
 use pyo3::prelude::*;
+use pyo3::types::PyString;
 use rustc_hash::FxHashMap;
 
 use crate::error::{exception, message};
@@ -108,6 +110,15 @@ impl TypeProfiles {
             action_step: number("getActionStepLength")?,
         })
     }
+}
+
+/// The traffic lights of the run's net that the simulation has, whose ids these are.
+pub fn lights(run: &Run, ids: &Bound<PyAny>) -> PyResult<Vec<(u32, Py<PyString>)>> {
+    let py = ids.py();
+    let ids = ids.extract::<Vec<String>>()?.into_iter().collect::<HashSet<_>>();
+    let of_net = run.net().map_or(&[][..], |net| &net.lights);
+    let known = (0..).zip(of_net).filter(|(_, id)| ids.contains(*id));
+    Ok(known.map(|(light, id)| (light, PyString::new(py, id).unbind())).collect())
 }
 
 /// The pairs of ids of the collisions that SUMO reports.

@@ -19,6 +19,10 @@ pub struct Traci {
     types: TypeProfiles,
     step_length: Second,
     variable: Variables,
+    /// traci's traffic lights.
+    lights: Py<PyAny>,
+    /// Those that the run's net has too; none before the first step.
+    known_lights: Option<Vec<(u32, Py<PyString>)>>,
 }
 
 /// traci's numbers of the variables that are subscribed to.
@@ -33,6 +37,7 @@ struct Variables {
     route_index: i32,
     stop_state: i32,
     vehicle: i32,
+    light: i32,
 }
 
 /// The bit of traci's stop state for a vehicle parked off the road.
@@ -71,6 +76,7 @@ impl Traci {
             route_index: number("VAR_ROUTE_INDEX")?,
             stop_state: number("VAR_STOPSTATE")?,
             vehicle: number("VAR_VEHICLE")?,
+            light: number("TL_RED_YELLOW_GREEN_STATE")?,
         };
         let Variables { position, angle, speed, lane, lane_position, .. } = variable;
         let Variables { lateral_speed, route_id, route_index, stop_state, vehicle, .. } = variable;
@@ -85,6 +91,8 @@ impl Traci {
             persons: domain("person", vec![position, angle, speed, vehicle])?,
             types: TypeProfiles::new(source, options)?,
             step_length: source.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
+            lights: source.getattr("trafficlight")?.unbind(),
+            known_lights: None,
             source: source.clone().unbind(),
             variable,
         })
@@ -100,10 +108,37 @@ impl Traci {
         run.begin_step(time);
         let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
         run.set_collisions_of_sumo(sumo::collisions(&simulation.call_method0(intern!(py, "getCollisions"))?)?);
+        self.read_lights(py, run)?;
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;
         self.persons.read(py, run, &self.variable, |run, name| types.person(py, run, name))
+    }
+
+    /// Reads what the traffic lights show.
+    fn read_lights(&mut self, py: Python, run: &mut Run) -> PyResult<()> {
+        let lights = self.lights.bind(py);
+        let light = self.variable.light;
+        let known = match &mut self.known_lights {
+            Some(known) => known,
+            unknown => {
+                let known = sumo::lights(run, &lights.call_method0("getIDList")?)?;
+                for (_, id) in &known {
+                    lights.call_method1("subscribe", (id, vec![light]))?;
+                }
+                unknown.insert(known)
+            }
+        };
+        if known.is_empty() {
+            return Ok(());
+        }
+        let results = lights.call_method0(intern!(py, "getAllSubscriptionResults"))?;
+        for (number, id) in known {
+            if let Ok(shown) = results.get_item(&*id) {
+                run.set_signal(*number, shown.get_item(light)?.extract::<&str>()?);
+            }
+        }
+        Ok(())
     }
 
     pub fn place(&mut self, py: Python, run: &mut Run, rows: &[u32]) -> PyResult<()> {
@@ -173,11 +208,11 @@ impl TraciDomain {
         let ask = || domain.call_method0(intern!(py, "getAllSubscriptionResults"));
         let mut results = ask()?;
         // If SUMO has ended the subscription of an id, its road user has left and another one has the id.
-        let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
+        let others = ids.iter().filter(|id| results.get_item(&*id).is_err()).collect::<Vec<_>>();
         if !others.is_empty() {
             others.iter().try_for_each(&subscribe)?;
             results = ask()?;
-            let mut others = others.iter().filter(|id| results.get_item(id).is_ok());
+            let mut others = others.iter().filter(|id| results.get_item(&*id).is_ok());
             others.try_for_each(|id| enter(&mut self.live, run, id))?;
         }
         for id in ids.iter() {

@@ -78,6 +78,9 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     let mut types = Words::default();
     add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)).collect());
     add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)).collect());
+    let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
+    add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
+    add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
     let mut lanes = Words::default();
     add("lane", conflicts().map(|conflict| lanes.place(&conflict.lane)).collect());
     add("id", conflicts().map(|conflict| conflict.id).collect());
@@ -108,6 +111,8 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
         "columns": columns,
         "ids": ids.list,
         "types": types.list,
+        "manoeuvres": manoeuvres.list,
+        "causes": causes.list,
         "lanes": lanes.list,
         "spots": places.list,
         "spot_of_lane": spot_of_lane,

@@ -141,8 +141,8 @@ impl Collection {
         for (run, variant) in variant_of.into_iter().enumerate() {
             let reader = ConflictReader::open(&found.folders[run])?;
             let header = reader.columns();
-            if by == By::Type && !header.iter().any(|column| column == "ego_type") {
-                let message = "the column \"ego_type\" is missing: logs of earlier versions do not have types";
+            if let Some(needed) = by.needs().filter(|needed| !header.iter().any(|column| column == needed)) {
+                let message = format!("the column \"{needed}\" is missing: logs of earlier versions do not have it");
                 return Err(Error::line(reader.path(), 1, message));
             }
             match &columns {

@@ -22,14 +22,28 @@ pub enum By {
     Junction,
     /// The vehicle types, the ego's first.
     Type,
+    /// What the two were doing.
+    Manoeuvre,
+    /// Why it came about, by the strongest evidence.
+    Cause,
     /// The simulated hour in which the margin was smallest.
     Hour,
 }
 
-/// The group of conflicts without an edge or junction.
+/// The group of conflicts without an edge, junction, manoeuvre or cause.
 const NOWHERE: &str = "(none)";
 
 impl By {
+    /// The column that it needs, if logs of earlier versions lack it.
+    pub fn needs(self) -> Option<&'static str> {
+        match self {
+            Self::Type => Some("ego_type"),
+            Self::Manoeuvre => Some("manoeuvre"),
+            Self::Cause => Some("cause"),
+            Self::Kind | Self::Severity | Self::Edge | Self::Junction | Self::Hour => None,
+        }
+    }
+
     /// The group of a conflict.
     pub fn group<'a>(self, conflict: &'a LoggedConflict) -> Cow<'a, str> {
         let place = |name: &'a str| if name.is_empty() { NOWHERE } else { name };
@@ -38,6 +52,8 @@ impl By {
             Self::Severity => conflict.severity.name().into(),
             Self::Edge => place(conflict.edge()).into(),
             Self::Junction => place(conflict.junction()).into(),
+            Self::Manoeuvre => place(&conflict.manoeuvre).into(),
+            Self::Cause => place(conflict.cause.split(' ').next().unwrap_or_default()).into(),
             Self::Type => format!("{}/{}", plain(&conflict.ego_type), plain(&conflict.foe_type)).into(),
             Self::Hour => ((conflict.time / 3600.0).floor() as i64).to_string().into(),
         }
@@ -51,7 +67,7 @@ impl By {
                 Self::Kind => of(Kind::ALL.iter().position(|kind| kind.name() == name(group))),
                 Self::Severity => of(Severity::ALL.iter().position(|severity| severity.name() == name(group))),
                 Self::Hour => name(group).parse().unwrap_or(i64::MAX),
-                Self::Edge | Self::Junction | Self::Type => -(count(group) as i64),
+                Self::Edge | Self::Junction | Self::Type | Self::Manoeuvre | Self::Cause => -(count(group) as i64),
             }
         };
         groups.sort_by(|a, b| (rank(a), name(a)).cmp(&(rank(b), name(b))));

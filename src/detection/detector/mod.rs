@@ -8,6 +8,7 @@
 mod added;
 mod align;
 mod candidates;
+mod course;
 mod cover;
 mod encounters;
 mod jump;
@@ -28,6 +29,7 @@ use std::iter::repeat_n;
 use std::sync::Arc;
 
 use super::broad_phase::Search;
+use super::course::LaneChange;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
@@ -88,6 +90,8 @@ pub struct Detector {
     on_lanes: Vec<bool>,
     /// By [`UserIndex`], the speed in the last step that the road user was in, and the deceleration since the one before.
     speeds: Vec<LastSpeed>,
+    /// By [`UserIndex`], the last change of lanes; none where there was none, or beyond the end.
+    lane_changes: Vec<Option<LaneChange>>,
     /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
     /// The roster's changes until the last step, and the number of road users in that step.
@@ -124,6 +128,7 @@ impl Detector {
             turnings: Vec::new(),
             on_lanes: Vec::new(),
             speeds: Vec::new(),
+            lane_changes: Vec::new(),
             search: Search::default(),
             last_step: (0, 0),
             order: RowOrder::default(),
@@ -211,6 +216,9 @@ impl Detector {
         if let Some(speed) = self.speeds.get_mut(user.0 as usize) {
             *speed = LastSpeed::default();
         }
+        if let Some(change) = self.lane_changes.get_mut(user.0 as usize) {
+            *change = None;
+        }
         if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
             turning.clear();
         }
@@ -247,8 +255,10 @@ impl Detector {
             sublane: self.sublane,
             step: self.step,
         };
+        let before = path.lane_at(&net.lines, 0.0);
         path.build(net, &start, placement);
         self.on_lanes[row as usize] = !path.track.is_empty();
+        self.take_lane(user, before, placement.lane);
     }
 
     /// The narrow phase: finds the pairs that would meet, in the order of the frame's rows. Call

@@ -24,7 +24,7 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 /// A path is built this much longer than needed, in m, so that it is not extended in every step.
 const SPARE: Metre = 30.0;
 /// Lanes further behind the rear bumper than this are removed, in m.
-const KEPT_BEHIND: Metre = 5.0;
+pub(crate) const KEPT_BEHIND: Metre = 5.0;
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
 pub struct LanePath {
@@ -114,7 +114,7 @@ impl LanePath {
         // On a lane of its route a road user drives along the lane whatever its heading: after a sharp turn the rear
         // still stands across, and the heading with it.
         let against = foot.direction.dot(&start.axis) < 0.0 && !is_on_route(net, lane, self.route.edges());
-        let before = self.own.as_ref().map_or(0.0, |own| own.lateral_speed());
+        let before = self.lateral_speed();
         let beside = OffsetLine::new(offset(net, start, placement, before, &foot, against));
         let before =
             if against { SmallVec::new() } else { lanes_behind(net, placement.lane, &foot, start, &self.route) };
@@ -176,24 +176,39 @@ impl LanePath {
     /// The lanes between two distances ahead of the front bumper; those behind it have negative distances.
     pub fn lanes_between(&self, of_net: &Lines, from: Metre, to: Metre) -> SmallVec<[LaneIndex; 4]> {
         let mut found = SmallVec::new();
-        let mut begin = -self.track.front();
-        let mut add = |lane: LaneIndex, begin: Metre, end: Metre| {
+        self.each_lane(of_net, |lane, [begin, end]| {
             if begin <= to && end >= from {
                 found.push(lane);
             }
-        };
+        });
+        found
+    }
+
+    /// Calls `each` with its lanes in driving order, and the distances ahead of the front bumper at which each begins and
+    /// ends.
+    pub fn each_lane(&self, of_net: &Lines, mut each: impl FnMut(LaneIndex, [Metre; 2])) {
+        let mut begin = -self.track.front();
         match &self.own {
-            Some(own) => own.lanes().for_each(|(lane, [first, last])| add(lane, begin + first, begin + last)),
+            Some(own) => own.lanes().for_each(|(lane, [first, last])| each(lane, [begin + first, begin + last])),
             None => {
                 begin -= self.track.passed(of_net);
                 for line in self.track.lines.iter() {
                     let end = begin + of_net.length(*line);
-                    add(LaneIndex(*line), begin, end);
+                    each(LaneIndex(*line), [begin, end]);
                     begin = end;
                 }
             }
         }
-        found
+    }
+
+    /// Whether it leads against the direction of its lane.
+    pub fn is_against(&self) -> bool {
+        self.edge.is_none() && !self.track.is_empty()
+    }
+
+    /// The lateral speed with which it was begun, positive to the left.
+    pub fn lateral_speed(&self) -> MetrePerSecond {
+        self.own.as_ref().map_or(0.0, |own| own.lateral_speed())
     }
 
     /// How far beside the lanes' centre line it runs, in m; positive to the left.

@@ -1,9 +1,10 @@
 //! The parts of a road network: edges, lanes, links between lanes, junctions.
 
 use nalgebra::Point2;
+use smallvec::SmallVec;
 
 use crate::geometry::{Bounds, Vector};
-use crate::util::units::Metre;
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// SUMO's default width of a lane in m.
 pub(super) const USUAL_WIDTH: Metre = 3.2;
@@ -72,6 +73,8 @@ pub struct Lane {
     pub length: Metre,
     /// Width in m.
     pub width: Metre,
+    /// Speed limit in m/s; infinite where the file has none.
+    pub speed: MetrePerSecond,
     /// Whether vehicles use it: no sidewalk, and not closed to all.
     pub has_vehicles: bool,
     /// The centre line, at least two points.
@@ -91,6 +94,47 @@ impl Lane {
     }
 }
 
+/// Where a link leads, seen from the lane that it begins at (SUMO's attribute `dir`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Straight on, or slightly to a side.
+    Straight,
+    /// To the left.
+    Left,
+    /// To the right.
+    Right,
+    /// Back.
+    Around,
+}
+
+/// The place of a link in the states of a traffic light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Signal {
+    /// The traffic light, in the net's list.
+    pub light: u32,
+    /// SUMO's `linkIndex`.
+    pub index: u32,
+}
+
+/// A way through a junction: a link with its lanes there, or a crossing of persons.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Passage {
+    /// The junction, in the net's list.
+    pub junction: u32,
+    /// The link's number in the junction's right of way.
+    pub link: u32,
+    /// The lane before the junction; the crossing itself.
+    pub from: LaneIndex,
+    /// The lane behind the junction; the crossing itself.
+    pub to: LaneIndex,
+    /// Where it leads.
+    pub direction: Direction,
+    /// Its traffic light, if it has one.
+    pub signal: Option<Signal>,
+    /// Its lanes within the junction, in driving order: two where one waits in the junction, between them.
+    pub lanes: SmallVec<[LaneIndex; 2]>,
+}
+
 /// One junction.
 #[derive(Clone, Debug)]
 pub struct Junction {
@@ -102,17 +146,26 @@ pub struct Junction {
     pub(super) link_lanes: Vec<Option<LaneIndex>>,
     /// By link through it: SUMO's attribute `foes`, a digit for each link, the first link last.
     pub(super) foes: Vec<Box<str>>,
+    /// By link through it: SUMO's attribute `response`, the links that it yields to, in the same form.
+    pub(super) responses: Vec<Box<str>>,
 }
 
 impl Junction {
     /// Whether two links cross or merge, so that one of them yields.
     pub(super) fn are_foes(&self, one: u32, other: u32) -> bool {
-        let is_foe = |of: u32, link: u32| {
-            let digits = self.foes.get(of as usize).map_or(&[][..], |foes| foes.as_bytes());
-            digits.iter().rev().nth(link as usize) == Some(&b'1')
-        };
-        is_foe(one, other) || is_foe(other, one)
+        has_digit(&self.foes, one, other) || has_digit(&self.foes, other, one)
     }
+
+    /// Whether a link has to yield to another.
+    pub fn yields(&self, link: u32, to: u32) -> bool {
+        has_digit(&self.responses, link, to)
+    }
+}
+
+/// Whether the row of a link has a 1 for another link.
+fn has_digit(rows: &[Box<str>], of: u32, link: u32) -> bool {
+    let digits = rows.get(of as usize).map_or(&[][..], |row| row.as_bytes());
+    digits.iter().rev().nth(link as usize) == Some(&b'1')
 }
 
 /// How the net's metres follow from degrees of longitude and latitude.

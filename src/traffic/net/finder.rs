@@ -29,6 +29,17 @@ impl Finder {
         self.tree.intersect_aabb(bounds).map(LaneIndex)
     }
 
+    /// The lanes that a place is on, or within a distance of, in no particular order; lanes wider than [`REACH`] only as far
+    /// as that.
+    pub(super) fn lanes_at(&self, lanes: &[Lane], place: Point, within: Metre) -> impl Iterator<Item = LaneIndex> {
+        let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
+        let near = self.tree.intersect_aabb(&window).map(LaneIndex).collect::<Vec<_>>().into_iter();
+        near.filter(move |lane| {
+            let lane = &lanes[lane.0 as usize];
+            distance(lane, place) <= (lane.width / 2.0 + within).min(REACH)
+        })
+    }
+
     /// The lane with the nearest centre line; if equal, the first of the net.
     pub(super) fn lane_at(&self, lanes: &[Lane], place: Point) -> Option<LaneIndex> {
         let window = aabb(&Bounds { low: place, high: place }.grown(REACH));

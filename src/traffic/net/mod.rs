@@ -12,7 +12,7 @@ mod overlaps;
 mod quality;
 mod reader;
 
-pub use elements::{EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Location};
+pub use elements::{Direction, EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Location, Passage, Signal};
 pub use network::Net;
 pub use overlaps::{Overlap, Overlaps};
 

@@ -3,7 +3,7 @@
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location};
+use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage};
 use super::finder::Finder;
 use crate::geometry::Bounds;
 use crate::geometry::polylines::{Lines, stretch};
@@ -29,11 +29,58 @@ pub struct Net {
     pub(super) finder: Finder,
     /// By [`JunctionIndex`], the box around its outline; empty where the net has none.
     pub(super) junction_bounds: Vec<Bounds>,
+    /// The ids of the traffic lights that its links name.
+    pub lights: Vec<String>,
+    /// The ways through its junctions.
+    pub(super) passages: Vec<Passage>,
+    /// By lane, the passage that it is part of; [`NO_PASSAGE`] for others.
+    pub(super) passage_of: Vec<u32>,
     /// The lowest and the highest point of all lanes, in m.
     pub(super) heights: [Metre; 2],
 }
 
+/// No [`Passage`].
+pub(super) const NO_PASSAGE: u32 = u32::MAX;
+
 impl Net {
+    /// The way through a junction that a lane is part of: a lane within a junction, or a crossing.
+    pub fn passage(&self, lane: LaneIndex) -> Option<&Passage> {
+        self.passages.get(*self.passage_of.get(lane.0 as usize)? as usize)
+    }
+
+    /// The purpose of a lane's edge.
+    pub fn function(&self, lane: LaneIndex) -> EdgeFunction {
+        self.edges[self.lanes[lane.0 as usize].edge.0 as usize].function
+    }
+
+    /// Whether one has to yield that takes the first of these ways, both through one junction, to one that takes the other,
+    /// and not the other way round.
+    pub fn yields(&self, one: &Passage, to: &Passage) -> bool {
+        let junction = &self.junctions[one.junction as usize];
+        one.junction == to.junction && junction.yields(one.link, to.link) && !junction.yields(to.link, one.link)
+    }
+
+    /// Whether it has crossings for persons.
+    pub fn has_crossings(&self) -> bool {
+        self.edges.iter().any(|edge| edge.function == EdgeFunction::Crossing)
+    }
+
+    /// The crossing of persons at a place, within this distance of it.
+    pub fn crossing_at(&self, place: Point2<Metre>, within: Metre) -> Option<LaneIndex> {
+        self.lane_of_persons_at(place, within, EdgeFunction::Crossing)
+    }
+
+    /// Whether persons have a crossing, or the area where they wait for it, at a place or within this distance of it.
+    pub fn is_for_persons(&self, place: Point2<Metre>, within: Metre) -> bool {
+        [EdgeFunction::Crossing, EdgeFunction::WalkingArea]
+            .into_iter()
+            .any(|function| self.lane_of_persons_at(place, within, function).is_some())
+    }
+
+    fn lane_of_persons_at(&self, place: Point2<Metre>, within: Metre, of: EdgeFunction) -> Option<LaneIndex> {
+        self.finder.lanes_at(&self.lanes, place, within).find(|lane| self.function(*lane) == of)
+    }
+
     /// The lane with this id.
     pub fn lane(&self, id: &str) -> Option<LaneIndex> {
         self.lane_ids.get(id).copied()

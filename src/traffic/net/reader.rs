@@ -7,13 +7,15 @@ use quick_xml::Reader;
 use quick_xml::escape::unescape;
 use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
+use smallvec::smallvec;
 
 use super::elements::{
-    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Link, Location, USUAL_WIDTH,
+    Direction, Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Link, Location, Passage,
+    Signal, USUAL_WIDTH,
 };
 use super::finder::Finder;
-use super::network::Net;
+use super::network::{NO_PASSAGE, Net};
 use crate::geometry::polylines::stretch;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::input_file::{ElementSource, xml_message};
@@ -43,8 +45,8 @@ impl Net {
 fn read(path: &Path, source: ElementSource) -> Result<Net> {
     let heights = [f64::INFINITY, f64::NEG_INFINITY];
     let net = Net { heights, ..Net::default() };
-    NetReader { path, line: 1, net, connections: Vec::new(), junctions: FxHashMap::default(), link_lanes: Vec::new() }
-        .read(source)
+    let (junctions, lights) = Default::default();
+    NetReader { path, line: 1, net, connections: Vec::new(), junctions, link_lanes: Vec::new(), lights }.read(source)
 }
 
 struct NetReader<'a> {
@@ -56,6 +58,8 @@ struct NetReader<'a> {
     junctions: FxHashMap<String, JunctionIndex>,
     /// By junction, the ids of its links' lanes.
     link_lanes: Vec<String>,
+    /// The numbers of the traffic lights, by id.
+    lights: FxHashMap<String, u32>,
 }
 
 /// A `<connection>`, whose lanes may follow later in the file.
@@ -64,6 +68,8 @@ struct Connection {
     from: (String, u32),
     to: (String, u32),
     via: Option<String>,
+    direction: Direction,
+    signal: Option<Signal>,
 }
 
 impl NetReader<'_> {
@@ -155,6 +161,8 @@ impl NetReader<'_> {
         }
         let length = self.number(attributes, "length", f64::NAN, &LANE_LENGTH)?;
         let width = self.number(attributes, "width", USUAL_WIDTH, &LANE_WIDTH)?;
+        let limit = attributes.get("speed").and_then(|speed| speed.parse().ok()).filter(|speed| *speed > 0.0);
+        let speed = limit.unwrap_or(f64::INFINITY);
         let has_vehicles = attributes.get("allow") != Some("pedestrian") && attributes.get("disallow") != Some("all");
         let index = LaneIndex(self.net.lanes.len() as u32);
         let edge_lanes = &mut self.net.edges[edge].lanes;
@@ -170,7 +178,7 @@ impl NetReader<'_> {
         let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
         let id = id.to_owned();
-        self.net.lanes.push(Lane { id, edge, index: place, length, width, has_vehicles, shape, links, from });
+        self.net.lanes.push(Lane { id, edge, index: place, length, width, speed, has_vehicles, shape, links, from });
         Ok(())
     }
 
@@ -180,7 +188,8 @@ impl NetReader<'_> {
             Some(shape) => self.shape(id, shape, false)?,
             None => Vec::new(),
         };
-        self.net.junctions.push(Junction { id: id.to_owned(), shape, link_lanes: Vec::new(), foes: Vec::new() });
+        let (link_lanes, foes, responses) = (Vec::new(), Vec::new(), Vec::new());
+        self.net.junctions.push(Junction { id: id.to_owned(), shape, link_lanes, foes, responses });
         self.link_lanes.push(attributes.get("intLanes").unwrap_or_default().to_owned());
         Ok(())
     }
@@ -192,10 +201,13 @@ impl NetReader<'_> {
             return Err(self.wrong("a request is not inside a junction"));
         };
         junction.foes.push(foes);
+        junction.responses.push(attributes.get("response").unwrap_or_default().into());
         Ok(())
     }
 
     fn connection(&mut self, attributes: &ElementAttributes) -> Result<()> {
+        let index = attributes.get("linkIndex").and_then(|index| index.parse().ok());
+        let signal = attributes.get("tl").zip(index).map(|(light, index)| Signal { light: self.light(light), index });
         let end = |edge: &str, lane: &str| -> Result<(String, u32)> {
             let index = self.required(attributes, lane)?;
             let index = index.parse().map_err(|_| self.wrong(format!("connection: {lane} is \"{index}\"")))?;
@@ -203,12 +215,30 @@ impl NetReader<'_> {
         };
         let connection = Connection {
             line: self.line,
+            direction: match attributes.get("dir") {
+                Some("l") => Direction::Left,
+                Some("r") => Direction::Right,
+                Some("t" | "T") => Direction::Around,
+                _ => Direction::Straight,
+            },
+            signal,
             from: end("from", "fromLane")?,
             to: end("to", "toLane")?,
             via: attributes.get("via").map(str::to_owned),
         };
         self.connections.push(connection);
         Ok(())
+    }
+
+    /// The number of a traffic light.
+    fn light(&mut self, id: &str) -> u32 {
+        if let Some(known) = self.lights.get(id) {
+            return *known;
+        }
+        let light = self.net.lights.len() as u32;
+        self.net.lights.push(id.to_owned());
+        self.lights.insert(id.to_owned(), light);
+        light
     }
 
     fn location(&mut self, attributes: &ElementAttributes) -> Result<()> {
@@ -229,6 +259,7 @@ impl NetReader<'_> {
         if self.net.lanes.is_empty() {
             return Err(Error::content(self.path, "the net has no lanes"));
         }
+        let mut passages = Vec::new();
         for connection in std::mem::take(&mut self.connections) {
             self.line = connection.line;
             let from = self.end_of(&connection.from)?;
@@ -238,6 +269,14 @@ impl NetReader<'_> {
                 None => None,
             };
             self.net.lanes[from.0 as usize].links.push(Link { to, via });
+            let Connection { direction, signal, .. } = connection;
+            let is_crossing = self.net.function(to) == EdgeFunction::Crossing && signal.is_some();
+            if self.net.function(from) == EdgeFunction::Normal || is_crossing {
+                let (from, lane) = if is_crossing { (to, Some(to)) } else { (from, via) };
+                let passage =
+                    |lane| Passage { junction: 0, link: 0, from, to, direction, signal, lanes: smallvec![lane] };
+                passages.extend(lane.map(passage));
+            }
             let from_lanes = &mut self.net.lanes[via.unwrap_or(to).0 as usize].from;
             if !from_lanes.contains(&from) {
                 from_lanes.push(from);
@@ -256,9 +295,50 @@ impl NetReader<'_> {
                     ids.split_ascii_whitespace().map(|id| self.net.lane_ids.get(id).copied()).collect();
             }
         }
+        self.add_passages(passages);
         self.net.lines.shrink();
         self.net.finder = Finder::new(&self.net.lanes);
         Ok(self.net)
+    }
+
+    /// Adds the ways through the junctions: those of the connections, of which the first lane and no junction is known yet,
+    /// and the crossings without a signal, which no connection tells.
+    fn add_passages(&mut self, mut passages: Vec<Passage>) {
+        let net = &mut self.net;
+        let mut links = FxHashMap::default();
+        for (junction, number) in net.junctions.iter().zip(0..) {
+            for (lane, link) in junction.link_lanes.iter().zip(0..) {
+                links.extend(lane.map(|lane| (lane, (number, link))));
+            }
+        }
+        let mut of = vec![NO_PASSAGE; net.lanes.len()];
+        let signalled = passages.iter().map(|passage| passage.lanes[0]).collect::<FxHashSet<_>>();
+        let is_crossing = |lane: &&LaneIndex| net.function(**lane) == EdgeFunction::Crossing;
+        let unsignalled = links.keys().filter(is_crossing).filter(|lane| !signalled.contains(lane));
+        let mut unsignalled = unsignalled.copied().collect::<Vec<_>>();
+        unsignalled.sort_unstable();
+        passages.extend(unsignalled.into_iter().map(|lane| Passage {
+            junction: 0,
+            link: 0,
+            from: lane,
+            to: lane,
+            direction: Direction::Straight,
+            signal: None,
+            lanes: smallvec![lane],
+        }));
+        for mut passage in passages {
+            // A link has two junction lanes at most.
+            let last = passage.lanes[0];
+            let next = net.lanes[last.0 as usize].links.first().and_then(|link| link.via);
+            passage.lanes.extend(next.filter(|_| net.function(last) == EdgeFunction::Internal));
+            let Some((junction, link)) = passage.lanes.last().and_then(|lane| links.get(lane)) else { continue };
+            (passage.junction, passage.link) = (*junction, *link);
+            for lane in &passage.lanes {
+                of[lane.0 as usize] = net.passages.len() as u32;
+            }
+            net.passages.push(passage);
+        }
+        net.passage_of = of;
     }
 
     fn end_of(&self, (edge, lane): &(String, u32)) -> Result<LaneIndex> {

@@ -36,6 +36,14 @@ function typed(id, type) {
   return word ? `${id} (${word})` : id;
 }
 
+/** The manoeuvre and the causes of a conflict, as far as they are known. */
+function whyWords(row) {
+  const manoeuvre = conflicts.manoeuvres[column.manoeuvre[row]];
+  const causes = conflicts.causes[column.cause[row]].split(" ").join(", ");
+  const parts = [manoeuvre && `Manoeuvre: ${manoeuvre}`, causes && `Cause: ${causes}`];
+  return parts.filter(Boolean).map((part) => `${part.replaceAll("_", " ")}.`).join(" ");
+}
+
 function spotWords(row) {
   const spot = conflicts.spots[spotOf(row)];
   return spot ? `on ${spot} (lane ${laneId(row)})` : `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
@@ -49,6 +57,7 @@ function describe(row) {
   const angle = Math.round((value("angle") * 180) / Math.PI);
   const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
   const sentences = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${deed(row, ego, foe)}${across}.`];
+  if (whyWords(row)) sentences.push(whyWords(row));
   sentences.push(`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
     + `${number(value("margin"), 2)} m.`);
   if (value("collision")) {
@@ -80,6 +89,7 @@ function tipOf(row) {
   const lines = [
     `${egoId(row)} → ${foeId(row)}`,
     `${KINDS[value("kind")]}, ${SEVERITIES[value("severity")]}${value("collision") ? ", collision" : ""}`,
+    whyWords(row),
     `${number(value("time"), 1)} s, ${conflicts.spots[spotOf(row)] || "no lane"}`,
     `gap ${maybe("gap", 2, "m")}, μ ${maybe("mu", 2, "m")}, margin ${maybe("margin", 2, "m")}`,
     `time to brake ${maybe("ttb", 2, "s")}, crash probability ${maybe("crash_probability", 2, "")}`,

@@ -1,0 +1,107 @@
+//! Python's `Alarm`, and the functions of a script that are called while a simulation runs.
+
+use closecall::internals::output::{Context, LoggedConflict};
+use closecall::{Run, UserIndex};
+use pyo3::IntoPyObjectExt;
+use pyo3::prelude::*;
+
+use crate::conflict::Conflict;
+
+/// A conflict that is open now, as it was in the last step that met the log's condition.
+///
+/// Args:
+///     time: that step, in s.
+///     ttb: time to brake: how long full braking may wait if the foe goes on as now, in s; None if the two would not touch.
+///     response_left: the same if the foe brakes fully now, in s; None if the ego stands.
+///     probability: that the driver does not brake in time if the foe goes on as now.
+///     x: the conflict point, in m.
+///     y: the conflict point, in m.
+#[pyclass(frozen, get_all, module = "closecall")]
+pub struct Alarm {
+    ego: String,
+    foe: String,
+    kind: &'static str,
+    severity: &'static str,
+    time: f64,
+    margin: f64,
+    ttb: Option<f64>,
+    response_left: Option<f64>,
+    probability: f64,
+    x: f64,
+    y: f64,
+}
+
+#[pymethods]
+impl Alarm {
+    fn __repr__(&self) -> String {
+        let Self { ego, foe, kind, severity, time, margin, .. } = self;
+        format!("Alarm(ego={ego:?}, foe={foe:?}, kind={kind}, severity={severity}, time={time}, margin={margin:.3})")
+    }
+}
+
+impl Alarm {
+    fn of(run: &Run, alarm: &closecall::Alarm) -> Self {
+        let id = |user: UserIndex| run.roster.id(user).to_string();
+        let near = alarm.nearness;
+        Self {
+            ego: id(alarm.ego),
+            foe: id(alarm.foe),
+            kind: alarm.kind.name(),
+            severity: alarm.severity.name(),
+            time: alarm.time,
+            margin: alarm.margin,
+            ttb: near.and_then(|near| near.ttb),
+            response_left: near.and_then(|near| near.response_left),
+            probability: near.map_or(0.0, |near| near.crash_probability),
+            x: alarm.at.x,
+            y: alarm.at.y,
+        }
+    }
+}
+
+/// The open conflicts, in the order of the ids.
+pub fn active(run: &Run) -> Vec<Alarm> {
+    let mut alarms = run.alarms().map(|alarm| Alarm::of(run, &alarm)).collect::<Vec<_>>();
+    alarms.sort_by(|a, b| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe)));
+    alarms
+}
+
+/// The functions that a script wants to be called, and what they have been told.
+#[derive(Default)]
+pub struct Listeners {
+    on_conflict: Option<Py<PyAny>>,
+    on_alarm: Option<Py<PyAny>>,
+    /// The number of the last conflict that `on_conflict` got.
+    told: u64,
+    /// The pairs whose conflict was open after the last step.
+    open: Vec<[UserIndex; 2]>,
+}
+
+impl Listeners {
+    pub fn new(on_conflict: Option<Py<PyAny>>, on_alarm: Option<Py<PyAny>>) -> Self {
+        Self { on_conflict, on_alarm, ..Self::default() }
+    }
+
+    /// What a step brought, each with the function to call with it: the conflicts that opened, then those that closed.
+    pub fn news(&mut self, py: Python, run: &Run) -> PyResult<Vec<(Py<PyAny>, Py<PyAny>)>> {
+        let mut news = Vec::new();
+        if let Some(on_alarm) = &self.on_alarm {
+            let pair = |alarm: &closecall::Alarm| [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
+            for alarm in run.alarms().filter(|alarm| !self.open.contains(&pair(alarm))) {
+                news.push((on_alarm.clone_ref(py), Alarm::of(run, &alarm).into_py_any(py)?));
+            }
+            self.open = run.alarms().map(|alarm| pair(&alarm)).collect();
+        }
+        if let Some(on_conflict) = &self.on_conflict {
+            let told = self.told;
+            for (number, conflict) in (run.first_number()..).zip(run.closed()).skip_while(|(number, _)| *number <= told)
+            {
+                let context = Context { number, net: run.net(), roster: &run.roster };
+                let conflict = Conflict(LoggedConflict::new(conflict, context));
+                news.push((on_conflict.clone_ref(py), conflict.into_py_any(py)?));
+                self.told = number;
+            }
+        }
+        Ok(news)
+    }
+}

@@ -1,0 +1,65 @@
+//! Which lanes a road user comes from and goes to: what its manoeuvre follows from.
+
+use smallvec::SmallVec;
+
+use crate::traffic::net::LaneIndex;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+
+/// A lane of a [`Course`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// The lane.
+    pub lane: LaneIndex,
+    /// How far ahead of the front bumper it begins; negative behind.
+    pub begin: Metre,
+    /// How far ahead of the front bumper it ends.
+    pub end: Metre,
+}
+
+/// A change from a lane to another of the same edge.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LaneChange {
+    /// The first step in which it was on the new lane.
+    pub time: Second,
+    /// The lane before.
+    pub from: LaneIndex,
+    /// The lane after.
+    pub to: LaneIndex,
+}
+
+/// The lanes of a road user from behind its rear to beyond where it can stop, and how it drives along them.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Course {
+    /// The lanes in driving order; empty where they are not known.
+    pub stretches: SmallVec<[Stretch; 6]>,
+    /// Whether it drives against the direction of its lane.
+    pub is_against: bool,
+    /// Whether it has jumped to these lanes at the end of the step, and was on others at the moment of its speed.
+    pub has_jumped: bool,
+    /// Its last change of lanes.
+    pub change: Option<LaneChange>,
+    /// Its lateral speed, positive to the left.
+    pub lateral_speed: MetrePerSecond,
+    /// How hard it brakes now; 0 or more.
+    pub deceleration: MetrePerSecondSquared,
+}
+
+impl Course {
+    /// Puts the road user back on the lane from which it has just changed; where it goes from there is not known then.
+    pub fn undo(&mut self, change: LaneChange) {
+        let on = self.of(change.to).copied();
+        self.stretches = on.map(|stretch| Stretch { lane: change.from, ..stretch }).into_iter().collect();
+        (self.change, self.has_jumped) = (None, false);
+    }
+
+    /// The lane at a distance ahead of the front bumper; the first or last beyond either end.
+    pub fn at(&self, way: Metre) -> Option<LaneIndex> {
+        let found = self.stretches.iter().find(|stretch| stretch.end > way);
+        found.or(self.stretches.last()).map(|stretch| stretch.lane)
+    }
+
+    /// Where on its way it takes a lane.
+    pub fn of(&self, lane: LaneIndex) -> Option<&Stretch> {
+        self.stretches.iter().find(|stretch| stretch.lane == lane)
+    }
+}

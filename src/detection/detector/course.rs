@@ -1,0 +1,60 @@
+//! The course of a road user, from the path that the detector keeps for it.
+
+use super::Detector;
+use crate::detection::course::{Course, LaneChange, Stretch};
+use crate::detection::path::lanes::KEPT_BEHIND;
+use crate::traffic::frame::Frame;
+use crate::traffic::net::{EdgeFunction, LaneIndex};
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::units::Metre;
+
+/// A path of which the front bumper is further away than this is not that of the road user now, in m.
+const ON_THE_PATH: Metre = 1.0;
+
+impl Detector {
+    /// The course of the road user of a row.
+    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32) -> Course {
+        let (user, state) = (frame.user(row), frame.state(row));
+        let profile = roster.profile_of(user);
+        // Beyond, how far a path leads depends on when it was last extended.
+        let behind = -(profile.length + KEPT_BEHIND);
+        let ahead = self.cover().reach(state, profile, self.options.epsilon);
+        let Some((net, path)) = self.net.as_deref().zip(self.paths.get(user.0 as usize)) else {
+            return Course::default();
+        };
+        let deceleration = self.speeds.get(user.0 as usize).map_or(0.0, |last| last.deceleration());
+        let has_jumped = self.jumps.iter().any(|jump| jump.row == row);
+        let is_on = || (path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH;
+        let mut course = Course { has_jumped, deceleration, ..Course::default() };
+        if !path.track.is_empty() && (has_jumped || is_on()) {
+            path.each_lane(&net.lines, |lane, [begin, end]| {
+                if end > behind && begin <= ahead {
+                    course.stretches.push(Stretch { lane, begin, end });
+                }
+            });
+            course.is_against = path.is_against();
+            course.lateral_speed = path.lateral_speed();
+            course.change = self.lane_changes.get(user.0 as usize).copied().flatten();
+            if let Some(change) = course.change.filter(|change| has_jumped && change.time == self.time) {
+                course.undo(change);
+            }
+        } else if let (false, Some(lane)) = (state.moves(), net.lane_at(state.front())) {
+            // One that has not moved since it entered the scene has no path.
+            course.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });
+        }
+        course
+    }
+
+    /// Notes that a road user has changed lanes, if the one that it was on is of the same edge as that on which it is now.
+    pub(super) fn take_lane(&mut self, user: UserIndex, from: Option<LaneIndex>, to: LaneIndex) {
+        let (Some(net), Some(from)) = (&self.net, from.filter(|from| *from != to)) else { return };
+        let edge = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+        if edge(from) != edge(to) || net.function(to) != EdgeFunction::Normal {
+            return;
+        }
+        if self.lane_changes.len() <= user.0 as usize {
+            self.lane_changes.resize(user.0 as usize + 1, None);
+        }
+        self.lane_changes[user.0 as usize] = Some(LaneChange { time: self.time, from, to });
+    }
+}

@@ -1,0 +1,264 @@
+//! Why a conflict came about, as far as the net, the traffic lights and the road users' own motion tell.
+//! docs/causes.md has the rules.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+use super::manoeuvre::{Manoeuvre, changes_into};
+use super::pair::{BESIDE_A_CROSSING, Pair, Party};
+use crate::detection::kind::Kind;
+use crate::traffic::net::{Net, Passage};
+use crate::traffic::profile::Category;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
+
+/// A driver who sees amber and can stop with [`COMFORTABLE`] after this, has to, in s (ITE's change interval).
+const SEES_AMBER: Second = 1.0;
+/// The deceleration for which a change interval is made, in m/s²: 10 ft/s² (ITE).
+const COMFORTABLE: MetrePerSecondSquared = 3.05;
+/// One is too fast from this share of the limit on …
+const TOO_FAST: f64 = 1.1;
+/// … and this, in m/s: 10 % and 2 mph, from which on the police in England acts (NPCC 2015).
+const TOO_FAST_BY: MetrePerSecond = 0.894;
+/// A headway below this is too short, in s: half of half the speedometer's reading in metres, fined in Germany (BKatV no. 12).
+const SHORTEST_HEADWAY: Second = 0.9;
+/// One that closes in faster than this approaches, it does not follow, in m/s.
+const APPROACHES: MetrePerSecond = 2.0;
+/// Slower than this, distances are those of a queue, in m/s.
+const QUEUE: MetrePerSecond = 3.0;
+/// A leader brakes hard from this on, in m/s²: 0.45 g (Simons-Morton et al. 2012, doi:10.1093/aje/kwr440).
+const HARD: MetrePerSecondSquared = 4.41;
+
+/// Why a conflict came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cause {
+    /// One drove, or walked, into the junction on red.
+    RanRed,
+    /// One drove into the junction on amber although it could have stopped.
+    LateAmber,
+    /// One that had to yield drove on.
+    DidNotYield,
+    /// One changed lanes into that of the other.
+    ChangedLane,
+    /// One overtook on the lane of oncoming traffic.
+    Overtook,
+    /// A person walked across outside a crossing.
+    OutsideCrossing,
+    /// An obstacle stood in the way.
+    Stood,
+    /// The leader braked hard.
+    LeaderBraked,
+    /// The follower kept too short a distance.
+    TooClose,
+    /// One drove faster than its lane allows.
+    TooFast,
+    /// One had just been put there by SUMO: an artefact.
+    Appeared,
+}
+
+/// Several causes, in the order of the evidence.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Causes(u16);
+
+impl Cause {
+    /// All causes, in the order of the evidence.
+    pub const ALL: [Self; 11] = [
+        Self::RanRed,
+        Self::LateAmber,
+        Self::DidNotYield,
+        Self::ChangedLane,
+        Self::Overtook,
+        Self::OutsideCrossing,
+        Self::Stood,
+        Self::LeaderBraked,
+        Self::TooClose,
+        Self::TooFast,
+        Self::Appeared,
+    ];
+
+    /// The name in columns and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RanRed => "ran_red",
+            Self::LateAmber => "late_amber",
+            Self::DidNotYield => "did_not_yield",
+            Self::ChangedLane => "changed_lane",
+            Self::Overtook => "overtook",
+            Self::OutsideCrossing => "outside_crossing",
+            Self::Stood => "stood",
+            Self::LeaderBraked => "leader_braked",
+            Self::TooClose => "too_close",
+            Self::TooFast => "too_fast",
+            Self::Appeared => "appeared",
+        }
+    }
+}
+
+impl Causes {
+    /// Whether there is this cause.
+    pub fn has(self, cause: Cause) -> bool {
+        self.0 & (1 << cause as u16) != 0
+    }
+
+    /// Adds those of another step.
+    pub fn add(&mut self, others: Self) {
+        self.0 |= others.0;
+    }
+
+    /// Those that tell how one entered the junction.
+    pub fn at_the_entry(self) -> Self {
+        let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield];
+        Self(self.0 & entry.iter().fold(0, |bits, cause| bits | 1 << *cause as u16))
+    }
+
+    fn add_if(&mut self, cause: Cause, is_there: bool) {
+        self.0 |= u16::from(is_there) << cause as u16;
+    }
+
+    /// Those of a pair in a step that does this.
+    pub(super) fn of(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> Self {
+        let mut causes = Self::default();
+        let is_following = matches!(manoeuvre, None | Some(Manoeuvre::Following)) && pair.kind == Kind::RearEnd;
+        if let (Some(net), Some([ego, foe]), false) = (pair.around.net, pair.passages, is_following) {
+            let ways = [(&pair.ego, ego, foe), (&pair.foe, foe, ego)];
+            for (party, passage, _) in ways {
+                causes.add_if(Cause::RanRed, entered_on(pair, party, passage, is_red));
+                causes.add_if(Cause::LateAmber, entered_on(pair, party, passage, is_late_amber));
+            }
+            let ran = causes.has(Cause::RanRed);
+            causes.add_if(Cause::DidNotYield, !ran && ways.iter().any(|way| did_not_yield(net, pair, *way)));
+        }
+        let changed = || pair.both().iter().any(|(one, other)| changes_into(pair, one, other));
+        let changes = matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange));
+        causes.add_if(Cause::ChangedLane, changes && changed());
+        causes.add_if(Cause::Overtook, manoeuvre == Some(Manoeuvre::OvertakingOncoming));
+        causes
+            .add_if(Cause::OutsideCrossing, manoeuvre == Some(Manoeuvre::PersonCrossing) && is_outside_crossing(pair));
+        causes.add_if(Cause::Stood, manoeuvre == Some(Manoeuvre::Object));
+        if pair.kind == Kind::RearEnd && pair.ego.is_vehicle() && pair.foe.is_vehicle() {
+            let Pair { ego, foe, gap, .. } = pair;
+            let keeps_pace = ego.speed > QUEUE && ego.speed - foe.speed < APPROACHES;
+            causes.add_if(Cause::LeaderBraked, foe.course.deceleration >= HARD);
+            causes.add_if(Cause::TooClose, is_following && keeps_pace && gap / ego.speed < SHORTEST_HEADWAY);
+        }
+        let fast = pair.both().into_iter().take(if pair.kind == Kind::RearEnd { 1 } else { 2 });
+        causes.add_if(Cause::TooFast, fast.into_iter().any(|(party, _)| is_too_fast(pair, party)));
+        let is_new = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
+        causes.add_if(Cause::Appeared, pair.both().iter().any(|(party, _)| is_new(party)));
+        causes
+    }
+}
+
+impl fmt::Display for Causes {
+    fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
+        let mut between = "";
+        for cause in Cause::ALL.into_iter().filter(|cause| self.has(*cause)) {
+            write!(to, "{between}{}", cause.name())?;
+            between = " ";
+        }
+        Ok(())
+    }
+}
+
+impl Serialize for Causes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// What a traffic light shows to one that passes it: the letter, since how long, and how fast it is.
+struct Shown {
+    letter: u8,
+    lasts: Second,
+    speed: MetrePerSecond,
+}
+
+fn is_red(shown: &Shown) -> bool {
+    // Red with amber is red.
+    matches!(shown.letter, b'r' | b'u')
+}
+
+fn is_late_amber(shown: &Shown) -> bool {
+    matches!(shown.letter, b'y' | b'Y') && shown.lasts > SEES_AMBER + shown.speed / (2.0 * COMFORTABLE)
+}
+
+/// Whether a traffic light showed this when a road user passed it, or shows it now to one that can no longer stop.
+fn entered_on(pair: &Pair, party: &Party, passage: &Passage, is_wrong: fn(&Shown) -> bool) -> bool {
+    let shown = |signal, time: Second| {
+        let (letter, since) = pair.around.signals.at(signal, time)?;
+        Some(Shown { letter, lasts: time - since, speed: party.speed })
+    };
+    let Some(signal) = passage.signal else { return false };
+    let time = if party.category == Category::Person {
+        entered_crossing(pair, party)
+    } else {
+        party
+            .way_to(passage.lanes[0])
+            .filter(|way| party.passes(*way))
+            .and_then(|way| if way < 0.0 { passed_before(pair, party, -way) } else { Some(pair.time) })
+    };
+    time.and_then(|time| shown(signal, time)).is_some_and(|shown| is_wrong(&shown))
+}
+
+/// When a vehicle was this far behind where it is now; none where that is longer ago than is known.
+fn passed_before(pair: &Pair, party: &Party, driven: Metre) -> Option<Second> {
+    let mut places = pair.past.of(party.user, pair.time).map(|(time, front, _)| (time, front)).collect::<Vec<_>>();
+    places.push((pair.time, party.front));
+    let mut left = driven;
+    places.windows(2).rev().find_map(|ends| {
+        let [(before, from), (after, to)] = *ends else { return None };
+        let way = (to - from).norm();
+        if way >= left && way > 0.0 {
+            return Some(after - (after - before) * left / way);
+        }
+        left -= way;
+        None
+    })
+}
+
+/// When a person that is on a crossing now stepped on it; none where that is longer ago than is known.
+fn entered_crossing(pair: &Pair, party: &Party) -> Option<Second> {
+    let net = pair.around.net?;
+    let is_on = |place| net.crossing_at(place, 0.0).is_some();
+    if !is_on(party.front) {
+        return None;
+    }
+    let places = pair.past.of(party.user, pair.time).collect::<Vec<_>>();
+    let before = places.iter().rposition(|(_, place, _)| !is_on(*place))?;
+    Some(places.get(before + 1).map_or(pair.time, |(time, ..)| *time))
+}
+
+/// Whether a road user that has to yield on its way goes on: it has passed the place to wait, or can no longer stop there.
+fn did_not_yield(net: &Net, pair: &Pair, (party, passage, other): (&Party, &Passage, &Passage)) -> bool {
+    let goes_on = || match party.category {
+        Category::Person => net.crossing_at(party.front, 0.0).is_some(),
+        _ => passage.lanes.last().and_then(|lane| party.way_to(*lane)).is_some_and(|way| party.passes(way)),
+    };
+    net.yields(passage, other) && [passage, other].iter().all(|way| is_open(pair, way)) && goes_on()
+}
+
+/// Whether a traffic light leaves it to the right of way who drives first; not where it is not known what it shows.
+fn is_open(pair: &Pair, passage: &Passage) -> bool {
+    let Some(signal) = passage.signal else { return true };
+    let shown = pair.around.signals.at(signal, pair.time);
+    shown.is_some_and(|(letter, _)| !matches!(letter, b'r' | b'u' | b'y' | b'Y'))
+}
+
+fn is_outside_crossing(pair: &Pair) -> bool {
+    let moves = pair.both().iter().all(|(party, _)| party.is_vehicle() || party.speed > 0.0);
+    moves
+        && pair.passages.is_none()
+        && pair.around.net.is_some_and(|net| net.has_crossings() && !net.is_for_persons(pair.at, BESIDE_A_CROSSING))
+}
+
+fn is_too_fast(pair: &Pair, party: &Party) -> bool {
+    let Some((net, lane)) = pair.around.net.zip(party.course.at(0.0)) else { return false };
+    // The limit of a lane within a junction is what SUMO takes for its curve.
+    let limit = match net.passage(lane) {
+        Some(passage) => {
+            [passage.from, passage.to].map(|lane| net.lanes[lane.0 as usize].speed).into_iter().fold(0.0, f64::max)
+        }
+        None => net.lanes[lane.0 as usize].speed,
+    };
+    party.is_vehicle() && party.speed > TOO_FAST * limit + TOO_FAST_BY
+}

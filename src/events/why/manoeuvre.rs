@@ -1,0 +1,221 @@
+//! What the two of a pair were doing, in the vocabulary of NHTSA's pre-crash typology (Najm, Smith and Yanagisawa 2007,
+//! DOT HS 810 767), from the lanes and links before and behind their conflict point. docs/causes.md has the rules.
+
+use serde::Serialize;
+
+use super::pair::{Pair, Party, edge_of, turn_between};
+use crate::detection::kind::Kind;
+use crate::traffic::net::{Direction, Net, Passage};
+use crate::traffic::profile::Category;
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
+
+/// How long a change of lanes counts as under way, in s: as long as one takes on average (Toledo and Zohar 2007,
+/// doi:10.3141/1999-08).
+const LANE_CHANGE: Second = 4.6;
+/// A road user that moves to the side faster than this, towards another lane, changes lanes, in m/s: keeping to a lane takes
+/// less.
+const DRIFT: MetrePerSecond = 0.3;
+/// Two that come from directions further apart than this drive towards each other, in rad.
+const OPPOSITE: Radian = 0.75 * std::f64::consts::PI;
+/// Two that come from directions nearer than this drive side by side, in rad.
+const ALIKE: Radian = 0.25 * std::f64::consts::PI;
+/// Where two ways join, the first of both is behind the joint by at least this at the conflict point, in m.
+const AT_THE_JOINT: Metre = 0.1;
+
+/// What the two of a conflict were doing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Manoeuvre {
+    /// One after the other in one lane, or out of it.
+    Following,
+    /// The foe has just moved into the lane of the ego behind it.
+    CutIn,
+    /// One moves, or has just moved, into the other's lane, and does not cut in.
+    LaneChange,
+    /// Two lanes become one, and both drive straight on.
+    Merge,
+    /// Their ways cross, and neither of them turns across the other's direction.
+    Crossing,
+    /// One turns left across the way of one that comes towards it, or drives beside it.
+    LeftTurnAcross,
+    /// The same to the right.
+    RightTurnAcross,
+    /// One turns into the road that the other drives on.
+    TurnInto,
+    /// One overtakes on the lane of the oncoming other.
+    OvertakingOncoming,
+    /// They drive towards each other.
+    HeadOn,
+    /// A person walks across the other's way.
+    PersonCrossing,
+    /// A person walks along the other's way.
+    PersonAlong,
+    /// One is an obstacle.
+    Object,
+}
+
+impl Manoeuvre {
+    /// All manoeuvres, in the order used in tables.
+    pub const ALL: [Self; 13] = [
+        Self::Following,
+        Self::CutIn,
+        Self::LaneChange,
+        Self::Merge,
+        Self::Crossing,
+        Self::LeftTurnAcross,
+        Self::RightTurnAcross,
+        Self::TurnInto,
+        Self::OvertakingOncoming,
+        Self::HeadOn,
+        Self::PersonCrossing,
+        Self::PersonAlong,
+        Self::Object,
+    ];
+
+    /// The name in columns and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Following => "following",
+            Self::CutIn => "cut_in",
+            Self::LaneChange => "lane_change",
+            Self::Merge => "merge",
+            Self::Crossing => "crossing",
+            Self::LeftTurnAcross => "left_turn_across",
+            Self::RightTurnAcross => "right_turn_across",
+            Self::TurnInto => "turn_into",
+            Self::OvertakingOncoming => "overtaking_oncoming",
+            Self::HeadOn => "head_on",
+            Self::PersonCrossing => "person_crossing",
+            Self::PersonAlong => "person_along",
+            Self::Object => "object",
+        }
+    }
+
+    /// That of a pair in a step; none where the lanes of the two are not known.
+    pub(super) fn of(pair: &Pair) -> Option<Self> {
+        let categories = [pair.ego.category, pair.foe.category];
+        if categories.contains(&Category::Obstacle) {
+            return Some(Self::Object);
+        }
+        if categories.contains(&Category::Person) {
+            let across = pair.kind == Kind::Side || pair.passages.is_some();
+            return Some(if across { Self::PersonCrossing } else { Self::PersonAlong });
+        }
+        let net = pair.around.net?;
+        let courses = [&pair.ego.course, &pair.foe.course];
+        if courses.iter().any(|course| course.stretches.is_empty()) {
+            return None;
+        }
+        match courses.map(|course| course.is_against) {
+            [false, false] => {}
+            [true, true] => return Some(Self::Following),
+            _ if pair.kind == Kind::Frontal => return Some(Self::OvertakingOncoming),
+            _ => return Some(Self::LaneChange),
+        }
+        if follow_each_other(pair) {
+            return Some(in_one_direction(pair));
+        }
+        if let Some(passages) = pair.passages {
+            return Some(through_a_junction(net, pair, passages));
+        }
+        let edges =
+            |party: &Party| party.course.stretches.iter().map(|stretch| edge_of(net, stretch.lane)).collect::<Vec<_>>();
+        let [ego, foe] = [&pair.ego, &pair.foe].map(edges);
+        match pair.kind {
+            _ if shares_a_lane(pair) => Some(Self::Merge),
+            Kind::Frontal => Some(Self::HeadOn),
+            _ if ego.iter().any(|edge| foe.contains(edge)) => Some(in_one_direction(pair)),
+            Kind::Side => Some(Self::Crossing),
+            Kind::RearEnd => None,
+        }
+    }
+}
+
+/// Whether both take a lane.
+fn shares_a_lane(pair: &Pair) -> bool {
+    pair.ego.course.stretches.iter().any(|stretch| pair.foe.course.of(stretch.lane).is_some())
+}
+
+/// Whether one is, or has been as far as is known, on the first lane that both take, and the conflict is on that lane or
+/// behind it: they do not come together at its beginning.
+fn follow_each_other(pair: &Pair) -> bool {
+    let [ego, foe] = [&pair.ego, &pair.foe].map(|party| &party.course.stretches);
+    let Some(first) = ego.iter().position(|stretch| pair.foe.course.of(stretch.lane).is_some()) else { return false };
+    let of_foe = foe.iter().position(|stretch| stretch.lane == ego[first].lane);
+    (first == 0 || of_foe == Some(0)) && pair.ego.way >= ego[first].begin - AT_THE_JOINT
+}
+
+/// Two that drive on one lane or beside each other.
+fn in_one_direction(pair: &Pair) -> Manoeuvre {
+    let [ego, foe] =
+        [(&pair.ego, &pair.foe), (&pair.foe, &pair.ego)].map(|(one, other)| changes_into(pair, one, other));
+    match pair.kind {
+        _ if foe && !ego => Manoeuvre::CutIn,
+        _ if ego => Manoeuvre::LaneChange,
+        _ if !shares_a_lane(pair) => Manoeuvre::LaneChange,
+        _ => Manoeuvre::Following,
+    }
+}
+
+/// Whether one changes lanes into that of the other, or did so just now.
+pub(super) fn changes_into(pair: &Pair, one: &Party, other: &Party) -> bool {
+    let course = &one.course;
+    let changed = course.change.is_some_and(|change| {
+        pair.time - change.time <= LANE_CHANGE
+            && other.course.of(change.to).is_some()
+            && other.course.change != course.change
+    });
+    let Some((net, own)) = pair.around.net.zip(course.at(0.0)) else { return changed };
+    let lane = &net.lanes[own.0 as usize];
+    let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
+    let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) };
+    let drifts = course.lateral_speed.abs() > DRIFT
+        && next.is_some_and(|next| {
+            let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize);
+            next.is_some_and(|next| other.course.of(*next).is_some()) && other.course.of(own).is_none()
+        });
+    changed || drifts
+}
+
+/// Two whose ways meet in a junction.
+fn through_a_junction(net: &Net, pair: &Pair, passages: [&Passage; 2]) -> Manoeuvre {
+    let [one, other] = passages;
+    let turns = passages.map(|passage| passage.direction != Direction::Straight);
+    let comes_from = turn_between(net, one.from, other.from).abs();
+    if one.from == other.from {
+        return in_one_direction_or(pair, Manoeuvre::Following);
+    }
+    if edge_of(net, one.to) == edge_of(net, other.to) {
+        return match (edge_of(net, one.from) == edge_of(net, other.from), turns) {
+            (true, _) if one.to != other.to => in_one_direction(pair),
+            (true, _) => Manoeuvre::Merge,
+            (false, [false, false]) => Manoeuvre::Merge,
+            _ => Manoeuvre::TurnInto,
+        };
+    }
+    let turned = passages.map(|passage| passage.direction).into_iter().find(|to| *to != Direction::Straight);
+    let across = match turned {
+        Some(Direction::Right) => Manoeuvre::RightTurnAcross,
+        Some(_) => Manoeuvre::LeftTurnAcross,
+        None if comes_from > OPPOSITE => Manoeuvre::HeadOn,
+        None => Manoeuvre::Crossing,
+    };
+    if comes_from > OPPOSITE {
+        // Of two that turn, the one that turns across the other turns to the far side.
+        let far = if net.left_hand { Direction::Right } else { Direction::Left };
+        return match passages.iter().any(|passage| passage.direction == far) {
+            true if net.left_hand => Manoeuvre::RightTurnAcross,
+            true => Manoeuvre::LeftTurnAcross,
+            false => across,
+        };
+    }
+    if comes_from < ALIKE { in_one_direction_or(pair, across) } else { Manoeuvre::Crossing }
+}
+
+/// A change of lanes where one is under way, or else this; side by side until one turns.
+fn in_one_direction_or(pair: &Pair, otherwise: Manoeuvre) -> Manoeuvre {
+    match in_one_direction(pair) {
+        Manoeuvre::CutIn => Manoeuvre::CutIn,
+        _ => otherwise,
+    }
+}

@@ -1,0 +1,149 @@
+//! What is known of a pair in a step: where both come from and go to, and where their ways meet.
+
+use crate::detection::course::Course;
+use crate::detection::encounter::Encounter;
+use crate::detection::kind::Kind;
+use crate::events::past::Past;
+use crate::geometry::Point;
+use crate::geometry::polylines::Vertex;
+use crate::options::measures::AddedValues;
+use crate::traffic::frame::Frame;
+use crate::traffic::net::{EdgeIndex, LaneIndex, Net, Passage};
+use crate::traffic::profile::Category;
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::traffic::signals::Signals;
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+
+/// A vehicle's front bumper may be this far before a crossing when it touches a person there, in m.
+pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
+
+/// What is known of a step besides the road users' states.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    /// The net, if there is one.
+    pub net: Option<&'a Net>,
+    /// What the traffic lights show, as far as it is known.
+    pub signals: &'a Signals,
+    /// The course of the road user of a row.
+    pub course: &'a dyn Fn(u32) -> Course,
+    /// The chosen measures of an encounter, if any is chosen.
+    pub added: &'a dyn Fn(&Encounter) -> Option<Box<AddedValues>>,
+}
+
+/// One road user of a pair.
+pub(super) struct Party {
+    pub user: UserIndex,
+    pub category: Category,
+    pub front: Point,
+    pub speed: MetrePerSecond,
+    /// How hard it can brake.
+    pub brakes: MetrePerSecondSquared,
+    /// How far it is from the conflict point.
+    pub way: Metre,
+    pub course: Course,
+}
+
+/// A pair in a step.
+pub(super) struct Pair<'a> {
+    pub ego: Party,
+    pub foe: Party,
+    pub time: Second,
+    pub kind: Kind,
+    pub gap: Metre,
+    /// The conflict point.
+    pub at: Point,
+    pub around: Surroundings<'a>,
+    pub past: &'a Past,
+    /// The ways of the ego and the foe through the junction at the conflict point.
+    pub passages: Option<[&'a Passage; 2]>,
+}
+
+impl Party {
+    fn of(frame: &Frame, roster: &Roster, (user, row, way): (UserIndex, u32, Metre), course: Course) -> Self {
+        let (state, profile) = (frame.state(row), roster.profile_of(user));
+        let (category, brakes) = (profile.category, profile.brakes.deceleration);
+        Self { user, category, front: state.front(), speed: state.speed, brakes, way, course }
+    }
+
+    pub fn is_vehicle(&self) -> bool {
+        self.category == Category::Vehicle
+    }
+
+    /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,
+    /// goes on; negative where it is past that.
+    pub fn way_to(&self, lane: LaneIndex) -> Option<Metre> {
+        self.course.of(lane).map(|stretch| stretch.begin)
+    }
+
+    /// Whether it has passed a place, or can no longer stop before it.
+    pub fn passes(&self, way: Metre) -> bool {
+        way < 0.0 || self.speed * self.speed / (2.0 * self.brakes) > way
+    }
+
+    /// Its ways through junctions, each with how far its conflict point is from there.
+    fn passages<'a>(&'a self, net: &'a Net) -> impl Iterator<Item = (&'a Passage, Metre)> {
+        self.course.stretches.iter().filter_map(|stretch| {
+            let passage = net.passage(stretch.lane).filter(|passage| passage.from != passage.to)?;
+            Some((passage, (stretch.begin - self.way).max(self.way - stretch.end).max(0.0)))
+        })
+    }
+}
+
+impl<'a> Pair<'a> {
+    pub fn of((frame, roster, found): (&Frame, &Roster, &Encounter), around: Surroundings<'a>, past: &'a Past) -> Self {
+        let party = |user, row, way| {
+            let mut course = (around.course)(row);
+            if past.is_new(user, frame.time) {
+                // It has not driven the lanes behind it.
+                course.stretches.retain(|stretch| stretch.end > 0.0);
+            }
+            Party::of(frame, roster, (user, row, way), course)
+        };
+        let ego = party(found.ego, found.ego_row, found.ego_distance);
+        let foe = party(found.foe, found.foe_row, found.foe_distance);
+        let at = Point::new(found.x, found.y);
+        let passages = around.net.and_then(|net| passages(net, &ego, &foe, at));
+        Self { ego, foe, time: frame.time, kind: found.kind, gap: found.gap, at, around, past, passages }
+    }
+
+    /// Each road user, and the other.
+    pub fn both(&self) -> [(&Party, &Party); 2] {
+        [(&self.ego, &self.foe), (&self.foe, &self.ego)]
+    }
+}
+
+/// The ways of two through the junction that is nearest to their conflict point; a person's is the crossing there.
+fn passages<'a>(net: &'a Net, ego: &Party, foe: &Party, at: Point) -> Option<[&'a Passage; 2]> {
+    let owned = |of: &Passage| net.passage(of.lanes[0]);
+    let crossing = || net.passage(net.crossing_at(at, BESIDE_A_CROSSING)?);
+    let nearest_of = |vehicle: &Party, to: &Passage| {
+        let through = vehicle.passages(net).filter(|(passage, _)| passage.junction == to.junction);
+        through.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(passage, _)| owned(passage))
+    };
+    match [ego.category, foe.category] {
+        [Category::Vehicle, Category::Person] => crossing().and_then(|way| Some([nearest_of(ego, way)?, way])),
+        [Category::Person, Category::Vehicle] => crossing().and_then(|way| Some([way, nearest_of(foe, way)?])),
+        [Category::Vehicle, Category::Vehicle] => {
+            let through =
+                ego.passages(net).filter_map(|(passage, away)| Some((passage, away, nearest_of(foe, passage)?)));
+            let (passage, _, other) = through.min_by(|a, b| a.1.total_cmp(&b.1))?;
+            Some([owned(passage)?, other])
+        }
+        _ => None,
+    }
+}
+
+/// The angle between the directions in which two lanes end, −π to π; positive where the second is turned to the left.
+pub(super) fn turn_between(net: &Net, one: LaneIndex, other: LaneIndex) -> Radian {
+    let direction = |lane: LaneIndex| {
+        let vertices: &[Vertex] = net.lines.line(lane.0);
+        vertices.last_chunk::<2>().map(|[a, b]| b.point - a.point)
+    };
+    let Some((one, other)) = direction(one).zip(direction(other)) else { return 0.0 };
+    crate::geometry::cross(&one, &other).atan2(one.dot(&other))
+}
+
+/// The edge of a lane.
+pub(super) fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {
+    net.lanes[lane.0 as usize].edge
+}

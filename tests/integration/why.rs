@@ -1,0 +1,199 @@
+//! The manoeuvre and the causes of a conflict, from the net, the traffic lights and how the two drive.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::internals::study::car;
+use closecall::{Net, Options, Placement, Run, State};
+
+/// The time between two steps, in s.
+const STEP: f64 = 0.1;
+
+/// A car that drives along these lanes from a place on the first.
+struct Drive {
+    lanes: Vec<&'static str>,
+    /// Its front on the first lane, in m.
+    start: f64,
+    /// Its speed by time.
+    speed: fn(f64) -> f64,
+    /// The number of a lane of the first lane's edge that it moves to, and when.
+    change: Option<(f64, &'static str)>,
+}
+
+fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
+    Drive { lanes: lanes.to_vec(), start, speed, change: None }
+}
+
+/// What a run of some seconds logs of these cars: kind, manoeuvre and causes.
+fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<[String; 3]> {
+    let net = Arc::new(net.clone());
+    let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
+    let profile = run.roster.profile(car()).unwrap();
+    let users =
+        drives.iter().zip(0..).map(|(_, number)| run.enter(&format!("car{number}"), profile)).collect::<Vec<_>>();
+    let mut ways = drives.iter().map(|drive| drive.start).collect::<Vec<_>>();
+    for step in 0..(lasts / STEP) as u32 {
+        let time = f64::from(step) * STEP;
+        run.begin_step(time);
+        if let Some((_, state)) = signals.iter().rfind(|(since, _)| *since <= time) {
+            run.set_signal(0, state);
+        }
+        let mut placements = Vec::new();
+        for ((drive, user), way) in drives.iter().zip(&users).zip(&mut ways) {
+            let speed = (drive.speed)(time);
+            *way += if step > 0 { speed * STEP } else { 0.0 };
+            let mut position = *way;
+            let mut lanes = drive.lanes.iter().map(|lane| net.lane(lane).unwrap()).peekable();
+            let mut lane = lanes.next().unwrap();
+            while position > net.lanes[lane.0 as usize].length && lanes.peek().is_some() {
+                position -= net.lanes[lane.0 as usize].length;
+                lane = lanes.next().unwrap();
+            }
+            if let Some((_, to)) = drive.change.filter(|(since, _)| *since <= time) {
+                lane = net.lane(to).unwrap();
+            }
+            let (at, heading) = place(&net, lane, position);
+            run.frame.push(*user, State { x: at[0], y: at[1], z: 0.0, heading, speed });
+            let edges = drive.lanes.iter().map(|lane| net.lanes[net.lane(lane).unwrap().0 as usize].edge);
+            let route = edges.filter(|edge| !net.edges[edge.0 as usize].id.starts_with(':')).collect::<Vec<_>>();
+            let on = route.iter().position(|edge| *edge == net.lanes[lane.0 as usize].edge).unwrap_or(0);
+            placements.push(Placement {
+                lane,
+                position,
+                route: Some(route.into()),
+                route_position: on,
+                lateral_speed: 0.0,
+            });
+        }
+        let stepped: closecall::Result<()> = run.step(|run, rows| {
+            rows.iter().for_each(|row| run.set_placement(*row, &placements[*row as usize]));
+            Ok::<_, closecall::Error>(())
+        });
+        stepped.unwrap();
+    }
+    run.finish().unwrap();
+    let name =
+        |conflict: &closecall::Conflict| conflict.manoeuvre.map(|manoeuvre| manoeuvre.name()).unwrap_or_default();
+    let row = |conflict: &closecall::Conflict| {
+        [conflict.kind.name().to_owned(), name(conflict).to_owned(), conflict.causes.to_string()]
+    };
+    run.conflicts().iter().map(row).collect()
+}
+
+/// The place and heading at a position on a lane.
+fn place(net: &Net, lane: closecall::LaneIndex, position: f64) -> ([f64; 2], f64) {
+    let shape = &net.lanes[lane.0 as usize].shape;
+    let mut left = position;
+    for ends in shape.windows(2) {
+        let way = ends[1] - ends[0];
+        if left <= way.norm() || std::ptr::eq(ends.last().unwrap(), shape.last().unwrap()) {
+            let at = ends[0] + way * (left / way.norm());
+            return ([at.x, at.y], way.y.atan2(way.x));
+        }
+        left -= way.norm();
+    }
+    unreachable!("a lane has two points")
+}
+
+fn net_of(scene: &str) -> Net {
+    Net::read(Path::new(&format!("sumo_nets/{scene}/{scene}.net.xml"))).unwrap()
+}
+
+/// A road of two lanes with a limit of 30 m/s.
+fn road() -> Net {
+    let text = r#"<net><edge id="road" from="w" to="e">
+        <lane id="road_0" speed="30" length="900" shape="0,-1.6 900,-1.6"/>
+        <lane id="road_1" speed="30" length="900" shape="0,1.6 900,1.6"/>
+    </edge></net>"#;
+    Net::parse(Path::new("road.net.xml"), text).unwrap()
+}
+
+const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0", "to_west_1"];
+const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south_0"];
+
+/// Two cars on the crossing of `left_turn`, each so far before the junction and at so many m/s.
+fn at_the_crossing(ways: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {
+    let net = net_of("left_turn");
+    let drives = ways.map(|(lanes, before)| {
+        let length = net.lanes[net.lane(lanes[0]).unwrap().0 as usize].length;
+        drive(lanes, length - before, |_| 10.0)
+    });
+    logged(&net, &drives, signals, 5.0)
+}
+
+#[test]
+fn one_that_crosses_against_the_right_of_way_did_not_yield() {
+    let net = net_of("side");
+    let ways = [
+        drive(&["from_south_0", ":crossing_0_0", "to_north_0"], 36.0, |_| 15.0),
+        drive(&["from_west_0", ":crossing_1_0", "to_east_0"], 44.0, |_| 15.0),
+    ];
+    assert_eq!(logged(&net, &ways, &[], 9.0), [["side", "crossing", "did_not_yield"]]);
+}
+
+#[test]
+fn a_left_turn_across_the_oncoming_car_is_named_with_its_light() {
+    let ways: [(&[&str], f64); 2] = [(&LEFT, 15.0), (&ONCOMING, 18.0)];
+    // Links 1 and 8 of the twelve are those of the two.
+    for (signals, cause) in [
+        (&[(0.0, "rGrrrrrrgrrr")][..], "did_not_yield"),
+        (&[(0.0, "rGrrrrrrgrrr"), (0.8, "rGrrrrrryrrr"), (0.9, "rGrrrrrrrrrr")], "ran_red"),
+        (&[], ""),
+    ] {
+        let found = at_the_crossing(ways, signals);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((&**manoeuvre, &**why), ("left_turn_across", cause));
+    }
+}
+
+#[test]
+fn late_amber_is_one_that_left_room_to_stop() {
+    let ways: [(&[&str], f64); 2] = [(&["from_west_0", ":centre_10_0", "to_east_0"], 38.0), (&ONCOMING, 50.0)];
+    // It passes the stop line at 3.8 s. At 10 m/s it could have stopped if amber came 2.6 s before.
+    for (amber, cause) in [(1.0, "late_amber"), (1.4, "")] {
+        let found = at_the_crossing(ways, &[(0.0, "rrrrrrrrrrGr"), (amber, "rrrrrrrrrryr"), (3.95, "rGrrrrrrrrrr")]);
+        assert_eq!(found, [["side", "crossing", cause]]);
+    }
+}
+
+#[test]
+fn two_that_turn_into_one_road_are_no_crossing() {
+    let right: [&str; 3] = ["from_north_0", ":centre_0_0", "to_west_0"];
+    let ways: [(&[&str], f64); 2] = [(&["from_east_0", ":centre_4_0", "to_west_0"], 20.0), (&right, 20.0)];
+    let found = at_the_crossing(ways, &[]);
+    assert!(!found.is_empty() && found.iter().all(|[_, manoeuvre, _]| manoeuvre == "turn_into"), "{found:?}");
+}
+
+#[test]
+fn a_follower_is_too_close_and_a_leader_brakes_hard() {
+    let behind = |gap: f64, leader: fn(f64) -> f64| {
+        let found =
+            logged(&road(), &[drive(&["road_0"], 100.0, |_| 20.0), drive(&["road_0"], 105.0 + gap, leader)], &[], 1.5);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!(manoeuvre, "following");
+        why.clone()
+    };
+    assert_eq!(behind(14.0, |_| 20.0), "too_close");
+    assert_eq!(behind(20.0, |time| 20.0 - 5.0 * time), "leader_braked");
+    assert_eq!(behind(20.0, |time| 20.0 - 3.0 * time), "");
+}
+
+#[test]
+fn one_that_moves_in_front_cuts_in() {
+    let follower = || drive(&["road_0"], 100.0, |_| 20.0);
+    let leader = |change| Drive { change, ..drive(&["road_1"], 112.0, |_| 17.0) };
+    let cut_in = ["rear_end", "cut_in", "changed_lane"];
+    assert_eq!(logged(&road(), &[follower(), leader(Some((1.0, "road_0")))], &[], 2.5), [cut_in]);
+    assert!(logged(&road(), &[follower(), leader(None)], &[], 2.5).is_empty());
+    let behind = Drive { change: Some((1.0, "road_1")), ..follower() };
+    let found = logged(&road(), &[behind, leader(None)], &[], 2.5);
+    assert_eq!(found, [["rear_end", "lane_change", "changed_lane"]]);
+}
+
+#[test]
+fn one_faster_than_its_lane_allows_is_too_fast() {
+    for (speed, cause) in [((|_| 33.5) as fn(f64) -> f64, ""), (|_| 34.5, "too_fast")] {
+        let found = logged(&road(), &[drive(&["road_0"], 100.0, speed), drive(&["road_0"], 180.0, |_| 10.0)], &[], 2.0);
+        assert_eq!(found, [["rear_end", "following", cause]]);
+    }
+}

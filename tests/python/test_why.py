@@ -1,0 +1,82 @@
+"""The manoeuvre and the causes of conflicts in the scenes, whose READMEs say which must come out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import closecall as cc
+import pytest
+from conftest import NETS, Row, closecall, rows
+
+
+def logged(scene: str, out: Path, *words: str | Path) -> list[Row]:
+    """The conflicts of a scene."""
+    done = closecall("run", NETS / scene / f"{scene}.sumocfg", "--out", out, "--quiet", *words, "--", "--no-warnings")
+    assert done.returncode == 0, done.stderr
+    return rows(out / "conflicts.csv")
+
+
+@pytest.mark.parametrize(
+    ("scene", "manoeuvre", "cause"),
+    [
+        ("rear_end", "following", ""),
+        ("side", "crossing", "did_not_yield"),
+        ("unregulated", "crossing", ""),
+        ("frontal", "head_on", ""),
+        ("pedestrian", "person_crossing", "did_not_yield"),
+        ("sideswipe", "cut_in", "changed_lane"),
+        ("bridge", "following", "appeared"),
+    ],
+)
+def test_a_small_scene_has_its_manoeuvre_and_cause(scene: str, manoeuvre: str, cause: str, tmp_path: Path) -> None:
+    (row,) = logged(scene, tmp_path / "out")
+    assert (row["manoeuvre"], row["cause"]) == (manoeuvre, cause)
+
+
+def test_who_overtakes_against_oncoming_traffic_is_named(tmp_path: Path) -> None:
+    found = [row for row in logged("overtaking", tmp_path / "out") if row["kind"] == "frontal"]
+    assert len(found) == 5
+    assert {(row["manoeuvre"], row["cause"].split()[0]) for row in found} == {("overtaking_oncoming", "overtook")}
+
+
+def test_the_runner_of_a_red_light_is_is_named(tmp_path: Path) -> None:
+    crossing = [row for row in logged("signals", tmp_path / "out") if row["kind"] == "side"]
+    assert crossing
+    assert {(row["manoeuvre"], row["cause"]) for row in crossing} == {("crossing", "ran_red")}
+
+
+def test_left_turns_are_across_oncoming_traffic_and_statistics_say_so(tmp_path: Path) -> None:
+    side = [row for row in logged("left_turn", tmp_path / "out") if row["kind"] == "side"]
+    assert {row["manoeuvre"] for row in side} <= {"left_turn_across", "turn_into"}
+    assert any("did_not_yield" in row["cause"] for row in side)
+    done = closecall("stats", tmp_path / "out", "--by", "manoeuvre")
+    assert done.returncode == 0 and "left_turn_across" in done.stdout, done.stderr
+    done = closecall("stats", tmp_path / "out", "--by", "cause")
+    assert done.returncode == 0 and "did_not_yield" in done.stdout, done.stderr
+
+
+def test_listeners_hear_of_each_conflict_once() -> None:
+    opened: list[cc.Alarm] = []
+    settled: list[cc.Conflict] = []
+    cars = {"id": ["a", "b"], "heading": [0.0, 0.0], "speed": [20.0, 5.0], "y": [0.0, 0.0]}
+    with cc.Checker(on_alarm=opened.append, on_conflict=settled.append) as checker:
+        for step in range(20):
+            checker.step(step / 10, {**cars, "x": [20.0 * step / 10, 40.0 + 5.0 * step / 10]})
+        (alarm,) = checker.active
+        assert (alarm.ego, alarm.foe, alarm.kind, alarm.time) == ("a", "b", "rear_end", 1.9)
+        assert alarm.ttb is not None and alarm.response_left is not None
+        assert 0.0 <= alarm.probability <= 1.0 and alarm.margin < 0.0
+        assert [alarm.time for alarm in opened] == [0.0]
+        assert settled == []
+    assert [(conflict.ego, conflict.foe) for conflict in settled] == [("a", "b")]
+    assert settled == checker.conflicts
+
+
+def test_an_error_in_a_listener_reaches_the_script() -> None:
+    def fail(_: cc.Alarm) -> None:
+        raise KeyError("mine")
+
+    checker = cc.Checker(on_alarm=fail)
+    cars = {"id": ["a", "b"], "heading": [0.0, 0.0], "speed": [20.0, 5.0], "y": [0.0, 0.0]}
+    with pytest.raises(KeyError, match="mine"):
+        checker.step(0.0, {**cars, "x": [0.0, 20.0]})
