@@ -77,7 +77,7 @@ proptest! {
         for (step, aside) in moves {
             distance += step;
             let front = line.at(distance, aside);
-            prop_assert_eq!(track.follow(&lines, front), line.follow(front));
+            prop_assert_eq!(track.follow(&lines, front, f64::INFINITY), line.follow(front));
             prop_assert_eq!(track.front().to_bits(), line.front.to_bits());
         }
     }
@@ -137,7 +137,7 @@ proptest! {
                 Some((distance <= start + length).then(|| ends[0] + (ends[1] - ends[0]) * ((distance - start) / length)))
             });
             let Some(front) = place.flatten().next() else { break };
-            let followed = tracks.each_mut().map(|(track, lines)| track.follow(lines, front));
+            let followed = tracks.each_mut().map(|(track, lines)| track.follow(lines, front, f64::INFINITY));
             prop_assert_eq!(followed[0], followed[1]);
             if !followed[0] {
                 break;

@@ -14,9 +14,14 @@ use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::limits::{FEWEST_PAIRS, PAIRS};
 use crate::util::threads::share;
+use crate::util::units::{Metre, MetrePerSecond};
 
 /// Pairs in one step if every pair is kept; they take half a gibibyte.
 const MOST_OF_ALL: usize = 1 << 26;
+/// Between two steps a road user may be this many times as fast as in both: recordings leave out steps.
+const FASTER: f64 = 2.0;
+/// It may have been moved this far besides, in m: a vehicle that SUMO parks or lets start.
+const LEAST_DRIVEN: Metre = 5.0;
 
 impl Detector {
     /// Where so many road users are that the step cannot be checked: the one with the most others near it.
@@ -178,7 +183,8 @@ impl Detector {
     /// Follows a row's path along the lanes, or adds it to those whose lane is needed.
     fn keep_on_path(&mut self, row: usize, user: UserIndex, state: &State) {
         let of_net = lines_of(self.net.as_deref());
-        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, state.front());
+        let driven = self.driven_at_most(user, state.speed);
+        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, state.front(), driven);
         if !self.on_lanes[row] {
             self.take_jump(row as u32, user, state);
         }
@@ -189,12 +195,21 @@ impl Detector {
         }
     }
 
+    /// How far a road user may have driven in this step, with a reserve: where one lane leads back beside the other, the way
+    /// to a place across may be far.
+    fn driven_at_most(&self, user: UserIndex, speed: MetrePerSecond) -> Metre {
+        let last = self.speeds.get(user.0 as usize).map_or(f64::NAN, |last| last.speed);
+        if last.is_nan() { f64::INFINITY } else { FASTER * last.max(speed) * self.step + LEAST_DRIVEN }
+    }
+
     /// Follows the path of a vehicle that has stopped, and removes it if the vehicle stopped elsewhere. Where lanes are
     /// longer or shorter than drawn, the lane of a vehicle without a path is needed, as its drawn length depends on it.
     fn stop_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
         let of_net = lines_of(self.net.as_deref());
+        let driven = self.driven_at_most(user, 0.0);
         let path = &mut self.paths[user.0 as usize];
-        if !path.track.is_empty() && !path.track.is_at(path.lines(of_net), front) && !path.follow(of_net, front) {
+        if !path.track.is_empty() && !path.track.is_at(path.lines(of_net), front) && !path.follow(of_net, front, driven)
+        {
             path.clear();
         }
         if path.track.is_empty() && of_net.is_stretched() {

@@ -74,14 +74,14 @@ impl LanePath {
         self.own.as_ref().map_or(of_net, |own| &own.lines)
     }
 
-    /// Updates the place of the front bumper; `false` if it has left the path.
-    pub fn follow(&mut self, of_net: &Lines, front: Point) -> bool {
+    /// Updates the place of the front bumper, which has driven at most this far; `false` if it has left the path.
+    pub fn follow(&mut self, of_net: &Lines, front: Point, driven: Metre) -> bool {
         let lines = self.own.as_ref().map_or(of_net, |own| &own.lines);
         let moved_back = std::mem::take(&mut self.moved_back);
         if moved_back > 0.0 {
             self.track.move_on(lines, moved_back);
         }
-        self.track.follow(lines, front)
+        self.track.follow(lines, front, driven)
     }
 
     /// Moves the front bumper back.

@@ -87,8 +87,8 @@ impl Track {
         self.end - self.front
     }
 
-    /// Updates the place of the front bumper; `false` if it has left the lines ahead.
-    pub fn follow(&mut self, lines: &Lines, front: Point) -> bool {
+    /// Updates the place of the front bumper, which has driven at most this far; `false` if it has left the lines ahead.
+    pub fn follow(&mut self, lines: &Lines, front: Point, driven: Metre) -> bool {
         if self.is_empty() {
             return false;
         }
@@ -99,7 +99,7 @@ impl Track {
             return goes_on;
         }
         let moved = (front - under.at(self.front)).norm();
-        let furthest = self.front + LONGEST_DETOUR * moved * lines.most_stretch() + ON_THE_LINE;
+        let furthest = self.front + (LONGEST_DETOUR * moved).min(driven) * lines.most_stretch() + ON_THE_LINE;
         let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
             cursor.enter_next();
@@ -374,10 +374,11 @@ mod tests {
     #[test]
     fn it_is_followed_while_the_front_is_on_it() {
         let (mut track, lines) = Track::through(&[(0.0, 0.0), (10.0, 0.0), (10.0, 20.0)], 8.0);
-        assert!(track.follow(&lines, Point::new(9.5, 0.0)));
-        assert!(track.follow(&lines, Point::new(10.0, 3.0)));
+        assert!(!track.clone().follow(&lines, Point::new(10.0, 3.0), 3.0), "further than it has driven");
+        assert!(track.follow(&lines, Point::new(9.5, 0.0), f64::INFINITY));
+        assert!(track.follow(&lines, Point::new(10.0, 3.0), f64::INFINITY));
         assert_eq!(track.front(), 13.0);
-        assert!(!track.follow(&lines, Point::new(11.0, 4.0)));
+        assert!(!track.follow(&lines, Point::new(11.0, 4.0), f64::INFINITY));
     }
 
     #[test]
@@ -392,8 +393,8 @@ mod tests {
     #[test]
     fn a_vehicle_that_drives_back_is_not_on_it() {
         let (mut track, lines) = Track::through(&[(0.0, 0.0), (100.0, 0.0)], 50.0);
-        assert!(track.follow(&lines, Point::new(49.99, 0.0)), "a rounded position");
-        assert!(!track.follow(&lines, Point::new(49.0, 0.0)));
+        assert!(track.follow(&lines, Point::new(49.99, 0.0), f64::INFINITY), "a rounded position");
+        assert!(!track.follow(&lines, Point::new(49.0, 0.0), f64::INFINITY));
     }
 
     #[test]
@@ -409,6 +410,6 @@ mod tests {
         track.move_on(&lines, 15.0);
         assert_eq!((track.front(), track.ahead(), track.point(&lines)), (14.0, 16.0, Point::new(10.0, 4.0)));
         track.move_back(&lines, 15.0);
-        assert!(track.follow(&lines, Point::new(10.0, 1.0)));
+        assert!(track.follow(&lines, Point::new(10.0, 1.0), f64::INFINITY));
     }
 }
