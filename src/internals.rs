@@ -13,6 +13,8 @@ pub mod analysis {
 
 #[cfg(feature = "cli")]
 pub mod batch {
+    #[cfg(feature = "parquet")]
+    pub use crate::analysis::logged::RunTime;
     pub use crate::batch::regress::outcome::Outcome;
     pub use crate::batch::regress::scenario::RegressSettings;
     pub use crate::batch::regress::statistics::comparisons;

@@ -3,18 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use closecall::cli::{ReportEnd, Workers};
-use closecall::internals::batch::Task;
+use closecall::internals::batch::{RunTime, Task};
 use closecall::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 
-/// Adds the log of a task's run to the sweep's data set.
+/// Adds the log of a task's run to the sweep's data set. The run took `wall` s, and `cpu` s of all processors together.
 #[pyfunction]
-pub fn finish_run(py: Python, task: &str, log: PathBuf) -> PyResult<()> {
+pub fn finish_run(py: Python, task: &str, log: PathBuf, wall: f64, cpu: f64) -> PyResult<()> {
     let task: Task = serde_json::from_str(task).map_err(|error| PyValueError::new_err(error.to_string()))?;
-    py.detach(|| task.finish(&log)).map_err(exception)
+    py.detach(|| task.finish(&log, RunTime { wall, cpu })).map_err(exception)
 }
 
 /// Has `closecall.sweep` do the tasks.

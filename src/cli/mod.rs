@@ -22,6 +22,8 @@ mod stats;
 mod stress;
 #[cfg(feature = "study")]
 mod study;
+#[cfg(feature = "study")]
+mod study_scenario;
 mod sumo;
 #[cfg(feature = "parquet")]
 mod sweep;
@@ -62,7 +64,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         #[cfg(feature = "study")]
         Command::Stress(arguments) => stress::run(&arguments).map(|()| 0),
         #[cfg(feature = "study")]
-        Command::Study(arguments) => study::run(&arguments, sumo).map(|()| 0),
+        Command::Study(arguments) => study::run(*arguments, sumo, &parse::parse_run),
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         #[cfg(feature = "plot")]

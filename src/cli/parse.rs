@@ -41,9 +41,9 @@ pub(super) enum Command {
     /// Check stiff and extreme cases against exact references
     #[cfg(feature = "study")]
     Stress(stress::StressArgs),
-    /// Measure error against run time for every choice that closecall makes
+    /// Measure error against run time: which step length a scenario needs, or every choice that closecall makes
     #[cfg(feature = "study")]
-    Study(study::StudyArgs),
+    Study(Box<study::StudyArgs>),
     /// Print statistics of logs: rates, quantiles, the worst conflicts, before and after
     Stats(stats::StatsArgs),
     /// Make an HTML page from logs: map, time line, distributions, hot spots, the worst conflicts

@@ -1,11 +1,13 @@
-//! `closecall study`: error against run time, axis by axis.
+//! `closecall study`: error against run time, of closecall's own choices axis by axis, or of a scenario's.
 
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::say::say;
+use super::study_scenario::{RESULTS, ScenarioArgs};
 use super::sumo::{RunRequest, Sumo};
+use super::sweep::ParseRun;
 use crate::Result;
 use crate::options::Options;
 use crate::output::folder::LogFolder;
@@ -16,22 +18,41 @@ use crate::util::units::Second;
 /// What to measure, and where to write it.
 #[derive(Args)]
 pub struct StudyArgs {
-    /// Folder for study.csv, study.md and the charts.
-    #[arg(short, long, value_name = "DIR", default_value = "closecall-study")]
-    out: PathBuf,
-    /// Use fewer items and repetitions, so that it takes under two minutes.
+    /// SUMO configuration file: study this scenario's step length and other settings, instead of closecall's own choices.
+    #[arg(value_name = "SCENARIO")]
+    scenario: Option<PathBuf>,
+    /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Fewer items, repetitions, values and seeds; without a scenario it takes under two minutes.
     #[arg(long)]
     quick: bool,
-    /// Measure only this axis.
-    #[arg(long, value_enum, value_name = "AXIS")]
+    /// Measure only this axis of closecall's own choices.
+    #[arg(long, value_enum, value_name = "AXIS", conflicts_with = "scenario")]
     only: Option<Axis>,
-    /// Folder with the scenarios for the path axis.
-    #[arg(long, value_name = "DIR", default_value = "sumo_nets")]
+    /// Folder with the scenarios for the path axis of closecall's own choices.
+    #[arg(long, value_name = "DIR", default_value = "sumo_nets", conflicts_with = "scenario")]
     nets: PathBuf,
+    #[command(flatten)]
+    of_scenario: ScenarioArgs,
+}
+
+/// Studies the scenario, or closecall's own choices; returns the exit status.
+pub fn run(arguments: StudyArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
+    match &arguments.scenario {
+        Some(scenario) => {
+            arguments.of_scenario.run(scenario, arguments.out.as_deref(), arguments.quick, sumo, parse_run)
+        }
+        None => {
+            arguments.of_scenario.check_without_scenario()?;
+            own_choices(&arguments, sumo).map(|()| 0)
+        }
+    }
 }
 
 /// Measures the axes; writes each as soon as it is measured.
-pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
+fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(RESULTS));
     let plan = Plan { quick: arguments.quick, nets: arguments.nets.clone() };
     let mut rows = Vec::new();
     for axis in Axis::ALL.into_iter().filter(|axis| arguments.only.is_none_or(|only| only == *axis)) {
@@ -51,9 +72,9 @@ pub fn run(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
             None => study::measure(axis, &plan, None)?,
         };
         rows.extend(measured);
-        study::write(&arguments.out, &rows)?;
+        study::write(&out, &rows)?;
     }
-    say(format_args!("{} rows in {}\n", rows.len(), arguments.out.join("study.csv").display()))?;
+    say(format_args!("{} rows in {}\n", rows.len(), out.join("study.csv").display()))?;
     let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);
     for row in off {
         say(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;

@@ -53,11 +53,32 @@ pub type ParseRun = dyn Fn(Vec<OsString>) -> Result<RunArgs>;
 
 /// Arguments of `closecall run` that are the same in all runs, as they were typed.
 #[derive(Debug, Default)]
-struct Passed {
+pub(super) struct Passed {
     words: Vec<String>,
-    for_sumo: Vec<String>,
+    pub for_sumo: Vec<String>,
     /// The files among them.
     files: Vec<PathBuf>,
+}
+
+impl Passed {
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty() && self.for_sumo.is_empty()
+    }
+
+    /// The words of `closecall run` that all runs share, and the files whose content matters.
+    pub fn shared(&self, scenario: &Path, varied: &[Vary]) -> Result<(Vec<String>, Vec<PathBuf>)> {
+        // The workers already use all processors, so one thread per run is fastest.
+        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned()];
+        words.extend_from_slice(&self.words);
+        let mut files = self.files.clone();
+        for vary in varied.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
+            files.extend(vary.values.iter().map(PathBuf::from));
+        }
+        let named = files.iter().filter_map(|file| filter_in(file)).collect::<Vec<_>>();
+        files.extend(named);
+        Ok((words, files))
+    }
 }
 
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
@@ -130,17 +151,9 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     input_file::file(&arguments.scenario)?;
     let _alone = LogFolder::claim(&out)?;
     arguments.vary.iter().try_for_each(check)?;
-    // The workers already use all processors, so one thread per run is fastest.
-    let mut words = vec![text(&absolute(&arguments.scenario)?)?, "--threads=1".to_owned()];
-    words.extend(arguments.passed.words);
-    let mut files = arguments.passed.files;
-    for vary in arguments.vary.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
-        files.extend(vary.values.iter().map(PathBuf::from));
-    }
-    let named = files.iter().filter_map(|file| filter_in(file)).collect::<Vec<_>>();
-    files.extend(named);
+    let (words, files) = arguments.passed.shared(&arguments.scenario, &arguments.vary)?;
     let plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
-    check_runs(&plan, &arguments.seeds, &arguments.vary, parse_run)?;
+    check_runs(&plan, &arguments.seeds, parse_run)?;
     let missing = plan.missing()?;
     let done = plan.tasks.len() - missing.len();
     let workers = match arguments.scheduler {
@@ -171,7 +184,7 @@ fn filter_in(file: &Path) -> Option<PathBuf> {
 }
 
 /// Has the missing runs done; returns how many failed.
-fn distribute(
+pub(super) fn distribute(
     sumo: Sumo,
     workers: &Workers,
     missing: &[&Task],
@@ -217,7 +230,7 @@ fn bar(done: usize, all: usize, quiet: bool) -> ProgressBar {
 }
 
 /// Checks that an option can be varied.
-fn check(vary: &Vary) -> Result<()> {
+pub(super) fn check(vary: &Vary) -> Result<()> {
     if vary.is_sumos() {
         return match vary.option() {
             "seed" => Err(value("--vary sumo:seed: use --seeds")),
@@ -236,10 +249,9 @@ fn check(vary: &Vary) -> Result<()> {
     }
 }
 
-/// Checks that `closecall run` accepts the words of each variant, with the first seed.
-fn check_runs(plan: &Sweep, seeds: &Seeds, varied: &[Vary], parse_run: &ParseRun) -> Result<()> {
-    let variants = varied.iter().map(|vary| vary.values.len()).product::<usize>().min(plan.tasks.len() / seeds.0.len());
-    for task in &plan.tasks[..variants] {
+/// Checks that `closecall run` accepts the words of each setting, with the first seed.
+pub(super) fn check_runs(plan: &Sweep, seeds: &Seeds, parse_run: &ParseRun) -> Result<()> {
+    for task in &plan.tasks[..plan.tasks.len() / seeds.0.len()] {
         let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
         request(&parse_run(words.map(OsString::from).collect())?)?;
     }

@@ -69,6 +69,11 @@ pub fn net_of(configuration: &Path) -> Option<PathBuf> {
     named.into_iter().find(|(option, _)| *option == "net-file").map(|(_, path)| path)
 }
 
+/// The value of an option in a SUMO configuration, if it is set there.
+pub fn value_of(configuration: &Path, option: &str) -> Option<String> {
+    options_of(configuration).ok()?.into_iter().find(|(name, _)| name == option).map(|(_, value)| value)
+}
+
 /// The files that a configuration names, each with the option that names it.
 fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
     const OPTIONS: [(&str, &str); 6] = [
@@ -80,9 +85,21 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
         ("a", "additional-files"),
     ];
     let folder = configuration.parent().unwrap_or(Path::new(""));
+    let mut files = Vec::new();
+    for (name, value) in options_of(configuration)? {
+        if let Some((_, option)) = OPTIONS.iter().find(|(known, _)| *known == name) {
+            let names = value.split(',').map(str::trim).filter(|name| !name.is_empty());
+            files.extend(names.map(|name| (*option, folder.join(name))));
+        }
+    }
+    Ok(files)
+}
+
+/// The options that a configuration sets, each with its value.
+fn options_of(configuration: &Path) -> Result<Vec<(String, String)>> {
     let mut reader = Reader::from_reader(ElementSource::open(configuration)?);
     let mut buffer = Vec::new();
-    let mut files = Vec::new();
+    let mut options = Vec::new();
     loop {
         buffer.clear();
         let line = reader.get_mut().begin_element();
@@ -90,13 +107,11 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
         let event = event.map_err(|error| Error::line(configuration, line, xml_message(&error)))?;
         let tag = match event {
             Event::Start(tag) | Event::Empty(tag) => tag,
-            Event::Eof => return Ok(files),
+            Event::Eof => return Ok(options),
             _ => continue,
         };
-        let known = OPTIONS.iter().find(|(name, _)| *name == tag.name().as_ref());
-        if let (Some((_, option)), Ok(Some(value))) = (known, tag.try_get_attribute("value")) {
-            let names = value.value.split(',').map(str::trim).filter(|name| !name.is_empty());
-            files.extend(names.map(|name| (*option, folder.join(name))));
+        if let Ok(Some(value)) = tag.try_get_attribute("value") {
+            options.push((tag.name().as_ref().to_owned(), value.value.into_owned()));
         }
     }
 }

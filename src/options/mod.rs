@@ -37,7 +37,7 @@ pub use toml_file::OptionsFile;
 pub use type_options::{BrakeSystem, TypeOptions};
 #[cfg(feature = "cli")]
 pub(crate) use values::{
-    angle, deceleration, deceleration_threshold, duration, probability, reserve, speed, step_length, time,
+    angle, deceleration, deceleration_threshold, duration, probability, reserve, share, speed, step_length, time,
 };
 
 /// The method that finds the conflicts.

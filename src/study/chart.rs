@@ -1,4 +1,4 @@
-//! The charts of a study as SVG and PNG: error over run time, both logarithmic, one panel per set of items.
+//! The charts of a study as SVG and PNG: error over run time, both logarithmic, in panels.
 
 use std::ops::Range;
 use std::path::Path;
@@ -29,87 +29,89 @@ const MOST_COLUMNS: usize = 3;
 
 type Drawn<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
-/// Draws one axis as `<axis>.svg` and `<axis>.png`.
-pub(super) fn draw(folder: &Path, axis: Axis, rows: &[Measurement]) -> Result<()> {
+/// One panel: a title and its points.
+pub(super) struct Panel<'a> {
+    pub title: String,
+    pub across: &'a str,
+    pub up: &'a str,
+    pub points: Vec<Point<'a>>,
+}
+
+/// A method's place in a panel.
+pub(super) struct Point<'a> {
+    pub x: f64,
+    pub y: f64,
+    pub method: &'a str,
+    pub on_front: bool,
+    /// Whether it gets a ring, which the chart's note explains.
+    pub marked: bool,
+}
+
+/// Draws the panels as `<name>.svg` and `<name>.png`; the note says what the ring and the grey line mean.
+pub(super) fn draw(folder: &Path, name: &str, panels: &[Panel], note: &str) -> Result<()> {
     font::register()?;
-    let panels = panels(axis, rows);
     let columns = panels.len().clamp(1, MOST_COLUMNS);
     let lines = panels.len().div_ceil(columns) as u32;
     let size = (PANEL.0 * columns as u32, PANEL.1 * lines + LEGEND);
-    let name = |ending: &str| folder.join(format!("{}.{ending}", axis.name()));
-    file::svg(&name("svg"), size, |area| page(area, axis, &panels, columns, rows))?;
-    file::png(&name("png"), size, |area| page(area, axis, &panels, columns, rows))
-}
-
-/// One panel: a title and its points.
-struct Panel<'a> {
-    title: String,
-    across: &'static str,
-    up: &'static str,
-    rows: Vec<PanelPoint<'a>>,
-}
-
-struct PanelPoint<'a> {
-    x: f64,
-    y: f64,
-    row: &'a Measurement,
+    let file = |ending: &str| folder.join(format!("{name}.{ending}"));
+    file::svg(&file("svg"), size, |area| page(area, panels, columns, note))?;
+    file::png(&file("png"), size, |area| page(area, panels, columns, note))
 }
 
 /// The panels of an axis, one per scene: error over run time. All candidate searches are exact, so theirs show run time
 /// over the number of road users, one per kind of traffic.
-fn panels(axis: Axis, rows: &[Measurement]) -> Vec<Panel<'_>> {
+pub(super) fn panels(axis: Axis, rows: &[Measurement]) -> Vec<Panel<'_>> {
+    let point =
+        |row: &'_ Measurement, x, y, on_front| Point { x, y, method: row.method, on_front, marked: row.default };
     if axis == Axis::Candidates {
         let of = |traffic: &str| {
             let same = rows.iter().filter(|row| row.traffic() == traffic);
-            let rows = same.map(|row| PanelPoint { x: row.items as f64, y: row.ns_per_item, row }).collect();
-            Panel { title: traffic.to_owned(), across: "road users", up: "ns per road user", rows }
+            let points = same.map(|row| point(row, row.items as f64, row.ns_per_item, false)).collect();
+            Panel { title: traffic.to_owned(), across: "road users", up: "ns per road user", points }
         };
         return distinct(rows.iter().map(Measurement::traffic)).into_iter().map(of).collect();
     }
     let of = |scene: &str| {
-        let same = rows.iter().filter(|row| row.scene == scene);
-        let rows = same.map(|row| PanelPoint { x: row.ns_per_item, y: row.error, row }).collect::<Vec<_>>();
-        let up = rows.first().map_or("", |point| point.row.error_name);
-        Panel { title: scene.to_owned(), across: "ns per item", up, rows }
+        let same = || rows.iter().filter(|row| row.scene == scene);
+        let points = same().map(|row| point(row, row.ns_per_item, row.error, row.on_pareto_front)).collect();
+        let up = same().next().map_or("", |row| row.error_name);
+        Panel { title: scene.to_owned(), across: "ns per item", up, points }
     };
     distinct(rows.iter().map(|row| row.scene.as_str())).into_iter().map(of).collect()
 }
 
-fn page<DB: DrawingBackend>(
-    area: DrawingArea<DB, Shift>,
-    axis: Axis,
-    panels: &[Panel],
-    columns: usize,
-    rows: &[Measurement],
-) -> Drawn<()>
+/// What the ring and the grey line of an axis mean.
+pub(super) fn note(axis: Axis) -> &'static str {
+    match axis {
+        Axis::Candidates => "closecall's choice; no method loses a pair",
+        _ => "closecall's choice; grey: the Pareto front; lower left is better",
+    }
+}
+
+fn page<DB: DrawingBackend>(area: DrawingArea<DB, Shift>, panels: &[Panel], columns: usize, note: &str) -> Drawn<()>
 where
     DB::ErrorType: 'static,
 {
     area.fill(&WHITE)?;
-    let methods = distinct(rows.iter().map(|row| row.method));
+    let methods = distinct(panels.iter().flat_map(|panel| &panel.points).map(|point| point.method));
     let height = area.dim_in_pixel().1 - LEGEND;
     let (charts, legend) = area.split_vertically(height);
     for (panel, place) in panels.iter().zip(charts.split_evenly((panels.len().div_ceil(columns), columns))) {
-        draw_panel(&place, axis, panel, &methods)?;
+        draw_panel(&place, panel, &methods)?;
     }
-    draw_legend(&legend, axis, &methods)?;
+    draw_legend(&legend, &methods, note)?;
     area.present()?;
     Ok(())
 }
 
-fn draw_panel<DB: DrawingBackend>(
-    area: &DrawingArea<DB, Shift>,
-    axis: Axis,
-    panel: &Panel,
-    methods: &[&str],
-) -> Drawn<()>
+fn draw_panel<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, panel: &Panel, methods: &[&str]) -> Drawn<()>
 where
     DB::ErrorType: 'static,
 {
     let floor = floor(panel);
-    let height = |point: &PanelPoint| if point.y > 0.0 { point.y } else { floor };
-    let across = decades(panel.rows.iter().map(|point| point.x));
-    let up = decades(panel.rows.iter().map(height));
+    let height = |point: &Point| if point.y > 0.0 { point.y } else { floor };
+    let across = decades(panel.points.iter().map(|point| point.x));
+    let up = decades(panel.points.iter().map(height));
     let mut chart = ChartBuilder::on(area)
         .margin(8)
         .caption(&panel.title, (FONT, 15))
@@ -132,23 +134,21 @@ where
         .label_style((FONT, 11))
         .axis_desc_style((FONT, 12))
         .draw()?;
-    if axis != Axis::Candidates {
-        let mut front = panel.rows.iter().filter(|point| point.row.on_pareto_front).collect::<Vec<_>>();
-        front.sort_by(|a, b| a.x.total_cmp(&b.x));
-        let steps = front.iter().enumerate().flat_map(|(index, point)| {
-            let corner = front.get(index + 1).map(|next| (next.x, height(point)));
-            [Some((point.x, height(point))), corner].into_iter().flatten()
-        });
-        chart.draw_series(LineSeries::new(steps, RGBColor(170, 170, 170).stroke_width(2)))?;
-    }
+    let mut front = panel.points.iter().filter(|point| point.on_front).collect::<Vec<_>>();
+    front.sort_by(|a, b| a.x.total_cmp(&b.x));
+    let steps = front.iter().enumerate().flat_map(|(index, point)| {
+        let corner = front.get(index + 1).map(|next| (next.x, height(point)));
+        [Some((point.x, height(point))), corner].into_iter().flatten()
+    });
+    chart.draw_series(LineSeries::new(steps, RGBColor(170, 170, 170).stroke_width(2)))?;
     for (index, method) in methods.iter().enumerate() {
         let colour = COLOURS[index % COLOURS.len()];
-        let points = panel.rows.iter().filter(|point| point.row.method == *method).collect::<Vec<_>>();
+        let points = panel.points.iter().filter(|point| point.method == *method).collect::<Vec<_>>();
         chart.draw_series(LineSeries::new(points.iter().map(|point| (point.x, height(point))), colour.mix(0.6)))?;
         for point in points {
             let place = (point.x, height(point));
             chart.draw_series([Circle::new(place, 4, colour.filled())])?;
-            if point.row.default {
+            if point.marked {
                 chart.draw_series([Circle::new(place, 7, BLACK.stroke_width(1))])?;
             }
         }
@@ -156,7 +156,7 @@ where
     Ok(())
 }
 
-fn draw_legend<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, axis: Axis, methods: &[&str]) -> Drawn<()>
+fn draw_legend<DB: DrawingBackend>(area: &DrawingArea<DB, Shift>, methods: &[&str], note: &str) -> Drawn<()>
 where
     DB::ErrorType: 'static,
 {
@@ -171,17 +171,13 @@ where
     let lines = (methods.len() as i32).div_euclid(per_line) + 1;
     let place = (16, 14 + lines * 20);
     area.draw(&Circle::new(place, 7, BLACK.stroke_width(1)))?;
-    let note = match axis {
-        Axis::Candidates => "closecall's choice; no method loses a pair",
-        _ => "closecall's choice; grey: the Pareto front; lower left is better",
-    };
-    area.draw(&Text::new(note, (place.0 + 12, place.1 - 7), (FONT, 13)))?;
+    area.draw(&Text::new(note.to_owned(), (place.0 + 12, place.1 - 7), (FONT, 13)))?;
     Ok(())
 }
 
 /// The height at which an error of 0 is drawn: a decade below the smallest.
 fn floor(panel: &Panel) -> f64 {
-    let errors = panel.rows.iter().map(|point| point.y).filter(|error| *error > 0.0);
+    let errors = panel.points.iter().map(|point| point.y).filter(|error| *error > 0.0);
     let least = errors.fold(f64::INFINITY, f64::min);
     if least.is_finite() { 10_f64.powf(least.log10().floor() - 1.0) } else { 1e-3 }
 }

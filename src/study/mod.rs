@@ -13,9 +13,11 @@ mod late;
 mod measurement;
 mod numbers;
 mod page;
+mod pareto;
 mod path;
 mod probability;
 pub mod reference;
+pub mod scenario;
 pub mod stress;
 mod time;
 mod volume;
@@ -24,6 +26,7 @@ use std::path::Path;
 
 use crate::util::output_file::{self, OutputFile};
 use crate::{Error, Result};
+use pareto::is_on_front;
 
 pub use measurement::{Axis, Measurement, Plan, Recorder};
 
@@ -65,7 +68,7 @@ pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
     for axis in Axis::ALL {
         let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
         if !of_axis.is_empty() {
-            chart::draw(folder, axis, &of_axis)?;
+            chart::draw(folder, axis.name(), &chart::panels(axis, &of_axis), chart::note(axis))?;
         }
     }
     output_file::write(&folder.join("study.md"), page::of(rows).as_bytes())
@@ -73,15 +76,10 @@ pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
 
 /// Marks the rows that no other row of the same scene beats in error, time or both.
 fn mark_fronts(rows: &mut [Measurement]) {
-    /// Run times whose ratio is smaller are equal: repeated medians differ by about this.
-    const SAME_TIME: f64 = 1.05;
-    let beats = |other: &Measurement, row: &Measurement| {
-        let faster = other.ns_per_item * SAME_TIME < row.ns_per_item;
-        let slower = row.ns_per_item * SAME_TIME < other.ns_per_item;
-        other.scene == row.scene && other.error <= row.error && !slower && (faster || other.error < row.error)
-    };
+    let point = |row: &Measurement| [row.ns_per_item, row.error];
     for index in 0..rows.len() {
-        rows[index].on_pareto_front = !rows.iter().any(|other| beats(other, &rows[index]));
+        let of_scene = rows.iter().filter(|row| row.scene == rows[index].scene).map(point);
+        rows[index].on_pareto_front = is_on_front(point(&rows[index]), of_scene);
     }
 }
 

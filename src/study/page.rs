@@ -70,7 +70,7 @@ fn line(row: &Measurement) -> String {
     )
 }
 
-fn number(value: f64) -> String {
+pub(super) fn number(value: f64) -> String {
     match value.abs() {
         0.0 => "0".to_owned(),
         size if (0.01..1e6).contains(&size) => {

@@ -135,7 +135,8 @@ def test_a_full_disk_is_reported_and_no_row_is_cut(scenario: Copy, tmp_path: Pat
         # A write beyond this size fails, as it does on a full disk.
         resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 
-    done = closecall("run", scenario("reckless"), "--out", tmp_path, "--", "--no-warnings", preexec_fn=limit)
+    words = ("--quiet", "--out", tmp_path, "--", "--no-warnings")
+    done = closecall("run", scenario("reckless"), *words, preexec_fn=limit)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert "conflicts.csv: " in done.stderr
     written = (tmp_path / "conflicts.csv").read_text()

@@ -162,12 +162,12 @@ def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path) -> 
     before = routes.read_bytes()
     (tmp_path / "link.xml").symlink_to(routes)
     for option in ("--ssm-output", "--trj-output"):
-        done = closecall("run", config, option, tmp_path / "link.xml", "--out", tmp_path / "out")
+        done = closecall("run", config, "--quiet", option, tmp_path / "link.xml", "--out", tmp_path / "out")
         assert (done.returncode, done.stderr) == (2, f"closecall: {option} would be written over {routes}\n")
     recording = tmp_path / "fcd.xml"
     assert closecall("run", config, "--end", "10", "--quiet", "--", "--fcd-output", recording).returncode == 0
     recorded = recording.read_bytes()
-    words = ("replay", recording, "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
+    words = ("replay", recording, "--quiet", "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
     (tmp_path / "options.toml").touch()
     refused: list[tuple[str | Path, ...]] = [
         ("--ssm-output", recording),

@@ -9,12 +9,14 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import subprocess
 import tempfile
 import threading
+import time
 import uuid
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from pathlib import Path
 
 from . import _start
@@ -90,6 +92,7 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
     Path(folder).mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f"{name}.", dir=folder) as unfinished:
         log = Path(unfinished, "log")
+        begun = time.perf_counter()
         command = [*_start.command("_child"), "run", "--quiet", "--out", str(log), *words]
         with subprocess.Popen(
             command,
@@ -101,32 +104,39 @@ def run(name: str, words: list[str], task: str, folder: str, here: str) -> None:
             # Ctrl-C must reach only the sweep, which then ends its runs.
             start_new_session=True,
         ) as process:
-            said = wait(process, wanted())
+            said, cpu = wait(process, wanted())
+        wall = time.perf_counter() - begun
         if process.returncode != 0:
             raise RuntimeError(failure(said.decode(errors="replace"), process.returncode))
-        finish_run(task, str(log))
+        finish_run(task, str(log), wall, cpu)
 
 
-def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> bytes:
-    """Wait until the process has ended, and kill it once it is no longer wanted; return the end of what it said."""
+def wait(process: subprocess.Popen[bytes], is_wanted: Callable[[], bool]) -> tuple[bytes, float]:
+    """Wait until the process has ended, and kill it once it is no longer wanted.
+
+    Returns the end of what it said and its processor time in s.
+    """
     ended = threading.Event()
 
     def watch() -> None:
         while not ended.wait(ASKED_EVERY):
             if not is_wanted():
-                process.kill()
+                # Not Popen.kill, which might take the end of the process from the wait below.
+                with suppress(ProcessLookupError):
+                    os.kill(process.pid, signal.SIGKILL)
 
-    # Popen.wait with a timeout notices the end up to 50 ms late, so that a thread asks instead.
+    # A wait with a timeout notices the end up to 50 ms late, so that a thread asks instead.
     watcher = threading.Thread(target=watch, daemon=True)
     watcher.start()
     said = b""
     assert process.stderr
     while block := process.stderr.read1(MOST_SAID):  # type: ignore[attr-defined]
         said = (said + block)[-MOST_SAID:]
-    process.wait()
+    _, status, used = os.wait4(process.pid, 0)
+    process.returncode = os.waitstatus_to_exitcode(status)
     ended.set()
     watcher.join()
-    return said
+    return said, used.ru_utime + used.ru_stime
 
 
 def wanted() -> Callable[[], bool]:

@@ -22,7 +22,7 @@ pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
 pub use pack::{Label, LabelValue, pack};
 #[cfg(feature = "parquet")]
-pub use parquet::Packed;
+pub use parquet::{Packed, RunTime};
 pub use reader::{ConflictReader, LostRows, check_none_lost};
 pub use reading::{Progress, Reading};
 pub use run::{LoggedRun, record};

@@ -13,7 +13,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, digest, physical};
+use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest, physical};
 use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
@@ -49,11 +49,12 @@ pub enum LabelValue {
 ///
 /// # Errors
 /// Those of reading the log; [`Error::File`] or [`Error::Content`] where `out` cannot be written.
-pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, out: &Path) -> Result<()> {
+pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTime, out: &Path) -> Result<()> {
     let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
     let mut file = OutputFile::create(out)?;
-    let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned())];
+    let run_time = serde_json::to_string(&run_time).map_err(|error| Error::Value(error.to_string()))?;
+    let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned()), (RUN_TIME_KEY, run_time)];
     write(&mut file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
         Fault::Parquet(error) => unreadable(out, &error),
@@ -76,7 +77,7 @@ fn write(
     file: &mut OutputFile,
     mut conflicts: ConflictReader,
     labels: &[Label],
-    metadata: [(&str, String); 2],
+    metadata: [(&str, String); 3],
 ) -> std::result::Result<(), Fault> {
     let properties = Arc::new(WriterProperties::builder().set_compression(Compression::SNAPPY).build());
     let file = HashedFile { file, hasher: Hasher::default() };
@@ -266,7 +267,8 @@ mod tests {
         }
         fs::write(folder.join("log").join(CONFLICTS), text).unwrap();
         fs::write(folder.join("log").join(RUN), "{}\n").unwrap();
-        pack(&folder.join("log"), &labels(), "abc", &folder.join("p").join(PARQUET)).unwrap();
+        let run_time = RunTime { wall: 1.5, cpu: 2.25 };
+        pack(&folder.join("log"), &labels(), "abc", run_time, &folder.join("p").join(PARQUET)).unwrap();
         assert_eq!(fs::read_dir(folder.join("p")).unwrap().count(), 1, "a draft is left");
         let read = |folder: &Path| {
             let reader = ConflictReader::open(folder).unwrap().with_snapshots();
@@ -287,7 +289,7 @@ mod tests {
         let rows = (1..=20).map(|id| COLUMNS.map(|column| cell(&column, id)).join(",") + "\n").collect::<String>();
         fs::write(log.join(CONFLICTS), COLUMNS.map(|column| column.name).join(",") + "\n" + &rows).unwrap();
         fs::write(log.join(RUN), "{}\n").unwrap();
-        pack(&log, &labels(), "abc", &packed.join(PARQUET)).unwrap();
+        pack(&log, &labels(), "abc", RunTime::default(), &packed.join(PARQUET)).unwrap();
         let whole = fs::read(packed.join(PARQUET)).unwrap();
         let is_noticed = || {
             let Ok(mut reader) = ConflictReader::open(&packed) else { return true };
@@ -309,6 +311,7 @@ mod tests {
             assert_eq!(logged.len(), rows);
             assert_eq!(logged, packed);
             assert_eq!((beside.record.as_str(), beside.fingerprint.as_str()), ("{}\n", "abc"));
+            assert_eq!(beside.run_time, Some(RunTime { wall: 1.5, cpu: 2.25 }));
             let names = beside.labels.iter().map(|(name, number)| (name.as_str(), *number)).collect::<Vec<_>>();
             assert_eq!(names, [("option_epsilon", true), ("sumo_x", false), ("seed", true)]);
         }

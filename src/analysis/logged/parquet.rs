@@ -9,12 +9,14 @@ use parquet::column::reader::ColumnReader;
 use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
+use serde::{Deserialize, Serialize};
 
 use super::possible::PossibleRows;
 use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::input_file;
 use crate::util::parquet_column::{Batch, guarded};
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
@@ -26,20 +28,20 @@ pub(super) const DIGEST_KEY: &str = "closecall.digest";
 
 /// How many bytes the rows take, and the SHA-256 of these and of the texts of the metadata: pages have no checksums of
 /// their own.
-pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 2]) -> String {
+pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 3]) -> String {
     metadata.iter().for_each(|text| rows.add(text));
     format!("{bytes} {}", rows.digits())
 }
 
 /// Whether the file is not as it was written.
 fn is_changed(path: &Path, file: &SerializedFileReader<File>) -> Result<bool> {
-    let [record, fingerprint, known] = [RECORD_KEY, FINGERPRINT_KEY, DIGEST_KEY].map(|key| value(file, key));
-    let Some(known) = known else { return Ok(false) };
+    let Some(known) = value(file, DIGEST_KEY) else { return Ok(false) };
+    let texts = [RECORD_KEY, FINGERPRINT_KEY, RUN_TIME_KEY].map(|key| value(file, key).unwrap_or_default());
     let bytes = known.split(' ').next().and_then(|bytes| bytes.parse::<u64>().ok()).unwrap_or_default();
     let mut rows = Hasher::default();
     let copied = std::io::copy(&mut input_file::file(path)?.take(bytes), &mut rows);
     copied.map_err(|source| Error::file(path, source))?;
-    Ok(digest(bytes as usize, rows, [&record.unwrap_or_default(), &fingerprint.unwrap_or_default()]) != known)
+    Ok(digest(bytes as usize, rows, texts.each_ref().map(String::as_str)) != known)
 }
 
 /// The value of a key in the file's metadata.
@@ -47,12 +49,14 @@ fn value(file: &SerializedFileReader<File>, key: &str) -> Option<String> {
     let pairs = file.metadata().file_metadata().key_value_metadata().into_iter().flatten();
     pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
 }
+/// The key of the run time in the file's metadata.
+pub(super) const RUN_TIME_KEY: &str = "closecall.run_time";
 
 /// Rows in memory at once.
 const BATCH: usize = 4096;
 
 /// What a `conflicts.parquet` holds besides its rows.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Packed {
     /// The text of `run.json`.
     pub record: String,
@@ -60,6 +64,17 @@ pub struct Packed {
     pub fingerprint: String,
     /// The labels of the run, each with whether it is a number.
     pub labels: Vec<(String, bool)>,
+    /// What the run took; files of earlier versions do not have it.
+    pub run_time: Option<RunTime>,
+}
+
+/// What a run took, as the process that it was.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct RunTime {
+    /// From its start to its end.
+    pub wall: Second,
+    /// Of all processors together.
+    pub cpu: Second,
 }
 
 impl Packed {
@@ -90,6 +105,7 @@ impl Packed {
             labels: labels
                 .map(|column| (column.name().to_owned(), column.physical_type() != Physical::BYTE_ARRAY))
                 .collect(),
+            run_time: self::value(&file, RUN_TIME_KEY).and_then(|text| serde_json::from_str(&text).ok()),
         })
     }
 }

@@ -36,7 +36,7 @@ pub use group::By;
 pub use hot_spots::HotSpot;
 pub use permutation::Test;
 pub use quantiles::{Quantiles, quantile};
-pub use rate::{IntervalMethod, Rate, Ratio};
+pub use rate::{IntervalMethod, Rate, Ratio, rate, t_quantile};
 pub use rates::Traffic;
 pub use variant::{GroupStatistics, VariantStatistics};
 pub use worst::RankedConflict;

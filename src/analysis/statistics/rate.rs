@@ -149,7 +149,8 @@ pub struct Ratio {
     pub method: IntervalMethod,
 }
 
-fn t_quantile(freedom: f64) -> Option<f64> {
+/// The factor of a standard error with this many degrees of freedom that gives half its interval; none below one.
+pub fn t_quantile(freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, freedom).ok()?.inverse_cdf(1.0 - TAIL))
 }
 

@@ -6,6 +6,7 @@
 
 mod done;
 mod seeds;
+mod setting;
 mod task;
 mod vary;
 
@@ -16,6 +17,7 @@ use crate::analysis::logged::{Label, LabelValue};
 use crate::{Error, Result};
 
 pub use seeds::Seeds;
+pub use setting::Setting;
 pub use task::Task;
 pub use vary::Vary;
 
@@ -54,27 +56,38 @@ impl Sweep {
         if runs.fold(1, usize::saturating_mul) > MOST {
             return Err(Error::Value(format!("that would be more than {MOST} runs")));
         }
+        let settings = vary::product(varied).iter().map(|chosen| Setting::of(chosen)).collect::<Vec<_>>();
+        Self::of_settings(words, for_sumo, seeds, &settings, out, also_read)
+    }
+
+    /// Plans the runs of these settings; the other arguments are those of [`Sweep::plan`].
+    ///
+    /// # Errors
+    /// [`Error::Value`] if two runs have the same name; [`Error::File`] if a file cannot be read.
+    pub fn of_settings(
+        words: &[String],
+        for_sumo: &[String],
+        seeds: &Seeds,
+        settings: &[Setting],
+        out: &Path,
+        also_read: &[PathBuf],
+    ) -> Result<Self> {
         let read = done::contents(also_read)?;
         let mut tasks = Vec::new();
         let mut names = BTreeSet::new();
         for &seed in &seeds.0 {
-            for chosen in vary::product(varied) {
-                let mut name = String::new();
-                let mut own = words.to_vec();
-                let mut sumo = for_sumo.to_vec();
-                let mut labels = Vec::with_capacity(chosen.len() + 1);
-                for (vary, value) in chosen {
-                    name += &format!("{}-{}_", vary::plain(&vary.parameter), vary::plain(value));
-                    if vary.is_sumos() { &mut sumo } else { &mut own }.push(vary.word(value));
-                    labels.push(vary.label(value));
-                }
-                name += &format!("seed-{seed}");
-                labels.push(Label { name: "seed".to_owned(), value: LabelValue::Count(seed) });
+            for setting in settings {
+                let name = format!("{}seed-{seed}", setting.name);
+                let mut own = words.iter().chain(&setting.words).cloned().collect::<Vec<_>>();
                 own.extend(["--seed".to_owned(), seed.to_string()]);
+                let mut sumo = setting.without_its_options(for_sumo);
+                sumo.extend_from_slice(&setting.for_sumo);
                 if !sumo.is_empty() {
                     own.push("--".to_owned());
                     own.append(&mut sumo);
                 }
+                let mut labels = setting.labels.clone();
+                labels.push(Label { name: "seed".to_owned(), value: LabelValue::Count(seed) });
                 if !names.insert(name.clone()) {
                     return Err(Error::Value(format!("two runs would both be called {name}")));
                 }

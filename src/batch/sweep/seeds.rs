@@ -1,5 +1,6 @@
 //! A list of seeds: `1-100`, `1,2,5-9`.
 
+use std::fmt;
 use std::str::FromStr;
 
 /// Seeds without repetitions, in the order in which they were given.
@@ -33,6 +34,19 @@ impl FromStr for Seeds {
     }
 }
 
+impl fmt::Display for Seeds {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for (place, run) in self.0.chunk_by(|seed, next| seed.checked_add(1) == Some(*next)).enumerate() {
+            let comma = if place > 0 { "," } else { "" };
+            match run {
+                [first, .., last] => write!(f, "{comma}{first}-{last}")?,
+                _ => write!(f, "{comma}{}", run[0])?,
+            }
+        }
+        Ok(())
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::batch::sweep::seeds::*;
@@ -41,6 +55,7 @@ mod tests {
     fn seeds_are_numbers_and_ranges_each_once() {
         assert_eq!("1-3".parse(), Ok(Seeds(vec![1, 2, 3])));
         assert_eq!("7,1-3,2".parse(), Ok(Seeds(vec![7, 1, 2, 3])));
+        assert_eq!("7,1-3,9,10".parse::<Seeds>().map(|seeds| seeds.to_string()), Ok("7,1-3,9-10".to_owned()));
         for wrong in ["", "a", "3-1", "1-", "1--3", "-1", "0-4294967295"] {
             assert!(wrong.parse::<Seeds>().is_err(), "{wrong}");
         }

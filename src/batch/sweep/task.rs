@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::analysis::logged::{self, Label, LoggedRun, PARQUET};
+use crate::analysis::logged::{self, Label, LoggedRun, PARQUET, RunTime};
 use crate::options::{ENCOUNTERS, SERIES};
 use crate::{Error, Result};
 
@@ -35,7 +35,7 @@ impl Task {
     ///
     /// # Errors
     /// [`Error::Content`] if the run did not reach its end; those of [`logged::pack`].
-    pub fn finish(&self, log: &Path) -> Result<()> {
+    pub fn finish(&self, log: &Path, run_time: RunTime) -> Result<()> {
         if !LoggedRun::read(log)?.complete {
             return Err(Error::content(log, "the run did not reach its end"));
         }
@@ -49,12 +49,17 @@ impl Task {
             fs::create_dir_all(&folder).map_err(fault)?;
             fs::rename(log.join(name), folder.join(name)).map_err(fault)?;
         }
-        logged::pack(log, &self.labels, &self.fingerprint, &self.file())
+        logged::pack(log, &self.labels, &self.fingerprint, run_time, &self.file())
+    }
+
+    /// The folder of its file in the data set, which is a log once the run is done.
+    pub fn log(&self) -> PathBuf {
+        data_set(&self.out).join(format!("{RUN}{}", self.name))
     }
 
     /// Its file in the data set.
-    pub(super) fn file(&self) -> PathBuf {
-        data_set(&self.out).join(format!("{RUN}{}", self.name)).join(PARQUET)
+    pub fn file(&self) -> PathBuf {
+        self.log().join(PARQUET)
     }
 }
 

@@ -1,0 +1,148 @@
+//! The measures of a run: counts and rates by kind and severity, expected crashes, quantiles.
+
+use std::iter::once;
+
+use super::estimate::{Estimate, mean};
+use crate::Result;
+use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, Packed, RunTime};
+use crate::analysis::statistics::{quantile, rate};
+use crate::batch::sweep::Task;
+use crate::detection::kind::{Kind, Severity};
+use crate::output::schema::{Column, Value};
+
+/// The columns whose quantiles are measures.
+const COLUMNS: [&str; 4] = ["ttc", "drac", "ttb", "margin"];
+/// The quantiles.
+const SHARES: [(&str, f64); 3] = [("q05", 0.05), ("q50", 0.5), ("q95", 0.95)];
+const EXPECTED_CRASHES: &str = "expected_crashes";
+/// The end of the names of rates.
+const PER_VEHICLE_HOUR: &str = "_per_vehicle_hour";
+
+/// A number that a run has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measure {
+    /// Its name in `study.csv`.
+    pub name: String,
+    form: Form,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Form {
+    /// A count per run.
+    Count,
+    /// A count per vehicle-hour.
+    Rate,
+    Value,
+}
+
+/// What one run found, and what it took.
+#[derive(Clone, Debug)]
+pub struct RunFigures {
+    /// The value of each of the [`measures`]; none where no conflict has it.
+    pub values: Vec<Option<f64>>,
+    vehicle_hours: f64,
+    /// What the run took.
+    pub run_time: RunTime,
+}
+
+/// The conflicts that a count is of.
+struct Tally {
+    name: String,
+    counts: Box<dyn Fn(&LoggedConflict) -> bool>,
+}
+
+fn tallies() -> Vec<Tally> {
+    fn tally(name: impl Into<String>, counts: impl Fn(&LoggedConflict) -> bool + 'static) -> Tally {
+        Tally { name: name.into(), counts: Box::new(counts) }
+    }
+    let kinds = Kind::ALL.map(|kind| tally(kind.name(), move |conflict| conflict.kind == kind));
+    let severities =
+        Severity::ALL.map(|severity| tally(severity.name(), move |conflict| conflict.severity == severity));
+    let both = Kind::ALL.into_iter().flat_map(|kind| {
+        Severity::ALL.map(|severity| {
+            let name = format!("{}_{}", kind.name(), severity.name());
+            tally(name, move |conflict| conflict.kind == kind && conflict.severity == severity)
+        })
+    });
+    once(tally("conflicts", |_| true))
+        .chain([tally("serious_or_critical", |conflict| conflict.severity != Severity::Caution)])
+        .chain([tally("collisions", |conflict| conflict.collision)])
+        .chain(kinds)
+        .chain(severities)
+        .chain(both)
+        .collect()
+}
+
+/// All measures, in the order of [`RunFigures::values`].
+pub fn measures() -> Vec<Measure> {
+    let measure = |name: String, form| Measure { name, form };
+    let counts = tallies().into_iter().flat_map(|tally| {
+        let per_hour = format!("{}{PER_VEHICLE_HOUR}", tally.name);
+        [measure(tally.name, Form::Count), measure(per_hour, Form::Rate)]
+    });
+    let crashes = ["", PER_VEHICLE_HOUR].map(|per| measure(format!("{EXPECTED_CRASHES}{per}"), Form::Value));
+    let quantiles = COLUMNS.iter().flat_map(|column| SHARES.map(|(name, _)| format!("{column}_{name}")));
+    counts.chain(crashes).chain(quantiles.map(|name| measure(name, Form::Value))).collect()
+}
+
+impl RunFigures {
+    /// Reads the log of a run that is done.
+    pub fn of(task: &Task) -> Result<Self> {
+        let folder = task.log();
+        let run = LoggedRun::read(&folder)?;
+        let vehicle_hours = run.summary.exposure.vehicle_hours;
+        let per_hour = |value: f64| (vehicle_hours > 0.0).then(|| value / vehicle_hours);
+        let tallies = tallies();
+        let mut counts = vec![0.0; tallies.len()];
+        let columns = COLUMNS.map(Column::named);
+        let mut samples = [const { Vec::new() }; COLUMNS.len()];
+        for conflict in ConflictReader::open(&folder)? {
+            let conflict = conflict?;
+            for (count, tally) in counts.iter_mut().zip(&tallies) {
+                *count += f64::from(u8::from((tally.counts)(&conflict)));
+            }
+            for (sample, column) in samples.iter_mut().zip(columns) {
+                if let Some(Value::Number(value)) = column.map(|column| (column.get)(&conflict)) {
+                    sample.push(value);
+                }
+            }
+        }
+        let mut values = Vec::new();
+        for count in counts {
+            values.extend([Some(count), per_hour(count)]);
+        }
+        let crashes = run.summary.expected_crashes;
+        values.extend([Some(crashes), per_hour(crashes)]);
+        for mut sample in samples {
+            sample.sort_unstable_by(f64::total_cmp);
+            values.extend(SHARES.map(|(_, share)| quantile(&sample, share)));
+        }
+        let run_time = Packed::of(&task.file())?.run_time.unwrap_or_default();
+        Ok(Self { values, vehicle_hours, run_time })
+    }
+}
+
+impl Measure {
+    /// Whether the same per vehicle-hour is a measure too.
+    pub fn has_rate(&self) -> bool {
+        self.form == Form::Count || self.name == EXPECTED_CRASHES
+    }
+
+    /// The measure over the runs of a setting, one per seed, with its interval: that of a rate for counts, or else
+    /// Student's t. `place` is that of the measure.
+    pub fn estimate(&self, place: usize, runs: &[RunFigures]) -> Option<Estimate> {
+        let values = runs.iter().filter_map(|run| run.values[place]).collect::<Vec<_>>();
+        let of_counts = |counts: Vec<f64>, traffic: Vec<f64>| {
+            rate(&counts, &traffic).map(|rate| Estimate { value: rate.value, interval: Some([rate.low, rate.high]) })
+        };
+        let hours = || runs.iter().map(|run| run.vehicle_hours);
+        match self.form {
+            Form::Count => of_counts(values.clone(), vec![1.0; values.len()]),
+            Form::Rate => {
+                let counts = runs.iter().zip(hours()).map(|(run, hours)| run.values[place].unwrap_or_default() * hours);
+                of_counts(counts.collect(), hours().collect())
+            }
+            Form::Value => mean(&values),
+        }
+    }
+}
