@@ -65,7 +65,7 @@ fn pi() -> BigFloat {
         for n in 0..140 {
             let term = &power / precise(f64::from(2 * n + 1));
             sum = if n % 2 == 0 { sum + term } else { sum - term };
-            power = power / &square;
+            power /= &square;
         }
         sum
     };
