@@ -46,7 +46,6 @@ impl Run {
         self.lane_lookups += rows.len() as u64;
         let placed = place(self, &rows);
         self.unplaced = rows;
-        self.detector.align(&mut self.frame, &self.roster);
         placed
     }
 
@@ -59,6 +58,8 @@ impl Run {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
+        self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
+        self.detector.align(&mut self.frame, &self.roster);
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
         self.check_crowd()?;
@@ -120,7 +121,6 @@ impl Run {
         if let (Some(log), false) = (&mut self.log, closed.is_empty()) {
             log.append_conflicts(closed, self.net.as_deref(), &self.roster)?;
         }
-        self.outputs.write_step(&self.frame, &self.roster, self.net.as_deref())?;
         self.outputs.write_conflicts(closed)?;
         self.tracker.forget_closed();
         // The indices become free only now: this step's events had to see that the road users are gone.

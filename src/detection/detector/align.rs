@@ -7,25 +7,17 @@
 //! moved back too, but no overlap is a collision then.
 
 use super::Detector;
+use super::jump::Jump;
 use super::reach::lines_of;
 use crate::detection::path::turn;
-use crate::geometry::Vector;
 use crate::geometry::rectangle::direction;
 use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Metre, Radian, Second};
+use crate::util::units::{Metre, Second};
 
 /// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
 const LEAST_JUMP: Metre = 0.5;
-
-/// A road user that has jumped to another lane.
-pub(super) struct Jump {
-    row: u32,
-    aside: Vector,
-    /// The heading of its former path beside which it is now.
-    heading: Radian,
-}
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -79,11 +71,10 @@ impl Detector {
     /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
         let path = &self.paths[user.0 as usize];
-        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| self.behind() > 0.0 && !path.track.is_empty())
-        else {
+        if self.behind() == 0.0 || path.track.is_empty() {
             return;
-        };
-        let driven = last.speed * self.was_behind + state.speed * self.step;
+        }
+        let driven = state.speed * self.step;
         let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);

@@ -9,6 +9,7 @@ mod align;
 mod candidates;
 mod cover;
 mod encounters;
+mod jump;
 mod last_speed;
 mod left_out;
 mod level;
@@ -40,8 +41,8 @@ use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::limits::{ENCOUNTERS, FEWEST_ENCOUNTERS};
 use crate::util::threads::{Team, share};
 use crate::util::units::{Metre, Second};
-use align::Jump;
 use cover::Cover;
+use jump::Jump;
 use last_speed::LastSpeed;
 use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
@@ -67,8 +68,6 @@ pub struct Detector {
     sublane: bool,
     /// Over which share of a step, up to its end, a speed is the mean.
     averaged_over: f64,
-    /// How long before the end of the last step road users had their speeds, in s.
-    was_behind: Second,
     /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
     jumps: Vec<Jump>,
     conflicts_only: bool,
@@ -114,7 +113,6 @@ impl Detector {
             routes_may_change: true,
             sublane: false,
             averaged_over: 0.0,
-            was_behind: 0.0,
             jumps: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
