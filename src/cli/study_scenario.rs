@@ -66,6 +66,7 @@ impl ScenarioArgs {
         let out = absolute(out.unwrap_or(&default_out))?;
         // Opened here so that an error carries the operating system's own message.
         input_file::file(scenario)?;
+        let _alone = LogFolder::claim(&out)?;
         self.vary.iter().try_for_each(check)?;
         let seeds =
             self.seeds.unwrap_or_else(|| Seeds(SEEDS[..if quick { QUICK_SEEDS } else { SEEDS.len() }].to_vec()));

@@ -61,7 +61,7 @@ impl Run {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
         // With the positions that SUMO has, before road users are moved back.
-        let states = self.writing.states(&self.frame, &self.roster, self.net.as_deref());
+        let recorded = self.writing.trajectories(&self.frame, &self.roster, self.net.as_deref());
         self.detector.align(&mut self.frame, &self.roster);
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
@@ -72,9 +72,9 @@ impl Run {
         ended(StepPart::NarrowPhase);
         self.close_conflicts();
         ended(StepPart::Events);
-        states.and(self.write())?;
+        let written = self.write();
         ended(StepPart::Log);
-        Ok(())
+        recorded.and(written)
     }
 
     /// Follows every road user along its predicted path; returns the rows that need a placement.

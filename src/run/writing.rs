@@ -19,18 +19,18 @@ pub struct Writing {
 }
 
 impl Writing {
-    /// Writes where the road users of a step are.
+    /// Writes the road users of a step.
     ///
     /// # Errors
     /// The first time that something cannot be written: [`Error::File`] that names it.
-    pub fn states(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
+    pub fn trajectories(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| it.outputs.write_step(frame, roster, net))
     }
 
-    /// Writes the conflicts that a step has closed.
+    /// Writes the conflicts that have closed in a step.
     ///
     /// # Errors
-    /// As in [`Writing::states`].
+    /// As in [`Writing::trajectories`].
     pub fn conflicts(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, roster, net)?;
@@ -41,7 +41,7 @@ impl Writing {
     /// Writes the last conflicts, and completes everything but `run.json`.
     ///
     /// # Errors
-    /// As in [`Writing::states`].
+    /// As in [`Writing::trajectories`].
     pub fn finish(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, roster, net)?;
