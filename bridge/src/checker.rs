@@ -227,15 +227,15 @@ impl State {
             (Feed::Simulation(source, identity), _) => {
                 let asked = (self.listens && self.has_listened).then_some(time);
                 let now = source.time(py)?;
-                if run.time() == Some(now) {
-                    // simulationStep does nothing up to a time that is reached already.
-                    return if asked.is_some_and(|until| until > 0.0) { goes_on } else { Err(again(now)) };
-                }
                 if let Some(why) = identity.is_another(py, run.time(), now, asked)? {
                     // The vehicles that it painted are not in the new simulation.
                     self.painter = None;
                     self.end(py, None)?;
                     return Ok(Stepped { goes_on: false, warning: Some(another(&why)) });
+                }
+                if run.time() == Some(now) {
+                    // simulationStep does nothing up to a time that is reached already.
+                    return if asked.is_some_and(|until| until > 0.0) { goes_on } else { Err(again(now)) };
                 }
                 self.has_listened = self.listens;
                 source.pull(py, run, now)?;

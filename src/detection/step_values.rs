@@ -3,7 +3,7 @@
 use super::encounter::Encounter;
 use super::measures;
 use super::measures::headway::headway;
-use super::measures::injury::{self, Body};
+use super::measures::injury::{Body, injury_probability};
 use crate::options::condition::Measure;
 use crate::traffic::profile::Profile;
 use crate::util::units::MetrePerSecond;
@@ -44,8 +44,7 @@ impl StepValues<'_> {
             Measure::CrashProbabilityBraking => found.nearness.map(|near| near.crash_probability_braking),
             Measure::InjuryProbability => {
                 let [of_ego, of_foe] = delta_v();
-                let body = |delta_v, of: &Profile| Body { delta_v, unprotected: of.unprotected };
-                Some(injury::injury_probability(found.kind, body(of_ego, ego), body(of_foe, foe)))
+                Some(injury_probability(found.kind, Body::of(ego, of_ego), Body::of(foe, of_foe)))
             }
             Measure::ExtendedDeltaV => found.nearness?.extended_delta_v,
         }

@@ -8,9 +8,9 @@ use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
 use super::pet::Pet;
 use crate::detection::kind::{Kind, Severity};
-use crate::detection::measures::{self, injury};
+use crate::detection::measures;
+use crate::detection::measures::injury::{Body, injury_probability};
 use crate::traffic::net::LaneIndex;
-use crate::traffic::profile::Profile;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
@@ -137,9 +137,8 @@ impl Conflict {
         let [ego_snapshot, foe_snapshot] = worst.snapshots.clone();
         let [ego_delta_v, foe_delta_v] =
             measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle);
-        let body = |delta_v, of: &Profile| injury::Body { delta_v, unprotected: of.unprotected };
         let injury_probability =
-            injury::injury_probability(kind, body(ego_delta_v, ego_type), body(foe_delta_v, foe_type));
+            injury_probability(kind, Body::of(ego_type, ego_delta_v), Body::of(foe_type, foe_delta_v));
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),

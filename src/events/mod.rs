@@ -26,7 +26,7 @@ use crate::options::Options;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Radian, Second};
+use crate::util::units::{Radian, SAME_MOMENT, Second};
 use extremes::{Extremes, Observation};
 use past::Past;
 use span::Span;
@@ -35,8 +35,6 @@ pub use snapshot::Snapshot;
 
 /// How long the condition must not be met before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
-/// Simulated times are sums of steps: times that differ by less are equal, in s.
-const SAME_MOMENT: Second = 1e-6;
 
 /// The road users of an open conflict and its current severity, as painted.
 #[derive(Clone, Copy, Debug, PartialEq)]

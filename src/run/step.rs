@@ -46,7 +46,6 @@ impl Run {
         self.lane_lookups += rows.len() as u64;
         let placed = place(self, &rows);
         self.unplaced = rows;
-        self.detector.align(&mut self.frame, &self.roster);
         placed
     }
 
@@ -59,6 +58,8 @@ impl Run {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
+        let recorded = self.writing.trajectories(&self.frame, &self.roster, self.net.as_deref());
+        self.detector.align(&mut self.frame, &self.roster);
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
         self.check_crowd()?;
@@ -68,9 +69,9 @@ impl Run {
         ended(StepPart::NarrowPhase);
         self.close_conflicts();
         ended(StepPart::Events);
-        self.write()?;
+        let written = self.write();
         ended(StepPart::Log);
-        Ok(())
+        recorded.and(written)
     }
 
     /// Follows every road user along its predicted path; returns the rows that need a placement.
@@ -116,7 +117,7 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     fn write(&mut self) -> Result<()> {
-        let written = self.writing.step(self.tracker.closed(), &self.frame, &self.roster, self.net.as_deref());
+        let written = self.writing.conflicts(self.tracker.closed(), &self.roster, self.net.as_deref());
         self.tracker.forget_closed();
         // The indices become free only now: this step's events had to see that the road users are gone.
         for user in self.leaving.drain(..) {

@@ -2,10 +2,7 @@
 
 use crate::output::summary::Exposure;
 use crate::traffic::profile::Category;
-use crate::util::units::Second;
-
-/// Simulated times are sums of steps: times that differ by less are equal, in s.
-const SAME_MOMENT: Second = 1e-6;
+use crate::util::units::{SAME_MOMENT, Second};
 
 /// How far a run is in its warm-up.
 #[derive(Debug, Default)]

@@ -19,22 +19,29 @@ pub struct Writing {
 }
 
 impl Writing {
-    /// Writes what a step adds.
+    /// Writes the road users of a step.
     ///
     /// # Errors
     /// The first time that something cannot be written: [`Error::File`] that names it.
-    pub fn step(&mut self, closed: &[Conflict], frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
+    pub fn trajectories(&mut self, frame: &Frame, roster: &Roster, net: Option<&Net>) -> Result<()> {
+        self.attempt(|it| it.outputs.write_step(frame, roster, net))
+    }
+
+    /// Writes the conflicts that have closed in a step.
+    ///
+    /// # Errors
+    /// As in [`Writing::trajectories`].
+    pub fn conflicts(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, roster, net)?;
-            it.log.as_mut().map_or(Ok(()), Log::sync_now_and_then)?;
-            it.outputs.write_step(frame, roster, net)
+            it.log.as_mut().map_or(Ok(()), Log::sync_now_and_then)
         })
     }
 
     /// Writes the last conflicts, and completes everything but `run.json`.
     ///
     /// # Errors
-    /// As in [`Writing::step`].
+    /// As in [`Writing::trajectories`].
     pub fn finish(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, roster, net)?;

@@ -4,6 +4,8 @@
 pub type Metre = f64;
 /// A point in time or a duration in s.
 pub type Second = f64;
+/// Simulated times are sums of steps: times that differ by less are equal, in s.
+pub const SAME_MOMENT: Second = 1e-6;
 /// A speed in m/s.
 pub type MetrePerSecond = f64;
 /// A deceleration or acceleration in m/s².

@@ -86,10 +86,11 @@ fn speeds_of_a_moment_are_left_where_they_are() {
 #[test]
 fn a_change_of_lanes_comes_after_the_step() {
     let way = Way::bend();
-    let at = |x: f64, y: f64| State { x, y, speed: 8.0, ..State::default() };
+    let at = |x: f64, y: f64, heading: f64| State { x, y, heading, speed: 8.0, ..State::default() };
     let (found, _) =
-        second_step(&mut aligning(Some(&way)), Some((&way.net, 48.0)), [&[at(40.0, 0.0)], &[at(48.0, 3.2)]]);
-    assert!((found[0].x - 44.0).abs() < 1e-9 && found[0].y.abs() < 1e-9, "{found:?}");
+        second_step(&mut aligning(Some(&way)), Some((&way.net, 48.0)), [&[at(40.0, 0.0, 0.0)], &[at(48.0, 3.2, 0.7)]]);
+    let found = found[0];
+    assert!((found.x - 44.0).abs() < 1e-9 && found.y.abs() < 1e-9 && found.heading.abs() < 1e-9, "{found:?}");
 }
 
 #[test]

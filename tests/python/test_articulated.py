@@ -17,7 +17,7 @@ from closecall import _sumo, Checker
 
 config, lanes = sys.argv[1:]
 sumo = _sumo.start(["-c", config, "--no-warnings", "--collision.action", "none"], gui=False)
-checker = Checker(sumo, paint=True)
+checker = Checker(sumo, paint=True, align="never")
 rings = []
 while sumo.simulation.getTime() < 40:
     sumo.simulationStep()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import resource
 import subprocess
@@ -141,6 +142,9 @@ def test_a_full_disk_is_reported_and_no_row_is_cut(scenario: Copy, tmp_path: Pat
     written = (tmp_path / "conflicts.csv").read_text()
     assert written.endswith("\n")
     assert len({line.count(",") for line in written.splitlines()}) == 1
+    record = json.loads((tmp_path / "run.json").read_text())
+    assert not record["complete"]
+    assert record["error"].endswith(f"; the last whole row of the log is {len(written.splitlines()) - 1}")
 
 
 def test_a_missing_libsumo_is_named_with_its_remedy(scenario: Copy) -> None:

@@ -63,7 +63,7 @@ def their_ttc(ego: tuple[float, float], foe: tuple[float, float]) -> float:
 
 def test_a_followers_ttc_equals_commonroad_crimes(tmp_path: Path) -> None:
     fcd = tmp_path / "fcd.xml"
-    words = ("--log-series", "--", "--no-warnings", "--fcd-output", fcd, "--precision", "6")
+    words = ("--align", "never", "--log-series", "--", "--no-warnings", "--fcd-output", fcd, "--precision", "6")
     done = closecall("run", NETS / "rear_end" / "rear_end.sumocfg", "--out", tmp_path, *words)
     assert done.returncode == 0, done.stderr
     driven: dict[tuple[float, str], tuple[float, float]] = {}

@@ -138,9 +138,9 @@ CROSSING_OR_LEFT = {"10", "11", "17"}
 def test_pairs_of_the_ssm_device_are_logged_or_explained(net: str, end: str, least: int, tmp_path: Path) -> None:
     words = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC DRAC PET", "--precision", "6"]
     words += ["--device.ssm.thresholds", "3 3 2", "--device.ssm.file", str(tmp_path / "ssm.xml"), "--no-warnings"]
-    found = logged(net, tmp_path / "ssm", "--log", "ssm", "--end", end, "--", *words)
+    found = logged(net, tmp_path / "ssm", "--log", "ssm", "--align", "never", "--end", end, "--", *words)
     wide = "ttc <= 10 or drac > 0.1 or pet <= 5 or gap < 40"
-    wider = logged(net, tmp_path / "wide", "--log", wide, "--end", end, "--", "--no-warnings")
+    wider = logged(net, tmp_path / "wide", "--log", wide, "--align", "never", "--end", end, "--", "--no-warnings")
     pairs, others = ({frozenset((row["ego"], row["foe"])) for row in one} for one in (found, wider))
     theirs = beyond_its_thresholds(tmp_path / "ssm.xml")
     missing = set(theirs) - pairs

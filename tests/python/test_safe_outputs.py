@@ -74,6 +74,13 @@ def test_runs_at_once_get_folders_of_their_own(scenario: Copy) -> None:
     assert closecall("stats", *(config.parent / name for name in made)).returncode == 0
 
 
+def test_a_sweep_has_its_folder_for_itself(scenario: Copy, tmp_path: Path) -> None:
+    with cc.Checker(out=tmp_path / "out"):
+        done = closecall("sweep", scenario("rear_end"), "--seeds", "1", "--out", tmp_path / "out")
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert f"(process {os.getpid()}, begun" in done.stderr
+
+
 @pytest.mark.parametrize("name", ["conflicts.csv", "run.json"])
 @pytest.mark.parametrize("command", [("report",), ("stats", "--format", "csv")])
 def test_no_output_is_written_over_the_log_that_it_shows(command: tuple[str, ...], name: str, log: Path) -> None:
@@ -104,7 +111,7 @@ def test_a_log_is_not_written_over_the_recording(scenario: Copy, tmp_path: Path)
     config = scenario("rear_end")
     recording = tmp_path / "out" / "conflicts.csv"
     recording.parent.mkdir()
-    fcd = ("--fcd-output", recording, "--fcd-output.format", "csv")
+    fcd = ("--fcd-output", recording)
     done = closecall("run", config, "--end", "10", "--quiet", "--out", tmp_path / "run", "--", *fcd)
     assert done.returncode == 0, done.stderr
     before = recording.read_bytes()

@@ -53,7 +53,9 @@ def compared(once: Once) -> Compared:
         words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "100"]
         words += ["--device.ssm.trajectories", "true", "--device.ssm.file", str(out / "ssm.xml"), "--no-warnings"]
         words += ["--fcd-output", str(out / "fcd.xml"), "--fcd-output.attributes", "x,y,angle,lane,pos"]
-        done = closecall("run", NETS / name / f"{name}.sumocfg", "--out", out, "--log-series", "--", *words)
+        done = closecall(
+            "run", NETS / name / f"{name}.sumocfg", "--out", out, "--align", "never", "--log-series", "--", *words
+        )
         assert done.returncode == 0, done.stderr
         encounters = rows(out / "series.csv")
         pairs = {(row["ego"], row["foe"]) for row in encounters}

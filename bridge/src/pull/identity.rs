@@ -51,6 +51,14 @@ impl Identity {
         if time < last {
             return Ok(Some(format!("the simulation's time went back from {last} to {time} s")));
         }
+        if let (Some([loaded, inserted]), Some([now_loaded, now_inserted])) = (before, now)
+            && (now_loaded < loaded || now_inserted < inserted)
+        {
+            return Ok(Some(format!("the simulation has loaded {now_loaded} vehicles, after {loaded} before")));
+        }
+        if time == last {
+            return self.has_other_options(source);
+        }
         let step = self.step_length;
         let is_next = (time - last - step).abs() < SAME_TIME;
         let is_due = match asked {
@@ -63,18 +71,14 @@ impl Identity {
                 "the simulation's time went from {last} to {time} s in one call of simulationStep"
             )));
         }
-        if let (Some([loaded, inserted]), Some([now_loaded, now_inserted])) = (before, now) {
-            if now_loaded < loaded || now_inserted < inserted {
-                return Ok(Some(format!("the simulation has loaded {now_loaded} vehicles, after {loaded} before")));
-            }
-            let departed: u64 = source.getattr("simulation")?.call_method0("getDepartedNumber")?.extract()?;
-            if is_next && now_inserted != inserted + departed {
-                return Ok(Some(format!(
-                    "the simulation has inserted {now_inserted} vehicles, after {inserted} before and {departed} since"
-                )));
-            }
+        if !is_next {
+            return self.has_other_options(source);
         }
-        if is_next { Ok(None) } else { self.has_other_options(source) }
+        let (Some([_, inserted]), Some([_, now_inserted])) = (before, now) else { return Ok(None) };
+        let departed: u64 = source.getattr("simulation")?.call_method0("getDepartedNumber")?.extract()?;
+        Ok((now_inserted != inserted + departed).then(|| {
+            format!("the simulation has inserted {now_inserted} vehicles, after {inserted} before and {departed} since")
+        }))
     }
 
     fn has_other_options(&self, source: &Bound<PyAny>) -> PyResult<Option<String>> {

@@ -7,6 +7,7 @@
 //! moved back too, but no overlap is a collision then.
 
 use super::Detector;
+use super::jump::Jump;
 use super::reach::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
@@ -49,10 +50,12 @@ impl Detector {
         if behind == 0.0 {
             return;
         }
-        // Its path begins on the lane that it has jumped to; before, it drove straight enough.
-        for (row, jump) in &self.jumps {
+        // Its path begins on the lane that it has jumped to; on the way there, it drove straight enough. SUMO's heading is that
+        // from its rear on the former lane to its front on the next.
+        for Jump { row, aside, heading } in &self.jumps {
             let state = frame.state_mut(*row);
-            (state.x, state.y) = (state.x - jump.x, state.y - jump.y);
+            (state.x, state.y) = (state.x - aside.x, state.y - aside.y);
+            state.heading = *heading;
             self.on_lanes[*row as usize] = false;
         }
         for row in 0..frame.len() as u32 {
@@ -68,17 +71,16 @@ impl Detector {
     /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
         let path = &self.paths[user.0 as usize];
-        let Some(last) = self.speeds.get(user.0 as usize).filter(|_| self.behind() > 0.0 && !path.track.is_empty())
-        else {
+        if self.behind() == 0.0 || path.track.is_empty() {
             return;
-        };
-        let driven = last.speed * self.was_behind + state.speed * self.step;
+        }
+        let driven = state.speed * self.step;
         let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);
         let aside = off - direction * along;
         if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
-            self.jumps.push((row, aside));
+            self.jumps.push(Jump { row, aside, heading: direction.y.atan2(direction.x) });
         }
     }
 

@@ -46,7 +46,6 @@ impl Detector {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
         }
-        self.was_behind = self.behind();
         self.step = (frame.time - self.time).max(0.0);
         self.time = frame.time;
         self.work.rows += frame.len() as u64;

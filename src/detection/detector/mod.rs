@@ -9,6 +9,7 @@ mod align;
 mod candidates;
 mod cover;
 mod encounters;
+mod jump;
 mod last_speed;
 mod left_out;
 mod level;
@@ -29,8 +30,8 @@ use super::broad_phase::Search;
 use super::encounter::Encounter;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
+use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
-use crate::geometry::{Point, Vector};
 use crate::options::condition::LookAhead;
 use crate::options::{Mode, Options};
 use crate::traffic::frame::{Frame, Row};
@@ -41,6 +42,7 @@ use crate::util::limits::{ENCOUNTERS, FEWEST_ENCOUNTERS};
 use crate::util::threads::{Team, share};
 use crate::util::units::{Metre, Second};
 use cover::Cover;
+use jump::Jump;
 use last_speed::LastSpeed;
 use reach::{Paths, Reach, StepView, User};
 use row_order::RowOrder;
@@ -66,10 +68,8 @@ pub struct Detector {
     sublane: bool,
     /// Over which share of a step, up to its end, a speed is the mean.
     averaged_over: f64,
-    /// How long before the end of the last step road users had their speeds, in s.
-    was_behind: Second,
     /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
-    jumps: Vec<(u32, Vector)>,
+    jumps: Vec<Jump>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -113,7 +113,6 @@ impl Detector {
             routes_may_change: true,
             sublane: false,
             averaged_over: 0.0,
-            was_behind: 0.0,
             jumps: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,

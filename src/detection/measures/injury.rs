@@ -1,6 +1,7 @@
 //! The probability of a fatal injury of the one that is worse off, from its ΔV in a collision.
 
 use crate::detection::kind::Kind;
+use crate::traffic::profile::Profile;
 use crate::util::units::MetrePerSecond;
 
 /// A road user in a collision.
@@ -10,6 +11,13 @@ pub struct Body {
     pub delta_v: MetrePerSecond,
     /// Whether nothing protects its occupants.
     pub unprotected: bool,
+}
+
+impl Body {
+    /// That of a road user of this profile.
+    pub const fn of(profile: &Profile, delta_v: MetrePerSecond) -> Self {
+        Self { delta_v, unprotected: profile.unprotected }
+    }
 }
 
 /// Where a vehicle is hit.

@@ -36,6 +36,8 @@ pub struct LanePath {
     /// Which edge of `route` the last lane is on, or was on when the path left the route; none if the road user drives
     /// against its lane, whose path does not go on.
     edge: Option<usize>,
+    /// How far its front bumper was moved back since it last was followed.
+    moved_back: Metre,
 }
 
 /// What a path starts from.
@@ -74,11 +76,17 @@ impl LanePath {
 
     /// Updates the place of the front bumper; `false` if it has left the path.
     pub fn follow(&mut self, of_net: &Lines, front: Point) -> bool {
-        self.track.follow(self.own.as_ref().map_or(of_net, |own| &own.lines), front)
+        let lines = self.own.as_ref().map_or(of_net, |own| &own.lines);
+        let moved_back = std::mem::take(&mut self.moved_back);
+        if moved_back > 0.0 {
+            self.track.move_on(lines, moved_back);
+        }
+        self.track.follow(lines, front)
     }
 
     /// Moves the front bumper back.
     pub fn move_back(&mut self, of_net: &Lines, distance: Metre) {
+        self.moved_back = distance;
         self.track.move_back(self.own.as_ref().map_or(of_net, |own| &own.lines), distance);
     }
 

@@ -46,6 +46,11 @@ pub(crate) fn largest_turn(length: Metre) -> Radian {
     (8.0 * crate::geometry::sweep::TOLERANCE / length.max(1.0)).sqrt()
 }
 
+/// The direction from the rear to the front; `otherwise` if both are in one place (a hairpin without width).
+pub(super) fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
+    (front - rear).try_normalize(1e-9).unwrap_or(otherwise)
+}
+
 /// The angle from one direction to another, −π to π.
 pub(crate) fn turn(from: &Vector, to: &Vector) -> Radian {
     crate::geometry::cross(from, to).atan2(from.dot(to))

@@ -1,9 +1,9 @@
 //! The poses of a road user whose front and rear bumpers are both on a polyline.
 
 use super::track::{Cursor, SAME_DIRECTION, Track};
-use super::{Pose, largest_turn, rotated, turn};
+use super::{Pose, chord, largest_turn, rotated, turn};
 use crate::geometry::polylines::{Lines, ON_THE_LINE};
-use crate::geometry::{Point, Vector, cross};
+use crate::geometry::{Vector, cross};
 use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, Radian};
 
@@ -129,11 +129,6 @@ fn skewed(chord: Vector, skew: Radian, distance: Metre, length: Metre) -> Vector
     if skew == 0.0 || distance >= length { chord } else { rotated(&chord, skew * (1.0 - distance / length)) }
 }
 
-/// The direction from the rear to the front; `otherwise` if both are in one place (a hairpin without width).
-pub(super) fn chord(front: Point, rear: Point, otherwise: Vector) -> Vector {
-    (front - rear).try_normalize(1e-9).unwrap_or(otherwise)
-}
-
 /// Whether the angle between two directions is certainly smaller than `angle`, without trigonometry: an angle is
 /// smaller than its tangent.
 fn turns_less(from: &Vector, to: &Vector, angle: Radian) -> bool {
@@ -166,7 +161,7 @@ fn advance(place: &mut Cursor, distance: Metre, least: Metre) {
 #[cfg(test)]
 mod tests {
     use crate::detection::path::poses::*;
-    use crate::geometry::Bounds;
+    use crate::geometry::{Bounds, Point};
 
     const CAR: Carriage = Carriage { behind: 0.0, length: 5.0 };
 

@@ -5,7 +5,7 @@
 
 use smallvec::SmallVec;
 
-use super::poses::chord;
+use super::chord;
 use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
@@ -123,14 +123,27 @@ impl Track {
         (self.at, self.vertex, self.front) = (at, vertex, front);
     }
 
+    /// Moves the front bumper forward; beyond the end, straight on.
+    pub fn move_on(&mut self, lines: &Lines, distance: Metre) {
+        let Cursor { at, vertex, distance: front, .. } = self.before(lines, distance);
+        self.end -= self.lines[self.at..at].iter().map(|line| lines.length(*line)).sum::<Metre>();
+        (self.at, self.vertex, self.front) = (at, vertex, front);
+    }
+
     /// The place and the direction at a distance ahead of the front bumper; beyond the end, straight on.
     pub fn ahead_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+        let cursor = self.before(lines, distance);
+        (cursor.point(), cursor.under.direction)
+    }
+
+    /// A cursor at a distance ahead of the front bumper.
+    fn before<'a>(&'a self, lines: &'a Lines, distance: Metre) -> Cursor<'a> {
         let mut cursor = self.cursor(lines);
         cursor.distance += distance;
         while cursor.room() <= 0.0 {
             cursor.enter_next();
         }
-        (cursor.point(), cursor.under.direction)
+        cursor
     }
 
     /// Where the front bumper is.
@@ -393,6 +406,9 @@ mod tests {
         assert_eq!(track.chord(&lines, 5.0), Vector::x());
         track.move_back(&lines, 9.0);
         assert_eq!(track.point(&lines), Point::new(-1.0, 0.0));
+        track.move_on(&lines, 15.0);
+        assert_eq!((track.front(), track.ahead(), track.point(&lines)), (14.0, 16.0, Point::new(10.0, 4.0)));
+        track.move_back(&lines, 15.0);
         assert!(track.follow(&lines, Point::new(10.0, 1.0)));
     }
 }

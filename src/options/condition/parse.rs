@@ -104,7 +104,7 @@ impl<'a> Parser<'a> {
 /// That there is no such measure, and which one may be meant.
 fn unknown(name: &str) -> String {
     let names = Measure::ALL.map(Measure::name);
-    let alike = names.iter().map(|known| (edits(name, known), *known)).min();
+    let alike = names.iter().map(|known| (strsim::levenshtein(name, known), *known)).min();
     let is_end = |known: &&str| known.strip_suffix(name).is_some_and(|before| before.ends_with('_'));
     let meant = alike.filter(|(edits, _)| 2 * edits <= name.len()).map(|(_, known)| known);
     let meant = meant.or_else(|| names.into_iter().find(is_end));
@@ -112,18 +112,4 @@ fn unknown(name: &str) -> String {
         Some(meant) => format!("there is no measure \"{name}\"; did you mean \"{meant}\"?"),
         None => format!("there is no measure \"{name}\"; there are {}", names.join(", ")),
     }
-}
-
-/// How many letters have to be inserted, removed or replaced to make one text the other (Levenshtein 1966).
-fn edits(from: &str, to: &str) -> usize {
-    let mut row = (0..=to.len()).collect::<Vec<_>>();
-    for (number, letter) in from.bytes().enumerate() {
-        let mut diagonal = std::mem::replace(&mut row[0], number + 1);
-        for (place, other) in to.bytes().enumerate() {
-            let replaced = diagonal + usize::from(letter != other);
-            diagonal = row[place + 1];
-            row[place + 1] = replaced.min(diagonal + 1).min(row[place] + 1);
-        }
-    }
-    row.last().copied().unwrap_or_default()
 }

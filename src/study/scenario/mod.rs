@@ -16,7 +16,8 @@ mod rows;
 
 use std::path::Path;
 
-use crate::{Error, Result};
+use crate::Result;
+use crate::util::output_file;
 
 pub use comparison::Study;
 pub use plan::Plan;
@@ -26,11 +27,9 @@ pub use plan::Plan;
 /// # Errors
 /// An error that names the file that cannot be written.
 pub fn write(study: &Study, folder: &Path, scenario: &str) -> Result<String> {
-    std::fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
     rows::write(study, &folder.join("study.csv"))?;
     let charts = chart::draw(study, folder)?;
     let answer = page::answer(study);
-    let path = folder.join("study.md");
-    std::fs::write(&path, page::of(study, scenario, &answer, &charts)).map_err(|source| Error::file(&path, source))?;
+    output_file::write(&folder.join("study.md"), page::of(study, scenario, &answer, &charts).as_bytes())?;
     Ok(answer)
 }

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::comparison::Study;
 use super::richardson::Convergence;
+use crate::util::output_file::OutputFile;
 use crate::{Error, Result};
 
 /// The value of the row with the limit at a step of 0.
@@ -37,7 +38,8 @@ struct Row<'a> {
 
 pub(super) fn write(study: &Study, path: &Path) -> Result<()> {
     let failed = |error: csv::Error| Error::content(path, error.to_string());
-    let mut writer = csv::Writer::from_path(path).map_err(failed)?;
+    let mut table = OutputFile::create(path)?;
+    let mut writer = csv::Writer::from_writer(&mut table);
     for axis in &study.plan.axes {
         for (place, measure) in study.measures.iter().enumerate() {
             let row = || Row { axis: &axis.name, seeds: &study.seeds, measure: &measure.name, ..Row::default() };
@@ -73,5 +75,7 @@ pub(super) fn write(study: &Study, path: &Path) -> Result<()> {
             }
         }
     }
-    writer.flush().map_err(|source| Error::file(path, source))
+    writer.flush().map_err(|source| Error::file(path, source))?;
+    drop(writer);
+    table.finish()
 }
