@@ -55,10 +55,10 @@ def main() -> int:
             swing = np.sin(0.05 * now + phase)
             frame = {
                 "id": ids,
-                "x": row * 22.0 + 6.0 * swing + (13.0 * now) % 1e4,
+                "x": row * 25.0 + 4.3 * swing + (13.0 * now) % 1e4,
                 "y": lane * 3.5,
                 "heading": np.zeros(VEHICLES),
-                "speed": 13.0 + 6.0 * 0.05 * np.cos(0.05 * now + phase),
+                "speed": 13.0 + 4.3 * 0.05 * np.cos(0.05 * now + phase),
             }
             checker.step(now, frame)
             if (step + 1) % (steps // PARTS) == 0:

@@ -77,7 +77,6 @@ impl ScenarioArgs {
         let plan = Plan::of(&self.vary, quick, &|vary| own_value(&own, vary))?;
         let runs = Sweep::of_settings(&words, &self.passed.for_sumo, &seeds, &plan.settings(), &out, &files)?;
         check_runs(&runs, &seeds, parse_run)?;
-        let _alone = LogFolder::claim(&out)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
         distribute(sumo, &workers, &missing, runs.tasks.len() - missing.len(), false, &out.join(UNFINISHED))?;

@@ -50,11 +50,21 @@ pub(crate) fn probability(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-/// A share above 0, at most 1.
+/// A share above 0, up to 1.
 pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
-        _ => Err("it must be a share above 0, at most 1".to_owned()),
+        _ => Err("it must be a share above 0, up to 1".to_owned()),
+    }
+}
+
+>>>>>>>>> Temporary merge branch 2
+=======
+/// A share above 0, up to 1.
+pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err("it must be a share above 0, up to 1".to_owned()),
     }
 }
 
