@@ -58,16 +58,6 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
->>>>>>>>> Temporary merge branch 2
-=======
-/// A share above 0, up to 1.
-pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
-        _ => Err("it must be a share above 0, up to 1".to_owned()),
-    }
-}
-
 /// An angle in rad, 0 to π.
 pub(crate) fn angle(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
