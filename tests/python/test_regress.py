@@ -123,15 +123,15 @@ def test_a_changed_vehicle_length_is_named(blessed: Copy) -> None:
 
 def test_a_scenario_may_be_blessed_with_added_measures(blessed: Copy) -> None:
     folder = blessed("side")
-    settings(folder, 'measures = "t2,ei"\n[regress]\nlevel = "exact"\n')
+    settings(folder, 'measures = "t2,max_s"\n[regress]\nlevel = "exact"\n')
     assert closecall("regress", folder, "--bless").returncode == 0
     done = closecall("regress", folder)
     assert done.returncode == 0, done.stdout + done.stderr
     (table,) = folder.rglob("conflicts.csv")
     header, first = table.read_text().splitlines()[:2]
-    assert header.endswith(",t2,ei")
+    assert header.endswith(",t2,max_s")
     table.write_text(header + "\n" + first.rsplit(",", 1)[0] + ",77\n")
-    assert re.search(r"ei 77 → [\d.]+", differs(folder))
+    assert re.search(r"max_s 77 → [\d.]+", differs(folder))
 
 
 def test_a_difference_without_changed_inputs_is_reported_as_such(blessed: Copy) -> None:
