@@ -208,11 +208,11 @@ impl TraciDomain {
         let ask = || domain.call_method0(intern!(py, "getAllSubscriptionResults"));
         let mut results = ask()?;
         // If SUMO has ended the subscription of an id, its road user has left and another one has the id.
-        let others = ids.iter().filter(|id| results.get_item(&*id).is_err()).collect::<Vec<_>>();
+        let others = ids.iter().filter(|id| results.get_item(id).is_err()).collect::<Vec<_>>();
         if !others.is_empty() {
             others.iter().try_for_each(&subscribe)?;
             results = ask()?;
-            let mut others = others.iter().filter(|id| results.get_item(&*id).is_ok());
+            let mut others = others.iter().filter(|id| results.get_item(id).is_ok());
             others.try_for_each(|id| enter(&mut self.live, run, id))?;
         }
         for id in ids.iter() {
