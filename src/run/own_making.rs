@@ -130,9 +130,9 @@ mod tests {
     }
 
     #[test]
-    fn steps_of_half_a_second_are_long() {
+    fn steps_above_a_tenth_of_a_second_are_long() {
         let run = Run::new(&Options::default(), None).unwrap();
-        let found = [0.4, 0.5].map(|length| run.opening_remarks(Some(length)).len());
+        let found = [0.1, 0.2].map(|length| run.opening_remarks(Some(length)).len());
         assert_eq!(found, [0, 1]);
     }
 }

@@ -103,7 +103,8 @@ impl Track {
         let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
             cursor.enter_next();
-            if let Some(distance) = cursor.under.distance_of(front) {
+            let within = |distance: &Metre| *distance <= cursor.distance;
+            if let Some(distance) = cursor.under.distance_of(front).filter(within) {
                 let Cursor { at, vertex, .. } = cursor;
                 let passed = self.lines[self.at..at].iter();
                 self.end -= passed.map(|line| lines.length(*line)).sum::<Metre>();

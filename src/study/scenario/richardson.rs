@@ -2,7 +2,9 @@
 //!
 //! With f(h) = f₀ + C hᵖ and steps h₁ < h₂ < h₃ in any ratio,
 //!
-//!     (f₃ − f₂) / (f₂ − f₁) = (h₃ᵖ − h₂ᵖ) / (h₂ᵖ − h₁ᵖ)
+//! ```text
+//! (f₃ − f₂) / (f₂ − f₁) = (h₃ᵖ − h₂ᵖ) / (h₂ᵖ − h₁ᵖ)
+//! ```
 //!
 //! which grows with p. A sequence that turns, or whose changes do not shrink, has no order.
 
