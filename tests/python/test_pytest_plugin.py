@@ -25,7 +25,7 @@ def test_plain_asserts_work_on_conflicts(closecall_scenario: RunScenario) -> Non
 
 
 def test_a_conflict_has_an_attribute_for_every_column(closecall_scenario: RunScenario) -> None:
-    run = closecall_scenario(NETS / "side")
+    run = closecall_scenario(NETS / "side", measures="all")
     (conflict,), (row,) = run.conflicts, rows(run.log / "conflicts.csv")
     assert [name for name in vars(Conflict) if not name.startswith("_")] == list(row)
     for column, cell in row.items():

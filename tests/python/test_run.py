@@ -17,12 +17,13 @@ CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
     "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,collision_sumo,ego_type,foe_type,"
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
-    "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v"
+    "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v,"
+    "manoeuvre,cause"
 )
 SERIES_COLUMNS = (
     "conflict,ego,foe,kind,severity,time,gap,mu,margin,clearance,ttc,drac,unavoidable,ego_delta_v,foe_delta_v,ego_speed,foe_speed,"
     "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap,response_left,ttb,"
-    "crash_probability,crash_probability_braking,injury_probability,extended_delta_v"
+    "crash_probability,crash_probability_braking,injury_probability,extended_delta_v,manoeuvre,cause"
 )
 
 Copy = Callable[[str], Path]

@@ -97,7 +97,10 @@ impl Detector {
         let front = path.track.point(path.lines(of_net));
         let after = path.track.chord(path.lines(of_net), chord);
         (state.x, state.y) = (front.x, front.y);
-        state.heading += turn(&before, &after);
+        // One that has just entered is as SUMO has put it, straight on its lane.
+        if self.speeds.get(user.0 as usize).is_some_and(|last| !last.speed.is_nan()) {
+            state.heading += turn(&before, &after);
+        }
     }
 
     /// How far a path has to reach back beyond the road user's length.

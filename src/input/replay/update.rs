@@ -18,6 +18,8 @@ use crate::{Error, Result};
 const ENOUGH: u32 = 2000;
 /// Rows after which no more are read.
 const MOST_ROWS: usize = 200_000;
+/// Positions may be rounded by this much, in m: recordings have two decimals or more.
+const ROUNDED: Metre = 0.02;
 /// At most so many steps of a simulation are taken to lie between two of its recording.
 const MOST_STEPS: f64 = 20.0;
 /// From this share on, the whole period is meant.
@@ -73,13 +75,16 @@ impl Evidence {
         }
     }
 
-    /// Compares the way along the lane with the speeds; one that stops or starts may have done so within the period.
+    /// Compares the way along the lane with the speeds. One that stops or starts may have done so within the period; one that
+    /// drives against its lane or was moved has another way than its speeds tell.
     fn compare(&mut self, row: &RecordedRow, position: Metre, speed: MetrePerSecond, period: Second) {
         let (driven, change) = (row.position - position, row.speed - speed);
-        if driven.is_finite() && change != 0.0 && speed > 0.0 && row.speed > 0.0 {
+        let beyond = driven - (speed + row.speed) / 2.0 * period;
+        let at_most = change.abs() / 2.0 * period;
+        if change != 0.0 && speed > 0.0 && row.speed > 0.0 && beyond.abs() <= 2.0 * at_most + ROUNDED {
             self.movements += 1;
-            self.beyond += change.signum() * (driven - (speed + row.speed) / 2.0 * period);
-            self.at_most += change.abs() / 2.0 * period;
+            self.beyond += change.signum() * beyond;
+            self.at_most += at_most;
         }
     }
 
@@ -100,6 +105,22 @@ impl Evidence {
 mod tests {
     use super::*;
 
+    fn row(position: Metre, speed: MetrePerSecond) -> RecordedRow {
+        RecordedRow {
+            user: 0,
+            person: false,
+            type_name: 0,
+            lane: 0,
+            x: 0.0,
+            y: 0.0,
+            z: 0.0,
+            angle: 0.0,
+            speed,
+            position,
+            lateral_speed: 0.0,
+        }
+    }
+
     /// What a vehicle shows that speeds up and slows down, in a simulation with steps of 0.1 s of which every `kept`-th is
     /// recorded to the centimetre.
     fn share(kept: usize, is_euler: bool) -> f64 {
@@ -115,19 +136,7 @@ mod tests {
                 continue;
             }
             let [position, speed] = [position, speed].map(|value: f64| (value * 100.0).round() / 100.0);
-            let row = RecordedRow {
-                user: 0,
-                person: false,
-                type_name: 0,
-                lane: 0,
-                x: 0.0,
-                y: 0.0,
-                z: 0.0,
-                angle: 0.0,
-                speed,
-                position,
-                lateral_speed: 0.0,
-            };
+            let row = row(position, speed);
             if let Some((position, speed)) = last.replace((position, speed)) {
                 evidence.compare(&row, position, speed, STEP * kept as f64);
             }
@@ -139,6 +148,14 @@ mod tests {
     fn the_update_and_the_steps_between_show() {
         assert_eq!([1, 2, 5, 10].map(|kept| share(kept, true)), [1.0, 0.5, 0.2, 0.1]);
         assert_eq!([1, 2, 5, 10].map(|kept| share(kept, false)), [0.0; 4]);
+    }
+
+    #[test]
+    fn driving_against_a_lane_tells_nothing() {
+        let mut evidence = Evidence::default();
+        evidence.compare(&row(12.0, 12.0), 0.0, 10.0, 1.0);
+        evidence.compare(&row(-12.0, 12.0), 0.0, 10.0, 1.0);
+        assert_eq!((evidence.movements, evidence.share()), (1, 1.0));
     }
 
     #[test]
