@@ -99,11 +99,14 @@ impl Track {
             return goes_on;
         }
         let moved = (front - under.at(self.front)).norm();
-        let furthest = self.front + (LONGEST_DETOUR * moved).min(driven) * lines.most_stretch() + ON_THE_LINE;
+        let stretch = lines.most_stretch();
+        let searched = (LONGEST_DETOUR * moved).min(driven) * stretch;
+        let furthest = self.front + searched + ON_THE_LINE;
+        let beyond = driven * stretch - searched;
         let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
         while cursor.room() <= 0.0 {
             cursor.enter_next();
-            let within = |distance: &Metre| *distance <= cursor.distance;
+            let within = |distance: &Metre| *distance <= cursor.distance + beyond;
             if let Some(distance) = cursor.under.distance_of(front).filter(within) {
                 let Cursor { at, vertex, .. } = cursor;
                 let passed = self.lines[self.at..at].iter();
