@@ -38,7 +38,7 @@ pub enum PictureFormat {
 /// the logs that lack rows.
 ///
 /// # Errors
-/// Those of [`dataset::read`], [`check_keeps_logs`], and of writing a picture.
+/// Those of reading the logs, of an output that is one of them, and of writing a picture.
 pub fn write(
     folders: &[PathBuf],
     net: Option<&Path>,

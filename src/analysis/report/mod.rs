@@ -51,7 +51,7 @@ pub struct Made {
 /// The net is read from `net`, or from the path in the first log.
 ///
 /// # Errors
-/// Those of [`fn@read`], [`check_keeps_logs`], and of writing `out`.
+/// Those of reading the logs, of an output that is one of them, and of writing `out`.
 pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut Progress) -> Result<Made> {
     check_keeps_logs(out, folders, net)?;
     let conflicts = read(folders, net, progress)?;
