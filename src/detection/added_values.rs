@@ -23,7 +23,7 @@ pub(super) struct UserInStep<'a> {
     /// Below 0 where it brakes.
     pub acceleration: MetrePerSecondSquared,
     pub of: &'a Profile,
-    /// As it goes on if it keeps its speed; none where nobody asks.
+    /// As it goes on if it keeps its speed; none where it is not asked for.
     pub course: Option<SteadyMotion<'a>>,
 }
 

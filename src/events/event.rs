@@ -98,7 +98,7 @@ pub struct Conflict {
     pub collision_sumo: Option<bool>,
     /// What the two were doing; none where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
-    /// Why it came about, as far as it is known.
+    /// Why it came about, where that is known.
     pub causes: Causes,
     /// Where the ego was and would go.
     #[serde(skip)]

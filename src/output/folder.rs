@@ -17,7 +17,7 @@ const LOCK: &str = ".closecall.lock";
 #[derive(Debug)]
 pub struct LogFolder {
     path: PathBuf,
-    /// Locked as long as it is open.
+    /// Locked until it is closed.
     _lock: File,
     is_new: bool,
 }
@@ -152,7 +152,7 @@ mod tests {
         fs::create_dir(&path).unwrap();
         fs::write(path.join(LOCK), "1").unwrap();
         drop(LogFolder::claim(&path).unwrap());
-        assert_eq!(fs::read_dir(&path).unwrap().count(), 0, "an old lock hinders nobody, and goes");
+        assert_eq!(fs::read_dir(&path).unwrap().count(), 0, "an old lock does not hinder a run, and goes");
     }
 
     #[test]

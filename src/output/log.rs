@@ -60,7 +60,7 @@ impl Log {
     /// [`Error::File`] that names what cannot be written.
     pub fn create(folder: &Path, options: &Options) -> Result<Self> {
         fs::create_dir_all(folder).map_err(|source| Error::file(folder, source))?;
-        // An earlier run's files would be taken for this run's; what a link leads to is somebody else's.
+        // An earlier run's files would be taken for this run's; what a link leads to is not its own.
         for path in files(folder).filter(|path| path.is_file() || path.is_symlink()) {
             fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
         }

@@ -18,7 +18,7 @@ const SMALL: u64 = 1 << 24;
 /// A file that is open, from its beginning; a pipe or a device is refused.
 ///
 /// # Errors
-/// [`Error::File`] where it cannot be opened, [`Error::Content`] where it is no file.
+/// [`Error::File`] where it cannot be opened, [`Error::Content`] where it is a pipe or a device.
 pub fn file(path: &Path) -> Result<File> {
     let is_file = std::fs::metadata(path).map(|it| it.is_file() || it.is_dir());
     if !is_file.map_err(|source| Error::file(path, source))? {

@@ -24,7 +24,7 @@ const FASTER: f64 = 2.0;
 const LEAST_DRIVEN: Metre = 5.0;
 
 impl Detector {
-    /// Where so many road users are that the step cannot be checked: the one with the most others near it.
+    /// Where road users are too many for the step to be checked: the one with the most others near it.
     pub fn crowd(&self, frame: &Frame, roster: &Roster) -> Option<String> {
         if !self.is_crowded {
             return None;

@@ -20,7 +20,7 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 pub const RESPONSE: Second = 1.0;
 /// Longitudinal acceleration a⁺ during the response time, in m/s².
 pub const ACCELERATION: MetrePerSecondSquared = 3.5;
-/// Deceleration b with which everybody brakes at least, in m/s².
+/// Deceleration b with which every road user brakes at least, in m/s².
 pub const LEAST_BRAKING: MetrePerSecondSquared = 4.0;
 /// Deceleration B with which a leader brakes at most, in m/s².
 pub const MOST_BRAKING: MetrePerSecondSquared = 8.0;

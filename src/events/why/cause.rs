@@ -237,7 +237,7 @@ fn did_not_yield(net: &Net, pair: &Pair, (party, passage, other): (&Party, &Pass
     net.yields(passage, other) && [passage, other].iter().all(|way| is_open(pair, way)) && goes_on()
 }
 
-/// Whether a traffic light leaves it to the right of way who drives first; not where it is not known what it shows.
+/// Whether a traffic light leaves the order to the right of way; false where its state is not known.
 fn is_open(pair: &Pair, passage: &Passage) -> bool {
     let Some(signal) = passage.signal else { return true };
     let shown = pair.around.signals.at(signal, pair.time);

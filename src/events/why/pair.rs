@@ -22,7 +22,7 @@ pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
 pub struct Surroundings<'a> {
     /// The net, if there is one.
     pub net: Option<&'a Net>,
-    /// What the traffic lights show, as far as it is known.
+    /// What the traffic lights show, where that is known.
     pub signals: &'a Signals,
     /// The course of the road user of a row.
     pub course: &'a dyn Fn(u32) -> Course,

@@ -32,7 +32,7 @@ impl<'a> Tag<'a> {
     }
 }
 
-/// Why there is no next tag, though the file has not ended.
+/// Why the next tag is missing, though the file has not ended.
 pub(super) enum TagFault {
     /// The file ends within it, or cannot be read on.
     CutShort(String),

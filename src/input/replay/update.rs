@@ -18,9 +18,9 @@ use crate::{Error, Result};
 const ENOUGH: u32 = 2000;
 /// Rows after which no more are read.
 const MOST_ROWS: usize = 200_000;
-/// Positions may be rounded by this much, in m: recordings have two decimals or more.
+/// By how much positions may be rounded, in m: recordings have two decimals or more.
 const ROUNDED: Metre = 0.02;
-/// At most so many steps of a simulation are taken to lie between two of its recording.
+/// The largest number of steps of a simulation between two of its recording.
 const MOST_STEPS: f64 = 20.0;
 /// From this share on, the whole period is meant.
 const WHOLE: f64 = 0.75;

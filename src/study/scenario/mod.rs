@@ -1,7 +1,7 @@
 //! Error against run time, on the user's own scenario: `closecall study SCENARIO`.
 //!
 //! A [`Plan`] lists settings around the user's own; a sweep runs each with every seed; [`Study`] reads the logs and compares
-//! the settings of each axis over pairs of runs with the same seed, so that the noise of seeds is told from the error of
+//! the settings of each axis over pairs of runs with the same seed, so that the noise of seeds is separated from the error of
 //! the step. docs/step_length.md states the method.
 
 mod chart;

@@ -2,7 +2,7 @@
 //!
 //! SUMO's drivers yield to persons on crossings; they do not see those on a walking area, where pavements and crossings
 //! meet. Where a junction lane is drawn nearer to a walking area than half a vehicle is wide, each vehicle there drives
-//! over the corner, whoever stands on it.
+//! over the corner, even if a person stands on it.
 
 use rustc_hash::FxHashMap;
 

@@ -29,7 +29,7 @@ pub(super) const ROUNDING: Metre = 0.02;
 const FOLLOWING: Metre = 10.0;
 /// The length of a shorter lane counts as this, in m, so that a search along lanes ends.
 const SHORTEST: Metre = 0.1;
-/// So many lanes do not follow each other within [`FOLLOWING`].
+/// The number of lanes after which a search within [`FOLLOWING`] ends.
 const MOST_LANES: usize = 1000;
 
 /// Two independent lanes that overlap.
