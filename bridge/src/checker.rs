@@ -201,6 +201,12 @@ impl Checker {
         })
     }
 
+    /// The simulated time of the last step, in s; None before the first.
+    #[getter]
+    fn time(&self, py: Python) -> PyResult<Option<f64>> {
+        self.state.with(py, |state| Ok(state.recorded.run.time()))
+    }
+
     /// The conflicts that are open now, for a script that reacts while the simulation runs.
     #[getter]
     fn active(&self, py: Python) -> PyResult<Vec<Alarm>> {

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 from . import geometry
 from ._closecall import Alarm, Conflict, __version__, mu
+from .reward import Reward
 
 if TYPE_CHECKING:
     from ._checker import Checker
 
-__all__ = ["Alarm", "Checker", "Conflict", "__version__", "geometry", "mu"]
+__all__ = ["Alarm", "Checker", "Conflict", "Reward", "__version__", "geometry", "mu"]
 
 
 def __getattr__(name: str) -> type[Checker]:
