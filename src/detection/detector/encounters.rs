@@ -6,6 +6,7 @@ use std::slice::from_ref;
 use super::LEVEL;
 use super::cover;
 use super::occupancy::{Carriages, OccupancyCache};
+use super::overlap::Overlap;
 use super::reach::{Motion, User};
 use super::step::StepInputs;
 use super::work::Work;
@@ -51,16 +52,6 @@ struct How {
     overlap: Overlap,
 }
 
-/// How deep a pair overlaps now, and whether that is a collision. Up to the contact tolerance it is a graze: both are then
-/// taken to be smaller, so that only what brings them deeper into each other counts.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Overlap {
-    depth: Metre,
-    collision: bool,
-    /// How much smaller both are taken to be on every side.
-    shrinks: Metre,
-}
-
 /// What is known of a pair that has to be swept.
 #[derive(Clone, Copy)]
 pub(super) struct Unsettled {
@@ -79,12 +70,6 @@ impl Unsettled {
     pub(super) fn shrunk<'a>(&self, pair: [Participant<'a>; 2]) -> [Participant<'a>; 2] {
         if self.overlap.shrinks > 0.0 { pair.map(|of| of.shrunk(self.overlap.shrinks)) } else { pair }
     }
-}
-
-/// How much smaller both of a pair are taken to be on every side, so that an overlap of this depth parts: an obstacle does
-/// not shrink.
-pub(super) fn shrinks(tolerance: Metre, second: &Participant) -> Metre {
-    if second.shape.is_empty() { tolerance / 2.0 } else { tolerance }
 }
 
 /// Whether two road users can be a pair at all. Two that stand are one only in the step in which one of them stops: what
@@ -260,39 +245,6 @@ impl StepInputs<'_> {
             let roles = Roles::new(approach.ego, slots, [first, second]);
             self.met(work, found, &roles, &approach.conflict_point, overlap);
         }
-    }
-
-    /// How deep a pair overlaps now.
-    fn overlap(&self, slots: [u32; 2], [first, second]: &[Participant; 2]) -> Overlap {
-        if !side::touch_now(first, second) {
-            return Overlap::default();
-        }
-        let depth = side::overlap_now(first, second);
-        let tolerance = self.tolerance(slots, [0.0; 2]);
-        Overlap { depth, collision: depth > tolerance || tolerance == 0.0, shrinks: shrinks(tolerance, second) }
-    }
-
-    /// How deep two may overlap without colliding: where the lanes under them, and so far ahead, overlap as drawn, by more.
-    pub(super) fn tolerance(&self, slots: [u32; 2], ahead: [Metre; 2]) -> Metre {
-        match self.options.contact_tolerance {
-            0.0 => 0.0,
-            tolerance => tolerance + self.drawn_overlap(slots, ahead),
-        }
-    }
-
-    /// By how much the lanes under two vehicles, and so far ahead, overlap as drawn.
-    fn drawn_overlap(&self, slots: [u32; 2], ahead: [Metre; 2]) -> Metre {
-        if self.overlaps.is_empty() {
-            return 0.0;
-        }
-        let lanes = [0, 1].map(|one| {
-            let user = self.user(slots[one]);
-            let path = self.paths.of(user.index).filter(|path| !path.track.is_empty());
-            path.map(|path| path.lanes_between(self.paths.of_net(), -self.profile(user).length, ahead[one]))
-                .unwrap_or_default()
-        });
-        let widths = slots.map(|slot| self.profile(self.user(slot)).width);
-        self.overlaps.drawn_overlap_of([&lanes[0], &lanes[1]], widths)
     }
 
     /// Finds where two covered paths meet. If both drive in line, one dimension decides even so: it is exact to rounding, the

@@ -2,8 +2,8 @@
 //! conflict.
 
 use super::cover;
-use super::encounters::shrinks;
 use super::occupancy::Carriages;
+use super::overlap::shrinks;
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};

@@ -17,6 +17,7 @@ mod left_out;
 mod level;
 mod measure;
 mod occupancy;
+mod overlap;
 mod reach;
 mod row_order;
 pub mod shortcuts;
