@@ -1,6 +1,7 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
 use super::added::{Added, Step};
+use super::between::{Closest, FirstContact};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
@@ -203,6 +204,29 @@ impl Extremes {
             if taken {
                 *found = Some(seen.moment());
             }
+        }
+    }
+}
+
+impl Extremes {
+    /// Whether the two came closer than in any step so far.
+    pub fn is_closer(&self, closest: &Closest) -> bool {
+        closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
+    }
+
+    /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair.
+    pub fn come_closer(&mut self, closest: &Closest, ego: usize) {
+        self.clearance = self.clearance.min(closest.clearance);
+        self.overlap = self.overlap.max(closest.overlap);
+        let Some(FirstContact { time, fronts, speeds, delta_v }) = closest.contact else { return };
+        self.collision = true;
+        self.severity = Severity::Critical;
+        self.response_left = Some(0.0);
+        self.ttb = Some(0.0);
+        (self.crash_probability, self.crash_probability_braking) = (1.0, 1.0);
+        take_if(&mut self.extended_delta_v, Some(delta_v), f64::gt);
+        if take_if(&mut self.ttc, Some(0.0), f64::lt) {
+            self.found[0] = Some(Moment { time, x: fronts[ego].x, y: fronts[ego].y, speed: speeds[ego] });
         }
     }
 }

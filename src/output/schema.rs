@@ -104,7 +104,7 @@ columns! { |conflict, context|
     [Required] mu: Metre = conflict.mu;
     /// `gap` − `mu`
     [Required] margin: Metre = conflict.margin;
-    /// smallest distance between the two rectangles in any step
+    /// smallest distance between the two rectangles, in any step or between two
     [Required] clearance: Metre = conflict.clearance;
     /// smallest time to collision of all steps, if both keep their speed along their paths
     [Required] ttc: Option<Second> = conflict.ttc;
@@ -132,7 +132,7 @@ columns! { |conflict, context|
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
     [Required] lane: OptionalText = context.lane(conflict);
-    /// whether the rectangles overlapped by more than the contact tolerance in any step
+    /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
     [Optional] collision_sumo: Option<bool> = conflict.collision_sumo;
@@ -167,8 +167,8 @@ columns! { |conflict, context|
     [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
     /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
     [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
-    /// deepest overlap of the two rectangles in any step: the shortest displacement that parts them; 0 if they never
-    /// overlapped
+    /// deepest overlap of the two rectangles, in any step or between two: the shortest displacement that parts them; 0 if they
+    /// never overlapped
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
     /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
     /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood

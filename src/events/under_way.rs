@@ -1,0 +1,208 @@
+//! One event: a pair in the steps that meet the log's condition, until its PET is known.
+
+use super::alarm::Alarm;
+use super::between::{Between, Both};
+use super::event::Conflict;
+use super::extremes::{Extremes, Observation};
+use super::span::Span;
+use crate::detection::encounter::Encounter;
+use crate::detection::kind::Kind;
+use crate::detection::measures::pet::{self, DrivenPath, Pet};
+use crate::geometry::Point;
+use crate::geometry::bisection::Bisection;
+use crate::traffic::frame::{Frame, State};
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::units::{Metre, Radian, SAME_MOMENT, Second};
+
+/// How long the condition must not be met before an event closes, in s (docs/log.md).
+pub const CLOSES_AFTER: Second = 1.0;
+
+/// Two road users, in their order.
+pub(super) type Pair = [UserIndex; 2];
+
+/// An event under way, or closed and waiting for its PET.
+#[derive(Debug)]
+pub(super) struct Event {
+    pair: Pair,
+    /// None while the pair is only followed for its PET.
+    pub alarm: Option<Alarm>,
+    /// All steps that meet the condition if the PET is short enough.
+    followed: Span,
+    /// The PET has to be below this for that.
+    pet_below: Second,
+    /// The runs of steps that meet the condition whatever the PET is; none where it does not ask for the PET.
+    met: Option<Vec<Span>>,
+    /// The states of both in the last step, in the order of the pair.
+    last: Both,
+    driven: Option<Box<Driven>>,
+}
+
+/// The paths that the two of a side or frontal event have driven, from some seconds before it became one, in their order,
+/// and the PET so far.
+#[derive(Debug)]
+struct Driven {
+    paths: [DrivenPath; 2],
+    pet: Option<Pet>,
+}
+
+/// What an event keeps of its steps.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Keeps {
+    /// The runs that meet the condition whatever the PET is: it asks for the PET.
+    pub met: bool,
+    /// Each step.
+    pub steps: bool,
+}
+
+impl Event {
+    /// That of a first step; `path` has the path of a row's front bumper.
+    pub fn of(pair: Pair, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) -> Self {
+        let followed = Span::of(seen, path, keeps.steps);
+        let last = states(seen.frame, &pair).unwrap_or_default();
+        let met = keeps.met.then(Vec::new);
+        let mut event = Self { pair, alarm: None, followed, pet_below: f64::NEG_INFINITY, met, last, driven: None };
+        event.note(seen, path, keeps);
+        event
+    }
+
+    /// Adds a later step.
+    pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) {
+        self.followed.take(seen, path);
+        self.note(seen, path, keeps);
+    }
+
+    /// What the first step and each later one add alike.
+    fn note(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) {
+        let Encounter { ego, foe, kind, x, y, margin, nearness, pet_below, .. } = *seen.found;
+        if seen.found.is_logged() {
+            let (severity, time, at) = (seen.severity(), seen.frame.time, Point::new(x, y));
+            self.alarm = Some(Alarm { ego, foe, severity, kind, at, time, margin, nearness });
+        }
+        if let Some(met) = &mut self.met {
+            if !seen.found.is_logged() {
+                self.pet_below = self.pet_below.max(pet_below);
+            } else if let Some(last) = met.last_mut().filter(|last| !is_over(&last.extremes, seen.frame.time)) {
+                last.take(seen, path);
+            } else {
+                met.push(Span::of(seen, path, keeps.steps));
+            }
+        }
+        if kind != Kind::RearEnd && self.driven.is_none() {
+            let paths = self.pair.map(|user| driven_before(user, seen));
+            self.driven = Some(Box::new(Driven { paths, pet: None }));
+        }
+    }
+
+    /// The two road users.
+    pub fn pair(&self) -> Pair {
+        self.pair
+    }
+
+    /// The conflicts that it is, by the PET so far.
+    pub fn conflicts(&self, roster: &Roster) -> impl Iterator<Item = Conflict> {
+        let pet = self.driven.as_ref().and_then(|driven| driven.pet);
+        let spans = match &self.met {
+            Some(met) if pet.is_none_or(|pet| pet.lasts >= self.pet_below) => &met[..],
+            _ => std::slice::from_ref(&self.followed),
+        };
+        spans.iter().map(move |span| span.conflict(pet, roster))
+    }
+
+    /// Takes how close the two came since the step before, if that met the condition. They collide where they overlap by
+    /// more than `tolerance`, and `is_seen` where they do now. `has_jumped` says whether one of them has meanwhile
+    /// changed lanes, which SUMO does at once: it did not drive across.
+    pub fn come_closest(
+        &mut self,
+        (frame, roster, before): (&Frame, &Roster, Second),
+        tolerance: Metre,
+        is_seen: bool,
+        has_jumped: impl Fn(UserIndex) -> bool,
+    ) {
+        let Some(now) = states(frame, &self.pair) else { return };
+        let states = [std::mem::replace(&mut self.last, now), now];
+        let profiles = self.pair.map(|user| roster.profile_of(user));
+        let is_rectangle = |of: &&Profile| of.category != Category::Obstacle && of.carriages == 1;
+        if self.followed.extremes.end != before || !profiles.iter().all(is_rectangle) {
+            return;
+        }
+        let step = Between { times: [before, frame.time], states, profiles };
+        let Some(closest) = step.closest(tolerance, is_seen) else { return };
+        if self.followed.extremes.is_closer(&closest) && !self.pair.into_iter().any(has_jumped) {
+            let ego = usize::from(self.pair[1] == self.followed.extremes.worst.ego);
+            let met = self.met.as_mut().and_then(|met| met.last_mut());
+            let met = met.filter(|met| met.extremes.end == before);
+            [&mut self.followed].into_iter().chain(met).for_each(|span| span.extremes.come_closer(&closest, ego));
+        }
+    }
+
+    /// Notes whether SUMO reports a collision of the two.
+    pub fn mark(&mut self, is_reported: bool) {
+        self.followed.mark(is_reported);
+        self.met.iter_mut().flat_map(|met| met.last_mut()).for_each(|met| met.mark(is_reported));
+    }
+
+    /// Records the paths of the two of a side or frontal event.
+    pub fn follow(&mut self, frame: &Frame, roster: &Roster) {
+        let Some(driven) = &mut self.driven else { return };
+        for (user, path) in self.pair.iter().zip(&mut driven.paths) {
+            // An index given to another road user meanwhile is not followed.
+            let Some(row) = frame.row_of(*user).filter(|_| !path.has_ended()) else {
+                path.end();
+                continue;
+            };
+            if roster.profile_of(*user).category != Category::Obstacle {
+                let state = frame.state(row);
+                path.push(frame.time, state.front(), state.heading);
+            }
+        }
+    }
+
+    /// Whether it closes at this step; the alarm ends when the condition without the PET has not been met for as long.
+    pub fn closes(&mut self, frame: &Frame) -> bool {
+        let last = self.met.as_ref().map(|met| met.last());
+        if last.is_some_and(|last| last.is_none_or(|last| is_over(&last.extremes, frame.time))) {
+            self.alarm = None;
+        }
+        is_over(&self.followed.extremes, frame.time) || self.pair.iter().any(|user| frame.row_of(*user).is_none())
+    }
+
+    /// Whether the PET of a closed event is known at this time, or will not be. Paths that meet at a smaller angle than
+    /// `crossing` do not cross.
+    pub fn settles(&mut self, time: Second, halves: &mut Bisection, crossing: Radian) -> bool {
+        let Extremes { end, worst, .. } = &self.followed.extremes;
+        let since = time - end;
+        let Some(Driven { paths, pet }) = self.driven.as_deref_mut().filter(|_| worst.kind != Kind::RearEnd) else {
+            return true;
+        };
+        let last_call = since >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT || paths.iter().any(DrivenPath::has_ended);
+        let just_closed = since < 2.0 * CLOSES_AFTER;
+        if !last_call && !just_closed {
+            return false;
+        }
+        *pet = pet::post_encroachment_time(halves, &paths[0], &paths[1], crossing);
+        last_call || pet.is_some_and(|pet| pet.is_final)
+    }
+}
+
+/// The path of a road user in the seconds before a step.
+fn driven_before(user: UserIndex, seen: &Observation) -> DrivenPath {
+    let profile = seen.roster.profile_of(user);
+    let mut path = DrivenPath::new(profile.length, profile.width);
+    if profile.category != Category::Obstacle {
+        let past = seen.past.of(user, seen.frame.time);
+        past.for_each(|(time, front, heading)| path.push(time, front, heading));
+    }
+    path
+}
+
+/// The states of a pair in a step, if both are there.
+fn states(frame: &Frame, pair: &Pair) -> Option<[State; 2]> {
+    let [one, other] = pair.map(|user| frame.row_of(user));
+    Some([*frame.state(one?), *frame.state(other?)])
+}
+
+/// Whether a run of steps has ended so long before this time that it is closed.
+fn is_over(extremes: &Extremes, time: Second) -> bool {
+    time - extremes.end >= CLOSES_AFTER - SAME_MOMENT
+}
