@@ -22,7 +22,7 @@ fn main() -> Result<()> {
         run.frame.push(eastbound, State { x: driven - 60.0, y: 0.0, z: 0.0, heading: 0.0, speed: SPEED });
         let north = std::f64::consts::FRAC_PI_2;
         run.frame.push(northbound, State { x: 0.0, y: driven - 50.0, z: 0.0, heading: north, speed: SPEED });
-        // Without a net there is no placement to set.
+        // Without a net, no placement has to be set.
         run.step(|_, _| Ok::<(), closecall::Error>(()))?;
     }
     run.finish()?;

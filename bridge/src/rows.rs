@@ -83,7 +83,7 @@ impl<'py> Columns<'py> {
     }
 
     fn get(&mut self, name: &'static str) -> PyResult<Bound<'py, PyAny>> {
-        let missing = || PyValueError::new_err(format!("there is no \"{name}\""));
+        let missing = || PyValueError::new_err(format!("column \"{name}\" is missing"));
         if self.names.is_some() && !self.has(name)? {
             return Err(missing());
         }
@@ -152,7 +152,7 @@ fn names(states: &Bound<PyAny>) -> PyResult<Option<Vec<String>>> {
         if !COLUMNS.contains(&name.as_str()) {
             let alike = |known: &&str| strsim::jaro_winkler(known, name);
             let nearest = COLUMNS.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
-            let message = format!("there is no column \"{name}\"; did you mean \"{}\"?", nearest.unwrap_or(&"id"));
+            let message = format!("unknown column \"{name}\"; did you mean \"{}\"?", nearest.unwrap_or(&"id"));
             return Err(PyValueError::new_err(message));
         }
     }

@@ -8,7 +8,7 @@
 //!      = S(V) + (1 − d/a) ((V − d t3/2) w − d w²/2)
 //! ```
 //!
-//! as long as it still moves when the deceleration has built up. So the longest wait with which the ego stops within some
+//! if it still moves when the deceleration has built up. So the longest wait with which the ego stops within some
 //! room solves a quadratic equation. Behind a foe that moves, the same holds for the speed and the decelerations relative
 //! to it, until the foe stands.
 

@@ -3,7 +3,7 @@
 //! f(t) = travel_ego(t) − σ · travel_foe(t) grows as long as g = v_ego − σ v_foe is above 0. While both move, v_ego is
 //! concave and σ v_foe is linear, so g is concave and has at most one crossing from + to −:
 //!
-//! - If the foe stands first, g ends above 0: there is no such crossing, and the narrowest moment is at rest.
+//! - If the foe stands first, g ends above 0: without such a crossing, the narrowest moment is at rest.
 //! - If the ego stands first, the narrowest moment is that crossing. It lies in the build-up or after it, never during
 //!   the response, when only the foe brakes.
 //!

@@ -57,7 +57,7 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     };
     let is_wanted = |folder: &PathBuf| arguments.only.is_empty() || arguments.only.contains(&name(folder));
     if let Some(missing) = arguments.only.iter().find(|only| folders.iter().all(|folder| name(folder) != **only)) {
-        return Err(value(format!("--only {missing}: there is no such scenario")));
+        return Err(value(format!("--only {missing}: no such scenario")));
     }
     folders.retain(is_wanted);
     let mut scenarios = Vec::new();

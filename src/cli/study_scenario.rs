@@ -47,7 +47,7 @@ const SEEDS: [u32; 5] = [1, 2, 3, 4, 5];
 const QUICK_SEEDS: usize = 3;
 
 impl ScenarioArgs {
-    /// Refuses options of `closecall run` where there is no scenario to run.
+    /// Refuses options of `closecall run` without a scenario to run.
     pub fn check_without_scenario(&self) -> Result<()> {
         if self.passed.is_empty() { Ok(()) } else { Err(value("options of closecall run need a SCENARIO")) }
     }

@@ -124,7 +124,7 @@ pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Conta
         let ahead = reach.copysign(speed);
         for (last, room) in last.iter_mut().zip([room, -room]) {
             let at = (room - ahead) / speed;
-            // Compiles to one instruction, unlike `f64::max`, which also handles NaN; there is no NaN here.
+            // Compiles to one instruction, unlike `f64::max`, which also handles NaN, and no value here is NaN.
             *last = if at > *last { at } else { *last };
         }
     }

@@ -96,7 +96,7 @@ impl FromStr for Measures {
                     Some(measure) => 1 << measure as u32,
                     None => {
                         let names = AddedMeasure::ALL.map(AddedMeasure::name).join(", ");
-                        return Err(format!("there is no measure \"{name}\" to add; there are {names}"));
+                        return Err(format!("cannot add an unknown measure \"{name}\"; known are {names}"));
                     }
                 },
             };
@@ -137,6 +137,6 @@ mod tests {
     #[test]
     fn an_unknown_measure_is_named() {
         let error = "t2,picud".parse::<Measures>().unwrap_err();
-        assert!(error.starts_with("there is no measure \"picud\" to add; there are tadv, t2, "), "{error}");
+        assert!(error.starts_with("cannot add an unknown measure \"picud\"; known are tadv, t2, "), "{error}");
     }
 }

@@ -29,7 +29,7 @@ impl Options {
                 let similar = command.try_get_matches_from_mut([format!("--{option}")]).err();
                 let similar = similar.and_then(|error| text(&error, ContextKind::SuggestedArg));
                 let similar = similar.map(|similar| format!("; did you mean \"{}\"?", name_of(&similar)));
-                return Err(Error::Value(format!("there is no option \"{name}\"{}", similar.unwrap_or_default())));
+                return Err(Error::Value(format!("unknown option \"{name}\"{}", similar.unwrap_or_default())));
             }
             given.extend(word(name, &value));
         }
@@ -110,9 +110,9 @@ mod tests {
     #[test]
     fn an_unknown_or_impossible_setting_is_named() {
         for (name, value, said) in [
-            ("colour", "red", "there is no option \"colour\""),
-            ("colour", "false", "there is no option \"colour\""),
-            ("serious_tcc", "1", "there is no option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
+            ("colour", "red", "unknown option \"colour\""),
+            ("colour", "false", "unknown option \"colour\""),
+            ("serious_tcc", "1", "unknown option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
             ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be 0 to 3600 s"),
             ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper"),
             ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),

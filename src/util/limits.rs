@@ -1,7 +1,7 @@
 //! The limits of everything that closecall reads, each with its reason: one table for every door.
 //!
-//! A value beyond them is a mistake in the file, and what follows from it is no result: a vehicle 10¹⁵ m wide meets
-//! everybody. Each reader refuses it with the file, the line, the value and the limit. docs/limits.md has the same table.
+//! A value beyond them is a mistake in the file, and its results mean nothing: a vehicle 10¹⁵ m wide meets every
+//! other. Each reader refuses it with the file, the line, the value and the limit. docs/limits.md has the same table.
 
 /// The least and the most of a quantity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,8 +63,7 @@ pub const LANE_LENGTH: Limit = between("lengths of lanes", "m", [0.0, 1e7], "fro
 /// Widths of lanes.
 pub const LANE_WIDTH: Limit = between("widths of lanes", "m", [0.0, 1e4], "a fairway or a square is narrower");
 /// Distances that options set: ε, the contact tolerance.
-pub const RESERVE: Limit =
-    between("reserves", "m", [0.0, 1e3], "a reserve of more is no reserve but a stopping distance");
+pub const RESERVE: Limit = between("reserves", "m", [0.0, 1e3], "a larger reserve is a stopping distance");
 /// Bytes of an id.
 pub const NAME: Limit = between("ids", "bytes", [0.0, 1024.0], "SUMO's longest are those of routes, below 200 bytes");
 /// Bytes of a row of a table.
@@ -79,8 +78,12 @@ pub const TEXT: Limit =
 pub const INFLATION: Limit =
     between("unpacked size of a gzipped file", "times its size", [0.0, 25.0], "nets and demands shrink by 5 to 20");
 /// Points of a polygon.
-pub const CORNERS: Limit =
-    between("points of an obstacle", "points", [3.0, 1000.0], "a coast in more detail is no obstacle of traffic");
+pub const CORNERS: Limit = between(
+    "points of an obstacle",
+    "points",
+    [3.0, 1000.0],
+    "more detail is for coasts, which do not obstruct traffic",
+);
 /// Pairs of road users near each other in one step, for each road user; never fewer than [`FEWEST_PAIRS`].
 pub const PAIRS: Limit =
     between("pairs near each other", "per road user", [0.0, 64.0], "a vehicle in a jam is near 10 to 20 others");

@@ -252,7 +252,7 @@ def bus_lines() -> dict[str, list[str]]:
 
 
 def walkers(edges: list[Edge], chance: random.Random) -> list[Item]:
-    """Persons who walk between edges with pavements."""
+    """Persons that walk between edges with pavements."""
     pavements = [edge for edge in edges if edge.has_pavement]
     found = []
     for number in range(WALKERS):

@@ -116,7 +116,7 @@ pub fn log(bytes: &[u8]) {
     of_log(&[("conflicts.csv", conflicts), ("run.json", run)]);
 }
 
-/// Any bytes as a file of a sweep, likewise.
+/// Any bytes as a file of a sweep, in the same way.
 pub fn packed(bytes: &[u8]) {
     of_log(&[("conflicts.parquet", bytes)]);
 }

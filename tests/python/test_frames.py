@@ -1,4 +1,4 @@
-"""Plain frames that are refused: what they leave behind, and what is said."""
+"""Plain frames that are refused: what they leave behind, and what the error says."""
 
 from __future__ import annotations
 

@@ -59,7 +59,7 @@ def test_a_pair_may_be_logged_for_its_pet_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("condition", "said"),
     [
-        ("tcc < 3", 'there is no measure "tcc"; did you mean "ttc"?'),
+        ("tcc < 3", 'unknown measure "tcc"; did you mean "ttc"?'),
         ("ttc > 3", '"ttc > 3" holds for pairs however far ahead they meet'),
         ("ttc <", "expected a number at the end"),
     ],

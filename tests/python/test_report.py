@@ -331,7 +331,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
     (broken / "run.json").write_text("{")
     for words, message in (
         ((tmp_path / "gone",), "gone: No such file"),
-        ((tmp_path / "empty",), "there is no log in it: no conflicts.csv"),
+        ((tmp_path / "empty",), "no log in it: neither conflicts.csv"),
         ((bad,), "line 2: gap: "),
         ((cut,), 'line 1: the column "mu" is missing'),
         ((broken,), "run.json: it is not JSON"),

@@ -65,7 +65,7 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
         variant.runs.iter_mut().for_each(|run| *run = known[*run].0);
     }
     let mut ground = nets::find(net, &logs, &records)?;
-    // A record without steps is that of a run that has begun; null means that there is no record.
+    // A record without steps is that of a run that has begun; null means that the record is missing.
     let without = records.iter().filter(|record| record["summary"]["steps"].as_u64().is_none_or(|steps| steps == 0));
     let without = without.count();
     if without > 0 {

@@ -3,7 +3,7 @@
 use crate::output::schema::LoggedConflict;
 
 impl LoggedConflict {
-    /// The edge of the conflict point; empty where there is no lane.
+    /// The edge of the conflict point; empty without a lane.
     pub fn edge(&self) -> &str {
         self.lane.rsplit_once('_').map_or("", |(edge, _)| edge)
     }

@@ -77,7 +77,7 @@ impl CsvLog {
         self.is_safe = true;
     }
 
-    /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
+    /// Demands that the margins are below 0, as a run logs them unless its options say otherwise.
     pub fn demand_margins_below_zero(&mut self) {
         self.possible.margins_below_zero = true;
     }
@@ -195,8 +195,8 @@ mod tests {
     fn header() -> String {
         let first = "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,pet,delta_v,ego_speed,\
                      foe_speed,angle,x,y,lane,collision,ego_type,foe_type,";
-        let snapshots =
-            ["ego", "foe"].map(|who| format!("{who}_x,{who}_y,{who}_heading,{who}_length,{who}_width,{who}_path"));
+        let snapshots = ["ego", "foe"]
+            .map(|user| format!("{user}_x,{user}_y,{user}_heading,{user}_length,{user}_width,{user}_path"));
         format!("{first}{}\n", snapshots.join(","))
     }
 

@@ -28,7 +28,7 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
         if found.is_empty() {
             return Err(Error::content(
                 folder,
-                format!("there is no log in it: no {CONFLICTS} or {PARQUET}, at any depth"),
+                format!("no log in it: neither {CONFLICTS} nor {PARQUET}, at any depth"),
             ));
         }
         known.append(&mut found);
@@ -111,7 +111,7 @@ mod tests {
         let found = log_folders(&[top.clone(), top.join("b")]).unwrap();
         assert_eq!(found, [top.join("a/seed=1"), top.join("a/seed=2"), top.join("b")]);
         fs::remove_file(top.join("b").join(CONFLICTS)).unwrap();
-        assert!(log_folders(&[top.join("b")]).unwrap_err().to_string().contains("there is no log in it"));
+        assert!(log_folders(&[top.join("b")]).unwrap_err().to_string().contains("no log in it"));
         assert!(log_folders(&[top.join("c")]).unwrap_err().to_string().contains("/c: "));
         fs::remove_dir_all(top).unwrap();
     }

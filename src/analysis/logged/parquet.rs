@@ -179,7 +179,7 @@ impl ParquetLog {
         self.is_changed
     }
 
-    /// Demands that the margins are below 0, as a run logs them unless it is told otherwise.
+    /// Demands that the margins are below 0, as a run logs them unless its options say otherwise.
     pub fn demand_margins_below_zero(&mut self) {
         self.possible.margins_below_zero = true;
     }

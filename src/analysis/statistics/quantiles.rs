@@ -29,7 +29,7 @@ impl Quantiles {
     }
 }
 
-/// A quantile of values in ascending order; none if there are no values.
+/// A quantile of values in ascending order; none without values.
 pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let place = share * (sorted.len().checked_sub(1)? as f64);
     let low = sorted[place.floor() as usize];

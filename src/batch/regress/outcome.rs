@@ -202,7 +202,7 @@ fn conflicts(csv: &[u8], path: &Path) -> Result<Vec<SeedConflict>> {
     let fail = |error: csv::Error| Error::content(path, error.to_string());
     let mut reader = csv::Reader::from_reader(csv);
     let header = reader.headers().map_err(fail)?;
-    // Only runs that are told to have the columns that may be added.
+    // Only runs with `--measures` have the columns that may be added.
     let is_there =
         |column: &&Column| column.presence != Presence::Chosen || header.iter().any(|name| name == column.name);
     let there = COLUMNS.iter().filter(is_there).map(|column| column.name);

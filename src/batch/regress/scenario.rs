@@ -201,7 +201,7 @@ impl Scenario {
 /// The folders of the scenarios at a path: the path itself, or the folders in it that have a `closecall.toml`, by name.
 ///
 /// # Errors
-/// An error that names the folder if there is no scenario.
+/// An error that names the folder without a scenario.
 pub fn folders(path: &Path) -> Result<Vec<PathBuf>> {
     let is_sumocfg = |file: &Path| file.extension().is_some_and(|extension| extension == "sumocfg");
     if path.join(SETTINGS).is_file() {

@@ -105,7 +105,7 @@ impl Sweep {
     pub fn only(mut self, number: usize) -> Result<Self> {
         let last = self.tasks.len();
         if !(1..=last).contains(&number) {
-            return Err(Error::Value(format!("there is no run {number}: the numbers are 1 to {last}")));
+            return Err(Error::Value(format!("no run has the number {number}: they are 1 to {last}")));
         }
         self.tasks = vec![self.tasks.swap_remove(number - 1)];
         Ok(self)

@@ -158,9 +158,9 @@ mod tests {
     #[test]
     fn what_is_wrong_is_named() {
         for (text, said) in [
-            ("tcc < 3", "there is no measure \"tcc\"; did you mean \"ttc\"?"),
-            ("speed < 3", "there is no measure \"speed\"; did you mean \"ego_speed\"?"),
-            ("colour < 3", "there is no measure \"colour\"; there are gap, mu, margin, clearance, ttc, drac"),
+            ("tcc < 3", "unknown measure \"tcc\"; did you mean \"ttc\"?"),
+            ("speed < 3", "unknown measure \"speed\"; did you mean \"ego_speed\"?"),
+            ("colour < 3", "unknown measure \"colour\"; known are gap, mu, margin, clearance, ttc, drac"),
             ("ttc = 3", "expected <, <=, > or >= instead of \"= 3\""),
             ("ttc < x", "expected a number instead of \"x\""),
             ("ttc < inf", "expected a number instead of \"inf\""),

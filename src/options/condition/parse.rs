@@ -101,7 +101,7 @@ impl<'a> Parser<'a> {
     }
 }
 
-/// That there is no such measure, and which one may be meant.
+/// That a measure is unknown, and which one may be meant.
 fn unknown(name: &str) -> String {
     let names = Measure::ALL.map(Measure::name);
     let alike = names.iter().map(|known| (strsim::levenshtein(name, known), *known)).min();
@@ -109,7 +109,7 @@ fn unknown(name: &str) -> String {
     let meant = alike.filter(|(edits, _)| 2 * edits <= name.len()).map(|(_, known)| known);
     let meant = meant.or_else(|| names.into_iter().find(is_end));
     match meant {
-        Some(meant) => format!("there is no measure \"{name}\"; did you mean \"{meant}\"?"),
-        None => format!("there is no measure \"{name}\"; there are {}", names.join(", ")),
+        Some(meant) => format!("unknown measure \"{name}\"; did you mean \"{meant}\"?"),
+        None => format!("unknown measure \"{name}\"; known are {}", names.join(", ")),
     }
 }

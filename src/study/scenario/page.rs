@@ -85,7 +85,7 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
     let errors = study.errors(axis, place);
     let finest = &axis.choices[0];
     if study.estimate(finest.setting, place).is_none_or(|estimate| estimate.value == 0.0) {
-        return vec![format!("With steps of {} s there is no conflict, so no error can be stated.", finest.value)];
+        return vec![format!("Steps of {} s give no conflict, so no error can be stated.", finest.value)];
     }
     let at = study.recommended(axis, place);
     let chosen = &axis.choices[at];

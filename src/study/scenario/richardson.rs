@@ -34,7 +34,7 @@ pub enum Convergence {
 }
 
 impl Convergence {
-    /// In words, where there is no order.
+    /// In words, where no order is found.
     pub fn why_none(&self) -> &'static str {
         match self {
             Self::Order { .. } => "",
@@ -101,7 +101,7 @@ fn order(steps: [f64; 3], values: [f64; 3]) -> Result<f64, Convergence> {
     let wanted = coarser / finer;
     let excess = |order: f64| growth(steps, order) - wanted;
     let (mut low, mut high) = (1e-3, MOST);
-    // NaN where there is no change at all.
+    // NaN where nothing changes at all.
     if excess(low).is_nan() || excess(low) > 0.0 || excess(high) < 0.0 {
         return Err(Convergence::NoPower);
     }

@@ -76,7 +76,7 @@ fn corners(net: &Net) -> Option<String> {
     })
 }
 
-/// The worst places; none if there is no place.
+/// The worst places; empty without places.
 fn named(net: &Net, places: &[Overlap]) -> Option<String> {
     let name = |place: &Overlap| {
         let (one, other) = place.lanes;
