@@ -1,0 +1,40 @@
+"""Fills in the address of the repository wherever OWNER stands for it, and makes the README's links absolute.
+
+    python3 .ci/address.py OWNER/NAME REF
+
+For a release: PyPI and crates.io show the README without the files that it links to. REF is the tag. Standard library only.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+FILES = ["pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"]
+RELATIVE = re.compile(r"(!?)(\[[^\]]*\])\((?![a-z]+:|#)([^)\s]+)\)")
+
+
+def filled(text: str, repository: str) -> str:
+    """The text with the address of the repository."""
+    owner, name = repository.split("/")
+    site = f"{owner}.github.io/{name}"
+    return text.replace("OWNER.github.io/closecall", site).replace("OWNER/closecall", repository)
+
+
+def absolute(text: str, repository: str, ref: str) -> str:
+    """The text with links to the repository's files as addresses; pictures as the files themselves."""
+    pages, files = f"https://github.com/{repository}/blob/{ref}/", f"https://raw.githubusercontent.com/{repository}/{ref}/"
+    return RELATIVE.sub(lambda link: f"{link[1]}{link[2]}({files if link[1] else pages}{link[3]})", text)
+
+
+def main() -> None:
+    """Change the files in the working directory."""
+    _, repository, ref = sys.argv
+    for path in map(Path, FILES):
+        text = filled(path.read_text(encoding="utf-8"), repository)
+        path.write_text(absolute(text, repository, ref) if path.name == "README.md" else text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()
