@@ -3,7 +3,8 @@
     python benches/table.py FOLDER [--readme]
 
 Reads the lines `what,scene,method,size,value,unit` of the benches from FOLDER/parts/*.csv, prints the table and writes
-FOLDER/bench.csv and FOLDER/bench.svg. With --readme it also updates README.md and docs/pictures/bench.svg.
+FOLDER/bench.csv and FOLDER/bench.svg. With --readme it also updates docs/bench.md, its chart in docs/pictures/bench.svg, and the
+line in README.md.
 """
 
 from __future__ import annotations
@@ -230,6 +231,17 @@ def machine() -> str:
     return f"{model}, {os.cpu_count()} cores, {platform.system()}, SUMO {importlib.metadata.version('libsumo')}"
 
 
+def line(lines: Lines) -> str:
+    """What the README says of all this."""
+    ours, device = (
+        [lines("over plain", scenario, method) for scenario in SCENARIOS] for method in ("closecall", "device.ssm")
+    )
+    return (
+        f"With closecall attached, a run of SUMO takes {min(ours):.2f} to {max(ours):.2f} times as long; with `device.ssm`, "
+        f"TTC alone, {min(device):.1f} to {max(device):.1f} times: [what it costs](docs/bench.md).\n"
+    )
+
+
 def fill(page: Path, text: str) -> None:
     """Replace the text between the page's two marks."""
     before, rest = page.read_text(encoding="utf-8").split(MARKS[0])
@@ -238,7 +250,7 @@ def fill(page: Path, text: str) -> None:
 
 
 def main() -> None:
-    """Write the table and the chart, and update the README on request."""
+    """Write the table and the chart, and update the pages on request."""
     folder = Path(sys.argv[1])
     rows: list[dict[str, str]] = []
     for part in sorted((folder / "parts").glob("*.csv")):
@@ -255,7 +267,8 @@ def main() -> None:
     draw(lines, folder / "bench.svg")
     if "--readme" in sys.argv:
         shutil.copy(folder / "bench.svg", "docs/pictures/bench.svg")
-        fill(Path("README.md"), f"![the same as a chart](docs/pictures/bench.svg)\n\n{text}")
+        fill(Path("docs/bench.md"), f"![the same as a chart](pictures/bench.svg)\n\n{text}")
+        fill(Path("README.md"), line(lines))
 
 
 if __name__ == "__main__":

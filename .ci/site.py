@@ -1,0 +1,47 @@
+"""What MkDocs does besides: pages at the top of the repository become pages of the site, and links find their way.
+
+The pages are written for GitHub. A link to a file that is no page of the site goes to the repository.
+"""
+
+from __future__ import annotations
+
+import posixpath
+import re
+from pathlib import Path
+from typing import Any
+
+from mkdocs.structure.files import File
+
+ROOT = Path(__file__).parents[1]
+
+# The pages at the top, each with its name on the site.
+TOP = {
+    "README.md": "index.md",
+    "CHANGELOG.md": "changelog.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "ARCHITECTURE.md": "architecture.md",
+}
+
+LINK = re.compile(r"(?<=\]\()(?![a-z]+:|#)([^)#\s]+)")
+
+
+def on_files(files: Any, config: Any) -> Any:
+    """Add the pages at the top."""
+    for name, page in TOP.items():
+        files.append(File.generated(config, page, content=(ROOT / name).read_text(encoding="utf-8")))
+    return files
+
+
+def on_page_markdown(markdown: str, page: Any, config: Any, files: Any) -> str:
+    """Point the links of a page to where their targets are on the site, or else in the repository."""
+    name = page.file.src_uri
+    source = next((top for top, own in TOP.items() if own == name), f"docs/{name}")
+
+    def where(link: re.Match[str]) -> str:
+        target = posixpath.normpath(posixpath.join(posixpath.dirname(source), link[1]))
+        own = TOP.get(target, target.removeprefix("docs/"))
+        if (target in TOP or target.startswith("docs/")) and files.get_file_from_path(own):
+            return posixpath.relpath(own, posixpath.dirname(name) or ".")
+        return f"{config.repo_url}/blob/main/{target}"
+
+    return LINK.sub(where, markdown)

@@ -1,0 +1,100 @@
+"""The commands and scripts of the README and the tutorials run as they stand there, and print what the pages show.
+
+A block ```console has commands behind `$ ` and what each prints, `...` for what is left out. A block with a title becomes the file
+of that name. A block that cannot run has a comment above it, `<!-- not run: why -->`.
+"""
+
+from __future__ import annotations
+
+import doctest
+import os
+import re
+import shutil
+import subprocess
+import sys
+from importlib import metadata
+from pathlib import Path
+
+import pytest
+from conftest import NETS, TIMEOUT, Once
+
+ROOT = NETS.parent
+PAGES = ["README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/tutorials/*.md"))]
+
+SUMO = "1.28"
+"""The version whose output the pages show; another one makes other traffic."""
+
+BLOCK = re.compile(
+    r'^(?:<!-- not run: (?P<why>[^\n]+) -->\n)?^```(?P<language>\w+)(?: title="(?P<title>[^"\n]+)")?\n(?P<text>.*?)^```$',
+    re.MULTILINE | re.DOTALL,
+)
+
+CONFIG = """<configuration>
+    <input><net-file value="town.net.xml"/><route-files value="town.rou.xml"/></input>
+    <time><end value="60"/><step-length value="0.2"/></time>
+</configuration>
+"""
+
+
+def prepare(folder: Path) -> None:
+    """What a reader has: the repository's scenarios, and one of its own, `town`, with a recording."""
+    for name in ("left_turn", "side", "town"):
+        shutil.copytree(
+            NETS / name, folder / "sumo_nets" / name, ignore=shutil.ignore_patterns("expected", "closecall-out")
+        )
+    for kind in ("net", "rou"):
+        shutil.copy(NETS / f"left_turn/left_turn.{kind}.xml", folder / f"town.{kind}.xml")
+    (folder / "town.sumocfg").write_text(CONFIG, encoding="utf-8")
+    run("sumo -c town.sumocfg --no-step-log --fcd-output town.fcd.xml.gz", folder)
+
+
+def run(command: str, folder: Path) -> str:
+    """What a command of the shell prints; the test fails with all of it if the command does."""
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=folder,
+        env={**own, "PATH": path},
+        capture_output=True,
+        text=True,
+        timeout=TIMEOUT,
+        check=False,
+    )
+    assert done.returncode == 0, f"{command}\n{done.stdout}{done.stderr}"
+    return done.stdout
+
+
+def commands(text: str) -> list[tuple[str, str]]:
+    """The commands of a block, each with the output that the page shows; none where it shows none."""
+    parts = re.split(r"^\$ ", text, flags=re.MULTILINE)
+    assert not parts[0], f"output before the first command: {text}"
+    return [(command, shown) for command, _, shown in (part.partition("\n") for part in parts[1:])]
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_a_page_does_what_it_says(page: str, once: Once, tmp_path: Path) -> None:
+    folder = tmp_path / "reader"
+    shutil.copytree(once("reader", prepare), folder)
+    has_output = metadata.version("libsumo").startswith(SUMO)
+    for block in BLOCK.finditer((ROOT / page).read_text(encoding="utf-8")):
+        if block["why"]:
+            continue
+        if block["title"]:
+            (folder / block["title"]).parent.mkdir(parents=True, exist_ok=True)
+            (folder / block["title"]).write_text(block["text"], encoding="utf-8")
+        elif block["language"] == "python":
+            (folder / "script.py").write_text(block["text"], encoding="utf-8")
+            run("python script.py", folder)
+        elif block["language"] == "console":
+            for command, shown in commands(block["text"]):
+                said = run(command, folder)
+                same = doctest.OutputChecker().check_output(shown, said, doctest.ELLIPSIS)
+                assert same or not shown or not has_output, f"{page}: {command} printed\n{said}"
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_each_block_of_code_has_a_kind(page: str) -> None:
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert len(BLOCK.findall(text)) * 2 == len(re.findall(r"^ *```", text, re.MULTILINE))
+    assert not re.search(r"^ {4}\$? ?(closecall|make|pip) ", text, re.MULTILINE), "a command outside a block"
