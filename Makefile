@@ -92,9 +92,10 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	cargo bench --bench memory > $(PARTS)/day.csv
 	$(BIN)/python benches/table.py target/bench $(BENCH)
 
-docs: ## the documentation of the crate, without a broken link
+docs: $(VENV)/wheel $(VENV)/docs ## the crate's documentation, and the site in target/site, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge
 	$(PYTHON) .ci/links.py
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
 
 clean: ## remove what the targets made
 	rm -rf $(VENV) target closecall-out
@@ -125,6 +126,10 @@ $(VENV)/wheel: $(VENV)/made $(SOURCES)
 
 $(VENV)/tests: $(VENV)/made tests/requirements.txt
 	$(BIN)/pip install --quiet --disable-pip-version-check --no-compile -r tests/requirements.txt
+	touch $@
+
+$(VENV)/docs: $(VENV)/made docs/requirements.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check -r docs/requirements.txt
 	touch $@
 
 $(VENV)/benches: $(VENV)/made benches/requirements.txt

@@ -26,6 +26,6 @@ def describe(stub: griffe.Object, compiled: Any) -> None:
         own = getattr(compiled, name)
         text = inspect.getdoc(own)
         if text and not member.docstring:
-            member.docstring = griffe.Docstring(text, parent=member)
+            member.docstring = griffe.Docstring(text, parent=member, parser="google", parser_options={"warnings": False})
         if member.is_class:
             describe(member, own)

@@ -19,7 +19,10 @@ import pytest
 from conftest import NETS, TIMEOUT, Once
 
 ROOT = NETS.parent
-PAGES = ["README.md", *sorted(str(page.relative_to(ROOT)) for page in ROOT.glob("docs/tutorials/*.md"))]
+PAGES = [
+    "README.md",
+    *sorted(str(page.relative_to(ROOT)) for page in [*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/from_*.md")]),
+]
 
 SUMO = "1.28"
 """The version whose output the pages show; another one makes other traffic."""
