@@ -2,7 +2,8 @@
 
     python3 .ci/address.py OWNER/NAME REF
 
-For a release: PyPI and crates.io show the README without the files that it links to. REF is the tag. Standard library only.
+For a release: PyPI and crates.io show the README without the files that it links to. REF is the tag. Standard library
+only.
 """
 
 from __future__ import annotations

@@ -26,6 +26,7 @@ def describe(stub: griffe.Object, compiled: Any) -> None:
         own = getattr(compiled, name)
         text = inspect.getdoc(own)
         if text and not member.docstring:
-            member.docstring = griffe.Docstring(text, parent=member, parser="google", parser_options={"warnings": False})
+            options = {"warnings": False}
+            member.docstring = griffe.Docstring(text, parent=member, parser="google", parser_options=options)
         if member.is_class:
             describe(member, own)

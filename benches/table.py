@@ -3,8 +3,8 @@
     python benches/table.py FOLDER [--readme]
 
 Reads the lines `what,scene,method,size,value,unit` of the benches from FOLDER/parts/*.csv, prints the table and writes
-FOLDER/bench.csv and FOLDER/bench.svg. With --readme it also updates docs/bench.md, its chart in docs/pictures/bench.svg, and the
-line in README.md.
+FOLDER/bench.csv and FOLDER/bench.svg. With --readme it also updates docs/bench.md, its chart in
+docs/pictures/bench.svg, and the line in README.md.
 """
 
 from __future__ import annotations
@@ -237,8 +237,8 @@ def line(lines: Lines) -> str:
         [lines("over plain", scenario, method) for scenario in SCENARIOS] for method in ("closecall", "device.ssm")
     )
     return (
-        f"With closecall attached, a run of SUMO takes {min(ours):.2f} to {max(ours):.2f} times as long; with `device.ssm`, "
-        f"TTC alone, {min(device):.1f} to {max(device):.1f} times: [what it costs](docs/bench.md).\n"
+        f"With closecall attached, a run of SUMO takes {min(ours):.2f} to {max(ours):.2f} times as long; with "
+        f"`device.ssm`, TTC alone, {min(device):.1f} to {max(device):.1f} times: [what it costs](docs/bench.md).\n"
     )
 
 

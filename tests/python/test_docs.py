@@ -1,7 +1,7 @@
 """The commands and scripts of the README and the tutorials run as they stand there, and print what the pages show.
 
-A block ```console has commands behind `$ ` and what each prints, `...` for what is left out. A block with a title becomes the file
-of that name. A block that cannot run has a comment above it, `<!-- not run: why -->`.
+A block ```console has commands behind `$ ` and what each prints, `...` for what is left out. A block with a title
+becomes the file of that name. A block that cannot run has a comment above it, `<!-- not run: why -->`.
 """
 
 from __future__ import annotations
@@ -28,7 +28,8 @@ SUMO = "1.28"
 """The version whose output the pages show; another one makes other traffic."""
 
 BLOCK = re.compile(
-    r'^(?:<!-- not run: (?P<why>[^\n]+) -->\n)?^```(?P<language>\w+)(?: title="(?P<title>[^"\n]+)")?\n(?P<text>.*?)^```$',
+    r"^(?:<!-- not run: (?P<why>[^\n]+) -->\n)?"
+    r'^```(?P<language>\w+)(?: title="(?P<title>[^"\n]+)")?\n(?P<text>.*?)^```$',
     re.MULTILINE | re.DOTALL,
 )
 
@@ -94,6 +95,17 @@ def test_a_page_does_what_it_says(page: str, once: Once, tmp_path: Path) -> None
                 said = run(command, folder)
                 same = doctest.OutputChecker().check_output(shown, said, doctest.ELLIPSIS)
                 assert same or not shown or not has_output, f"{page}: {command} printed\n{said}"
+
+
+def test_a_release_has_no_placeholder_and_no_relative_link(tmp_path: Path) -> None:
+    for name in ("pyproject.toml", "Cargo.toml", "CITATION.cff", "mkdocs.yml", "README.md"):
+        shutil.copy(ROOT / name, tmp_path / name)
+    command = [sys.executable, str(ROOT / ".ci/address.py"), "somebody/near-misses", "v0.1.0"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    for file in tmp_path.iterdir():
+        assert "OWNER/" not in file.read_text(encoding="utf-8")
+    assert "github.com/somebody/near-misses" in (tmp_path / "pyproject.toml").read_text(encoding="utf-8")
+    assert not re.search(r"\]\((?!https?://)", (tmp_path / "README.md").read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("page", PAGES)
