@@ -21,7 +21,7 @@ class OfTheModule(griffe.Extension):
 def describe(stub: griffe.Object, compiled: Any) -> None:
     """Describe the members of an object as those of the compiled one are."""
     for name, member in stub.members.items():
-        if isinstance(member, griffe.Alias) or not hasattr(compiled, name):
+        if isinstance(member, griffe.Alias) or name.startswith("_") or not hasattr(compiled, name):
             continue
         own = getattr(compiled, name)
         text = inspect.getdoc(own)
@@ -30,3 +30,6 @@ def describe(stub: griffe.Object, compiled: Any) -> None:
             member.docstring = griffe.Docstring(text, parent=member, parser="google", parser_options=options)
         if member.is_class:
             describe(member, own)
+            # The arguments of a class are those of __init__ to griffe, of __new__ to PyO3.
+            if "__new__" in member.members:
+                member.members["__init__"] = member.members["__new__"]
