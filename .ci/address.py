@@ -25,7 +25,10 @@ def filled(text: str, repository: str) -> str:
 
 def absolute(text: str, repository: str, ref: str) -> str:
     """The text with links to the repository's files as addresses; pictures as the files themselves."""
-    pages, files = f"https://github.com/{repository}/blob/{ref}/", f"https://raw.githubusercontent.com/{repository}/{ref}/"
+    pages, files = (
+        f"https://github.com/{repository}/blob/{ref}/",
+        f"https://raw.githubusercontent.com/{repository}/{ref}/",
+    )
     return RELATIVE.sub(lambda link: f"{link[1]}{link[2]}({files if link[1] else pages}{link[3]})", text)
 
 
