@@ -19,9 +19,11 @@ import pytest
 from conftest import NETS, TIMEOUT, Once
 
 ROOT = NETS.parent
+FOLDERS = ["docs/tutorials/*.md", "docs/from_*.md"]
 PAGES = [
     "README.md",
-    *sorted(str(page.relative_to(ROOT)) for page in [*ROOT.glob("docs/tutorials/*.md"), *ROOT.glob("docs/from_*.md")]),
+    *sorted(str(page.relative_to(ROOT)) for folder in FOLDERS for page in ROOT.glob(folder)),
+    *(f"docs/{name}.md" for name in ("compare", "log", "measures", "replay", "report", "statistics")),
 ]
 
 SUMO = "1.28"
@@ -41,15 +43,21 @@ CONFIG = """<configuration>
 
 
 def prepare(folder: Path) -> None:
-    """What a reader has: the repository's scenarios, and one of its own, `town`, with a recording."""
+    """What a reader has: the repository's scenarios; its own, with a recording, logs and a net to be tested."""
     for name in ("left_turn", "side", "town"):
         shutil.copytree(
             NETS / name, folder / "sumo_nets" / name, ignore=shutil.ignore_patterns("expected", "closecall-out")
         )
     for kind in ("net", "rou"):
         shutil.copy(NETS / f"left_turn/left_turn.{kind}.xml", folder / f"town.{kind}.xml")
-    (folder / "town.sumocfg").write_text(CONFIG, encoding="utf-8")
+    for name in ("town", "before", "after"):
+        (folder / f"{name}.sumocfg").write_text(CONFIG, encoding="utf-8")
     run("sumo -c town.sumocfg --no-step-log --fcd-output town.fcd.xml.gz", folder)
+    run("closecall run town.sumocfg --quiet", folder)
+    for log in ("run1", "run2", "runs/before/1", "runs/after/1"):
+        shutil.copytree(folder / "closecall-out", folder / log)
+    shutil.copytree(folder / "sumo_nets/left_turn", folder / "nets/left_turn")
+    (folder / "nets/left_turn/closecall.toml").write_text("end = 30\n[regress]\nseeds = [1]\n", encoding="utf-8")
 
 
 def run(command: str, folder: Path) -> str:
