@@ -2,8 +2,8 @@
 
     .venv/bin/python sumo_nets/animation.py
 
-A car turns left before one that comes towards it. While a conflict is open, the two are in the colour of its severity so
-far.
+A car turns left before one that comes towards it. While a conflict is open, the two are in the colour of its worst
+severity so far.
 """
 
 from __future__ import annotations
