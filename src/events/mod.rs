@@ -22,6 +22,7 @@ pub use why::{Cause, Causes, Manoeuvre, Surroundings};
 
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::{Kind, Severity};
+use crate::detection::measures::driven_path::DrivenPath;
 use crate::detection::measures::pet;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
@@ -100,7 +101,7 @@ struct Event {
 /// and the PET so far.
 #[derive(Debug)]
 struct PetTracker {
-    paths: [pet::DrivenPath; 2],
+    paths: [DrivenPath; 2],
     pet: Option<pet::Pet>,
 }
 
@@ -247,7 +248,7 @@ impl Tracker {
         if kind != Kind::RearEnd && event.driven.is_none() {
             let paths = pair.map(|user| {
                 let profile = seen.roster.profile_of(user);
-                let mut path = pet::DrivenPath::new(profile.length, profile.width);
+                let mut path = DrivenPath::of_carriages(profile.carriages(), profile.width);
                 if profile.category != Category::Obstacle {
                     seen.past
                         .of(user, seen.frame.time)
@@ -311,7 +312,7 @@ impl Tracker {
                 let PetTracker { paths, pet } = &mut **driven;
                 let last_call = at_once
                     || since >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT
-                    || paths.iter().any(pet::DrivenPath::has_ended);
+                    || paths.iter().any(DrivenPath::has_ended);
                 let just_closed = since < 2.0 * CLOSES_AFTER;
                 if last_call || just_closed {
                     *pet = pet::post_encroachment_time(&mut halves, &paths[0], &paths[1], self.crossing);
@@ -369,7 +370,7 @@ mod tests {
         }
 
         fn logging(condition: &str) -> Self {
-            let options = Options { log: condition.parse().unwrap(), log_series: true, ..Options::default() };
+            let options = Options { log: condition.parse().unwrap(), log_encounters: true, ..Options::default() };
             Self { tracker: Tracker::new(&options), ..Self::new() }
         }
 
