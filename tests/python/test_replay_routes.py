@@ -14,7 +14,8 @@ import pytest
 from conftest import closecall, rows
 from recordings import record, replay, same
 
-NET = ("--rand", "--rand.iterations", "60", "--rand.min-distance", "12", "--rand.max-distance", "120", "--opposites.guess")
+RANDOM = ("--rand", "--rand.iterations", "60", "--rand.min-distance", "12", "--rand.max-distance", "120")
+NET = (*RANDOM, "--opposites.guess")
 """Has turnarounds, as netgenerate draws them by default, and edges of 0.1 to 14 m between longer ones."""
 SHORT = 13.9
 """A vehicle drives over an edge shorter than this within a step of 1 s, in m."""
