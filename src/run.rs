@@ -33,7 +33,7 @@ use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::traffic::signals::Signals;
-use crate::util::units::Second;
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 use warm_up::WarmUp;
 use writing::Writing;
@@ -69,6 +69,7 @@ pub struct Run {
     collided_so_far: FxHashSet<[String; 2]>,
     /// Placements asked for so far.
     lane_lookups: u64,
+    contact_tolerance: Metre,
     /// Settings of single types: as the options name the type, and as the roster does.
     type_settings: Vec<(String, String)>,
     /// How long a step lasts: as the source says, or else the time between the first two steps.
@@ -108,6 +109,7 @@ impl Run {
             signals: Signals::default(),
             collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
+            contact_tolerance: options.contact_tolerance,
             type_settings: type_settings(options),
             step_length: None,
             summary: Summary::default(),
@@ -117,7 +119,7 @@ impl Run {
 
     /// What the user should know before the run: how the net is drawn, and whether steps of this length are too long.
     pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<String> {
-        let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps()));
+        let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps(), self.contact_tolerance));
         let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
             format!(
                 "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
@@ -347,7 +349,7 @@ impl Run {
         let closed = self.tracker.finish(&self.roster);
         let written = self.writing.finish(closed, &self.roster, self.net.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster));
+        closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster, self.net.as_deref()));
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
         let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));

@@ -30,8 +30,9 @@ const AUTO: &str = "closecall-out";
 ///     source: the module libsumo, the module traci or a traci connection, with a simulation started; None if `step`
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
-///     out: a folder for the log (conflicts.csv, run.json, and series.csv with `log_series=True`); by default
-///         no log is written. An earlier log is kept in its folder `earlier`; "auto" makes a new folder closecall-out-N.
+///     out: a folder for the log (conflicts.csv, run.json; series.csv with `log_series=True`, series.parquet with
+///         `log_series="parquet"`); by default no log is written. An earlier log is kept in its folder `earlier`;
+///         "auto" makes a new folder closecall-out-N.
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.

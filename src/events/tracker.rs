@@ -212,7 +212,7 @@ mod tests {
         }
 
         fn logging(condition: &str) -> Self {
-            let options = Options { log: condition.parse().unwrap(), log_series: true, ..Options::default() };
+            let options = Options { log: condition.parse().unwrap(), log_encounters: true, ..Options::default() };
             Self { tracker: Tracker::new(&options), ..Self::new() }
         }
 

@@ -7,7 +7,8 @@ use super::extremes::{Extremes, Observation};
 use super::span::Span;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Kind;
-use crate::detection::measures::pet::{self, DrivenPath, Pet};
+use crate::detection::measures::driven_path::DrivenPath;
+use crate::detection::measures::pet::{self, Pet};
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::{Frame, State};
@@ -188,7 +189,7 @@ impl Event {
 /// The path of a road user in the seconds before a step.
 fn driven_before(user: UserIndex, seen: &Observation) -> DrivenPath {
     let profile = seen.roster.profile_of(user);
-    let mut path = DrivenPath::new(profile.length, profile.width);
+    let mut path = DrivenPath::of_carriages(profile.carriages(), profile.width);
     if profile.category != Category::Obstacle {
         let past = seen.past.of(user, seen.frame.time);
         past.for_each(|(time, front, heading)| path.push(time, front, heading));

@@ -183,9 +183,12 @@ pub struct Options {
     /// Count traffic and log conflicts only after this time from the begin, in s.
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = 0.0, value_parser = duration))]
     pub warmup: Second,
-    /// Also write series.csv, with a row per step of each logged conflict.
-    #[cfg_attr(feature = "cli", arg(long))]
-    pub log_series: bool,
+    /// Also write series.csv, with a row per step of each logged conflict; `--log-series=parquet` writes series.parquet.
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "FORMAT", num_args = 0..=1, require_equals = true, default_missing_value = "csv")
+    )]
+    pub log_series: Option<SeriesFormat>,
     /// The former name of `log_series`; the file is then called encounters.csv.
     #[cfg_attr(feature = "cli", arg(long, hide = true))]
     #[serde(skip)]
@@ -231,7 +234,7 @@ impl Default for Options {
             log: Condition::default(),
             measures: Measures::default(),
             warmup: 0.0,
-            log_series: false,
+            log_series: None,
             log_encounters: false,
             keep_all: false,
             keep: Vec::new(),
@@ -241,10 +244,26 @@ impl Default for Options {
     }
 }
 
-/// The name of the file with each step of each conflict.
-pub const SERIES: &str = "series.csv";
-/// Its name where it is asked for by the option's former name.
-pub const ENCOUNTERS: &str = "encounters.csv";
+/// How the file with each step of each conflict is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum SeriesFormat {
+    /// As text, while the run goes on.
+    Csv,
+    /// As Parquet, when the run ends.
+    #[cfg(feature = "parquet")]
+    Parquet,
+}
+
+/// The file with each step of each conflict.
+const SERIES: &str = "series.csv";
+/// The same as Parquet.
+const SERIES_PARQUET: &str = "series.parquet";
+/// The same where it is asked for by the option's former name.
+const ENCOUNTERS: &str = "encounters.csv";
+/// All of these.
+pub const SERIES_FILES: [&str; 3] = [SERIES, SERIES_PARQUET, ENCOUNTERS];
 
 impl Options {
     /// Sets what only a TOML file can: its tables of types and drivers.
@@ -256,8 +275,12 @@ impl Options {
 
     /// The name of the file with each step of each conflict; none where it is not wanted.
     pub fn series_file(&self) -> Option<&'static str> {
-        let by_former_name = self.log_encounters.then_some(ENCOUNTERS);
-        self.log_series.then_some(SERIES).or(by_former_name)
+        match self.log_series {
+            Some(SeriesFormat::Csv) => Some(SERIES),
+            #[cfg(feature = "parquet")]
+            Some(SeriesFormat::Parquet) => Some(SERIES_PARQUET),
+            None => self.log_encounters.then_some(ENCOUNTERS),
+        }
     }
 
     /// Checks that the options are consistent.

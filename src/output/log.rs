@@ -1,7 +1,7 @@
-//! The log of a run: `conflicts.csv`, `series.csv` on request, `run.json`.
+//! The log of a run: `conflicts.csv`, `series.csv` or `series.parquet` on request, `run.json`.
 //!
-//! Rows are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had closed. A
-//! kill during that call may cut the last row short (Linux then ends a write between two pages);
+//! Rows of a CSV file are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had
+//! closed. A kill during that call may cut the last row short (Linux then ends a write between two pages);
 //! [`crate::analysis::logged`] ignores that row. A crash of the machine loses at most what was written in the last
 //! [`SYNC_EVERY`].
 
@@ -11,12 +11,14 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use super::input_hash::Hasher;
+#[cfg(feature = "parquet")]
+use super::parquet_file::ParquetFile;
 use super::record::RunRecord;
 use super::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
 use super::series;
 use crate::events::Conflict;
 use crate::options::measures::Measures;
-use crate::options::{ENCOUNTERS, Options, SERIES};
+use crate::options::{Options, SERIES_FILES, SeriesFormat};
 use crate::traffic::net::Net;
 use crate::traffic::roster::Roster;
 use crate::util::csv_safe::safe;
@@ -38,7 +40,7 @@ fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    [CONFLICTS, SERIES, ENCOUNTERS, RUN].into_iter().map(|name| folder.join(name))
+    [CONFLICTS].into_iter().chain(SERIES_FILES).chain([RUN]).map(|name| folder.join(name))
 }
 
 /// The log of one run.
@@ -46,8 +48,7 @@ pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
 pub struct Log {
     folder: PathBuf,
     conflicts: CsvFile,
-    series: Option<CsvFile>,
-    measures: Measures,
+    series: Option<Series>,
     written: u64,
     /// When rows were last forced to disk.
     synced: Instant,
@@ -65,11 +66,10 @@ impl Log {
             fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
         }
         let measures = options.measures;
-        let series = options.series_file().map(|name| CsvFile::create(folder.join(name), series::names(measures)));
+        let series = options.series_file().map(|name| Series::create(folder.join(name), options));
         Ok(Self {
-            conflicts: CsvFile::create(folder.join(CONFLICTS), columns(measures).map(|column| column.name))?,
+            conflicts: CsvFile::create(folder.join(CONFLICTS), columns(measures).copied())?,
             series: series.transpose()?,
-            measures,
             folder: folder.to_owned(),
             written: 0,
             synced: Instant::now(),
@@ -83,17 +83,16 @@ impl Log {
     pub fn append_conflicts(&mut self, conflicts: &[Conflict], net: Option<&Net>, roster: &Roster) -> Result<()> {
         for (number, conflict) in (self.written + 1..).zip(conflicts) {
             let logged = LoggedConflict::new(conflict, Context { number, net, roster });
-            self.conflicts.write_row(columns(self.measures).map(|column| (column.get)(&logged)))?;
+            self.conflicts.write_row(&logged)?;
             if let Some(series) = &mut self.series {
                 for step in &conflict.steps {
-                    let logged = LoggedConflict::new(step, Context { number, net, roster });
-                    series.write_row(series::values(&logged, self.measures))?;
+                    series.write_row(LoggedConflict::new(step, Context { number, net, roster }))?;
                 }
             }
         }
         self.conflicts.flush()?;
         self.written += conflicts.len() as u64;
-        self.series.as_mut().map_or(Ok(()), CsvFile::flush)
+        self.series.as_mut().and_then(Series::csv).map_or(Ok(()), CsvFile::flush)
     }
 
     /// The number of whole rows in `conflicts.csv`.
@@ -115,15 +114,31 @@ impl Log {
     /// [`Error::File`] where the disk fails.
     pub fn sync(&mut self) -> Result<()> {
         self.conflicts.sync()?;
-        self.series.as_mut().map_or(Ok(()), CsvFile::sync)?;
+        self.series.as_mut().and_then(Series::csv).map_or(Ok(()), CsvFile::sync)?;
         self.synced = Instant::now();
         Ok(())
+    }
+
+    /// Forces all rows to disk and completes the series: no more follow.
+    ///
+    /// # Errors
+    /// [`Error::File`] or [`Error::Content`] that names what cannot be written.
+    pub fn finish(&mut self) -> Result<()> {
+        self.sync()?;
+        match self.series.take() {
+            #[cfg(feature = "parquet")]
+            Some(Series::Parquet(file)) => file.finish(),
+            series => {
+                self.series = series;
+                Ok(())
+            }
+        }
     }
 
     /// Writes texts so that no spreadsheet runs them as formulas.
     pub fn set_csv_safe(&mut self) {
         self.conflicts.is_safe = true;
-        self.series.iter_mut().for_each(|table| table.is_safe = true);
+        self.series.iter_mut().filter_map(Series::csv).for_each(|table| table.is_safe = true);
     }
 
     /// The SHA-256 of `conflicts.csv`.
@@ -142,12 +157,47 @@ impl Log {
     }
 
     /// Removes what was written: the input could not be used after all.
-    pub fn discard(self) {
+    pub fn discard(mut self) {
         // A file that cannot be removed stays: the error to report is the one that led here.
-        for path in [Some(&self.conflicts.path), self.series.as_ref().map(|table| &table.path)].into_iter().flatten() {
-            let _ = fs::remove_file(path);
+        for table in [Some(&mut self.conflicts), self.series.as_mut().and_then(Series::csv)].into_iter().flatten() {
+            let _ = fs::remove_file(&table.path);
         }
         let _ = fs::remove_file(self.folder.join(RUN));
+    }
+}
+
+/// The file with each step of each conflict.
+#[derive(Debug)]
+enum Series {
+    Csv(CsvFile),
+    #[cfg(feature = "parquet")]
+    Parquet(ParquetFile),
+}
+
+impl Series {
+    fn create(path: PathBuf, options: &Options) -> Result<Self> {
+        let columns = series::columns(options.measures);
+        match options.log_series {
+            #[cfg(feature = "parquet")]
+            Some(SeriesFormat::Parquet) => ParquetFile::create(&path, columns).map(Self::Parquet),
+            Some(SeriesFormat::Csv) | None => CsvFile::create(path, columns).map(Self::Csv),
+        }
+    }
+
+    fn write_row(&mut self, row: LoggedConflict) -> Result<()> {
+        match self {
+            Self::Csv(file) => file.write_row(&row),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(file) => file.write_row(row),
+        }
+    }
+
+    fn csv(&mut self) -> Option<&mut CsvFile> {
+        match self {
+            Self::Csv(file) => Some(file),
+            #[cfg(feature = "parquet")]
+            Self::Parquet(_) => None,
+        }
     }
 }
 
@@ -155,6 +205,7 @@ impl Log {
 #[derive(Debug)]
 struct CsvFile {
     path: PathBuf,
+    columns: Vec<Column>,
     rows: csv::Writer<WholeRows>,
     /// The text of the cell that is being written.
     text: String,
@@ -163,20 +214,24 @@ struct CsvFile {
 }
 
 impl CsvFile {
-    fn create<'a>(path: PathBuf, columns: impl Iterator<Item = &'a str>) -> Result<Self> {
+    fn create(path: PathBuf, columns: impl Iterator<Item = Column>) -> Result<Self> {
         // Never through a link: what is there was removed.
         let file = File::create_new(&path).map_err(|source| Error::file(&path, source))?;
-        let rows = WholeRows::new(file);
-        let mut table =
-            Self { path, rows: csv::Writer::from_writer(rows), text: String::new(), is_safe: false, is_synced: false };
-        table.write_row(columns.map(Value::Text))?;
+        let rows = csv::Writer::from_writer(WholeRows::new(file));
+        let (columns, text) = (columns.collect(), String::new());
+        let mut table = Self { path, columns, rows, text, is_safe: false, is_synced: false };
+        table.write_cells(|column| Value::Text(column.name))?;
         table.flush()?;
         Ok(table)
     }
 
-    fn write_row<'a>(&mut self, values: impl IntoIterator<Item = Value<'a>>) -> Result<()> {
-        let Self { rows, text, is_safe, .. } = self;
-        let written = values.into_iter().try_for_each(|value| match value {
+    fn write_row(&mut self, row: &LoggedConflict) -> Result<()> {
+        self.write_cells(|column| (column.get)(row))
+    }
+
+    fn write_cells<'a>(&mut self, value: impl Fn(&Column) -> Value<'a>) -> Result<()> {
+        let Self { columns, rows, text, is_safe, .. } = self;
+        let written = columns.iter().try_for_each(|column| match value(column) {
             Value::Text(cell) if *is_safe => rows.write_field(safe(cell, text)),
             value => rows.write_field(value.text(text)),
         });
@@ -296,7 +351,7 @@ mod tests {
             if is_there {
                 fs::write(&mine, "mine").unwrap();
             }
-            let options = Options { log_series: true, ..Options::default() };
+            let options = Options { log_series: Some(SeriesFormat::Csv), ..Options::default() };
             let created = Log::create(&log, &options).unwrap();
             created.write_record(&RunRecord::new(PathBuf::new(), options)).unwrap();
             assert_eq!(fs::read_to_string(&mine).ok().as_deref(), is_there.then_some("mine"));

@@ -6,6 +6,10 @@ pub mod folder;
 pub mod formats;
 pub mod input_hash;
 pub mod log;
+#[cfg(feature = "parquet")]
+pub mod parquet_columns;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 pub mod record;
 pub mod schema;
 mod series;

@@ -299,6 +299,11 @@ impl Column {
         COLUMNS.iter().find(|column| column.is_named(name))
     }
 
+    /// The same column under another name.
+    pub fn renamed(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
     /// Whether a log has this column under this name.
     pub fn is_named(&self, name: &str) -> bool {
         self.name == name || RENAMED.contains(&(self.name, name))

@@ -1,7 +1,7 @@
-//! The columns of `series.csv`, which has a row per step of each conflict: the number of the conflict, then those columns
+//! The columns of the series, `series.csv` or `series.parquet`, which has a row per step of each conflict: the number of the conflict, then those columns
 //! of the log that a single step has.
 
-use super::schema::{COLUMNS, Column, LoggedConflict, Value};
+use super::schema::{COLUMNS, Column};
 use crate::options::measures::Measures;
 
 /// The number of the conflict, which is its `id` in the log.
@@ -32,18 +32,11 @@ const OF_THE_EVENT: [&str; 21] = [
     "dr",
 ];
 
-fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
-    COLUMNS.iter().filter(move |column| column.is_in(measures) && !OF_THE_EVENT.contains(&column.name))
-}
-
-/// The names of the columns, with these added measures.
-pub(super) fn names(measures: Measures) -> impl Iterator<Item = &'static str> {
-    [CONFLICT].into_iter().chain(columns(measures).map(|column| column.name))
-}
-
-/// The values of a step, as a conflict of its own that has the number of the whole one.
-pub(super) fn values(step: &LoggedConflict, measures: Measures) -> impl Iterator<Item = Value<'_>> {
-    [Value::Count(step.id)].into_iter().chain(columns(measures).map(|column| (column.get)(step)))
+/// The columns, with these added measures, of a step as a conflict of its own that has the number of the whole one.
+pub(super) fn columns(measures: Measures) -> impl Iterator<Item = Column> {
+    let number = Column::named("id").map(|id| id.renamed(CONFLICT));
+    let of_a_step = move |column: &&Column| column.is_in(measures) && !OF_THE_EVENT.contains(&column.name);
+    number.into_iter().chain(COLUMNS.iter().filter(of_a_step).copied())
 }
 
 #[cfg(test)]
@@ -54,7 +47,7 @@ mod tests {
     #[test]
     fn every_column_that_it_lacks_is_one_of_the_log() {
         assert!(OF_THE_EVENT.iter().all(|name| Column::named(name).is_some()));
-        assert_eq!(names(Measures::ALL).count(), 1 + COLUMNS.len() - OF_THE_EVENT.len());
+        assert_eq!(columns(Measures::ALL).count(), 1 + COLUMNS.len() - OF_THE_EVENT.len());
     }
 
     #[test]

@@ -124,7 +124,7 @@ impl RecordedRun {
             let (step_length, summary) = (self.run.step_length(), self.run.summary.clone());
             let conflicts_sha256 = Some(log.digest());
             // The error to report is the one that led here.
-            let _ = log.sync();
+            let _ = log.finish();
             let _ =
                 log.write_record(&RunRecord { step_length, summary, error: Some(error), conflicts_sha256, ..*record });
         }

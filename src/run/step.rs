@@ -115,7 +115,7 @@ impl Run {
         let around = Surroundings { net: self.net.as_deref(), signals: &self.signals, course: &course, added: &added };
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.own_making.count(conflict, roster));
+        closed.iter().for_each(|conflict| self.own_making.count(conflict, roster, self.net.as_deref()));
     }
 
     /// Writes the log and the other files, and ends the step.

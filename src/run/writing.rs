@@ -45,7 +45,7 @@ impl Writing {
     pub fn finish(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, roster, net)?;
-            it.log.as_mut().map_or(Ok(()), Log::sync)?;
+            it.log.as_mut().map_or(Ok(()), Log::finish)?;
             it.outputs.finish()
         })
     }

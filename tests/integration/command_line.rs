@@ -4,6 +4,9 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+
 /// Runs closecall with these words in a folder.
 fn closecall(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_closecall")).args(words).current_dir(folder).output().unwrap()
@@ -113,6 +116,41 @@ fn an_earlier_log_is_where_it_was_if_no_new_one_can_begin() {
     assert!(stderr(&done).starts_with("closecall: out/series.csv: "), "{}", stderr(&done));
     assert_eq!(log(), first);
     assert!(!folder.path().join("out/earlier").exists());
+}
+
+#[test]
+fn a_series_in_parquet_equals_the_one_in_csv() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    for (out, series) in [("csv", "--log-series"), ("parquet", "--log-series=parquet")] {
+        let done = closecall(folder.path(), &replay(&["--out", out, "--measures", "all", series]));
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+    }
+    assert!(!folder.path().join("parquet/series.csv").exists());
+    let text = fs::read_to_string(folder.path().join("csv/series.csv")).unwrap();
+    let cells = |line: &str| line.split(',').map(str::to_owned).collect::<Vec<_>>();
+    let names = cells(text.lines().next().unwrap());
+    let file = fs::File::open(folder.path().join("parquet/series.parquet")).unwrap();
+    let read = SerializedFileReader::new(file).unwrap();
+    let mut rows = 0;
+    for (line, row) in text.lines().skip(1).zip(read.get_row_iter(None).unwrap()) {
+        let row = row.unwrap();
+        assert!(names.iter().eq(row.get_column_iter().map(|(name, _)| name)));
+        for (cell, (name, value)) in cells(line).iter().zip(row.get_column_iter()) {
+            let same = match value {
+                Field::Null => cell.is_empty(),
+                // The text has six decimals.
+                Field::Double(number) => (cell.parse::<f64>().unwrap() - number).abs() < 5.01e-7,
+                Field::Long(count) => cell.parse() == Ok(*count),
+                Field::Bool(flag) => cell.parse() == Ok(*flag),
+                Field::Str(text) => cell == text,
+                _ => false,
+            };
+            assert!(same, "{name}: {cell} and {value}");
+        }
+        rows += 1;
+    }
+    assert!(rows > 10 && rows == text.lines().count() - 1, "{rows}");
 }
 
 #[test]

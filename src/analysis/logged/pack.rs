@@ -2,22 +2,21 @@
 
 use std::io::Write;
 use std::path::Path;
-use std::sync::Arc;
 
-use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical};
-use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
+use parquet::basic::{Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
-use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
-use parquet::schema::types::Type;
+use parquet::schema::types::TypePtr;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest, physical};
+use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest};
 use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
-use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
+use crate::output::parquet_columns::{self, fill};
+use crate::output::schema::{COLUMNS, Column, Presence};
 use crate::util::output_file::OutputFile;
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
@@ -79,13 +78,12 @@ fn write(
     labels: &[Label],
     metadata: [(&str, String); 3],
 ) -> std::result::Result<(), Fault> {
-    let properties = Arc::new(WriterProperties::builder().set_compression(Compression::SNAPPY).build());
     let file = HashedFile { file, hasher: Hasher::default() };
     let logged = conflicts.columns();
     let is_there =
         |column: &&Column| column.presence != Presence::Chosen || logged.iter().any(|name| name == column.name);
     let columns = COLUMNS.iter().filter(is_there).collect::<Vec<_>>();
-    let mut writer = SerializedFileWriter::new(file, Arc::new(schema(&columns, labels)?), properties)?;
+    let mut writer = SerializedFileWriter::new(file, schema(&columns, labels)?, parquet_columns::properties())?;
     let mut rows = Vec::with_capacity(1024);
     loop {
         rows.clear();
@@ -136,75 +134,18 @@ impl Write for HashedFile<'_> {
     }
 }
 
-fn schema(of_log: &[&Column], labels: &[Label]) -> std::result::Result<Type, ParquetError> {
-    let column = |name: &str, physical: Physical, repetition: Repetition| {
-        let column = Type::primitive_type_builder(name, physical).with_repetition(repetition);
-        let column = if physical == Physical::BYTE_ARRAY {
-            column.with_logical_type(Some(LogicalType::String)).with_converted_type(ConvertedType::UTF8)
-        } else {
-            column
-        };
-        column.build().map(Arc::new)
-    };
-    let mut columns = Vec::with_capacity(of_log.len() + labels.len());
-    for &&Column { name, column_type, .. } in of_log {
-        let repetition = match column_type {
-            ColumnType::Count => Repetition::REQUIRED,
-            ColumnType::Text | ColumnType::Number | ColumnType::Flag => Repetition::OPTIONAL,
-        };
-        columns.push(column(name, physical(column_type), repetition)?);
-    }
-    for label in labels {
+/// The schema of a file with these columns of the log and these labels.
+fn schema(of_log: &[&Column], labels: &[Label]) -> std::result::Result<TypePtr, ParquetError> {
+    let label = |label: &Label| {
         let physical = match label.value {
             LabelValue::Count(_) => Physical::INT64,
             LabelValue::Number(_) => Physical::DOUBLE,
             LabelValue::Text(_) => Physical::BYTE_ARRAY,
         };
-        columns.push(column(&label.name, physical, Repetition::REQUIRED)?);
-    }
-    Type::group_type_builder("conflict").with_fields(columns).build()
-}
-
-/// Writes a column of the log; what is missing and an empty text are null.
-fn fill(
-    column: &mut SerializedColumnWriter<'_>,
-    conflicts: &[LoggedConflict],
-    of_log: &Column,
-) -> std::result::Result<(), ParquetError> {
-    let values = conflicts.iter().map(of_log.get);
-    match of_log.column_type {
-        ColumnType::Count => {
-            let counts =
-                values.filter_map(|value| if let Value::Count(count) = value { Some(count as i64) } else { None });
-            column.typed::<Int64Type>().write_batch(&counts.collect::<Vec<_>>(), None, None)?;
-        }
-        ColumnType::Flag => {
-            let flags = values.map(|value| if let Value::Flag(flag) = value { Some(flag) } else { None });
-            write_optional::<BoolType>(column, flags)?;
-        }
-        ColumnType::Number => {
-            let numbers = values.map(|value| if let Value::Number(number) = value { Some(number) } else { None });
-            write_optional::<DoubleType>(column, numbers)?;
-        }
-        ColumnType::Text => {
-            let texts = values.map(|value| match value {
-                Value::Text(text) if !text.is_empty() => Some(ByteArray::from(text)),
-                _ => None,
-            });
-            write_optional::<ByteArrayType>(column, texts)?;
-        }
-    }
-    Ok(())
-}
-
-fn write_optional<T: DataType>(
-    column: &mut SerializedColumnWriter<'_>,
-    values: impl Iterator<Item = Option<T::T>>,
-) -> std::result::Result<(), ParquetError> {
-    let mut levels = Vec::new();
-    let present = values.inspect(|value| levels.push(i16::from(value.is_some()))).flatten().collect::<Vec<_>>();
-    column.typed::<T>().write_batch(&present, Some(&levels), None)?;
-    Ok(())
+        parquet_columns::typed(&label.name, physical, Repetition::REQUIRED)
+    };
+    let of_log = of_log.iter().map(|column| parquet_columns::of_log(column));
+    parquet_columns::schema(of_log.chain(labels.iter().map(label)))
 }
 
 /// Writes a label: the same value in all rows.
@@ -234,6 +175,7 @@ mod tests {
     use crate::analysis::logged::pack::*;
     use crate::analysis::logged::{PARQUET, Packed};
     use crate::output::log::{CONFLICTS, RUN};
+    use crate::output::schema::{ColumnType, LoggedConflict};
 
     fn labels() -> [Label; 3] {
         [

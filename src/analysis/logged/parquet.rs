@@ -13,7 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::possible::PossibleRows;
 use crate::output::input_hash::Hasher;
-use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
+use crate::output::parquet_columns::physical;
+use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use crate::util::input_file;
 use crate::util::parquet_column::{Batch, guarded};
 use crate::util::units::Second;
@@ -241,16 +242,6 @@ impl ParquetLog {
             }
         }
         Ok(())
-    }
-}
-
-/// How Parquet stores a column.
-pub(super) fn physical(column_type: ColumnType) -> Physical {
-    match column_type {
-        ColumnType::Count => Physical::INT64,
-        ColumnType::Text => Physical::BYTE_ARRAY,
-        ColumnType::Number => Physical::DOUBLE,
-        ColumnType::Flag => Physical::BOOLEAN,
     }
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::analysis::logged::{self, Label, LoggedRun, PARQUET, RunTime};
-use crate::options::{ENCOUNTERS, SERIES};
+use crate::options::SERIES_FILES;
 use crate::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.
@@ -45,7 +45,7 @@ impl Task {
             // The series of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;
         }
-        for name in [SERIES, ENCOUNTERS].into_iter().filter(|name| log.join(name).is_file()) {
+        for name in SERIES_FILES.into_iter().filter(|name| log.join(name).is_file()) {
             fs::create_dir_all(&folder).map_err(fault)?;
             fs::rename(log.join(name), folder.join(name)).map_err(fault)?;
         }

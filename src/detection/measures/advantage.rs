@@ -9,7 +9,8 @@
 //! Like the PET, only of paths that cross or merge: not of a follower. None if one of the two stands clear of the other's
 //! path, or if the paths do not meet within [`HORIZON`].
 
-use super::pet::{DrivenPath, post_encroachment_time};
+use super::driven_path::DrivenPath;
+use super::pet::post_encroachment_time;
 use super::ttc::{HORIZON, SteadyMotion};
 use crate::geometry::bisection::Bisection;
 use crate::util::units::{Radian, Second};

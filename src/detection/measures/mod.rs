@@ -7,6 +7,7 @@ pub mod crash_potential;
 pub mod crash_probability;
 pub mod drac;
 mod drac_straight;
+pub mod driven_path;
 pub mod emergency_index;
 pub mod exposure;
 pub mod headway;

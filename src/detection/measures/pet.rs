@@ -3,106 +3,29 @@
 //! Measured on the paths that both really drove. A corridor is the area that a rectangle covered; the conflict area is
 //! where the two corridors overlap. The first leaves it when its rectangle touches the other's corridor for the last
 //! time. The second enters it when its rectangle touches the first's corridor for the first time. While the second is in
-//! that corridor, its own may still overlap a later part of it, so the time is final when the second has left.
+//! that corridor, its own may still overlap a later part of it, so the time is final when the second has left. An
+//! articulated vehicle has a corridor of each carriage.
 //!
 //! Only of two whose paths cross: where the second enters, its heading has to differ from that of the first when that was
 //! there. One that follows the other, out of the same lane too, has none.
 
-use crate::detection::path::Pose;
+use smallvec::SmallVec;
+
+use super::driven_path::{Course, DrivenPath, bounds};
 use crate::geometry::bisection::{Bisection, Part};
-use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::separating_axes::Contact;
 use crate::geometry::sweep::TOLERANCE;
-use crate::geometry::{Bounds, Point, Vector, angle_between};
+use crate::geometry::{Bounds, Vector, angle_between};
 use crate::options::condition::LONGEST_PET;
-use crate::util::units::{Metre, Radian, Second};
+use crate::util::units::{Radian, Second};
 
 /// How long after a conflict closed its PET is waited for, in s.
 pub const WAIT: Second = LONGEST_PET;
 
-/// The path that one road user drove: its rectangle at each time.
-#[derive(Clone, Debug, Default)]
-pub struct DrivenPath {
-    poses: Vec<TimedPose>,
-    length: Metre,
-    width: Metre,
-    ended: bool,
-}
-
-/// The position of its front bumper at a time, and its heading.
-#[derive(Clone, Copy, Debug)]
-struct TimedPose {
-    time: Second,
-    front: Point,
-    heading: Radian,
-}
-
-impl TimedPose {
-    fn stands_as(&self, other: &Self) -> bool {
-        (self.front, self.heading) == (other.front, other.heading)
-    }
-}
-
-impl DrivenPath {
-    /// An empty path of a road user of this length and width.
-    pub fn new(length: Metre, width: Metre) -> Self {
-        Self { length, width, ..Self::default() }
-    }
-
-    /// Adds the position of its front bumper at a time, and its heading. While it stands, no more is kept than when it
-    /// began and ended.
-    pub fn push(&mut self, time: Second, front: Point, heading: Radian) {
-        let pose = TimedPose { time, front, heading };
-        match &mut self.poses[..] {
-            [.., before, last] if before.stands_as(last) && last.stands_as(&pose) => last.time = time,
-            _ => self.poses.push(pose),
-        }
-    }
-
-    /// Marks that it has left the scene.
-    pub fn end(&mut self) {
-        self.ended = true;
-    }
-
-    /// Whether it has left the scene.
-    pub fn has_ended(&self) -> bool {
-        self.ended
-    }
-
-    fn pose(&self, pose: &TimedPose) -> Pose {
-        Pose { distance: 0.0, front: pose.front, axis: direction(pose.heading) }
-    }
-
-    fn bounds_at(&self, pose: &Pose) -> Bounds {
-        Rectangle::behind(pose.front, pose.axis, self.length, self.width).bounds()
-    }
-
-    /// The box around all that it covered, larger than any rounding error.
-    fn bounds(&self) -> Bounds {
-        let mut bounds = Bounds::EMPTY;
-        self.poses.iter().for_each(|pose| bounds.join(&self.bounds_at(&self.pose(pose))));
-        bounds.grown(TOLERANCE)
-    }
-
-    /// The steps that may touch what lies within these bounds.
-    fn corridor(&self, near: &Bounds, halves: &mut Bisection) -> Corridor {
-        let steps = self.poses.windows(2).filter_map(|pair| {
-            let [start, end] = [&pair[0], &pair[1]].map(|pose| self.pose(pose));
-            let mut bounds = self.bounds_at(&start);
-            bounds.join(&self.bounds_at(&end));
-            if !bounds.grown(TOLERANCE).meet(near) {
-                return None;
-            }
-            let part = halves.add(start.movement_to(&end, self.length, self.width));
-            Some(Step { from: pair[0].time, to: pair[1].time, axes: [start.axis, end.axis], part })
-        });
-        Corridor { steps: steps.collect(), end: self.poses.last().map_or(0.0, |pose| pose.time) }
-    }
-}
-
 /// The area that one road user covered, as far as the other may have been there.
 struct Corridor {
-    steps: Vec<Step>,
+    /// Of each carriage, in the order of time.
+    carriages: SmallVec<[Vec<Step>; 1]>,
     /// When it ends.
     end: Second,
 }
@@ -134,28 +57,39 @@ struct Entry {
 }
 
 impl Corridor {
+    fn of(courses: &[Course], near: &Bounds, halves: &mut Bisection) -> Self {
+        let end = courses.first().and_then(|course| course.poses.last()).map_or(0.0, |pose| pose.time);
+        Self { carriages: courses.iter().map(|course| steps(course, near, halves)).collect(), end }
+    }
+
     /// The first time at which it touches the other's corridor. The steps after it, which cost most, are not tested.
     fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Entry> {
-        self.steps.iter().find_map(|step| {
-            let (enters, met) = other.touch(step.part, Contact::Entry, halves)?;
-            Some(Entry { time: step.time(enters), angle: angle_between(&step.axis(enters), &met.axis(0.5)) })
-        })
+        let entries = self.carriages.iter().filter_map(|steps| {
+            steps.iter().find_map(|step| {
+                let (enters, met) = other.touch(step.part, Contact::Entry, halves)?;
+                Some(Entry { time: step.time(enters), angle: angle_between(&step.axis(enters), &met.axis(0.5)) })
+            })
+        });
+        entries.min_by(|a, b| a.time.total_cmp(&b.time))
     }
 
     /// The last time; none where it still touches it at the end.
     fn leaves(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
-        let (step, leaves) = self.steps.iter().rev().find_map(|step| {
-            let (leaves, _) = other.touch(step.part, Contact::Exit, halves)?;
-            Some((step, leaves.min(1.0)))
-        })?;
-        let still = step.to == self.end && leaves >= 1.0;
-        (!still).then_some(step.time(leaves))
+        let exits = self.carriages.iter().filter_map(|steps| {
+            let (step, leaves) = steps.iter().rev().find_map(|step| {
+                let (leaves, _) = other.touch(step.part, Contact::Exit, halves)?;
+                Some((step, leaves.min(1.0)))
+            })?;
+            let still = step.to == self.end && leaves >= 1.0;
+            Some(if still { f64::INFINITY } else { step.time(leaves) })
+        });
+        exits.reduce(f64::max).filter(|time| time.is_finite())
     }
 
     /// The fraction of a step of the other at which it touches this corridor, and the step of this one that it touches.
     fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<(f64, &Step)> {
         let mut found = (which.none(), None);
-        for step in &self.steps {
+        for step in self.carriages.iter().flatten() {
             let touch = halves.touch(part, step.part, which, found.0);
             if touch != found.0 {
                 found = (touch, Some(step));
@@ -163,6 +97,21 @@ impl Corridor {
         }
         Some((found.0, found.1?))
     }
+}
+
+/// The steps that may touch what lies within these bounds.
+fn steps(course: &Course, near: &Bounds, halves: &mut Bisection) -> Vec<Step> {
+    let steps = course.poses.windows(2).filter_map(|pair| {
+        let [start, end] = [&pair[0], &pair[1]].map(|pose| course.pose(pose));
+        let mut bounds = course.bounds_at(&start);
+        bounds.join(&course.bounds_at(&end));
+        if !bounds.grown(TOLERANCE).meet(near) {
+            return None;
+        }
+        let part = halves.add(start.movement_to(&end, course.length, course.width));
+        Some(Step { from: pair[0].time, to: pair[1].time, axes: [start.axis, end.axis], part })
+    });
+    steps.collect()
 }
 
 /// A post-encroachment time.
@@ -179,9 +128,10 @@ pub struct Pet {
 /// The PET of two driven paths that cross at an angle of at least `crossing`. None where the corridors do not overlap, or
 /// both are in the conflict area at once, as where one merges behind the other. `halves` only lends its allocations.
 pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath, crossing: Radian) -> Option<Pet> {
-    let near = a.bounds().shared_with(&b.bounds())?;
+    let courses = [a, b].map(DrivenPath::courses);
+    let near = bounds(&courses[0]).shared_with(&bounds(&courses[1]))?;
     halves.clear();
-    let [a, b] = [a, b].map(|course| course.corridor(&near, halves));
+    let [a, b] = courses.map(|courses| Corridor::of(&courses, &near, halves));
     let (a_enters, b_enters) = (a.enters(&b, halves)?, b.enters(&a, halves)?);
     if a_enters.time == b_enters.time {
         return None;
@@ -197,6 +147,9 @@ pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &Driven
 #[cfg(test)]
 mod tests {
     use crate::detection::measures::pet::*;
+    use crate::geometry::Point;
+    use crate::geometry::rectangle::direction;
+    use crate::traffic::profile::Carriage;
 
     /// The bound below which a conflict is rear-end.
     const CROSSING: Radian = std::f64::consts::FRAC_PI_6;
@@ -228,7 +181,11 @@ mod tests {
 
     /// A car that turns left from the south to the west on a radius of 9 m, with 8 m/s, in steps of this length.
     fn turn(step: f64) -> DrivenPath {
-        let mut course = DrivenPath::new(4.0, 2.0);
+        turn_of(DrivenPath::new(4.0, 2.0), step)
+    }
+
+    /// The same of any road user.
+    fn turn_of(mut course: DrivenPath, step: f64) -> DrivenPath {
         let steps = (4.0 / step).round() as u32;
         for time in (0..=steps).map(|number| f64::from(number) * step) {
             let way = 8.0 * (time - 1.0);
@@ -252,6 +209,21 @@ mod tests {
         };
         let (long, short) = (crossing(0.2), crossing(0.01));
         assert!((long.lasts - short.lasts).abs() < 0.02, "{long:?} {short:?}");
+    }
+
+    #[test]
+    fn the_trailer_of_a_truck_that_turns_leaves_last() {
+        let [truck, trailer] = [(0.0, 4.0), (4.0, 8.0)].map(|(behind, length)| Carriage { behind, length });
+        let turning = turn_of(DrivenPath::of_carriages([truck, trailer], 2.0), 0.1);
+        let mut behind = DrivenPath::new(4.0, 2.0);
+        (0..=80).map(|step| f64::from(step) * 0.1).for_each(|time| {
+            behind.push(time, Point::new(8.0 + 10.0 * (time - 5.0), -9.0), 0.0);
+        });
+        // The front is 4 m into the turn when the tail, 12 m behind it, leaves the corridor 1 m beside y = −9 m.
+        let Pet { lasts, enters, .. } = pet_of(&turning, &behind).unwrap();
+        assert!((enters - 5.0).abs() < 1e-3 && (lasts - (5.0 - 1.5)).abs() < 1e-3, "{lasts} at {enters}");
+        let rigid = pet_of(&turn_of(DrivenPath::new(12.0, 2.0), 0.1), &behind).unwrap();
+        assert!(rigid.lasts > lasts + 0.05, "{rigid:?}");
     }
 
     #[test]

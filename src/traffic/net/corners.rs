@@ -7,13 +7,32 @@
 use rustc_hash::FxHashMap;
 
 use super::elements::{EdgeFunction, Lane, LaneIndex};
+use super::finder::aabb;
 use super::network::Net;
-use super::overlaps::{Overlap, ROUNDING, VEHICLE_WIDTH};
-use crate::geometry::{Point, cross};
+use super::overlaps::{Overlap, VEHICLE_WIDTH};
+use crate::geometry::{Bounds, Point, cross};
 use crate::util::units::Metre;
 
-/// The walking areas and the junction lanes that cut them, the deepest first.
-pub(super) fn cut_corners(net: &Net) -> Vec<Overlap> {
+/// How far beside a walking area a person on it may be, in m: SUMO's ways over it bend out of its outline. Of 148 persons on one in
+/// Bologna's acosta 127 were outside, nine of ten of these by less.
+const BESIDE: Metre = 2.0;
+
+impl Net {
+    /// Whether a person at a place is on a walking area, not on a crossing.
+    pub fn has_walking_area_at(&self, place: Point) -> bool {
+        let is_at = |lane: LaneIndex| {
+            let area = &self.lanes[lane.0 as usize].shape;
+            is_inside(sides(area), place) || sides(area).any(|side| distance(side, place) <= BESIDE)
+        };
+        let window = aabb(&Bounds { low: place, high: place }.grown(BESIDE));
+        let mut near = self.finder.lanes_in(&window);
+        near.any(|lane| self.function(lane) == EdgeFunction::WalkingArea && is_at(lane))
+            && self.crossing_at(place, 0.0).is_none()
+    }
+}
+
+/// The walking areas and the junction lanes that cut them by more than a depth, the deepest first.
+pub(super) fn cut_corners(net: &Net, deeper_than: Metre) -> Vec<Overlap> {
     let mut driven = FxHashMap::<&str, Vec<LaneIndex>>::default();
     let mut areas = Vec::new();
     for (lane, index) in net.lanes.iter().zip((0..).map(LaneIndex)) {
@@ -29,7 +48,7 @@ pub(super) fn cut_corners(net: &Net) -> Vec<Overlap> {
         for other in driven.get(junction).into_iter().flatten() {
             let depth = reach(&net.lanes[area.0 as usize].shape, &net.lanes[other.0 as usize]);
             // Deeper, the area lies across the road: persons cross there.
-            if depth > ROUNDING && depth <= VEHICLE_WIDTH {
+            if depth > deeper_than && depth <= VEHICLE_WIDTH {
                 places.push(Overlap { lanes: (area, *other), depth });
             }
         }
@@ -41,9 +60,8 @@ pub(super) fn cut_corners(net: &Net) -> Vec<Overlap> {
 /// How far a vehicle on a lane reaches into an area; 0 or less if it does not.
 fn reach(area: &[Point], lane: &Lane) -> Metre {
     let half = lane.width.min(VEHICLE_WIDTH) / 2.0;
-    let sides = || area.windows(2).map(|side| [side[0], side[1]]).chain([[area[area.len() - 1], area[0]]]);
-    let from_outline = |point| sides().map(|side| distance(side, point)).fold(f64::INFINITY, f64::min);
-    let within = lane.shape.iter().filter(|point| is_inside(sides(), **point)).map(|point| from_outline(*point));
+    let from_outline = |point| sides(area).map(|side| distance(side, point)).fold(f64::INFINITY, f64::min);
+    let within = lane.shape.iter().filter(|point| is_inside(sides(area), **point)).map(|point| from_outline(*point));
     if let Some(deepest) = within.reduce(f64::max) {
         return half + deepest;
     }
@@ -51,6 +69,12 @@ fn reach(area: &[Point], lane: &Lane) -> Metre {
     let pieces = || lane.shape.windows(2).map(|piece| [piece[0], piece[1]]);
     let of_area = area.iter().flat_map(|corner| pieces().map(|piece| distance(piece, *corner)));
     half - of_lane.chain(of_area).fold(f64::INFINITY, f64::min)
+}
+
+/// The sides of an area, of which the last one closes it.
+fn sides(area: &[Point]) -> impl Iterator<Item = [Point; 2]> {
+    let closing = area.last().zip(area.first()).map(|(last, first)| [*last, *first]);
+    area.windows(2).map(|side| [side[0], side[1]]).chain(closing)
 }
 
 /// The distance of a place from a piece of a line.
@@ -83,7 +107,7 @@ mod tests {
             <edge id=":j_w0" function="walkingarea"><lane id=":j_w0_0" length="4" shape="0,0 4,0 4,4 0,4"/></edge>
             <edge id=":k_w0" function="walkingarea"><lane id=":k_w0_0" length="4" shape="0,0 4,0 4,4 0,4"/></edge></net>"#
         );
-        let found = cut_corners(&Net::parse(Path::new("net"), text).unwrap());
+        let found = cut_corners(&Net::parse(Path::new("net"), text).unwrap(), 0.1);
         assert!(found.len() < 2, "only in its own junction");
         found.first().map(|place| place.depth)
     }
@@ -93,6 +117,7 @@ mod tests {
         for (shape, depth) in [
             ("-5,-0.5 9,-0.5", Some(0.4)),
             ("-5,-0.5 5,-0.7 9,-3", Some(0.3)),
+            ("-5,-0.82 9,-0.82", None),
             ("-5,-1 9,-1", None),
             ("-5,0.5 1,0.5 2,-9", Some(1.4)),
             ("-5,2 2,2 9,2", None),
@@ -104,5 +129,18 @@ mod tests {
         }
         assert_eq!(cut("-5,-0.5 9,-0.5", r#"width="1""#), None, "a bicycle lane");
         assert_eq!(cut("-5,-0.5 9,-0.5", r#"allow="pedestrian""#), None, "for persons");
+    }
+
+    #[test]
+    fn a_person_on_a_walking_area_or_just_beside_it_is_known() {
+        let text = r#"<net><edge id=":j_w0" function="walkingarea">
+            <lane id=":j_w0_0" length="9" shape="0,0 9,0 9,9 6,3"/></edge>
+            <edge id=":j_c0" function="crossing"><lane id=":j_c0_0" length="9" width="2" shape="9,1 18,1"/></edge></net>"#;
+        let net = Net::parse(Path::new("net"), text.to_owned()).unwrap();
+        let places = [(7.0, 2.5, true), (8.5, 7.0, true), (-1.9, 0.0, true), (4.0, -1.9, true)];
+        let others = [(-2.1, 0.0, false), (1.0, 6.0, false), (10.0, 1.5, false), (20.0, 1.0, false)];
+        for (x, y, is_on) in places.into_iter().chain(others) {
+            assert_eq!(net.has_walking_area_at(Point::new(x, y)), is_on, "{x}, {y}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use super::corners::cut_corners;
 use super::elements::{EdgeFunction, LaneIndex};
 use super::network::Net;
-use super::overlaps::{Overlap, Overlaps};
+use super::overlaps::{Overlap, Overlaps, ROUNDING};
 use crate::util::units::Metre;
 
 /// The largest difference of a lane's length from its shape's that goes without saying, as a part of the longer.
@@ -14,9 +14,10 @@ const SHORTEST: Metre = 0.1;
 const NAMED: usize = 3;
 
 impl Net {
-    /// Where it is not drawn as it is driven: a line for each way in which it is not.
-    pub fn remarks(&self, overlaps: &Overlaps) -> Vec<String> {
-        lengths(self).into_iter().chain(overlapping(self, overlaps)).chain(corners(self)).collect()
+    /// Where it is not drawn as it is driven: a line for each way in which it is not. Road users that overlap by up to the
+    /// tolerance do not collide.
+    pub fn remarks(&self, overlaps: &Overlaps, tolerance: Metre) -> Vec<String> {
+        lengths(self).into_iter().chain(overlapping(self, overlaps)).chain(corners(self, tolerance)).collect()
     }
 }
 
@@ -64,9 +65,10 @@ fn overlapping(net: &Net, overlaps: &Overlaps) -> Option<String> {
     })
 }
 
-/// At how many places vehicles cut a corner of a pavement as drawn, and the worst of them; none where they do not.
-fn corners(net: &Net) -> Option<String> {
-    let places = cut_corners(net);
+/// At how many places vehicles cut a corner of a pavement as drawn by more than this, and the worst of them; none where they
+/// do not.
+fn corners(net: &Net, tolerance: Metre) -> Option<String> {
+    let places = cut_corners(net, tolerance.max(ROUNDING));
     let named = named(net, &places)?;
     Some(match places.len() {
         1 => format!("on a junction lane vehicles cut the corner of a pavement as drawn: {named}"),

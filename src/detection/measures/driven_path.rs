@@ -1,0 +1,126 @@
+//! The path that a road user drove, as a PET needs it: where each of its carriages was at each time.
+
+use std::borrow::Cow;
+
+use smallvec::SmallVec;
+
+use crate::detection::path::Pose;
+use crate::geometry::rectangle::{Rectangle, direction};
+use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::{Bounds, Point};
+use crate::traffic::profile::Carriage;
+use crate::util::units::{Metre, Radian, Second};
+
+/// The path that one road user drove: where it was at each time.
+#[derive(Clone, Debug, Default)]
+pub struct DrivenPath {
+    poses: Vec<TimedPose>,
+    carriages: SmallVec<[Carriage; 1]>,
+    width: Metre,
+    ended: bool,
+}
+
+/// The position of its front bumper at a time, and its heading.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct TimedPose {
+    pub time: Second,
+    front: Point,
+    heading: Radian,
+}
+
+impl TimedPose {
+    fn stands_as(&self, other: &Self) -> bool {
+        (self.front, self.heading) == (other.front, other.heading)
+    }
+}
+
+impl DrivenPath {
+    /// An empty path of a road user that does not bend.
+    pub fn new(length: Metre, width: Metre) -> Self {
+        Self::of_carriages([Carriage { behind: 0.0, length }], width)
+    }
+
+    /// An empty path of a road user with these carriages.
+    pub fn of_carriages(carriages: impl IntoIterator<Item = Carriage>, width: Metre) -> Self {
+        Self { carriages: carriages.into_iter().collect(), width, ..Self::default() }
+    }
+
+    /// Adds the position of its front bumper at a time, and its heading. While it stands, no more is kept than when it
+    /// began and ended.
+    pub fn push(&mut self, time: Second, front: Point, heading: Radian) {
+        let pose = TimedPose { time, front, heading };
+        match &mut self.poses[..] {
+            [.., before, last] if before.stands_as(last) && last.stands_as(&pose) => last.time = time,
+            _ => self.poses.push(pose),
+        }
+    }
+
+    /// Marks that it has left the scene.
+    pub fn end(&mut self) {
+        self.ended = true;
+    }
+
+    /// Whether it has left the scene.
+    pub fn has_ended(&self) -> bool {
+        self.ended
+    }
+
+    /// The path of each carriage.
+    pub(super) fn courses(&self) -> SmallVec<[Course<'_>; 1]> {
+        let of = |carriage: &Carriage| {
+            let poses = if carriage.behind > 0.0 { self.trailing(carriage).into() } else { self.poses[..].into() };
+            Course { poses, length: carriage.length, width: self.width }
+        };
+        self.carriages.iter().map(of).collect()
+    }
+
+    /// The poses of a carriage whose front and rear go where the front bumper went, and straight on before that is known.
+    fn trailing(&self, carriage: &Carriage) -> Vec<TimedPose> {
+        let Some(first) = self.poses.first() else { return Vec::new() };
+        let mut way = 0.0;
+        let mut ways = vec![way];
+        ways.extend(self.poses.windows(2).map(|pair| {
+            way += (pair[1].front - pair[0].front).norm();
+            way
+        }));
+        let place = |way: Metre| {
+            let next = ways.partition_point(|reached| *reached < way);
+            if next == 0 {
+                return first.front + direction(first.heading) * way;
+            }
+            let part = (way - ways[next - 1]) / (ways[next] - ways[next - 1]);
+            self.poses[next - 1].front + (self.poses[next].front - self.poses[next - 1].front) * part
+        };
+        let pose = |(pose, way): (&TimedPose, &Metre)| {
+            let [front, rear] = [0.0, carriage.length].map(|length| place(way - carriage.behind - length));
+            TimedPose { time: pose.time, front, heading: (front.y - rear.y).atan2(front.x - rear.x) }
+        };
+        self.poses.iter().zip(&ways).map(pose).collect()
+    }
+}
+
+/// The path of one carriage.
+pub(super) struct Course<'a> {
+    pub poses: Cow<'a, [TimedPose]>,
+    pub length: Metre,
+    pub width: Metre,
+}
+
+impl Course<'_> {
+    pub fn pose(&self, pose: &TimedPose) -> Pose {
+        Pose { distance: 0.0, front: pose.front, axis: direction(pose.heading) }
+    }
+
+    pub fn bounds_at(&self, pose: &Pose) -> Bounds {
+        Rectangle::behind(pose.front, pose.axis, self.length, self.width).bounds()
+    }
+}
+
+/// The box around all that these covered, larger than any rounding error.
+pub(super) fn bounds(courses: &[Course]) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    for course in courses {
+        course.poses.iter().for_each(|pose| bounds.join(&course.bounds_at(&course.pose(pose))));
+    }
+    bounds.grown(TOLERANCE)
+}
