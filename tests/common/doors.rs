@@ -68,7 +68,7 @@ pub fn net(bytes: &[u8]) {
         assert!(net.lane_at(lane.shape[0]).is_some());
     }
     let overlaps = net.overlaps();
-    net.remarks(&overlaps);
+    net.remarks(&overlaps, 0.25);
 }
 
 /// Any text as a TOML file of options gives words or an error.
