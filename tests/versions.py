@@ -2,8 +2,8 @@
 
     make versions [VERSIONS="oldest 1.24.0 newest"]
 
-Each SUMO has a folder of its own in target/versions. A scenario is run three times: by `closecall run`, by a script with a
-Checker, and by one that must use Python's getters. Their logs must be equal, to the byte; and a replay of the positions that
+Each SUMO has a folder of its own in target/versions. A scenario is run three times: by `closecall run`, by a script
+with a Checker, and by one that must use Python's getters. Their logs must be equal, to the byte; and a replay of what
 SUMO wrote must find the same conflicts. A version that compiled.rs does not name must be read through Python.
 """
 

@@ -74,7 +74,7 @@ print(json.dumps({"calls": asked, "entered": entered, "taken": taken, **seen}))
 """
 """Counts calls of Python's getter of the angle. `turned`: it returns another angle than C++. `nowhere`: the module is
 not at the path that it states. `older`: of the module's version closecall knows only libsumo's interface. `unknown`: it
-knows nothing of it. At the end the script removes a vehicle, whose id is then unknown, and loads the simulation again."""
+knows nothing of it. At the end the script removes a vehicle (its id is then unknown) and loads the simulation again."""
 
 SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 20)]
 """Scenes with roads on two levels, with pedestrians, with bus passengers, and with all kinds of vehicles."""
