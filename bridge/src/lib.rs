@@ -17,6 +17,7 @@ mod provenance;
 mod pull;
 mod rows;
 mod run;
+mod say;
 mod session;
 mod start;
 mod step_times;

@@ -160,6 +160,11 @@ impl<'a, 'py> Session<'a, 'py> {
         let time = self.source.time(py)?;
         *now = time + self.step_length;
         self.source.pull(py, run, time)?;
+        if let Some(remark) = self.source.take_remark()
+            && !self.request.quiet
+        {
+            eprintln!("closecall: {remark}");
+        }
         self.spent.add(TimedPart::Pull, &mut since);
         self.source.update_paths(py, run)?;
         self.is_unfinished = true;

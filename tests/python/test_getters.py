@@ -1,6 +1,7 @@
 """States read through libsumo's C++ interface, through the functions below it, or through its Python getters are equal.
 
-closecall falls back to the Python getters where the C++ functions cannot be called or disagree with them.
+closecall falls back to the Python getters where the C++ functions are not verified for this SUMO, cannot be called, or
+disagree with them.
 """
 
 from __future__ import annotations
@@ -41,8 +42,9 @@ for domain in ("vehicle", "person"):
     counted(domain, "getAngle", (lambda angle: angle + 90) if turned else (lambda angle: angle))
 if change == "nowhere":
     _libsumo.__file__ = "/nowhere/_libsumo.so"
-if change == "unknown":
-    _libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
+versions = {"older": "SUMO 1.27.0", "unknown": "SUMO 99.0.0"}
+if change in versions:
+    _libsumo.simulation_getVersion = lambda: (23, versions[change])
 libsumo.start(["sumo", "-c", config, "--no-warnings", *more])
 checker = closecall.Checker(libsumo, out=out, log_series=True, epsilon=10.0)
 entered, steps, teleports, rides = collections.Counter(), collections.Counter(), 0, 0
@@ -67,12 +69,12 @@ libsumo.simulationStep()
 assert not checker.step()
 checker.close()
 libsumo.close()
-seen = {"steps": steps, "teleports": teleports, "rides": rides}
+seen = {"steps": steps, "teleports": teleports, "rides": rides, "getters": checker.getters}
 print(json.dumps({"calls": asked, "entered": entered, "taken": taken, **seen}))
 """
 """Counts calls of Python's getter of the angle. `turned`: it returns another angle than C++. `nowhere`: the module is
-not at the path that it states. `unknown`: the module is of a SUMO version of which closecall knows only libsumo's
-interface. At the end the script removes a vehicle, whose id is then unknown, and loads the simulation again."""
+not at the path that it states. `older`: of the module's version closecall knows only libsumo's interface. `unknown`: it
+knows nothing of it. At the end the script removes a vehicle (its id is then unknown) and loads the simulation again."""
 
 SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 20)]
 """Scenes with roads on two levels, with pedestrians, with bus passengers, and with all kinds of vehicles."""
@@ -83,7 +85,7 @@ def checked(scene: str, end: int, out: Path, change: str = "none", *more: str) -
     done = python(CHECK, NETS / scene / f"{scene}.sumocfg", out, str(end), change, *more)
     assert done.returncode == 0, done.stderr
     asked: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
-    return asked
+    return {**asked, "said": [line for line in done.stderr.splitlines() if "SUMO" in line]}
 
 
 def logged(out: Path) -> list[bytes]:
@@ -105,10 +107,11 @@ needs_valgrind = pytest.mark.skipif(
 @pytest.mark.parametrize(("scene", "end"), SCENES)
 def test_every_interface_of_libsumo_gives_the_same_states(scene: str, end: int, tmp_path: Path) -> None:
     compiled = checked(scene, end, tmp_path / "compiled")
-    of_unknown = checked(scene, end, tmp_path / "unknown", "unknown")
+    of_older = checked(scene, end, tmp_path / "older", "older")
     through_python = checked(scene, end, tmp_path / "python", "nowhere")
-    assert logged(tmp_path / "compiled") == logged(tmp_path / "unknown") == logged(tmp_path / "python")
-    assert compiled["calls"] == of_unknown["calls"]
+    assert [run["getters"] for run in (of_older, through_python)] == ["libsumo", "python"]
+    assert logged(tmp_path / "compiled") == logged(tmp_path / "older") == logged(tmp_path / "python")
+    assert compiled["calls"] == of_older["calls"]
     assert logged(tmp_path / "compiled")[1].count(b"\n") > 1
     assert scene == "bridge" or compiled["steps"]["person"] > 0
     assert (compiled["rides"] > 0) == (scene == "crowd")
@@ -118,36 +121,65 @@ def test_every_interface_of_libsumo_gives_the_same_states(scene: str, end: int, 
 
 
 def test_a_teleporting_vehicle_is_absent_through_every_interface(tmp_path: Path) -> None:
-    for change in ("none", "unknown", "nowhere"):
+    for change in ("none", "older", "nowhere"):
         counted = checked("signals", 120, tmp_path / change, change, "--time-to-teleport", "2")
         assert counted["teleports"] > 0
-    assert logged(tmp_path / "none") == logged(tmp_path / "unknown") == logged(tmp_path / "nowhere")
+    assert logged(tmp_path / "none") == logged(tmp_path / "older") == logged(tmp_path / "nowhere")
+
+
+ANNOUNCED = "SUMO 99.0.0: closecall does not know its C++ functions and reads through Python, which takes longer"
+
+COMMAND = """
+import sys
+from libsumo import _libsumo
+_libsumo.simulation_getVersion = lambda: (23, "SUMO 99.0.0")
+from closecall._closecall import main
+sys.exit(main(["closecall", "run", *sys.argv[1:]]))
+"""
+
+
+@needs_compiled
+def test_an_unverified_sumo_is_read_through_python_and_announced_once(tmp_path: Path) -> None:
+    counted = checked("reckless", 30, tmp_path / "unknown", "unknown")
+    assert (counted["getters"], counted["said"]) == ("python", [f"closecall: {ANNOUNCED}"])
+    assert counted["calls"]["vehicle"] >= counted["steps"]["vehicle"] > 0
+    verified = checked("reckless", 30, tmp_path / "same")
+    assert (verified["getters"], verified["said"]) == ("direct", [])
+    assert logged(tmp_path / "unknown") == logged(tmp_path / "same")
+    scenario = NETS / "reckless" / "reckless.sumocfg"
+    for words, lines in ((), 1), (("--quiet",), 0):
+        done = python(COMMAND, scenario, "--end", "30", "--out", tmp_path / "run", *words)
+        assert done.returncode == 0, done.stderr
+        assert done.stderr.count(f"closecall: {ANNOUNCED}\n") == lines
 
 
 @needs_compiled
 def test_a_known_sumo_exports_the_functions_called_directly() -> None:
     sources = Path(__file__).parents[2] / "bridge/src/pull"
-    (known,) = re.findall(r'const KNOWN: &str = "(.*)";', (sources / "compiled.rs").read_text())
+    known = re.findall(r'\("(SUMO .*)", Verified::Behind\)', (sources / "compiled.rs").read_text())
     names = re.findall(r'find\(direct\.\w+, "(\w+)"\)', (sources / "compiled.cpp").read_text())
     ask = "from libsumo import _libsumo; print(_libsumo.__file__); print(_libsumo.simulation_getVersion()[1])"
     file, version = python(ask).stdout.splitlines()[-2:]
     missing = [name for name in names if not hasattr(ctypes.CDLL(file), name)]
     assert len(names) == 11
-    assert not (version.startswith(known) and missing)
+    assert known and not (version in known and missing)
 
 
 @needs_compiled
 def test_python_getters_decide_where_compiled_ones_disagree(tmp_path: Path) -> None:
     turned = checked("pedestrian", 60, tmp_path / "turned", "turned")
     assert turned["calls"]["vehicle"] >= turned["steps"]["vehicle"] > 0
+    assert turned["getters"] == "python"
+    (line,) = turned["said"]
+    assert "its C++ functions and Python's differ" in line
     checked("pedestrian", 60, tmp_path / "same")
     assert logged(tmp_path / "turned") != logged(tmp_path / "same")
 
 
 def test_a_removed_vehicle_is_absent_through_every_interface(tmp_path: Path) -> None:
-    for change in ("none", "unknown", "nowhere"):
+    for change in ("none", "older", "nowhere"):
         assert checked("reckless", 30, tmp_path / change, change)["taken"]
-    assert logged(tmp_path / "none") == logged(tmp_path / "unknown") == logged(tmp_path / "nowhere")
+    assert logged(tmp_path / "none") == logged(tmp_path / "older") == logged(tmp_path / "nowhere")
 
 
 @needs_compiled

@@ -30,9 +30,24 @@ pub struct Compiled {
     direct: [Function; 7],
 }
 
-/// The version prefix of the SUMO whose functions behind libsumo's getters are those that compiled.cpp declares. They are
-/// not part of libsumo's interface.
-const KNOWN: &str = "SUMO 1.28.";
+/// How much of a SUMO is what compiled.cpp declares.
+#[derive(Clone, Copy, PartialEq)]
+enum Verified {
+    /// The functions of libsumo's interface.
+    Interface,
+    /// Those behind them too, which are not part of that interface.
+    Behind,
+}
+
+/// The versions of SUMO that `make versions` compares with Python's getters. Of any other nothing is called: a function of
+/// the same name may return something else.
+/// The wheels before 1.26 have the strings of before C++11, so that other functions are meant by their names.
+const VERIFIED: [(&str, Verified); 4] = [
+    ("SUMO 1.26.0", Verified::Interface),
+    ("SUMO 1.27.0", Verified::Interface),
+    ("SUMO 1.27.1", Verified::Interface),
+    ("SUMO 1.28.0", Verified::Behind),
+];
 
 /// `User` of compiled.cpp: the address of a road user in SUMO's memory; 0 if not known yet.
 type Address = usize;
@@ -78,8 +93,13 @@ unsafe extern "C" {
 }
 
 impl Compiled {
-    /// The functions of the libsumo that Python has loaded from this file; none if it has not, or if one is missing.
+    /// Whether such functions are to be expected.
+    pub const IS_BUILT: bool = true;
+
+    /// The functions of the libsumo that Python has loaded from this file; none if it has not, if its version is not
+    /// verified, or if one is missing.
     pub fn of(file: &Path, version: &str, domain: Domain) -> Option<Self> {
+        let (_, verified) = VERIFIED.iter().find(|(known, _)| *known == version)?;
         let path = CString::new(file.as_os_str().as_encoded_bytes()).ok()?;
         let (name, may_be_inside) = match domain {
             Domain::Vehicle => (c"7Vehicle", false),
@@ -87,11 +107,16 @@ impl Compiled {
         };
         let direct = [None; 7];
         let mut found = Self { position: None, angle: None, speed: None, inside: None, route: None, direct };
-        let (file, name, is_known) = (path.as_ptr(), name.as_ptr(), version.starts_with(KNOWN));
+        let (file, name, is_known) = (path.as_ptr(), name.as_ptr(), *verified == Verified::Behind);
         // SAFETY: both strings end with a zero and live until the call returns. `found` has the layout of what is written to
         // it, in which a null pointer is `None`.
         let is_complete = unsafe { closecall_find(file, name, may_be_inside, is_known, &raw mut found) };
         is_complete.then_some(found)
+    }
+
+    /// Whether the functions behind libsumo's interface are called.
+    pub fn is_direct(&self) -> bool {
+        self.direct.iter().any(Option::is_some)
     }
 
     /// The state of a road user; none if libsumo does not know this id.

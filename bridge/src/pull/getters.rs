@@ -1,5 +1,5 @@
-//! Position, angle and speed of a road user, from libsumo's C++ functions if they can be called and agree with its Python
-//! getters, otherwise from the Python getters.
+//! Position, angle and speed of a road user, from libsumo's C++ functions if they are verified, can be called and agree with
+//! its Python getters, otherwise from the Python getters.
 
 use std::path::PathBuf;
 
@@ -12,6 +12,17 @@ use super::compiled::{Compiled, KeptAddress};
 use super::reading::{Domain, Reading};
 use super::sumo;
 
+/// What road users are read through: the fastest last.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Through {
+    /// Python's getters.
+    Python,
+    /// The functions of libsumo's C++ interface.
+    Libsumo,
+    /// SUMO's functions behind them.
+    Direct,
+}
+
 /// The getters of one domain.
 pub struct Getters {
     position: Py<PyAny>,
@@ -19,6 +30,9 @@ pub struct Getters {
     speed: Py<PyAny>,
     inside: Option<Py<PyAny>>,
     compiled: Option<Compiled>,
+    version: String,
+    /// Why Python's getters are used where others were to be expected, until it is said.
+    remark: Option<String>,
 }
 
 impl Getters {
@@ -31,13 +45,37 @@ impl Getters {
         let function = |getter: &str| module.getattr(format!("{name}_{getter}")).map(Bound::unbind);
         let file = module.getattr("__file__").and_then(|file| file.extract::<PathBuf>()).ok();
         let (_, version) = module.call_method0("simulation_getVersion")?.extract::<(i64, String)>()?;
+        let compiled = file.and_then(|file| Compiled::of(&file, &version, domain));
+        let remark = (Compiled::IS_BUILT && compiled.is_none()).then(|| {
+            format!("{version}: closecall does not know its C++ functions and reads through Python, which takes longer")
+        });
         Ok(Self {
             position: function("getPosition3D")?,
             angle: function("getAngle")?,
             speed: function("getSpeed")?,
             inside: if domain == Domain::Person { Some(function("getVehicle")?) } else { None },
-            compiled: file.and_then(|file| Compiled::of(&file, &version, domain)),
+            compiled,
+            version,
+            remark,
         })
+    }
+
+    pub fn through(&self) -> Through {
+        match &self.compiled {
+            Some(compiled) if compiled.is_direct() => Through::Direct,
+            Some(_) => Through::Libsumo,
+            None => Through::Python,
+        }
+    }
+
+    /// Reads through Python's getters from now on.
+    pub fn use_python(&mut self) {
+        self.compiled = None;
+    }
+
+    /// Why Python's getters are used where others were to be expected; only the first time.
+    pub fn take_remark(&mut self) -> Option<String> {
+        self.remark.take()
     }
 
     /// Reads a road user that enters with both kinds of getters. After the first difference only Python's are used.
@@ -47,6 +85,10 @@ impl Getters {
             && compiled.read(id, None).is_none_or(|read| !same(read, asked))
         {
             self.compiled = None;
+            self.remark = Some(format!(
+                "{}: its C++ functions and Python's differ for \"{id}\"; closecall reads through Python, which takes longer",
+                self.version
+            ));
         }
     }
 

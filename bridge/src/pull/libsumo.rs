@@ -8,6 +8,7 @@ use closecall::{Options, Placement, Run};
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 
+use super::getters::Through;
 use super::libsumo_domain::LibsumoDomain;
 use super::reading::Domain;
 use super::sumo::{self, TypeProfiles};
@@ -79,6 +80,17 @@ impl Libsumo {
         self.persons.keep_addresses();
     }
 
+    /// What road users are read through: where either vehicles or persons need Python, both use it.
+    pub fn through(&self) -> Through {
+        self.vehicles.getters.through().min(self.persons.getters.through())
+    }
+
+    /// Why road users are read more slowly than is to be expected; only the first time.
+    pub fn take_remark(&mut self) -> Option<String> {
+        let of_persons = self.persons.getters.take_remark();
+        self.vehicles.getters.take_remark().or(of_persons)
+    }
+
     pub fn time(&self, py: Python) -> PyResult<Second> {
         Ok(sumo::time_of_states(self.time.bind(py).call0()?.extract()?, self.step_length))
     }
@@ -101,6 +113,10 @@ impl Libsumo {
             }
         }
         self.persons.update(py, run, jumped, |run, name| self.types.person(py, run, name))?;
+        if self.through() == Through::Python {
+            self.vehicles.getters.use_python();
+            self.persons.getters.use_python();
+        }
         self.park(py, run, jumped)?;
         self.vehicles.read(py, run)?;
         self.persons.read(py, run)

@@ -18,6 +18,7 @@ use closecall::{Options, Run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+use self::getters::Through;
 use self::libsumo::Libsumo;
 use self::traci::Traci;
 
@@ -58,6 +59,26 @@ impl Source {
         match self {
             Self::Libsumo(source) => source.set_exclusive(),
             Self::Traci(_) => {}
+        }
+    }
+
+    /// What road users are read through, as in docs/attach.md.
+    pub fn getters(&self) -> &'static str {
+        match self {
+            Self::Libsumo(source) => match source.through() {
+                Through::Direct => "direct",
+                Through::Libsumo => "libsumo",
+                Through::Python => "python",
+            },
+            Self::Traci(_) => "traci",
+        }
+    }
+
+    /// Why road users are read more slowly than is to be expected; only the first time.
+    pub fn take_remark(&mut self) -> Option<String> {
+        match self {
+            Self::Libsumo(source) => source.take_remark(),
+            Self::Traci(_) => None,
         }
     }
 

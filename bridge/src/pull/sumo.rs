@@ -96,13 +96,17 @@ impl TypeProfiles {
     fn ask(&self, py: Python, name: &str) -> PyResult<SumoType> {
         let domain = self.domain.bind(py);
         let number = |getter: &str| domain.call_method1(getter, (name,))?.extract::<f64>();
+        let vehicle_class = domain.call_method1("getVehicleClass", (name,))?.extract::<String>()?;
+        // An older SUMO does not tell a type's mass.
+        let mass =
+            if domain.hasattr("getMass")? { number("getMass")? } else { SumoType::of_class(name, &vehicle_class).mass };
         Ok(SumoType {
             name: name.to_owned(),
-            vehicle_class: domain.call_method1("getVehicleClass", (name,))?.extract()?,
+            vehicle_class,
             shape: domain.call_method1("getShapeClass", (name,))?.extract()?,
             length: number("getLength")?,
             width: number("getWidth")?,
-            mass: number("getMass")?,
+            mass,
             emergency_decel: number("getEmergencyDecel")?,
             decel: number("getDecel")?,
             tau: number("getTau")?,
