@@ -24,7 +24,7 @@ pub struct StudyArgs {
     /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Fewer items, repetitions, values and seeds; without a scenario it takes under two minutes.
+    /// Fewer items, repetitions, values and seeds; without a scenario it takes about two minutes.
     #[arg(long)]
     quick: bool,
     /// Measure only this axis of closecall's own choices.

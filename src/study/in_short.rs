@@ -4,7 +4,6 @@
 use std::fmt::Write;
 
 use super::measurement::{Axis, Measurement};
-use super::page::number;
 
 /// One line per axis, on the set of items on which closecall's choice errs most.
 pub(super) fn table(text: &mut String, rows: &[Measurement]) {
@@ -40,6 +39,18 @@ pub(super) fn table(text: &mut String, rows: &[Measurement]) {
 fn said(row: &Measurement) -> String {
     let own = row.parameter.strip_prefix(row.scene.trim_end_matches(", gap")).unwrap_or_default();
     format!("{}{own}: {} in {}", row.method, number(row.error), time(row.ns_per_item))
+}
+
+/// A number with three digits, or with a power of ten.
+pub(super) fn number(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".to_owned(),
+        size if (0.01..1e6).contains(&size) => {
+            let digits = (2 - size.log10().floor() as i32).max(0) as usize;
+            format!("{value:.digits$}")
+        }
+        _ => format!("{value:.1e}"),
+    }
 }
 
 /// A time in ns with a unit that keeps it short.

@@ -108,7 +108,7 @@ pub struct Measurement {
 /// The extent of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Fewer items and repetitions, so that all axes take less than two minutes.
+    /// Fewer items and repetitions, so that all axes take about two minutes.
     pub quick: bool,
     /// The folder of the scenarios for the axes that need SUMO.
     pub nets: PathBuf,

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::clock::machine;
-use super::in_short;
+use super::in_short::{self, number};
 use super::measurement::{Axis, Measurement, distinct};
 
 /// The question of an axis, and the reference of its errors.
@@ -74,17 +74,6 @@ fn line(row: &Measurement) -> String {
         number(row.ns_per_item),
         if row.on_pareto_front { "●" } else { "" }
     )
-}
-
-pub(super) fn number(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".to_owned(),
-        size if (0.01..1e6).contains(&size) => {
-            let digits = (2 - size.log10().floor() as i32).max(0) as usize;
-            format!("{value:.digits$}")
-        }
-        _ => format!("{value:.1e}"),
-    }
 }
 
 fn share(value: f64) -> String {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::FxHashSet;
 
 use super::clock::median;
 use super::driven::IdPair;
@@ -17,7 +17,7 @@ use crate::{Error, Result};
 const NETS: [&str; 3] = ["left_turn", "roundabout", "signals"];
 /// The period of the recordings from which the others are made.
 const PERIOD: Second = 0.1;
-/// Conflicts are compared at these times only, which all recordings have.
+/// Gaps are compared at these times only, which all recordings have.
 const COMPARED: Second = 1.0;
 /// The attributes of fcd-output that closecall reads as numbers.
 const NUMBERS: [&str; 9] = ["x", "y", "z", "angle", "speed", "pos", "acceleration", "posLat", "speedLat"];
@@ -69,6 +69,7 @@ impl Kept {
     fn parameter(self) -> String {
         match self {
             Self::All | Self::F32 => String::new(),
+            Self::Decimals(1) => ", 1 decimal".to_owned(),
             Self::Decimals(count) => format!(", {count} decimals"),
             Self::Period(period) => format!(", every {period} s"),
         }
@@ -143,13 +144,18 @@ fn measure_net(scenario: &RecordedScenario, scratch: &Path, rounds: usize) -> Re
         files.push(file);
     }
     let mut found = vec![GapsByStep::new(); METHODS.len()];
+    let mut pairs = vec![FxHashSet::default(); METHODS.len()];
     let mut times = vec![Vec::new(); METHODS.len()];
     let mut seconds = vec![0.0; METHODS.len()];
     for round in 0..rounds {
         for (index, file) in files.iter().enumerate() {
             let timed = scenario.replay(file, &Options::default(), &mut |run| {
-                if round == 0 && is_at(run.frame.time, COMPARED) {
-                    found[index].push(conflicts(run));
+                if round == 0 {
+                    let gaps = conflicts(run);
+                    pairs[index].extend(gaps.keys().cloned());
+                    if is_at(run.frame.time, COMPARED) {
+                        found[index].push(gaps);
+                    }
                 }
             })?;
             seconds[index] = timed.rows as f64 * METHODS[index].period();
@@ -158,17 +164,18 @@ fn measure_net(scenario: &RecordedScenario, scratch: &Path, rounds: usize) -> Re
     }
     let mut rows = Vec::new();
     for (index, kept) in METHODS.into_iter().enumerate() {
-        let [missed, invented, gap_error] = differences(&found[index], &found[0]);
+        let [missed, invented] = [share_without(&pairs[0], &pairs[index]), share_without(&pairs[index], &pairs[0])];
+        let gap_error = gap_error(&found[index], &found[0]);
         let ns_per_item = median(&mut times[index]);
         let name = scenario.name;
         let errors = [
-            ("share of conflicts missed or invented", (missed + invented) / 2.0, name.to_owned()),
+            ("share of pairs in conflict missed or invented", missed + invented, name.to_owned()),
             ("median error of the gap, m", gap_error, format!("{name}, gap")),
         ];
         rows.extend(errors.map(|(error_name, error, scene)| Measurement {
             axis: Axis::Recording,
             method: kept.name(),
-            parameter: format!("{scene}{}", kept.parameter()),
+            parameter: format!("{name}{}", kept.parameter()),
             error_name,
             error,
             false_negative_rate: missed,
@@ -183,21 +190,18 @@ fn measure_net(scenario: &RecordedScenario, scratch: &Path, rounds: usize) -> Re
     Ok(rows)
 }
 
-/// The shares of conflicts that are missed and that are invented, and the median difference of the gaps of all others.
-fn differences(found: &GapsByStep, truth: &GapsByStep) -> [f64; 3] {
-    let without = |a: &FxHashMap<IdPair, Metre>, b: &FxHashMap<IdPair, Metre>| {
-        a.keys().filter(|pair| !b.contains_key(*pair)).count() as f64
-    };
-    let share = |a: &GapsByStep, b: &GapsByStep| {
-        let all = a.iter().map(FxHashMap::len).sum::<usize>();
-        a.iter().zip(b).map(|(a, b)| without(a, b)).sum::<f64>() / all.max(1) as f64
-    };
+/// The share of these pairs that are not among the others.
+fn share_without(pairs: &FxHashSet<IdPair>, others: &FxHashSet<IdPair>) -> f64 {
+    pairs.difference(others).count() as f64 / pairs.len().max(1) as f64
+}
+
+/// The median difference of the gaps of pairs that are in conflict in both.
+fn gap_error(found: &GapsByStep, truth: &GapsByStep) -> Metre {
     let both = found.iter().zip(truth).flat_map(|(found, truth)| {
         found.iter().filter_map(|(pair, gap)| truth.get(pair).map(|truth| (gap - truth).abs()))
     });
     let mut off = both.map(|off| if off < ROUNDING { 0.0 } else { off }).collect::<Vec<_>>();
-    let gap_error = if off.is_empty() { 0.0 } else { median(&mut off) };
-    [share(truth, found), share(found, truth), gap_error]
+    if off.is_empty() { 0.0 } else { median(&mut off) }
 }
 
 #[cfg(test)]
