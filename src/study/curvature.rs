@@ -122,7 +122,7 @@ fn drive(chance: &mut Chance, noise: Noise) -> Vec<Seen> {
 }
 
 /// The curvature at each state.
-fn curvatures<'a>(drive: &'a [Seen], windows: f64) -> impl Iterator<Item = (&'a Seen, f64)> {
+fn curvatures(drive: &[Seen], windows: f64) -> impl Iterator<Item = (&Seen, f64)> {
     let mut turning = Turning::default();
     drive.iter().map(move |seen| {
         turning.see_within(windows, seen.time, seen.front, seen.axis);

@@ -23,7 +23,7 @@ pub(super) fn table(text: &mut String, rows: &[Measurement]) {
             a.error.total_cmp(&b.error).then(a.ns_per_item.total_cmp(&b.ns_per_item))
         };
         let exact = others().min_by(by_error);
-        let [fastest, exact] = [fastest, exact].map(|other| other.map_or(String::new(), |other| said(other)));
+        let [fastest, exact] = [fastest, exact].map(|other| other.map_or(String::new(), said));
         let name = axis.name();
         let _ = writeln!(
             text,
