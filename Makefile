@@ -27,8 +27,8 @@ rust-tests:
 stress: $(VENV)/wheel ## stiff and extreme cases against exact references, a million of them
 	$(BIN)/closecall stress --cases 1000000
 
-study: $(VENV)/wheel ## error against run time, for every choice that closecall makes
-	$(BIN)/closecall study --quick --out docs/study
+study: $(VENV)/wheel ## error against run time, for every choice that closecall makes; half an hour on an idle machine
+	$(BIN)/closecall study --out docs/study
 
 DOORS := $(notdir $(wildcard tests/fuzz/*))
 FUZZ := PATH=$(CURDIR)/target/tools/bin:$$PATH cargo +nightly fuzz run

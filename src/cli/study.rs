@@ -24,13 +24,13 @@ pub struct StudyArgs {
     /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Fewer items, repetitions, values and seeds; without a scenario it takes under two minutes.
+    /// Fewer items, repetitions, values and seeds; without a scenario it takes about two minutes.
     #[arg(long)]
     quick: bool,
     /// Measure only this axis of closecall's own choices.
     #[arg(long, value_enum, value_name = "AXIS", conflicts_with = "scenario")]
     only: Option<Axis>,
-    /// Folder with the scenarios for the path axis of closecall's own choices.
+    /// Folder with the scenarios for the axes of closecall's own choices that replay recordings.
     #[arg(long, value_name = "DIR", default_value = "sumo_nets", conflicts_with = "scenario")]
     nets: PathBuf,
     #[command(flatten)]
@@ -65,14 +65,14 @@ fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
                 };
                 study::measure(axis, &plan, Some(&mut record))?
             }
-            None if axis == Axis::Path && arguments.only.is_none() => {
+            None if axis.needs_sumo() && arguments.only.is_none() => {
                 eprintln!("skipped: this binary was built without Python and cannot run SUMO");
                 continue;
             }
             None => study::measure(axis, &plan, None)?,
         };
         rows.extend(measured);
-        study::write(&out, &rows)?;
+        study::write(&out, &rows, &plan)?;
     }
     say(format_args!("{} rows in {}\n", rows.len(), out.join("study.csv").display()))?;
     let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);

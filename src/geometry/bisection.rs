@@ -26,8 +26,10 @@ pub struct Part(u32);
 
 /// Movements, and the halves that they have been cut into so far. Reuse one instance to keep its allocations; each
 /// query first clears the previous one's movements.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub struct Bisection {
+    /// How exactly movements are swept, in m.
+    tolerance: Metre,
     parts: Vec<SweptPart>,
     /// The hulls that have been computed.
     hulls: Vec<Polygon>,
@@ -35,15 +37,36 @@ pub struct Bisection {
     numbered: Vec<Option<Part>>,
 }
 
+impl Default for Bisection {
+    fn default() -> Self {
+        Self { tolerance: TOLERANCE, parts: Vec::new(), hulls: Vec::new(), numbered: Vec::new() }
+    }
+}
+
 impl Bisection {
     /// An instance to be kept between simulation steps: its capacity is allocated at once and does not grow with the
     /// traffic.
     pub fn to_keep() -> Self {
-        Self { parts: Vec::with_capacity(KEPT), hulls: Vec::with_capacity(KEPT), numbered: Vec::with_capacity(KEPT) }
+        let mut kept = Self::default();
+        kept.parts.reserve(KEPT);
+        kept.hulls.reserve(KEPT);
+        kept.numbered.reserve(KEPT);
+        kept
     }
 
-    /// Removes all movements.
+    /// Sweeps to this tolerance from now on; movements that were added stay, and are cut further where they have to be.
+    pub fn sweep_to(&mut self, tolerance: Metre) {
+        self.tolerance = tolerance;
+    }
+
+    /// How far apart two rectangles may be where the sweep of both finds contact, in m.
+    pub fn inexact(&self) -> Metre {
+        2.0 * self.tolerance
+    }
+
+    /// Removes all movements; new ones are swept to [`TOLERANCE`].
     pub fn clear(&mut self) {
+        self.tolerance = TOLERANCE;
         self.parts.clear();
         self.hulls.clear();
         self.numbered.clear();
@@ -130,7 +153,7 @@ impl Bisection {
         }
         let whole = self.parts[of as usize].movement;
         let area = &mut self.parts[other as usize];
-        let fits = area.fits();
+        let fits = area.fits(self.tolerance);
         let stray = area.stray();
         let hull = *area.hull(&mut self.hulls);
         if !fits && known != which.none() && self.is_clear(of, &hull, stray, which, known) {
@@ -156,9 +179,9 @@ impl Bisection {
             return None;
         }
         let part = &mut self.parts[of as usize];
-        if part.is_straight() {
+        if part.is_straight(self.tolerance) {
             let near = if known == which.none() { part.bounds } else { part.slide_before(which, known).bounds };
-            if !near.grown(2.0 * TOLERANCE).meet(&fixed.bounds) {
+            if !near.grown(2.0 * self.tolerance).meet(&fixed.bounds) {
                 return None;
             }
             return part.slide_to(&fixed.outline).map(|contact| contact.at(which));
@@ -180,13 +203,13 @@ impl Bisection {
             return true;
         }
         let part = &mut self.parts[of as usize];
-        let room = stray + part.stray() + TOLERANCE;
+        let room = stray + part.stray() + self.tolerance;
         if !part.bounds.grown(room).meet(&hull.bounds)
             || part.hull(&mut self.hulls).outline.is_further_than(room, &hull.outline)
         {
             return true;
         }
-        if part.is_straight() {
+        if part.is_straight(self.tolerance) {
             let better = part.slide_before(which, known);
             return !better.bounds.grown(room).meet(&hull.bounds)
                 || better.movement.hull().is_further_than(room, &hull.outline);

@@ -12,8 +12,16 @@ use super::separating_axes::{ContactInterval, slide};
 use super::{Point, Vector, cross};
 use crate::util::units::Metre;
 
-/// Largest error in the position of a moving rectangle's corner, in m.
+/// How far a corner of a moving rectangle may be from where it is taken to be while pairs that do not meet are ruled out,
+/// in m.
 pub const TOLERANCE: Metre = 0.01;
+
+/// The same where a pair is in conflict, in m: where one comes along the flank of the way of another, a centimetre to the
+/// side is metres along the way.
+pub const FINE: Metre = 1e-4;
+
+/// The same between two poses of a path, where the line through them cuts a corner, in m.
+pub const POSES: Metre = 1e-3;
 
 /// A movement that deviates from the heading by less than this covers a rectangle, in m: more than rounding, far less
 /// than the tolerance.

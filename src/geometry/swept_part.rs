@@ -4,7 +4,7 @@ use super::convex::ConvexOutline;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, ContactInterval, translation};
-use super::sweep::{Movement, TOLERANCE};
+use super::sweep::Movement;
 use super::{Bounds, Vector};
 use crate::util::units::Metre;
 
@@ -92,14 +92,14 @@ impl SweptPart {
         [first, second].map(|half| Self { halvings: self.halvings + 1, ..Self::new(half) })
     }
 
-    /// Whether its hull reaches beyond the area that it covers by no more than the tolerance.
-    pub fn fits(&self) -> bool {
-        self.excess() <= TOLERANCE || self.halvings >= MOST_HALVINGS
+    /// Whether its hull reaches beyond the area that it covers by no more than a tolerance.
+    pub fn fits(&self, tolerance: Metre) -> bool {
+        self.excess() <= tolerance || self.halvings >= MOST_HALVINGS
     }
 
-    /// Whether a translation along the middle direction takes its corners where the movement does, to the tolerance.
-    pub fn is_straight(&self) -> bool {
-        self.bend() <= TOLERANCE || self.halvings >= MOST_HALVINGS
+    /// Whether a translation along the middle direction takes its corners where the movement does, to a tolerance.
+    pub fn is_straight(&self, tolerance: Metre) -> bool {
+        self.bend() <= tolerance || self.halvings >= MOST_HALVINGS
     }
 
     /// How far the hull reaches beyond the area that the movement covers: on the inner side of a turn the hull cuts the

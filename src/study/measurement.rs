@@ -25,13 +25,19 @@ pub enum Axis {
     Probability,
     /// f32 or f64, and the origin of coordinates.
     Numbers,
+    /// How exactly a turn is swept.
+    Turning,
     /// The prediction of a road user's path.
     Path,
+    /// The window of states from which the curvature of an arc is taken.
+    Curvature,
+    /// The decimals and the period of a recording.
+    Recording,
 }
 
 impl Axis {
     /// All axes, in the order of tables and charts.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 11] = [
         Self::Volume,
         Self::Candidates,
         Self::Time,
@@ -39,8 +45,16 @@ impl Axis {
         Self::Late,
         Self::Probability,
         Self::Numbers,
+        Self::Turning,
+        Self::Curvature,
         Self::Path,
+        Self::Recording,
     ];
+
+    /// Whether its items are recordings of SUMO runs.
+    pub fn needs_sumo(self) -> bool {
+        matches!(self, Self::Path | Self::Recording)
+    }
 
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
@@ -52,7 +66,10 @@ impl Axis {
             Self::Late => "late",
             Self::Probability => "probability",
             Self::Numbers => "numbers",
+            Self::Turning => "turning",
+            Self::Curvature => "curvature",
             Self::Path => "path",
+            Self::Recording => "recording",
         }
     }
 }
@@ -91,9 +108,9 @@ pub struct Measurement {
 /// The extent of a study.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Fewer items and repetitions, so that all axes take less than two minutes.
+    /// Fewer items and repetitions, so that all axes take about two minutes.
     pub quick: bool,
-    /// The folder of the scenarios for the path axis.
+    /// The folder of the scenarios for the axes that need SUMO.
     pub nets: PathBuf,
 }
 

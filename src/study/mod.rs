@@ -7,8 +7,10 @@ mod braking;
 mod candidates;
 mod chart;
 mod clock;
+mod curvature;
 mod decisions;
 mod driven;
+mod in_short;
 mod late;
 mod measurement;
 mod numbers;
@@ -16,10 +18,13 @@ mod page;
 mod pareto;
 mod path;
 mod probability;
+mod recorded;
+mod recording;
 pub mod reference;
 pub mod scenario;
 pub mod stress;
 mod time;
+mod turning;
 mod volume;
 
 use std::path::Path;
@@ -33,7 +38,7 @@ pub use measurement::{Axis, Measurement, Plan, Recorder};
 /// Measures one axis.
 ///
 /// # Errors
-/// For the path axis: if SUMO cannot be run, or a recording cannot be read.
+/// For the axes that replay recordings: if SUMO cannot be run, or a recording cannot be read.
 pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result<Vec<Measurement>> {
     let mut rows = match axis {
         Axis::Volume => volume::measure(plan),
@@ -43,9 +48,12 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
         Axis::Late => late::measure(plan),
         Axis::Probability => probability::measure(plan),
         Axis::Numbers => numbers::measure(plan),
-        Axis::Path => {
-            let record = record.ok_or_else(|| Error::Value("the path axis needs SUMO".to_owned()))?;
-            path::measure(plan, record)?
+        Axis::Turning => turning::measure(plan),
+        Axis::Curvature => curvature::measure(plan),
+        Axis::Path | Axis::Recording => {
+            let record = record.ok_or_else(|| Error::Value(format!("the {} axis needs SUMO", axis.name())))?;
+            let measure = if axis == Axis::Path { path::measure } else { recording::measure };
+            measure(plan, record)?
         }
     };
     mark_fronts(&mut rows);
@@ -56,7 +64,7 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
 ///
 /// # Errors
 /// An error that names the file that cannot be written.
-pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
+pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
     let path = folder.join("study.csv");
     let failed = |error: csv::Error| Error::content(&path, error.to_string());
     let mut table = OutputFile::create(&path)?;
@@ -71,7 +79,7 @@ pub fn write(folder: &Path, rows: &[Measurement]) -> Result<()> {
             chart::draw(folder, axis.name(), &chart::panels(axis, &of_axis), chart::note(axis))?;
         }
     }
-    output_file::write(&folder.join("study.md"), page::of(rows).as_bytes())
+    output_file::write(&folder.join("study.md"), page::of(rows, plan.quick).as_bytes())
 }
 
 /// Marks the rows that no other row of the same scene beats in error, time or both.

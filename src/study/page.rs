@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::clock::machine;
+use super::in_short::{self, number};
 use super::measurement::{Axis, Measurement, distinct};
 
 /// The question of an axis, and the reference of its errors.
@@ -15,13 +16,18 @@ fn question(axis: Axis) -> [&'static str; 2] {
         Axis::Late => ["How long can the driver wait?", "the motion of both solved in 300-bit arithmetic"],
         Axis::Probability => ["How likely is it that the driver brakes too late?", "Simpson's rule with 256 intervals"],
         Axis::Numbers => ["Which type of number, and which origin?", "exact arithmetic on the same f64 inputs"],
+        Axis::Turning => ["How exactly is a turn swept?", "both ways halved until nothing between can hide a contact"],
+        Axis::Curvature => ["How long a past tells the curvature?", "the way that was driven"],
+        Axis::Recording => ["What must be recorded?", "a recording of every 0.1 s with nine decimals"],
         Axis::Path => ["Where will a road user go?", "where the recorded vehicles really drove"],
     }
 }
 
-pub(super) fn of(rows: &[Measurement]) -> String {
+pub(super) fn of(rows: &[Measurement], quick: bool) -> String {
     // Writing to a String does not fail.
-    let mut text = format!("# Error against run time\n\nMeasured on: {}.\n", machine());
+    let extent = if quick { ", with few items (--quick)" } else { "" };
+    let mut text = format!("# Error against run time\n\nMeasured on: {}{extent}.\n", machine());
+    in_short::table(&mut text, rows);
     for axis in Axis::ALL {
         let of_axis = rows.iter().filter(|row| row.axis == axis).collect::<Vec<_>>();
         if of_axis.is_empty() {
@@ -31,7 +37,7 @@ pub(super) fn of(rows: &[Measurement]) -> String {
         let name = axis.name();
         let _ = write!(
             text,
-            "\n## {name}: {question}\n\nErrors against {reference}. **Bold**: closecall's choice; ●: on the Pareto front of \
+            "\n## {name}\n\n{question} Errors against {reference}. **Bold**: closecall's choice; ●: on the Pareto front of \
              its items.\n\n![{name}]({name}.svg)\n\n| items | method | {} | missed | false | ns per item | |\n\
              |---|---|---|---|---|---|---|\n",
             error_names(&of_axis)
@@ -68,17 +74,6 @@ fn line(row: &Measurement) -> String {
         number(row.ns_per_item),
         if row.on_pareto_front { "●" } else { "" }
     )
-}
-
-pub(super) fn number(value: f64) -> String {
-    match value.abs() {
-        0.0 => "0".to_owned(),
-        size if (0.01..1e6).contains(&size) => {
-            let digits = (2 - size.log10().floor() as i32).max(0) as usize;
-            format!("{value:.digits$}")
-        }
-        _ => format!("{value:.1e}"),
-    }
 }
 
 fn share(value: f64) -> String {

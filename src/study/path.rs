@@ -1,19 +1,13 @@
 //! Path prediction: the paper's rule and three path models on recorded runs, against the paths that followed.
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::time::Instant;
-
 use rustc_hash::FxHashMap;
 
 use super::clock::median;
-use super::driven::{DrivenTraces, IdPair, Truth, pair};
+use super::driven::{DrivenTraces, IdPair, Truth};
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use crate::input::replay::Replay;
+use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts};
 use crate::options::{Mode, Options, PathModel};
-use crate::run::Run;
-use crate::traffic::net::Net;
-use crate::util::units::{Metre, Second};
+use crate::util::units::Metre;
 use crate::{Error, Result};
 
 const DEFAULT: &str = "lanes";
@@ -27,46 +21,25 @@ const METHODS: [(&str, Mode, PathModel); 4] = [
 const NETS: [&str; 6] = ["curves", "priority", "left_turn", "roundabout", "signals", "overtaking"];
 /// One of this many steps of 0.1 s is compared; those in between differ little.
 const EVERY: u64 = 10;
-/// Gaps that differ by less are equal: a recording has nine digits.
-const ROUNDING: Metre = 1e-6;
 
 pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..3], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
     let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
     let measured = nets.iter().map(|net| {
-        let scene = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
-        scene.measure(rounds)
+        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
+        let driven = DrivenTraces::read(&scenario.recording)?;
+        DrivenScenario { scenario, driven }.measure(rounds)
     });
     Ok(measured.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
 }
 
-/// A recorded run of a scenario.
-struct RecordedScenario {
-    name: &'static str,
-    recording: PathBuf,
-    types: Vec<PathBuf>,
-    net: Arc<Net>,
+/// A recorded run, and what was really driven in it.
+struct DrivenScenario {
+    scenario: RecordedScenario,
     driven: DrivenTraces,
 }
 
-/// The gap of every pair in conflict, by step.
-type GapsByStep = Vec<FxHashMap<IdPair, Metre>>;
-
-impl RecordedScenario {
-    fn record(plan: &Plan, name: &'static str, scratch: &Path, end: Second, record: &mut Recorder) -> Result<Self> {
-        let folder = plan.nets.join(name);
-        let recording = scratch.join(format!("{name}.fcd.xml"));
-        record(&folder.join(format!("{name}.sumocfg")), &recording, end)?;
-        let file = |ending: &str| folder.join(format!("{name}.{ending}"));
-        Ok(Self {
-            name,
-            types: vec![file("rou.xml")],
-            net: Arc::new(Net::read(&file("net.xml"))?),
-            driven: DrivenTraces::read(&recording)?,
-            recording,
-        })
-    }
-
+impl DrivenScenario {
     fn measure(&self, rounds: usize) -> Result<Vec<Measurement>> {
         let mut times = vec![Vec::new(); METHODS.len()];
         let mut found = vec![GapsByStep::new(); METHODS.len()];
@@ -75,27 +48,18 @@ impl RecordedScenario {
         for round in 0..rounds {
             for (index, (_, mode, path)) in METHODS.into_iter().enumerate() {
                 let options = Options { mode, path, ..Options::default() };
-                let started = Instant::now();
-                let mut replay = Replay::open(&self.recording, &self.types, &self.net, &options)?;
-                let mut run = Run::new(&options, Some(self.net.clone()))?;
-                run.set_fixed_routes(true);
-                let mut rows = 0;
                 let mut steps = 0_u64;
-                let mut aside = 0.0;
-                while replay.next(&mut run)?.is_some() {
-                    rows += run.frame.len();
+                let timed = self.scenario.replay(&self.scenario.recording, &options, &mut |run| {
                     steps += 1;
                     if round == 0 && steps.is_multiple_of(EVERY) {
-                        let paused = Instant::now();
-                        found[index].push(conflicts(&run));
+                        found[index].push(conflicts(run));
                         if index == 0 {
                             truth.push(self.driven.truth(&run.frame, &run.roster, &options));
                         }
-                        aside += paused.elapsed().as_secs_f64();
                     }
-                }
-                items = rows;
-                times[index].push((started.elapsed().as_secs_f64() - aside) * 1e9 / rows.max(1) as f64);
+                })?;
+                items = timed.rows;
+                times[index].push(timed.lasts * 1e9 / timed.rows.max(1) as f64);
             }
         }
         let mut measured = Vec::new();
@@ -103,15 +67,15 @@ impl RecordedScenario {
             let score = Score::of(found, &truth);
             let ns_per_item = median(times);
             let errors = [
-                ("share of conflicts missed or invented", score.wrong(), self.name.to_owned()),
-                ("median error of the gap, m", score.gap_error, format!("{}, gap", self.name)),
+                ("share of conflicts missed or invented", score.wrong(), self.scenario.name.to_owned()),
+                ("median error of the gap, m", score.gap_error, format!("{}, gap", self.scenario.name)),
             ];
             // The gap can only be compared for conflicts that were found.
             let errors = errors.into_iter().take(if score.right > 0 { 2 } else { 1 });
             measured.extend(errors.map(|(error_name, error, scene)| Measurement {
                 axis: Axis::Path,
                 method: name,
-                parameter: self.name.to_owned(),
+                parameter: self.scenario.name.to_owned(),
                 error_name,
                 error,
                 false_negative_rate: score.missed as f64 / (score.right + score.missed).max(1) as f64,
@@ -125,10 +89,6 @@ impl RecordedScenario {
         }
         Ok(measured)
     }
-}
-
-fn conflicts(run: &Run) -> FxHashMap<IdPair, Metre> {
-    run.in_conflict().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
 }
 
 /// A method's results against the truth.

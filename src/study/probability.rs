@@ -102,16 +102,12 @@ fn gauss_legendre(count: usize) -> Vec<(MetrePerSecondSquared, f64)> {
 }
 
 fn draws(chance: &mut Chance, count: u32) -> Vec<(Second, MetrePerSecondSquared)> {
-    let mut normal = || {
-        let radius = (-2.0 * chance.between(f64::MIN_POSITIVE, 1.0).ln()).sqrt();
-        radius * chance.between(0.0, 2.0 * PI).cos()
-    };
     let [mean, deviation, low, high] = BRAKING;
     let spread = (RESPONSE[1] / RESPONSE[0]).powi(2).ln_1p();
     let mut draw = || {
-        let response = (RESPONSE[0].ln() - spread / 2.0 + spread.sqrt() * normal()).exp();
+        let response = (RESPONSE[0].ln() - spread / 2.0 + spread.sqrt() * chance.normal()).exp();
         loop {
-            let value = mean + deviation * normal();
+            let value = mean + deviation * chance.normal();
             if (low..=high).contains(&value) {
                 return (response, value);
             }

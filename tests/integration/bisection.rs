@@ -7,22 +7,28 @@ use closecall::internals::geometry::{
 use proptest::prelude::*;
 
 /// The fraction of a movement at which it touches another's area, by all hulls of the other whose whole is touched.
-fn touch(movement: &Movement, other: &Movement, which: Contact) -> Option<f64> {
+fn touch(movement: &Movement, other: &Movement, which: Contact, tolerance: f64) -> Option<f64> {
     if !bounds(movement).meet(&bounds(other)) {
         return None;
     }
     let hull = other.hull();
-    let part = meet(movement, &hull, &hull.bounds(), which)?;
-    if turn(other) * other.length / 4.0 <= TOLERANCE {
+    let part = meet(movement, &hull, &hull.bounds(), which, tolerance)?;
+    if turn(other) * other.length / 4.0 <= tolerance {
         return Some(part);
     }
-    let parts = halves(other).into_iter().filter_map(|half| touch(movement, &half, which));
+    let parts = halves(other).into_iter().filter_map(|half| touch(movement, &half, which, tolerance));
     parts.reduce(if which == Contact::Entry { f64::min } else { f64::max })
 }
 
 /// The fraction of a movement at which it touches a fixed outline.
-fn meet(movement: &Movement, fixed: &ConvexOutline, box_around: &Bounds, which: Contact) -> Option<f64> {
-    if turn(movement) * (movement.length + movement.width) / 2.0 <= TOLERANCE {
+fn meet(
+    movement: &Movement,
+    fixed: &ConvexOutline,
+    box_around: &Bounds,
+    which: Contact,
+    tolerance: f64,
+) -> Option<f64> {
+    if turn(movement) * (movement.length + movement.width) / 2.0 <= tolerance {
         let (middle, by) = (movement.rectangle(0.5), movement.to - movement.from);
         let start = ConvexOutline::rectangle(&Rectangle { centre: middle.centre - by * 0.5, ..middle });
         let contact = translation(&start, &by, fixed)?;
@@ -32,8 +38,8 @@ fn meet(movement: &Movement, fixed: &ConvexOutline, box_around: &Bounds, which: 
         return None;
     }
     let [first, second] = halves(movement);
-    let first = || meet(&first, fixed, box_around, which).map(|part| (part / 2.0).min(0.5));
-    let second = || meet(&second, fixed, box_around, which).map(|part| 0.5 + part / 2.0);
+    let first = || meet(&first, fixed, box_around, which, tolerance).map(|part| (part / 2.0).min(0.5));
+    let second = || meet(&second, fixed, box_around, which, tolerance).map(|part| 0.5 + part / 2.0);
     if which == Contact::Entry { first().or_else(second) } else { second().or_else(first) }
 }
 
@@ -62,6 +68,11 @@ fn capped(part: Option<f64>) -> Option<f64> {
     part.map(|part| part.min(1.0))
 }
 
+/// That of the coarse sweep, and a finer one.
+fn tolerance() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(TOLERANCE), Just(TOLERANCE / 4.0)]
+}
+
 prop_compose! {
     /// A movement of up to 10 m, as road users drive: it may turn, and slide a little.
     fn movement()(
@@ -80,12 +91,13 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
     #[test]
-    fn leaving_out_parts_changes_no_contact(movement in movement(), others in prop::collection::vec(movement(), 1..4)) {
+    fn leaving_out_parts_changes_no_contact(movement in movement(), others in prop::collection::vec(movement(), 1..4), tolerance in tolerance()) {
         let mut halves = Bisection::default();
+        halves.sweep_to(tolerance);
         let part = halves.add(movement);
         let parts = others.iter().map(|other| halves.add(*other)).collect::<Vec<_>>();
         for which in [Contact::Entry, Contact::Exit] {
-            let all = others.iter().filter_map(|other| touch(&movement, other, which));
+            let all = others.iter().filter_map(|other| touch(&movement, other, which, tolerance));
             let all = all.reduce(if which == Contact::Entry { f64::min } else { f64::max });
             let found = parts.iter().fold(which.none(), |known, other| halves.touch(part, *other, which, known));
             prop_assert_eq!(capped((found != which.none()).then_some(found)), capped(all));
@@ -93,12 +105,13 @@ proptest! {
     }
 
     #[test]
-    fn a_fixed_outline_is_met_where_all_parts_meet_it(movement in movement(), fixed in movement()) {
+    fn a_fixed_outline_is_met_where_all_parts_meet_it(movement in movement(), fixed in movement(), tolerance in tolerance()) {
         let (mut halves, outline) = (Bisection::default(), ConvexOutline::rectangle(&fixed.rectangle(0.0)));
+        halves.sweep_to(tolerance);
         let part = halves.add(movement);
         for which in [Contact::Entry, Contact::Exit] {
             let found = halves.meet(part, &Polygon::from(outline), which);
-            prop_assert_eq!(found, meet(&movement, &outline, &outline.bounds(), which));
+            prop_assert_eq!(found, meet(&movement, &outline, &outline.bounds(), which, tolerance));
         }
     }
 }

@@ -18,6 +18,8 @@ use crate::util::units::{Metre, MetrePerSecond};
 
 /// Pairs in one step if every pair is kept; they take half a gibibyte.
 const MOST_OF_ALL: usize = 1 << 26;
+/// Road users whose pairs are found before it is asked whether there are too many.
+const PIECE: usize = 1024;
 /// Between two steps a road user may be this many times as fast as in both: recordings leave out steps.
 const FASTER: f64 = 2.0;
 /// It may have been moved this far besides, in m: a vehicle that SUMO parks or lets start.
@@ -158,20 +160,22 @@ impl Detector {
         self.pairs.iter_mut().for_each(Vec::clear);
         let most = if all { MOST_OF_ALL } else { FEWEST_PAIRS.max(count * PAIRS.count()) };
         self.team.each(self.pairs.iter_mut().take(busy), parts, |pairs, part| {
-            let mut found = |a: u32, b: u32| {
-                if pairs.len() <= most {
-                    pairs.push((a, b));
+            // A crowd in one place is near itself a billion times: the pairs so far are enough to refuse it.
+            for piece in part.clone().step_by(PIECE).map(|start| start..part.end.min(start + PIECE)) {
+                if pairs.len() > most {
+                    break;
                 }
-            };
-            let area = |slot: u32| reach.area(&users[slot as usize]);
-            match (all, search.has_round()) {
-                (true, _) => every_pair(part, &mut found),
-                (false, false) => search.sweep(part, &mut found),
-                (false, true) => search.sweep(part, |a, b| {
-                    if area(a).circles_meet(&area(b)) {
-                        found(a, b);
-                    }
-                }),
+                let area = |slot: u32| reach.area(&users[slot as usize]);
+                let mut found = |a: u32, b: u32| pairs.push((a, b));
+                match (all, search.has_round()) {
+                    (true, _) => every_pair(piece, &mut found),
+                    (false, false) => search.sweep(piece, &mut found),
+                    (false, true) => search.sweep(piece, |a, b| {
+                        if area(a).circles_meet(&area(b)) {
+                            found(a, b);
+                        }
+                    }),
+                }
             }
         });
         let found = self.pairs.iter().map(|pairs| pairs.len() as u64).sum::<u64>();

@@ -14,8 +14,8 @@ use super::worker::{Findings, Met, Worker};
 use crate::braking::{self, Braking, MuModel};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Kind;
-use crate::detection::narrow_phase::{self, ConflictPoint, Ego, Participant, side};
-use crate::geometry::sweep::TOLERANCE;
+use crate::detection::narrow_phase::{self, Approach, ConflictPoint, Ego, Participant, side};
+use crate::geometry::sweep::{FINE, TOLERANCE};
 use crate::geometry::{contact, cross};
 use crate::options::Mode;
 use crate::traffic::frame::State;
@@ -239,8 +239,7 @@ impl StepInputs<'_> {
         work.swept += 1;
         let unsettled = Unsettled { in_line: false, overlap };
         let [first, second] = [first, second].map(|carriages| unsettled.all_shrunk(carriages));
-        let has_smaller_id = || self.has_smaller_id(slots);
-        let approach = side::meet(&mut found.scratch.halves, &first, &second, &has_smaller_id);
+        let approach = self.swept(slots, [&first, &second], found);
         if let (Some(approach), [first, ..], [second, ..]) = (approach, &first[..], &second[..]) {
             let roles = Roles::new(approach.ego, slots, [first, second]);
             self.met(work, found, &roles, &approach.conflict_point, overlap);
@@ -259,13 +258,28 @@ impl StepInputs<'_> {
     ) {
         work.swept += 1;
         let has_smaller_id = || self.has_smaller_id(slots);
-        let swept = side::meet(&mut found.scratch.halves, from_ref(first), from_ref(second), &has_smaller_id);
+        let swept = self.swept(slots, [from_ref(first), from_ref(second)], found);
         let approach =
             if in_line { narrow_phase::meet_in_one_dimension(first, second, &has_smaller_id) } else { swept };
         if let Some(approach) = approach {
             let roles = Roles::new(approach.ego, slots, [first, second]);
             self.met(work, found, &roles, &approach.conflict_point, overlap);
         }
+    }
+
+    /// How a pair meets: swept coarsely, and finely if that finds a conflict.
+    fn swept(&self, slots: [u32; 2], [a, b]: [&[Participant]; 2], found: &mut Findings) -> Option<Approach> {
+        let (halves, has_smaller_id) = (&mut found.scratch.halves, || self.has_smaller_id(slots));
+        let coarse = side::meet(halves, a, b, &has_smaller_id)?;
+        let roles = Roles::new(coarse.ego, slots, [a.first()?, b.first()?]);
+        let point = &coarse.conflict_point;
+        let sigma = narrow_phase::sigma(point.angle());
+        let gap = narrow_phase::gap(point.ego_distance, point.foe_distance, sigma);
+        let mu = narrow_phase::mu(self.mu_model(), roles.ego, roles.foe, sigma, self.options.epsilon);
+        if gap >= mu && !(point.foe_leaves(sigma) && self.may_leave_late(&roles, point, sigma, mu)) {
+            return Some(coarse);
+        }
+        side::refine(halves, FINE, a, b, &has_smaller_id)
     }
 
     /// Whether the first of the two has the smaller id.
@@ -366,7 +380,7 @@ impl StepInputs<'_> {
         let gap = self.gap_beyond(gap, mu, roles.slots, meeting);
         let margin = gap - mu;
         // The gap is not known yet where the foe first has to arrive and leave.
-        let leaves = !meeting.foe_leads && meeting.foe_axis.is_some() && sigma > 0.0;
+        let leaves = meeting.foe_leaves(sigma);
         if self.conflicts_only
             && self.options.log.is_default()
             && margin >= 0.0

@@ -29,6 +29,11 @@ impl ConflictPoint {
         self.foe_axis.map_or(PI, |axis| angle_between(&self.ego_rectangle.axis, &axis))
     }
 
+    /// Whether the foe first has to arrive and leave: the gap is known once that is. σ = cos α.
+    pub fn foe_leaves(&self, sigma: f64) -> bool {
+        !self.foe_leads && self.foe_axis.is_some() && sigma > 0.0
+    }
+
     /// The centre of that rectangle's front: of the front bumper, unless a carriage further behind touches.
     pub fn front(&self) -> Point {
         self.ego_rectangle.centre + self.ego_rectangle.axis * self.ego_rectangle.half_length

@@ -22,6 +22,7 @@ use std::slice::from_ref;
 
 use crate::braking::{self, MuModel};
 use crate::geometry::bisection::Bisection;
+use crate::geometry::sweep::FINE;
 use crate::geometry::{Vector, cross};
 use crate::util::units::{Metre, Radian};
 
@@ -34,7 +35,9 @@ pub fn meet(a: &Participant, b: &Participant, a_has_smaller_id: &impl Fn() -> bo
     if drive_in_line(a, b) {
         meet_in_one_dimension(a, b, a_has_smaller_id)
     } else {
-        side::meet(&mut Bisection::default(), from_ref(a), from_ref(b), a_has_smaller_id)
+        let (mut bisection, a, b) = (Bisection::default(), from_ref(a), from_ref(b));
+        side::meet(&mut bisection, a, b, a_has_smaller_id)?;
+        side::refine(&mut bisection, FINE, a, b, a_has_smaller_id)
     }
 }
 

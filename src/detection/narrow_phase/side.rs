@@ -9,16 +9,15 @@ use crate::geometry::bisection::Bisection;
 use crate::geometry::convex::ConvexOutline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::{Contact, translation};
-use crate::geometry::sweep::{Movement, TOLERANCE};
+use crate::geometry::sweep::{FINE, Movement};
 use crate::geometry::{Vector, contact, exact, polygon};
 use crate::util::units::Metre;
-
-/// How far apart two rectangles may be where the sweep of both finds contact, in m.
-const INEXACT: Metre = 2.0 * TOLERANCE;
 
 /// How a pair meets, each as its carriages, of which most have one: at the first pose on the ego's path at which its
 /// rectangle touches the area that the foe covers now and still needs to stop. The ego is the one with the longer distance
 /// there; if equal, the one with the smaller id. An obstacle is never the ego.
+///
+/// Swept to [`TOLERANCE`](crate::geometry::sweep::TOLERANCE), which covers a little too much: what does not meet does not meet, and no gap is too large.
 pub fn meet(
     bisection: &mut Bisection,
     a: &[Participant],
@@ -26,6 +25,28 @@ pub fn meet(
     a_has_smaller_id: &impl Fn() -> bool,
 ) -> Option<Approach> {
     bisection.clear();
+    find(bisection, a, b, a_has_smaller_id)
+}
+
+/// The same for a pair that [`meet`] has just found to meet, swept to `tolerance`.
+pub fn refine(
+    bisection: &mut Bisection,
+    tolerance: Metre,
+    a: &[Participant],
+    b: &[Participant],
+    a_has_smaller_id: &impl Fn() -> bool,
+) -> Option<Approach> {
+    bisection.sweep_to(tolerance);
+    find(bisection, a, b, a_has_smaller_id)
+}
+
+/// How a pair meets, swept to the bisection's tolerance.
+fn find(
+    bisection: &mut Bisection,
+    a: &[Participant],
+    b: &[Participant],
+    a_has_smaller_id: &impl Fn() -> bool,
+) -> Option<Approach> {
     // The movements of all are numbered one after the other.
     let [of_a, of_b] = [0, a.iter().map(movement_count).sum()];
     let a_touches = touch(bisection, [of_a, of_b], a, b);
@@ -199,7 +220,7 @@ fn at_the_end(of: &Participant) -> Rectangle {
 /// The distance along poses, up to the first beyond `furthest`, at which a foe reaches the ego's rectangle at the conflict
 /// point, and its axis there.
 ///
-/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by [`INEXACT`].
+/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by those.
 fn first_contact(
     bisection: &mut Bisection,
     first_number: usize,
@@ -208,7 +229,7 @@ fn first_contact(
     furthest: Metre,
     ego: &Rectangle,
 ) -> Option<(Metre, Vector)> {
-    let ego = grown(ego, INEXACT);
+    let ego = grown(ego, bisection.inexact());
     for (index, pair) in poses.windows(2).enumerate() {
         let movement = foe.movement(&pair[0], &pair[1]);
         if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
@@ -231,6 +252,7 @@ pub fn carriage_departure(
     ego: &Rectangle,
 ) -> Option<Metre> {
     bisection.clear();
+    bisection.sweep_to(FINE);
     let (arrival, _) = first_contact(bisection, 0, carriage, poses, f64::INFINITY, ego)?;
     Some(departure(bisection, poses, carriage, ego, arrival))
 }
@@ -245,7 +267,8 @@ pub fn departure(
     arrival: Metre,
 ) -> Metre {
     bisection.clear();
-    let ego = grown(ego, INEXACT);
+    bisection.sweep_to(FINE);
+    let ego = grown(ego, bisection.inexact());
     let mut left = arrival;
     for (index, pair) in poses.windows(2).enumerate() {
         let pose = pair[0];
@@ -353,6 +376,25 @@ mod tests {
             let (ego, foe) = (participant(&ego, &ego_parts, &ego_whole), participant(&foe, &foe_parts, &foe_whole));
             prop_assert!(slow.is_none() || ego.cover.meets(foe.cover));
             prop_assert_eq!(meet(&ego, &foe), slow);
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(100))]
+
+        #[test]
+        fn the_fine_sweep_finds_nothing_that_the_coarse_one_leaves_out(ego in path(), foe in path()) {
+            let whole = |poses: &[Pose]| SweptBounds::of(poses, SIZE.0, SIZE.1).unwrap();
+            let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
+            let (ego, foe) = (participant(&ego, &[], &ego_whole), participant(&foe, &[], &foe_whole));
+            let (ego, foe, mut bisection) = (from_ref(&ego), from_ref(&foe), Bisection::default());
+            let coarse = meet(&mut bisection, ego, foe, &|| true);
+            let after = coarse.and_then(|_| refine(&mut bisection, FINE, ego, foe, &|| true));
+            bisection.clear();
+            prop_assert_eq!(after, refine(&mut bisection, FINE, ego, foe, &|| true));
+            if let (Some(coarse), Some(fine)) = (coarse, after) {
+                prop_assert!(coarse.ego != fine.ego || coarse.conflict_point.ego_distance <= fine.conflict_point.ego_distance + 0.02);
+            }
         }
     }
 }

@@ -7,7 +7,7 @@ use crate::util::units::Metre;
 /// Below this curvature, in 1/m, the path is straight: a lateral deviation of 1 mm after 450 m.
 const STRAIGHT: f64 = 1e-8;
 
-/// Adds the poses at the given distances, in ascending order, and as many between as the sweep's tolerance needs.
+/// Adds the poses at the given distances, in ascending order, and as many between as the turn needs.
 ///
 /// `curvature` is in 1/m, positive to the left. The heading is the chord from the rear to the front bumper, so the
 /// circle's tangent at the front is ahead of it by the angle asin(κ·L/2). If the circle is smaller than the chord, the
@@ -22,7 +22,8 @@ pub fn poses(front: Point, axis: Vector, curvature: f64, length: Metre, distance
     let lead = (curvature * length / 2.0).clamp(-1.0, 1.0).asin();
     let tangent = rotated(&axis, lead);
     let centre = front + left_of(&tangent) / curvature;
-    let widest = largest_turn(length);
+    // The corners are no further from the centre than this; between two poses each cuts its own circle.
+    let widest = largest_turn(1.0 / curvature.abs() + length);
     let mut last = 0.0;
     for &distance in distances {
         let parts = ((distance - last) * curvature.abs() / widest).ceil().clamp(1.0, 1e4);
@@ -51,6 +52,19 @@ mod tests {
         let end = found.last().unwrap();
         assert!((end.front - Point::new(10.0, 10.0)).norm() < 1e-12);
         assert!((end.axis - Vector::new(0.0, 1.0)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn no_corner_leaves_the_line_between_two_poses_by_a_millimetre() {
+        for radius in [5.0_f64, 50.0, 500.0] {
+            let mut found = Vec::new();
+            poses(Point::origin(), Vector::new(1.0, 0.0), 1.0 / radius, 4.0, &[0.0, 60.0], &mut found);
+            for pair in found.windows(2) {
+                let chord = (pair[1].front - pair[0].front).norm();
+                let sagitta = radius - (radius * radius - chord * chord / 4.0).sqrt();
+                assert!(sagitta <= 1e-3, "{radius}: {sagitta}");
+            }
+        }
     }
 
     #[test]

@@ -18,7 +18,7 @@ pub mod turning;
 
 pub use foot::Foot;
 
-use crate::geometry::sweep::Movement;
+use crate::geometry::sweep::{Movement, POSES};
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, Radian};
 
@@ -40,10 +40,10 @@ impl Pose {
     }
 }
 
-/// The largest turn between two poses for which a corner of a road user of this length stays within the sweep's
-/// tolerance of a straight line: the sagitta is L·Δ²/8.
+/// The largest turn between two poses for which a corner of a road user of this length stays within
+/// [`POSES`] of a straight line: the sagitta is L·Δ²/8.
 pub(crate) fn largest_turn(length: Metre) -> Radian {
-    (8.0 * crate::geometry::sweep::TOLERANCE / length.max(1.0)).sqrt()
+    (8.0 * POSES / length.max(1.0)).sqrt()
 }
 
 /// The direction from the rear to the front; `otherwise` if both are in one place (a hairpin without width).

@@ -30,7 +30,7 @@ impl Track {
     }
 
     /// Adds the poses at the given distances ahead of the front bumper (ascending, from 0 on), at the vertices that
-    /// make the road user turn, and as many between as the sweep's tolerance needs. They end where the line ends,
+    /// make the road user turn, and as many between as a turn needs. They end where the line ends,
     /// unless `beyond` is set: then they go straight on from there.
     ///
     /// `axis` is the current heading. Where it differs from the chord (a lane change, a rear on an unknown lane), the

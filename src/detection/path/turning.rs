@@ -77,6 +77,11 @@ impl Turning {
 
     /// Takes in the next state of the road user.
     pub fn see(&mut self, time: Second, front: Point, axis: Vector) {
+        self.see_within(1.0, time, front, axis);
+    }
+
+    /// [`Turning::see`] with a window so many times as long.
+    pub fn see_within(&mut self, windows: f64, time: Second, front: Point, axis: Vector) {
         let (Some(last), Some((last_front, last_axis))) = (self.window.back().copied(), self.last) else {
             self.window.reserve(MOST);
             return self.keep(Seen { time, driven: 0.0, turned: 0.0 }, front, axis);
@@ -84,11 +89,11 @@ impl Turning {
         let turned = turn(&last_axis, &axis);
         let driven = arc_length(front - last_front, turned, last_axis + axis);
         let now = Seen { time, driven: last.driven + driven, turned: last.turned + turned };
-        while self.window.get(1).is_some_and(|second| now.is_ahead(second, 1.0)) {
+        while self.window.get(1).is_some_and(|second| now.is_ahead(second, windows)) {
             self.window.pop_front();
         }
         self.curvature = curvature(self.window.iter().chain([&now]));
-        if now.is_ahead(&last, PART) {
+        if now.is_ahead(&last, PART * windows) {
             self.keep(now, front, axis);
         }
     }

@@ -34,6 +34,12 @@ impl Chance {
         from.get(self.below(from.len())).copied().unwrap_or_default()
     }
 
+    /// A standard normal number (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * self.between(f64::MIN_POSITIVE, 1.0).ln()).sqrt();
+        radius * self.between(0.0, 2.0 * std::f64::consts::PI).cos()
+    }
+
     /// An angle, −π to π.
     pub fn angle(&mut self) -> f64 {
         self.between(-std::f64::consts::PI, std::f64::consts::PI)

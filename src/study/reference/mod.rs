@@ -6,6 +6,7 @@ pub mod chance;
 pub mod contact;
 pub mod pairs;
 pub mod probability;
+pub mod turning;
 
 use dashu_float::FBig;
 use dashu_float::round::mode::HalfEven;

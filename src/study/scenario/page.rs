@@ -8,7 +8,7 @@ use super::plan::{Axis, Choice, WITHOUT_EFFECT};
 use super::recommendation::{Verdict, verdict};
 use super::richardson::Convergence;
 use crate::study::clock::machine;
-use crate::study::page::number;
+use crate::study::in_short::number;
 
 /// The page. Writing to a String does not fail.
 pub(super) fn of(study: &Study, scenario: &str, answer: &str, charts: &[&str]) -> String {

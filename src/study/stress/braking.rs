@@ -5,11 +5,15 @@ use super::tally::{Group, Property, Tally, Unit};
 use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::study::reference::braking as reference;
 use crate::study::reference::chance::Chance;
+use crate::study::reference::{LEAST_SIZE, deviation, nearest};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// The largest relative error of a published μ.
 const BOUND: f64 = 1e-12;
-const STOPPING: Property = Property::within("stopping distance", BOUND, Unit::Relative);
+/// A closed form of a few operations.
+const STOPPING: Property = Property::within("stopping distance, in ulps", 4.0, Unit::Ulps);
+/// μ is a difference: rounding is that of the distances that it is the difference of.
+const OF_DISTANCES: Property = Property::within("mu, in ulps of the distances", 8.0, Unit::Ulps);
 const MINIMAL: Property = Property::within("mu minimal", BOUND, Unit::Relative);
 const AT_REST: Property = Property::within("mu at_rest", BOUND, Unit::Relative);
 const PAPER: Property = Property::within("mu paper", BOUND, Unit::Relative);
@@ -111,9 +115,16 @@ pub(super) fn extreme(chance: &mut Chance) -> MuInputs {
 fn check(chance: &mut Chance, pair: &MuInputs, tally: &mut Tally) {
     pair.with(|ego, foe| {
         tally.compare(STOPPING, stopping_distance(ego.speed, ego.brakes), &reference::stopping_distance(ego), pair);
+        let of_foe = nearest(&reference::stopping_distance(foe));
+        let distances = nearest(&reference::stopping_distance(ego)) + pair.sigma.abs() * of_foe + pair.epsilon;
         for (model, property) in [(MuModel::Minimal, MINIMAL), (MuModel::AtRest, AT_REST), (MuModel::Paper, PAPER)] {
             let expected = reference::mu(model, ego, foe, pair.sigma, pair.epsilon);
             tally.compare(property, pair.mu(model), &expected, pair);
+            // The printed formula is made of other distances.
+            if model != MuModel::Paper {
+                let off = deviation(pair.mu(model), &expected).absolute;
+                tally.error(OF_DISTANCES, off / (distances * f64::EPSILON).max(LEAST_SIZE), &(pair, model));
+            }
         }
     });
     let minimal = pair.mu(MuModel::Minimal);

@@ -44,16 +44,29 @@ pub(super) fn gap(
 
 /// The encounter of two cars, if there is one.
 pub(super) fn encounter(first: State, second: State) -> Option<Encounter> {
+    encounter_of(None, [first, second], &[])
+}
+
+/// The encounter of two cars on a net.
+pub(super) fn encounter_on(net: Arc<Net>, placed: [(State, Placement); 2]) -> Option<Encounter> {
+    let states = placed.each_ref().map(|(state, _)| *state);
+    encounter_of(Some(net), states, &placed.map(|(_, placement)| placement))
+}
+
+fn encounter_of(net: Option<Arc<Net>>, states: [State; 2], placements: &[Placement]) -> Option<Encounter> {
     let mut roster = Roster::default();
     let profile = roster.profile(car()).ok()?;
     let mut frame = Frame::default();
     frame.begin(0.0);
-    for (name, state) in [("a", first), ("b", second)] {
+    for (name, state) in ["a", "b"].into_iter().zip(states) {
         let user = roster.enter(name, profile);
         frame.push(user, state);
     }
-    let mut detector = Detector::new(&Options::default(), None);
-    detector.track_paths(&frame, &roster);
+    let mut detector = Detector::new(&Options::default(), net);
+    let rows = detector.track_paths(&frame, &roster).to_vec();
+    for (row, placement) in rows.into_iter().filter_map(|row| Some((row, placements.get(row as usize)?))) {
+        detector.set_placement(&frame, &roster, row, placement);
+    }
     detector.broad_phase(&frame, &roster);
     detector.narrow_phase(&frame, &roster).next().copied()
 }
@@ -69,8 +82,13 @@ pub(super) struct CarRun {
 impl CarRun {
     /// A run on a net, or without one.
     pub fn new(net: Option<Arc<Net>>) -> crate::Result<Self> {
+        Self::of(car(), net)
+    }
+
+    /// A run of other road users.
+    pub fn of(profile: Profile, net: Option<Arc<Net>>) -> crate::Result<Self> {
         let mut run = Run::new(&Options::default(), net)?;
-        let profile = run.roster.profile(car())?;
+        let profile = run.roster.profile(profile)?;
         Ok(Self { run, profile, finite: true })
     }
 
@@ -89,22 +107,37 @@ impl CarRun {
         self.advance(time, states, None)
     }
 
+    /// The TTC of the first pair in conflict.
+    pub fn ttc(&self) -> Option<Second> {
+        self.run.in_conflict().next()?.nearness?.ttc
+    }
+
     /// Makes one step with all cars placed on one lane.
     pub fn step_placed(&mut self, time: Second, states: &[(UserIndex, State)], placement: &Placement) -> usize {
         self.advance(time, states, Some(placement))
     }
 
     fn advance(&mut self, time: Second, states: &[(UserIndex, State)], placement: Option<&Placement>) -> usize {
+        let checked = self.try_step(time, states, placement);
+        self.finite &= checked.is_ok() && self.run.in_conflict().all(is_finite);
+        self.run.in_conflict().len()
+    }
+
+    /// Makes one step, if it can be made.
+    pub fn try_step(
+        &mut self,
+        time: Second,
+        states: &[(UserIndex, State)],
+        placement: Option<&Placement>,
+    ) -> crate::Result<()> {
         self.run.begin_step(time);
         for &(user, state) in states {
             self.run.frame.push(user, state);
         }
-        let checked = self.run.step(|run, rows| -> crate::Result<()> {
+        self.run.step(|run, rows| {
             placement.into_iter().for_each(|placement| rows.iter().for_each(|row| run.set_placement(*row, placement)));
             Ok(())
-        });
-        self.finite &= checked.is_ok() && self.run.in_conflict().all(is_finite);
-        self.run.in_conflict().len()
+        })
     }
 
     /// Ends the run and returns all conflicts.

@@ -1,8 +1,8 @@
 //! Time left and time to brake: motions that are put back into the definition, in high precision.
 //!
 //! What is found is a time, and near a contact that only just happens it is ill-conditioned: a time that is wrong by little
-//! may belong to a room that differs by less than rounding. So errors are those of the room that the time leads to,
-//! relative to the distances that it is made of.
+//! may belong to a room that differs by less than rounding. So errors are those of the room that the time leads to, in units
+//! in the last place of the distances that it is made of.
 
 use super::braking::{MuInputs, extreme, usual};
 use super::case::Case;
@@ -12,13 +12,15 @@ use crate::study::reference::chance::Chance;
 use crate::study::reference::{BigFloat, braking as reference, nearest, precise};
 use crate::util::units::{Metre, Second};
 
-/// The largest error of a room, relative to the distances that it is the difference of.
-const BOUND: f64 = 1e-12;
-const LEFT: Property = Property::within("mu at the response left is the gap", BOUND, Unit::Relative);
+/// The largest error of a room, in units in the last place of the distances that it is the difference of.
+const ULPS: f64 = 8.0;
+const LEFT: Property =
+    Property::within("mu at the response left is the gap, in ulps of the distances", ULPS, Unit::Ulps);
 const LEFT_GROWS: Property = Property::always("more gap, less speed, more braking: never less time left");
-const BEHIND: Property = Property::within("room used up behind a leader", BOUND, Unit::Relative);
-const AT: Property = Property::within("distance kept at a time", BOUND, Unit::Relative);
-const TOWARDS: Property = Property::within("room used up towards one that comes", BOUND, Unit::Relative);
+const BEHIND: Property = Property::within("room used up behind a leader, in ulps of the distances", ULPS, Unit::Ulps);
+const AT: Property = Property::within("distance kept at a time, in ulps of the distances", ULPS, Unit::Ulps);
+const TOWARDS: Property =
+    Property::within("room used up towards one that comes, in ulps of the distances", ULPS, Unit::Ulps);
 const GROWS: Property = Property::always("more room, less speed, more braking: never less wait");
 
 pub(super) const CASES: &[Case] = &[
@@ -166,17 +168,17 @@ fn wait(found: Second) -> Option<Second> {
     (found < f64::INFINITY).then_some(found.max(0.0))
 }
 
-/// The error of a longest wait that leads to a room, relative to `ways`: no room is left, and none is lacking. Of a wait
+/// The error of a longest wait that leads to a room, in units in the last place of `ways`: no room is left, and none is lacking. Of a wait
 /// that may last for ever only the latter counts, and of one that is too long already only the former.
 fn error(wait: Second, room: &BigFloat, ways: &BigFloat) -> f64 {
     if wait.is_nan() || *ways == BigFloat::ZERO {
         return if wait.is_nan() { f64::INFINITY } else { 0.0 };
     }
-    let relative = nearest(&(room / ways));
+    let ulps = nearest(&(room / ways)) / f64::EPSILON;
     match wait {
-        f64::INFINITY => (-relative).max(0.0),
-        _ if wait <= 0.0 => relative.max(0.0),
-        _ => relative.abs(),
+        f64::INFINITY => (-ulps).max(0.0),
+        _ if wait <= 0.0 => ulps.max(0.0),
+        _ => ulps.abs(),
     }
 }
 

@@ -6,6 +6,7 @@
 mod braking;
 mod cars;
 mod case;
+mod detector;
 mod geometry;
 mod late;
 mod paths;
@@ -30,7 +31,8 @@ pub fn run(count: u64, seed: u64, only: Option<Group>) -> Vec<PropertyResult> {
         .chain(probability::CASES)
         .chain(geometry::CASES)
         .chain(time::CASES)
-        .chain(paths::CASES);
+        .chain(paths::CASES)
+        .chain(detector::CASES);
     let chosen = all.filter(|case| only.is_none_or(|group| case.group == group)).collect::<Vec<_>>();
     let each = count.div_ceil(chosen.len().max(1) as u64);
     let mut rows = Vec::new();

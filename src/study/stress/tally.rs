@@ -19,6 +19,8 @@ pub enum Group {
     Time,
     /// Lines and the poses along them.
     Paths,
+    /// The whole detector, step by step.
+    Detector,
 }
 
 /// The unit of a property's error.
@@ -142,7 +144,11 @@ impl Tally {
     /// Records the deviation of a result from its expected value.
     pub(super) fn compare(&mut self, property: Property, found: f64, expected: &BigFloat, inputs: &dyn fmt::Debug) {
         let Deviation { absolute, relative, ulps } = deviation(found, expected);
-        let error = if property.unit == Unit::Relative { relative } else { absolute };
+        let error = match property.unit {
+            Unit::Relative => relative,
+            Unit::Ulps => ulps,
+            _ => absolute,
+        };
         self.error(property, error, inputs);
         if property.unit == Unit::Relative {
             let row = self.row(property);

@@ -1,0 +1,69 @@
+//! Recorded runs of scenarios, and the conflicts of their replay.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use rustc_hash::FxHashMap;
+
+use super::driven::{IdPair, pair};
+use super::measurement::{Plan, Recorder};
+use crate::Result;
+use crate::input::replay::Replay;
+use crate::options::Options;
+use crate::run::Run;
+use crate::traffic::net::Net;
+use crate::util::units::{Metre, Second};
+
+/// Gaps that differ by less are equal: a recording has nine digits.
+pub(super) const ROUNDING: Metre = 1e-6;
+
+/// The gap of every pair in conflict, by step.
+pub(super) type GapsByStep = Vec<FxHashMap<IdPair, Metre>>;
+
+/// A recorded run of a scenario.
+pub(super) struct RecordedScenario {
+    pub name: &'static str,
+    pub recording: PathBuf,
+    types: Vec<PathBuf>,
+    net: Arc<Net>,
+}
+
+/// How long a replay took, and how many rows it had.
+pub(super) struct Replayed {
+    pub lasts: Second,
+    pub rows: usize,
+}
+
+impl RecordedScenario {
+    /// Runs the scenario up to a time and records it.
+    pub fn record(plan: &Plan, name: &'static str, scratch: &Path, end: Second, record: &mut Recorder) -> Result<Self> {
+        let folder = plan.nets.join(name);
+        let recording = scratch.join(format!("{name}.fcd.xml"));
+        record(&folder.join(format!("{name}.sumocfg")), &recording, end)?;
+        let file = |ending: &str| folder.join(format!("{name}.{ending}"));
+        Ok(Self { name, types: vec![file("rou.xml")], net: Arc::new(Net::read(&file("net.xml"))?), recording })
+    }
+
+    /// Replays a recording of it; what is done after each step does not count.
+    pub fn replay(&self, recording: &Path, options: &Options, after: &mut dyn FnMut(&Run)) -> Result<Replayed> {
+        let started = Instant::now();
+        let mut replay = Replay::open(recording, &self.types, &self.net, options)?;
+        let mut run = Run::new(options, Some(self.net.clone()))?;
+        run.set_fixed_routes(true);
+        let mut rows = 0;
+        let mut aside = 0.0;
+        while replay.next(&mut run)?.is_some() {
+            rows += run.frame.len();
+            let paused = Instant::now();
+            after(&run);
+            aside += paused.elapsed().as_secs_f64();
+        }
+        Ok(Replayed { lasts: started.elapsed().as_secs_f64() - aside, rows })
+    }
+}
+
+/// The gap of every pair in conflict.
+pub(super) fn conflicts(run: &Run) -> FxHashMap<IdPair, Metre> {
+    run.in_conflict().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
+}
