@@ -169,7 +169,7 @@ impl Log {
 /// The file with each step of each conflict.
 #[derive(Debug)]
 enum Series {
-    Csv(CsvFile),
+    Csv(Box<CsvFile>),
     #[cfg(feature = "parquet")]
     Parquet(ParquetFile),
 }
@@ -180,7 +180,7 @@ impl Series {
         match options.log_series {
             #[cfg(feature = "parquet")]
             Some(SeriesFormat::Parquet) => ParquetFile::create(&path, columns).map(Self::Parquet),
-            Some(SeriesFormat::Csv) | None => CsvFile::create(path, columns).map(Self::Csv),
+            Some(SeriesFormat::Csv) | None => CsvFile::create(path, columns).map(Box::new).map(Self::Csv),
         }
     }
 

@@ -13,12 +13,12 @@ use super::overlaps::{Overlap, VEHICLE_WIDTH};
 use crate::geometry::{Bounds, Point, cross};
 use crate::util::units::Metre;
 
-/// How far beside a walking area a person on it may be, in m: SUMO's ways over it bend out of its outline. Of 148 persons on one in
-/// Bologna's acosta 127 were outside, nine of ten of these by less.
+/// How far beside a walking area a person on it may be, in m: SUMO's ways over it leave its outline. Of 148 persons whom SUMO
+/// has on one in critical conflicts of Bologna's acosta, 21 are within and 109 more at most this far beside.
 const BESIDE: Metre = 2.0;
 
 impl Net {
-    /// Whether a person at a place is on a walking area, not on a crossing.
+    /// Whether a place is on a walking area or just beside it.
     pub fn has_walking_area_at(&self, place: Point) -> bool {
         let is_at = |lane: LaneIndex| {
             let area = &self.lanes[lane.0 as usize].shape;
@@ -27,7 +27,6 @@ impl Net {
         let window = aabb(&Bounds { low: place, high: place }.grown(BESIDE));
         let mut near = self.finder.lanes_in(&window);
         near.any(|lane| self.function(lane) == EdgeFunction::WalkingArea && is_at(lane))
-            && self.crossing_at(place, 0.0).is_none()
     }
 }
 
@@ -134,11 +133,10 @@ mod tests {
     #[test]
     fn a_person_on_a_walking_area_or_just_beside_it_is_known() {
         let text = r#"<net><edge id=":j_w0" function="walkingarea">
-            <lane id=":j_w0_0" length="9" shape="0,0 9,0 9,9 6,3"/></edge>
-            <edge id=":j_c0" function="crossing"><lane id=":j_c0_0" length="9" width="2" shape="9,1 18,1"/></edge></net>"#;
+            <lane id=":j_w0_0" length="9" shape="0,0 9,0 9,9 6,3"/></edge></net>"#;
         let net = Net::parse(Path::new("net"), text.to_owned()).unwrap();
         let places = [(7.0, 2.5, true), (8.5, 7.0, true), (-1.9, 0.0, true), (4.0, -1.9, true)];
-        let others = [(-2.1, 0.0, false), (1.0, 6.0, false), (10.0, 1.5, false), (20.0, 1.0, false)];
+        let others = [(-2.1, 0.0, false), (1.0, 6.0, false), (11.5, 1.5, false), (20.0, 1.0, false)];
         for (x, y, is_on) in places.into_iter().chain(others) {
             assert_eq!(net.has_walking_area_at(Point::new(x, y)), is_on, "{x}, {y}");
         }
