@@ -1,9 +1,9 @@
-"""Fills in the address of the repository wherever OWNER stands for it, and makes the README's links absolute.
+"""Fills in the address of the repository wherever OWNER stands for it.
 
-    python3 .ci/address.py OWNER/NAME REF
+    python3 .ci/address.py OWNER/NAME [REF]
 
-For a release: PyPI and crates.io show the README without the files that it links to. REF is the tag. Standard library
-only.
+With REF, the tag of a release, the README's links become absolute, too: PyPI and crates.io show it without the files
+that it links to. Standard library only.
 """
 
 from __future__ import annotations
@@ -34,10 +34,12 @@ def absolute(text: str, repository: str, ref: str) -> str:
 
 def main() -> None:
     """Change the files in the working directory."""
-    _, repository, ref = sys.argv
+    repository, *ref = sys.argv[1:]
     for path in map(Path, FILES):
         text = filled(path.read_text(encoding="utf-8"), repository)
-        path.write_text(absolute(text, repository, ref) if path.name == "README.md" else text, encoding="utf-8")
+        if ref and path.name == "README.md":
+            text = absolute(text, repository, *ref)
+        path.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":
