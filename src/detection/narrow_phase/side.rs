@@ -9,15 +9,19 @@ use crate::geometry::bisection::Bisection;
 use crate::geometry::convex::ConvexOutline;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::{Contact, translation};
-use crate::geometry::sweep::{FINE, Movement};
+use crate::geometry::sweep::{FINE, Movement, TOLERANCE};
 use crate::geometry::{Vector, contact, exact, polygon};
 use crate::util::units::Metre;
+
+/// How far apart two rectangles may be where a coarse sweep of both finds contact, in m.
+const INEXACT: Metre = 2.0 * TOLERANCE;
 
 /// How a pair meets, each as its carriages, of which most have one: at the first pose on the ego's path at which its
 /// rectangle touches the area that the foe covers now and still needs to stop. The ego is the one with the longer distance
 /// there; if equal, the one with the smaller id. An obstacle is never the ego.
 ///
-/// Swept to [`TOLERANCE`](crate::geometry::sweep::TOLERANCE), which covers a little too much: what does not meet does not meet, and no gap is too large.
+/// Swept to [`TOLERANCE`], which covers a little too much: what does not meet does not meet, and no gap is too
+/// large.
 pub fn meet(
     bisection: &mut Bisection,
     a: &[Participant],
@@ -220,7 +224,8 @@ fn at_the_end(of: &Participant) -> Rectangle {
 /// The distance along poses, up to the first beyond `furthest`, at which a foe reaches the ego's rectangle at the conflict
 /// point, and its axis there.
 ///
-/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by those.
+/// The two touch there only up to rounding and the sweep's tolerances, so the rectangle is enlarged by those of a fine sweep;
+/// where a foe turns so fast that it is further off, by those of a coarse one.
 fn first_contact(
     bisection: &mut Bisection,
     first_number: usize,
@@ -229,10 +234,21 @@ fn first_contact(
     furthest: Metre,
     ego: &Rectangle,
 ) -> Option<(Metre, Vector)> {
-    let ego = grown(ego, bisection.inexact());
+    let enlarged = [bisection.inexact(), INEXACT].map(|by| grown(ego, by));
+    enlarged.iter().find_map(|ego| first_contact_with(bisection, first_number, foe, poses, furthest, ego))
+}
+
+fn first_contact_with(
+    bisection: &mut Bisection,
+    first_number: usize,
+    foe: &Participant,
+    poses: &[Pose],
+    furthest: Metre,
+    ego: &Rectangle,
+) -> Option<(Metre, Vector)> {
     for (index, pair) in poses.windows(2).enumerate() {
         let movement = foe.movement(&pair[0], &pair[1]);
-        if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
+        if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), ego, Contact::Entry) {
             let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
             return Some((foe_distance, movement.rectangle(enter).axis));
         }
@@ -268,8 +284,19 @@ pub fn departure(
 ) -> Metre {
     bisection.clear();
     bisection.sweep_to(FINE);
-    let ego = grown(ego, bisection.inexact());
-    let mut left = arrival;
+    let enlarged = [bisection.inexact(), INEXACT].map(|by| grown(ego, by));
+    enlarged.iter().find_map(|ego| last_contact_with(bisection, poses, foe, ego, arrival)).unwrap_or(arrival)
+}
+
+/// The distance at which the contact ends that a foe has from a distance on; none where it has none.
+fn last_contact_with(
+    bisection: &mut Bisection,
+    poses: &[Pose],
+    foe: &Participant,
+    ego: &Rectangle,
+    arrival: Metre,
+) -> Option<Metre> {
+    let mut left = None;
     for (index, pair) in poses.windows(2).enumerate() {
         let pose = pair[0];
         let next = pair[1];
@@ -277,13 +304,13 @@ pub fn departure(
             continue;
         }
         let movement = foe.movement(&pose, &next);
-        let Some(leave) = bisection.meet_rectangle((index, &movement), &ego, Contact::Exit) else {
+        let Some(leave) = bisection.meet_rectangle((index, &movement), ego, Contact::Exit) else {
             if pose.distance > arrival {
                 return left;
             }
             continue;
         };
-        left = pose.distance + (next.distance - pose.distance) * leave.min(1.0);
+        left = Some(pose.distance + (next.distance - pose.distance) * leave.min(1.0));
         if leave < 1.0 {
             return left;
         }
