@@ -16,9 +16,9 @@ use super::sweep::{Movement, TOLERANCE};
 use super::swept_part::SweptPart;
 use crate::util::units::Metre;
 
-/// Capacity, in parts and in hulls, of an instance that is kept between simulation steps. In `sumo_nets/town` one pair
-/// in 8,000 needs more than half of it.
-const KEPT: usize = 256;
+/// Capacity, in parts and in hulls, of an instance that is kept between simulation steps: what the fine sweep of two that
+/// follow each other on an arc needs.
+const KEPT: usize = 4096;
 
 /// Identifies a movement in a [`Bisection`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
