@@ -28,8 +28,10 @@ pub struct Tracker {
     /// The time of the last step; not a number before the first.
     last_time: Second,
     /// In the order of the pairs.
+    #[expect(clippy::vec_box, reason = "they are inserted in order, and an event is large")]
     events: Vec<Box<Event>>,
     /// Closed, but its PET is not known yet.
+    #[expect(clippy::vec_box, reason = "as above")]
     waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
 }

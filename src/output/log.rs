@@ -171,7 +171,7 @@ impl Log {
 enum Series {
     Csv(Box<CsvFile>),
     #[cfg(feature = "parquet")]
-    Parquet(ParquetFile),
+    Parquet(Box<ParquetFile>),
 }
 
 impl Series {
@@ -179,7 +179,7 @@ impl Series {
         let columns = series::columns(options.measures);
         match options.log_series {
             #[cfg(feature = "parquet")]
-            Some(SeriesFormat::Parquet) => ParquetFile::create(&path, columns).map(Self::Parquet),
+            Some(SeriesFormat::Parquet) => ParquetFile::create(&path, columns).map(Box::new).map(Self::Parquet),
             Some(SeriesFormat::Csv) | None => CsvFile::create(path, columns).map(Box::new).map(Self::Csv),
         }
     }

@@ -326,7 +326,7 @@ def test_numbered_runs_side_by_side_make_one_sweep(tmp_path: Path) -> None:
     listed = sweep(*words, "--list", *SHORT).stdout
     assert listed == "task,run,done\n1,seed-3,true\n2,seed-4,false\n3,seed-5,true\n"
     assert "1 of them were there already" in sweep(*words, "--task", "3", *SHORT).stdout
-    assert "the numbers are 1 to 3" in sweep(*words, "--task", "4", *SHORT, status=2).stderr
+    assert "they are 1 to 3" in sweep(*words, "--task", "4", *SHORT, status=2).stderr
 
 
 def simulations(of: psutil.Process) -> list[psutil.Process]:

@@ -17,7 +17,7 @@ class Reward:
     """The cost of each road user in the present step, from the conflicts that a checker finds in it.
 
     A conflict counts in the steps that meet the log's condition, not in the second for which it stays open after them.
-    The reward of an agent is minus its cost: `-reward.of("car")` of a vehicle, `-reward.near(x, y, 50.0)` of a junction.
+    The reward of an agent is minus its cost: `-reward.of("car")` of a car, `-reward.near(x, y, 50.0)` of a junction.
 
     Args:
         checker: the checker, attached to the simulation or fed with frames.
