@@ -193,7 +193,7 @@ def test_valgrind_finds_no_fault_in_compiled_calls(tmp_path: Path) -> None:
 
 @needs_compiled
 @needs_valgrind
-@pytest.mark.parametrize(("scene", "end", "left"), [("signals", "60", 5), ("town", "20", 1)])
+@pytest.mark.parametrize(("scene", "end", "left"), [("signals", "60", 5), ("town", "8", 1)])
 def test_valgrind_finds_no_fault_in_reused_road_users(scene: str, end: str, left: int, tmp_path: Path) -> None:
     trips = tmp_path / "trips.xml"
     run = ["-m", "closecall", "run", NETS / scene / f"{scene}.sumocfg", "--end", end, "--out", tmp_path / "out"]
