@@ -58,7 +58,8 @@ pub(super) const CASES: &[Case] = &[
     })
     .costing(10),
     Case::new(Group::Detector, "a lane as long as a tenth to ten times its shape", |chance, tally| {
-        let factor = chance.magnitude(0.1, 10.0);
+        // A lane within a hundredth of its shape is taken as drawn.
+        let factor = Some(chance.magnitude(0.1, 10.0)).filter(|factor| (factor - 1.0).abs() > 0.01).unwrap_or(1.0);
         let room = chance.between(1.0, 20.0);
         let speeds = [chance.between(20.0, 40.0), chance.between(0.0, 15.0)];
         check_lane(factor, room, speeds, tally);

@@ -88,7 +88,8 @@ pub(super) const CASES: &[Case] = &[
         let v = chance.between(5.0, 40.0);
         let vi = chance.between(0.0, 5.0);
         let turn = chance.pick(&[0.0, 1.5, std::f64::consts::PI]);
-        let distance = chance.between(2.0, 20.0);
+        // Nearer, the two overlap: up to the contact tolerance both are taken to be smaller then, which opens a gap.
+        let distance = chance.between(5.1, 20.0);
         let gap = |ahead: Metre| cars::gap((v, 0.0), (ahead, 0.0, turn, vi));
         let near = gap(distance);
         let far = gap(distance + chance.magnitude(1e-6, 1.0));
