@@ -67,6 +67,10 @@ impl Between<'_> {
             return None;
         }
         let [begin, end] = [0.0, 1.0].map(|part| self.room(part));
+        // The signed distance changes at most as fast as the corners move: two in line are nearest at an end.
+        if !is_seen && (begin + end - self.most_change()) / 2.0 >= begin.min(end) - CLOSER {
+            return None;
+        }
         let turn = [0, 1].map(|one| self.turn(one).abs()).iter().sum::<Radian>();
         let parts = (turn / TURN).ceil().max(1.0);
         let lows = (0..parts as u32).map(|part| {
@@ -100,6 +104,13 @@ impl Between<'_> {
         let [ego, foe] = measures::delta_v(one, other, angle);
         let fronts = rectangles.map(|rectangle| rectangle.centre + rectangle.axis * rectangle.half_length);
         FirstContact { time: between(self.times, part), fronts, speeds, delta_v: ego.max(foe) }
+    }
+
+    /// By how much their distance can change in the step.
+    fn most_change(&self) -> Metre {
+        let moves = [0, 1].map(|one| self.states[1][one].front() - self.states[0][one].front());
+        let turns = [0, 1].map(|one| self.turn(one).abs() * self.profiles[one].length.hypot(self.profiles[one].width));
+        (moves[0] - moves[1]).norm() + turns[0] + turns[1]
     }
 
     /// Their distance after a part of the step; below 0, how deep they overlap.

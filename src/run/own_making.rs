@@ -1,5 +1,5 @@
 //! Conflicts that the simulation itself makes of ordinary driving: of how closely its drivers follow, of how hard they can
-//! brake, and of persons whom they do not see.
+//! brake, and of persons that they do not see.
 
 use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;

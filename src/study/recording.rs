@@ -101,7 +101,7 @@ fn with_numbers(text: &str, write: &dyn Fn(f64) -> String) -> String {
     changed
 }
 
-/// A recording of every so many seconds.
+/// A recording with this period, in s.
 fn every(text: &str, period: Second) -> String {
     let mut is_kept = true;
     let mut kept = String::new();
@@ -113,7 +113,7 @@ fn every(text: &str, period: Second) -> String {
         if is_kept {
             kept += line;
         }
-        // What follows a step is no part of it.
+        // A step does not contain what follows it.
         is_kept |= line.trim_start().starts_with("</timestep>") || step.is_some() && line.trim_end().ends_with("/>");
     }
     kept

@@ -234,29 +234,26 @@ fn first_contact(
     furthest: Metre,
     ego: &Rectangle,
 ) -> Option<(Metre, Vector)> {
-    let enlarged = [bisection.inexact(), INEXACT].map(|by| grown(ego, by));
-    enlarged.iter().find_map(|ego| first_contact_with(bisection, first_number, foe, poses, furthest, ego))
+    enlarged(ego, bisection).find_map(|ego| {
+        for (index, pair) in poses.windows(2).enumerate() {
+            let movement = foe.movement(&pair[0], &pair[1]);
+            if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), &ego, Contact::Entry) {
+                let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
+                return Some((foe_distance, movement.rectangle(enter).axis));
+            }
+            if pair[0].distance >= furthest {
+                break;
+            }
+        }
+        None
+    })
 }
 
-fn first_contact_with(
-    bisection: &mut Bisection,
-    first_number: usize,
-    foe: &Participant,
-    poses: &[Pose],
-    furthest: Metre,
-    ego: &Rectangle,
-) -> Option<(Metre, Vector)> {
-    for (index, pair) in poses.windows(2).enumerate() {
-        let movement = foe.movement(&pair[0], &pair[1]);
-        if let Some(enter) = bisection.meet_rectangle((first_number + index, &movement), ego, Contact::Entry) {
-            let foe_distance = pair[0].distance + (pair[1].distance - pair[0].distance) * enter;
-            return Some((foe_distance, movement.rectangle(enter).axis));
-        }
-        if pair[0].distance >= furthest {
-            break;
-        }
-    }
-    None
+/// The ego's rectangle, larger by what the sweep leaves open; after a fine sweep also by what a coarse one does.
+fn enlarged(ego: &Rectangle, bisection: &Bisection) -> impl Iterator<Item = Rectangle> + use<> {
+    let (ego, inexact) = (*ego, bisection.inexact());
+    let coarse = (inexact < INEXACT).then_some(INEXACT);
+    std::iter::once(inexact).chain(coarse).map(move |by| grown(&ego, by))
 }
 
 /// The distance at which a carriage on these poses has left the ego's rectangle at the conflict point, if it ever comes
@@ -284,12 +281,12 @@ pub fn departure(
 ) -> Metre {
     bisection.clear();
     bisection.sweep_to(FINE);
-    let enlarged = [bisection.inexact(), INEXACT].map(|by| grown(ego, by));
-    enlarged.iter().find_map(|ego| last_contact_with(bisection, poses, foe, ego, arrival)).unwrap_or(arrival)
+    let left = enlarged(ego, bisection).find_map(|ego| last_contact(bisection, poses, foe, &ego, arrival));
+    left.unwrap_or(arrival)
 }
 
 /// The distance at which the contact ends that a foe has from a distance on; none where it has none.
-fn last_contact_with(
+fn last_contact(
     bisection: &mut Bisection,
     poses: &[Pose],
     foe: &Participant,

@@ -80,7 +80,7 @@ impl Turning {
         self.see_within(1.0, time, front, axis);
     }
 
-    /// [`Turning::see`] with a window so many times as long.
+    /// [`Turning::see`] with the window scaled by a factor.
     pub fn see_within(&mut self, windows: f64, time: Second, front: Point, axis: Vector) {
         let (Some(last), Some((last_front, last_axis))) = (self.window.back().copied(), self.last) else {
             self.window.reserve(MOST);

@@ -201,7 +201,7 @@ fn check_hairpin(chance: &mut Chance, radius: Metre, corners: usize, begins: Met
     for pose in &poses {
         let rear = at(&points, begins + pose.distance - LENGTH);
         let (back, front) = (rear - pose.front, at(&points, begins + pose.distance) - pose.front);
-        // Where the rear is where the front is, there is no chord.
+        // A rear in the front's place has no chord.
         let off = if back.norm() < 1e-3 { 0.0 } else { cross(&pose.axis, &back).abs() };
         worst = worst.max((off + front.norm()) / ulp);
         tally.holds(FINITE, (pose.axis.norm() - 1.0).abs() < 1e-12 && pose.front.coords.amax() < 1e3, &inputs);

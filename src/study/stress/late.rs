@@ -182,7 +182,7 @@ fn error(wait: Second, room: &BigFloat, ways: &BigFloat) -> f64 {
     }
 }
 
-/// Whether a wait is no shorter than another, up to rounding; below 0 it only says that any is too long.
+/// Whether a wait is at least as long as another, up to rounding; below 0 it only says that any is too long.
 fn is_no_less(wait: Second, other: Second) -> bool {
     /// Waits that differ by less, relative to the longer, are equal.
     const SAME: f64 = 1e-9;

@@ -13,8 +13,8 @@ use super::overlaps::{Overlap, VEHICLE_WIDTH};
 use crate::geometry::{Bounds, Point, cross};
 use crate::util::units::Metre;
 
-/// How far beside a walking area a person on it may be, in m: SUMO's ways over it leave its outline. Of 148 persons whom SUMO
-/// has on one in critical conflicts of Bologna's acosta, 21 are within and 109 more at most this far beside.
+/// How far beside a walking area a person on it may be, in m: SUMO's ways over it leave its outline. Bologna's acosta has
+/// 148 persons on one in critical conflicts: 21 are within it and 109 more at most this far beside.
 const BESIDE: Metre = 2.0;
 
 impl Net {
