@@ -39,5 +39,5 @@ pub fn machine() -> String {
     let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = information.lines().find(|line| line.starts_with("model name"));
     let model = model.and_then(|line| line.split_once(':')).map_or("unknown processor", |(_, name)| name.trim());
-    format!("{model}, {threads} threads, {}", std::env::consts::OS)
+    format!("{model}, {threads} {}, {}", if threads == 1 { "thread" } else { "threads" }, std::env::consts::OS)
 }
