@@ -1,4 +1,4 @@
-"""An extension of griffe: what the compiled module says of itself belongs to its stub, which has the types alone."""
+"""An extension of griffe: the docstrings of the compiled module belong to its stub, which has the types alone."""
 
 from __future__ import annotations
 

@@ -232,7 +232,7 @@ def machine() -> str:
 
 
 def line(lines: Lines) -> str:
-    """What the README says of all this."""
+    """The README's line about the bench."""
     ours, device = (
         [lines("over plain", scenario, method) for scenario in SCENARIOS] for method in ("closecall", "device.ssm")
     )

@@ -218,7 +218,7 @@ impl Checker {
         self.state.with(py, |state| Ok(alarm::active(&state.recorded.run)))
     }
 
-    /// The conflicts so far; the open ones as they are now. Of the closed ones, the latest `keep`.
+    /// The conflicts so far; the latest `keep` of the closed ones, and the open ones as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let conflicts = self.state.with(py, |state| {

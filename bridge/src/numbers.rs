@@ -20,7 +20,7 @@ pub fn numbers(name: &str, values: &Bound<PyAny>) -> PyResult<ArrayD<f64>> {
     Ok(copy.cast::<PyArrayDyn<f64>>()?.readonly().as_array().to_owned())
 }
 
-/// Refuses a masked array: its masked values are no values.
+/// Refuses a masked array: what stands under a mask is not a value.
 pub fn refuse_masked(name: &str, values: &Bound<PyAny>) -> PyResult<()> {
     let is_masked = |class: Bound<PyAny>| class.getattr("__name__").is_ok_and(|name| name.to_string() == "MaskedArray");
     if values.get_type().mro().iter().any(is_masked) {

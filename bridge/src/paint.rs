@@ -139,7 +139,7 @@ impl Painter {
         if painted.domain == "vehicle" { self.remove_ring(py, &painted.id) } else { Ok(()) }
     }
 
-    /// Puts the ring of an articulated vehicle around the place of its conflict, which changes from step to step.
+    /// Puts the ring of an articulated vehicle around the place of its conflict, which changes in each step.
     fn move_ring(&self, py: Python, id: &str, kind: Kind, at: Point, is_new: bool) -> PyResult<()> {
         let polygons = self.source.bind(py).getattr("polygon")?;
         let (ring, outline) = (format!("{id}_hl0"), ring_around(at));

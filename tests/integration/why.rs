@@ -111,7 +111,7 @@ fn road() -> Net {
 const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0", "to_west_1"];
 const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south_0"];
 
-/// Two cars on the crossing of `left_turn`, each so far before the junction and at so many m/s.
+/// Two cars on the crossing of `left_turn`, each at a distance before the junction, in m, and with a speed, in m/s.
 fn at_the_crossing(ways: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {
     let net = net_of("left_turn");
     let drives = ways.map(|(lanes, before)| {

@@ -57,7 +57,7 @@ struct ClosecallDirect {
     double (*speed)(User user);
 };
 
-// Functions of libsumo; `inside` is null where road users are inside nobody, `route` where they have none, those of
+// Functions of libsumo; `inside` is null where road users are not inside others, `route` where they have none, those of
 // `direct` where they are not to be called.
 struct ClosecallGetters {
     PositionOf position;
@@ -105,13 +105,13 @@ ClosecallDirect find_direct(void* module, bool of_persons) {
     return has_all ? direct : ClosecallDirect{};
 }
 
-// Whether a vehicle has departed: one that waits for that may be deleted and never have arrived. Of a person SUMO always
-// says that it has arrived.
+// Whether a vehicle has departed: one that waits for that may be deleted and never have arrived. SUMO always reports a
+// person as arrived.
 bool is_there(const ClosecallDirect& direct, User user) {
     return direct.is_visible == nullptr || direct.is_visible(user);
 }
 
-// What libsumo's getters say of a road user.
+// What libsumo's getters return for a road user.
 void read_directly(const ClosecallDirect& direct, User user, ClosecallReading* reading) {
     // The stage of a ride says "driving" where it has a vehicle, else "waiting for" it; no other stage has one.
     reading->is_inside = direct.activity != nullptr && direct.activity(user) == "driving";
@@ -159,9 +159,9 @@ bool closecall_find(const char* file, const char* domain, bool may_be_inside, bo
     return getters->position && getters->angle && getters->speed && (may_be_inside ? getters->inside : getters->route);
 }
 
-// The state of the road user of this id; false if libsumo throws, as it does for an id that it does not know. Of who is
-// inside somebody else only that is read. Where `kept` is not null, it says where the road user is found without its id,
-// as long as it is there, or null before it is found.
+// The state of the road user of this id; false if libsumo throws, as it does for an id that it does not know. For a road
+// user inside another, only that is read. Where `kept` is not null, it holds where the road user is found without its id
+// while it is there, or null before it is found.
 bool closecall_read(const ClosecallGetters* getters, const char* id, size_t length, User* kept,
                     ClosecallReading* reading) noexcept {
     try {

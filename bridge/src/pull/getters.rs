@@ -31,7 +31,7 @@ pub struct Getters {
     inside: Option<Py<PyAny>>,
     compiled: Option<Compiled>,
     version: String,
-    /// Why Python's getters are used where others were to be expected, until it is said.
+    /// Why Python's getters are used where compiled ones were to be expected, until the remark is printed.
     remark: Option<String>,
 }
 

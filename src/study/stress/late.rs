@@ -168,8 +168,8 @@ fn wait(found: Second) -> Option<Second> {
     (found < f64::INFINITY).then_some(found.max(0.0))
 }
 
-/// The error of a longest wait that leads to a room, in units in the last place of `ways`: no room is left, and none is lacking. Of a wait
-/// that may last for ever only the latter counts, and of one that is too long already only the former.
+/// The error of a longest wait that leads to a room, in units in the last place of `ways`: no room is left, and none is lacking. For a
+/// wait that may last for ever only the latter counts, and for one that is too long already only the former.
 fn error(wait: Second, room: &BigFloat, ways: &BigFloat) -> f64 {
     if wait.is_nan() || *ways == BigFloat::ZERO {
         return if wait.is_nan() { f64::INFINITY } else { 0.0 };
