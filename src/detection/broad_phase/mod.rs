@@ -47,6 +47,8 @@ pub struct Search<S> {
     slots: Vec<S>,
     /// Swaps since slots were assigned.
     moved: usize,
+    /// How often the boxes were sorted anew, because too many had changed places.
+    sorted_anew: u64,
     /// Which items have a slot already, while slots are assigned.
     given: Vec<bool>,
     in_strips: usize,
@@ -81,6 +83,11 @@ impl<S: Slot> Search<S> {
     /// Whether any area of this step is smaller than its box, so that two areas may be apart though their boxes meet.
     pub fn has_round(&self) -> bool {
         self.has_round
+    }
+
+    /// How often all boxes were sorted anew.
+    pub fn sorted_anew(&self) -> u64 {
+        self.sorted_anew
     }
 
     /// Updates the slot and the box of `count` items, numbered from 0, and sorts the boxes.
@@ -286,6 +293,27 @@ mod tests {
             let areas: Vec<_> = places.into_iter().map(area).collect();
             let who: Vec<_> = (0..areas.len() as u32).collect();
             prop_assert_eq!(found(&mut Search::default(), &areas, &who, parts), all_pairs(&areas));
+        }
+    }
+
+    #[test]
+    fn steady_traffic_is_never_sorted_anew_whatever_the_threads() {
+        const COUNT: usize = 50_000;
+        let mut chance = fastrand::Rng::with_seed(5);
+        let side = 20.0 * (COUNT as f64).sqrt();
+        let cars = (0..COUNT).map(|_| [side, side, 14.0, 14.0].map(|most| most * chance.f64())).collect::<Vec<_>>();
+        let who = (0..COUNT as u32).collect::<Vec<_>>();
+        for threads in [1, 2, 16] {
+            let (mut search, team) = (Search::<u32>::default(), Team::new(threads));
+            for step in 0..10 {
+                let time = 0.1 * f64::from(step);
+                let area = |(): &(), item: &mut u32| {
+                    let [x, y, along, up] = cars[*item as usize];
+                    Circle { x: x + along * time, y: y + up * time, radius: 20.0 }.into()
+                };
+                search.update(COUNT, &team, true, |item| Some(who[item as usize]), |_| (), area);
+            }
+            assert_eq!(search.sorted_anew(), 1, "by {threads} threads");
         }
     }
 

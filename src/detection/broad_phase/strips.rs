@@ -4,7 +4,7 @@
 use std::iter::repeat_n;
 
 use super::extent::{Extent, FURTHEST, is_far};
-use super::place::insert;
+use super::place::{StripEntry, insert};
 use super::{Search, Slot};
 use crate::geometry::Vector;
 use crate::util::threads::{Team, share};
@@ -81,6 +81,7 @@ impl<S: Slot> Search<S> {
         }
         // A full sort invalidates the order of the slots: reassign them in the next step.
         self.moved = usize::MAX;
+        self.sorted_anew += 1;
         self.places.sort_unstable_by(|a, b| a.strip.cmp(&b.strip).then(a.begin.total_cmp(&b.begin)));
     }
 
@@ -89,32 +90,45 @@ impl<S: Slot> Search<S> {
     fn is_nearly_sorted(&mut self, team: &Team) -> bool {
         let (boxes, per_metre, count) = (&self.boxes, 1.0 / self.strip_height, self.places.len());
         let busy = team.busy(count);
-        let share = share(busy, count);
-        self.parts.clear();
-        self.parts.resize(count.div_ceil(share), Extent::EMPTY);
-        let parts = self.parts.iter_mut().zip(self.places.chunks_mut(share));
-        team.each(repeat_n((), busy), parts, |(), (part, places)| {
+        let mut sorted = share(busy, count);
+        let mut sort = |length: usize, sort: &(dyn Fn(&mut [StripEntry], &mut usize) -> bool + Sync)| {
+            self.parts.clear();
+            self.parts.resize(count.div_ceil(length), Extent::EMPTY);
+            let parts = self.parts.iter_mut().zip(self.places.chunks_mut(length));
+            team.each(repeat_n((), busy), parts, |(), (part, places)| {
+                let most = MOVES * places.len();
+                let mut moves = most;
+                part.sorted = sort(places, &mut moves);
+                part.moved = most - moves;
+            });
+            let all = self.parts.iter().fold(Extent::EMPTY, Extent::join);
+            self.moved += all.moved;
+            all.sorted
+        };
+        let is_sorted = sort(sorted, &|places, moves| {
             places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
-            let most = MOVES * places.len();
-            let mut moves = most;
-            part.sorted = (1..places.len()).all(|place| insert(places, place, &mut moves));
-            part.moved = most - moves;
+            (1..places.len()).all(|place| insert(places, place, moves))
         });
-        let all = self.all_parts();
-        self.moved += all.moved;
-        if !all.sorted {
+        if !is_sorted {
             return false;
         }
-        let mut moves = MOVES * share;
-        for bound in (share..self.places.len()).step_by(share) {
-            // Parts are sorted, so only the first entries of one may belong further ahead.
-            let mut place = bound;
-            while place < self.places.len() && self.places[place].is_before(&self.places[place - 1]) {
-                if !insert(&mut self.places, place, &mut moves) {
-                    return false;
+        // Then pairs of neighbouring parts are joined, then pairs of these, until one is left.
+        while sorted < count {
+            let are_joined = sort(2 * sorted, &|places, moves| {
+                // Both are sorted, so only the first entries of the second may belong into the first.
+                let mut place = sorted;
+                while place < places.len() && places[place].is_before(&places[place - 1]) {
+                    if !insert(places, place, moves) {
+                        return false;
+                    }
+                    place += 1;
                 }
-                place += 1;
+                true
+            });
+            if !are_joined {
+                return false;
             }
+            sorted *= 2;
         }
         true
     }

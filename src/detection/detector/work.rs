@@ -27,6 +27,8 @@ pub struct Work {
     pub side: u64,
     /// Road users that were still on the path built before.
     pub known_paths: u64,
+    /// Steps in which the areas of all road users were sorted anew, not only those that had changed places.
+    pub sorted_anew: u64,
 }
 
 impl std::ops::AddAssign for Work {
@@ -43,5 +45,6 @@ impl std::ops::AddAssign for Work {
         self.frontal += other.frontal;
         self.side += other.side;
         self.known_paths += other.known_paths;
+        self.sorted_anew += other.sorted_anew;
     }
 }
