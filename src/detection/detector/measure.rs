@@ -300,9 +300,11 @@ impl Timely {
     fn with(self, evasion: &Evasion, braking: &LateBraking, driver: &Driver) -> Self {
         let wait = evasion.longest_wait(braking);
         let ttb = Some(wait.max(0.0)).filter(|wait| wait.is_finite());
-        let wait_with = |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking });
-        let probability = crash_probability(driver, braking.present >= BRAKES, wait_with);
-        Self { ttb, crash_probability: if ttb.is_some() { probability } else { 0.0 }, ..self }
+        let crash_probability = ttb.map_or(0.0, |_| {
+            let wait_with = |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking });
+            crash_probability(driver, braking.present >= BRAKES, wait_with)
+        });
+        Self { ttb, crash_probability, ..self }
     }
 }
 

@@ -87,7 +87,23 @@ pub fn to_stay_behind<'a>(
         // How much sooner than the contact it has to brake; of waits that are too long already, the least is the worst.
         (meets + HORIZON - braking.longest_wait_at(time, distance)).clamp(0.0, 2.0 * HORIZON)
     };
-    largest_need(late, meets).is_finite().then_some(Evasion::At(limits))
+    if !largest_need(late, meets).is_finite() {
+        return None;
+    }
+    keep_binding(limits);
+    Some(Evasion::At(limits))
+}
+
+/// Removes each limit that holds where another does: one that is no further at a later time is stricter, because the
+/// ego does not drive back.
+fn keep_binding(limits: &mut Vec<(Second, Metre)>) {
+    limits.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+    let mut nearest = f64::INFINITY;
+    limits.retain(|(_, distance)| {
+        let binds = *distance < nearest;
+        nearest = nearest.min(*distance);
+        binds
+    });
 }
 
 #[cfg(test)]
@@ -179,6 +195,22 @@ mod tests {
             needed += u32::from(touch(&ego, &foe, wait + 0.05, 0.1, 2.0 * HORIZON));
         }
         assert!(100 * enough >= 98 * all && 100 * needed >= 98 * all, "{enough} and {needed} of {all}");
+    }
+
+    #[test]
+    fn limits_that_do_not_bind_change_no_wait() {
+        let mut chance = Rng::with_seed(2);
+        for _ in 0..200 {
+            let mut draw = |most: f64| most * chance.f64();
+            let mut limits = (0..30).map(|_| (draw(10.0), draw(60.0))).collect::<Vec<_>>();
+            let all = limits.clone();
+            let braking = LateBraking { speed: draw(30.0), present: draw(3.0), build_up: draw(0.5), deceleration: 8.0 };
+            keep_binding(&mut limits);
+            assert!(limits.len() < all.len());
+            // How much too late it is already may differ.
+            let [kept, all] = [&limits, &all].map(|limits| Evasion::At(limits).longest_wait(&braking).max(0.0));
+            assert!(kept == all || (kept - all).abs() < 1e-12 * kept, "{kept}, not {all}");
+        }
     }
 
     #[test]
