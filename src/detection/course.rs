@@ -34,7 +34,7 @@ pub struct Course {
     pub stretches: SmallVec<[Stretch; 6]>,
     /// Whether it drives against the direction of its lane.
     pub is_against: bool,
-    /// Whether it has jumped to these lanes at the end of the step, and was on others at the moment of its speed.
+    /// Whether it has jumped to these lanes since the last step.
     pub has_jumped: bool,
     /// Its last change of lanes.
     pub change: Option<LaneChange>,
@@ -45,13 +45,6 @@ pub struct Course {
 }
 
 impl Course {
-    /// Puts the road user back on the lane from which it has just changed; where it goes from there is not known then.
-    pub fn undo(&mut self, change: LaneChange) {
-        let on = self.of(change.to).copied();
-        self.stretches = on.map(|stretch| Stretch { lane: change.from, ..stretch }).into_iter().collect();
-        (self.change, self.has_jumped) = (None, false);
-    }
-
     /// The lane at a distance ahead of the front bumper; the first or last beyond either end.
     pub fn at(&self, way: Metre) -> Option<LaneIndex> {
         let found = self.stretches.iter().find(|stretch| stretch.end > way);

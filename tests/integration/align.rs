@@ -1,5 +1,6 @@
 //! Positions and speeds of SUMO's Euler update, brought to one moment.
 
+use closecall::internals::geometry::Vector;
 use closecall::{Align, Detector, Frame, Net, Options, Placement, Profile, Roster, State, SumoType};
 
 use super::way::Way;
@@ -85,12 +86,18 @@ fn speeds_of_a_moment_are_left_where_they_are() {
 
 #[test]
 fn a_change_of_lanes_comes_after_the_step() {
-    let way = Way::bend();
-    let at = |x: f64, y: f64, heading: f64| State { x, y, heading, speed: 8.0, ..State::default() };
-    let (found, _) =
-        second_step(&mut aligning(Some(&way)), Some((&way.net, 48.0)), [&[at(40.0, 0.0, 0.0)], &[at(48.0, 3.2, 0.7)]]);
-    let found = found[0];
-    assert!((found.x - 44.0).abs() < 1e-9 && found.y.abs() < 1e-9 && found.heading.abs() < 1e-9, "{found:?}");
+    let (way, car) = (Way::bend(), car());
+    let at = |distance: f64| way.vehicle(&car, distance, 8.0);
+    for front in (48..200).map(f64::from) {
+        let (along, mut to) = (way.at(front + 0.1) - way.at(front - 0.1), at(front));
+        let aside = Vector::new(along.y, -along.x).normalize() * 3.2;
+        (to.x, to.y, to.heading) = (to.x + aside.x, to.y + aside.y, to.heading - 0.7);
+        let steps: [&[State]; 2] = [&[at(front - 8.0)], &[to]];
+        let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, front - 8.0)), steps);
+        let (found, expected) = (found[0], at(front - 4.0));
+        assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
+        assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");
+    }
 }
 
 #[test]

@@ -7,7 +7,6 @@
 //! moved back too, but no overlap is a collision then.
 
 use super::Detector;
-use super::jump::Jump;
 use super::reach::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
@@ -15,9 +14,6 @@ use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, Second};
-
-/// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
-const LEAST_JUMP: Metre = 0.5;
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -50,13 +46,9 @@ impl Detector {
         if behind == 0.0 {
             return;
         }
-        // Its path begins on the lane that it has jumped to; on the way there, it drove straight enough. SUMO's heading is that
-        // from its rear on the former lane to its front on the next.
-        for Jump { row, aside, heading } in &self.jumps {
-            let state = frame.state_mut(*row);
-            (state.x, state.y) = (state.x - aside.x, state.y - aside.y);
-            state.heading = *heading;
-            self.on_lanes[*row as usize] = false;
+        // What has jumped was not on its path then.
+        for jump in &self.jumps {
+            self.on_lanes[jump.row as usize] = false;
         }
         for row in 0..frame.len() as u32 {
             let user = frame.user(row);
@@ -66,22 +58,7 @@ impl Detector {
                 self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
             }
         }
-    }
-
-    /// Notes by how much a road user has jumped to the side of its path, if it has and road users are moved back.
-    pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
-        let path = &self.paths[user.0 as usize];
-        if self.behind() == 0.0 || path.track.is_empty() {
-            return;
-        }
-        let driven = state.speed * self.step;
-        let (point, direction) = path.track.ahead_at(path.lines(lines_of(self.net.as_deref())), driven);
-        let (off, direction) = (state.front() - point, direction.normalize());
-        let along = off.dot(&direction);
-        let aside = off - direction * along;
-        if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
-            self.jumps.push(Jump { row, aside, heading: direction.y.atan2(direction.x) });
-        }
+        self.undo_jumps(frame, roster);
     }
 
     fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {

@@ -57,7 +57,7 @@ impl Detector {
         self.time = frame.time;
         self.work.rows += frame.len() as u64;
         self.unplaced.clear();
-        self.jumps.clear();
+        self.redo_jumps();
         self.on_lanes.clear();
         self.on_lanes.resize(frame.len(), false);
         if self.turns() == PathSource::Lanes {

@@ -23,10 +23,11 @@ impl Detector {
             return Course::default();
         };
         let deceleration = self.speeds.get(user.0 as usize).map_or(0.0, |last| last.deceleration());
-        let has_jumped = self.jumps.iter().any(|jump| jump.row == row);
+        let is_before_jump = self.jumps.iter().any(|jump| jump.row == row);
+        let has_jumped = self.jumped.contains(&user);
         let is_on = || (path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH;
         let mut course = Course { has_jumped, deceleration, ..Course::default() };
-        if !path.track.is_empty() && (has_jumped || is_on()) {
+        if !path.track.is_empty() && is_on() {
             path.each_lane(&net.lines, |lane, [begin, end]| {
                 if end > behind && begin <= ahead {
                     course.stretches.push(Stretch { lane, begin, end });
@@ -34,10 +35,9 @@ impl Detector {
             });
             course.is_against = path.is_against();
             course.lateral_speed = path.lateral_speed();
-            course.change = self.lane_changes.get(user.0 as usize).copied().flatten();
-            if let Some(change) = course.change.filter(|change| has_jumped && change.time == self.time) {
-                course.undo(change);
-            }
+            // One that jumps at the end of this step is still on its former lane.
+            let change = self.lane_changes.get(user.0 as usize).copied().flatten();
+            course.change = change.filter(|change| !is_before_jump || change.time < self.time);
         } else if let (false, Some(lane)) = (state.moves(), net.lane_at(state.front())) {
             // One that has not moved since it entered the scene has no path.
             course.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });

@@ -16,6 +16,7 @@ mod last_speed;
 mod left_out;
 mod level;
 mod measure;
+mod meet;
 mod occupancy;
 mod overlap;
 mod reach;
@@ -74,6 +75,10 @@ pub struct Detector {
     averaged_over: f64,
     /// The rows that have changed lanes in this step, and by how much, if road users are moved back.
     jumps: Vec<Jump>,
+    /// The paths of those on the lanes to which they have jumped.
+    next_paths: Vec<(UserIndex, LanePath)>,
+    /// Those that jumped at the end of the last step.
+    jumped: Vec<UserIndex>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -120,6 +125,8 @@ impl Detector {
             sublane: false,
             averaged_over: 0.0,
             jumps: Vec::new(),
+            next_paths: Vec::new(),
+            jumped: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -206,11 +213,12 @@ impl Detector {
 
     /// The work done so far.
     pub fn work(&self) -> Work {
-        self.work
+        Work { sorted_anew: self.search.sorted_anew(), ..self.work }
     }
 
     /// Forgets a road user that has left the scene, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
+        self.next_paths.retain(|(other, _)| *other != user);
         if let Some(path) = self.paths.get_mut(user.0 as usize) {
             path.clear();
         }

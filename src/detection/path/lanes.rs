@@ -84,6 +84,11 @@ impl LanePath {
         self.track.follow(lines, front, driven)
     }
 
+    /// Moves the front bumper on.
+    pub fn move_on(&mut self, of_net: &Lines, distance: Metre) {
+        self.track.move_on(self.own.as_ref().map_or(of_net, |own| &own.lines), distance);
+    }
+
     /// Moves the front bumper back.
     pub fn move_back(&mut self, of_net: &Lines, distance: Metre) {
         self.moved_back = distance;

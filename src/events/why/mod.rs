@@ -24,8 +24,6 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
-    /// Whether one of them has jumped to the lanes that the manoeuvre follows from.
-    has_jumped: bool,
 }
 
 impl Why {
@@ -33,15 +31,13 @@ impl Why {
     pub fn of(step: (&Frame, &Roster, &Encounter), around: Surroundings, past: &Past) -> Self {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
-        let has_jumped = pair.both().iter().any(|(party, _)| party.course.has_jumped);
-        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), has_jumped }
+        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre) }
     }
 
     /// The same with a later step that is worse.
     pub fn then(self, later: Self) -> Self {
-        let [first, second] = if later.has_jumped { [self, later] } else { [later, self] };
         let mut causes = self.causes;
         causes.add(later.causes);
-        Self { manoeuvre: first.manoeuvre.or(second.manoeuvre), causes, ..later }
+        Self { manoeuvre: later.manoeuvre.or(self.manoeuvre), causes }
     }
 }
