@@ -111,3 +111,32 @@ fn what_enters_after_the_moment_collides_with_nothing() {
     assert_eq!(encounters([behind, ahead]), 1, "half a step back they overlap");
     assert_eq!(encounters([State { speed: f64::NAN, ..behind }, ahead]), 0);
 }
+
+#[test]
+fn one_that_was_away_for_a_step_is_where_it_came_back() {
+    let (way, car) = (Way::bend(), car());
+    let [before, elsewhere, expected] = [95.0, 170.0, 166.0].map(|front| way.vehicle(&car, front, 8.0));
+    let (mut detector, mut roster, mut frame) = (aligning(Some(&way)), Roster::default(), Frame::default());
+    let profile = roster.profile(car).unwrap();
+    let user = roster.enter("teleported", profile);
+    for (time, state) in [Some(before), None, Some(elsewhere)].into_iter().enumerate() {
+        frame.begin(time as f64);
+        if let Some(state) = state {
+            frame.push(user, state);
+        }
+        for row in detector.track_paths(&frame, &roster).to_vec() {
+            let placement = Placement {
+                lane: way.net.lane("e_0").unwrap(),
+                position: if time == 0 { 95.0 } else { 170.0 },
+                route: Some([way.net.edge("e").unwrap()].into()),
+                route_position: 0,
+                lateral_speed: 0.0,
+            };
+            detector.set_placement(&frame, &roster, row, &placement);
+        }
+        detector.align(&mut frame, &roster);
+        detector.broad_phase(&frame, &roster);
+    }
+    let found = frame.state(0);
+    assert!((found.front() - expected.front()).norm() < 1e-9, "{found:?} {expected:?}");
+}

@@ -53,6 +53,7 @@ impl Detector {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
         }
+        self.forget_absent(frame);
         self.step = (frame.time - self.time).max(0.0);
         self.time = frame.time;
         self.work.rows += frame.len() as u64;
@@ -76,6 +77,16 @@ impl Detector {
             }
         }
         &self.unplaced
+    }
+
+    /// Forgets what is known of road users that were absent in the last step: SUMO's teleports put them elsewhere.
+    fn forget_absent(&mut self, frame: &Frame) {
+        for Row { user, .. } in frame.rows() {
+            let last = self.speeds.get(user.0 as usize);
+            if last.is_some_and(|last| !last.speed.is_nan() && last.time != self.time) {
+                self.forget(user);
+            }
+        }
     }
 
     /// The broad phase: finds the pairs that may meet.
@@ -136,7 +147,7 @@ impl Detector {
         }
         self.speeds.resize(self.paths.len(), LastSpeed::default());
         for Row { user, state } in frame.rows() {
-            self.speeds[user.0 as usize].take(state.speed, self.step);
+            self.speeds[user.0 as usize].take(state.speed, self.time, self.step);
         }
     }
 

@@ -7,22 +7,24 @@ use crate::util::units::{MetrePerSecond, MetrePerSecondSquared, Second};
 pub(super) struct LastSpeed {
     /// Not a number where it is not known.
     pub speed: MetrePerSecond,
+    /// When it had it.
+    pub time: Second,
     /// Since the last step; below 0 where it brakes.
     pub acceleration: MetrePerSecondSquared,
 }
 
 impl Default for LastSpeed {
     fn default() -> Self {
-        Self { speed: f64::NAN, acceleration: 0.0 }
+        Self { speed: f64::NAN, time: f64::NAN, acceleration: 0.0 }
     }
 }
 
 impl LastSpeed {
-    /// The speed of this step, `after` s after the last.
-    pub fn take(&mut self, speed: MetrePerSecond, after: Second) {
+    /// The speed of the step at this time, `after` s after the last.
+    pub fn take(&mut self, speed: MetrePerSecond, time: Second, after: Second) {
         let faster = speed - self.speed;
         self.acceleration = if faster != 0.0 && !faster.is_nan() && after > 0.0 { faster / after } else { 0.0 };
-        self.speed = speed;
+        (self.speed, self.time) = (speed, time);
     }
 
     /// How it brakes, 0 or more.
