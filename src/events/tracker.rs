@@ -193,7 +193,7 @@ mod tests {
     fn nothing() -> Surroundings<'static> {
         static SIGNALS: std::sync::LazyLock<crate::traffic::signals::Signals> =
             std::sync::LazyLock::new(Default::default);
-        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default(), added: &|_| None }
+        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default(), added: &|_| None, tadv: &|_| None }
     }
 
     struct TrackedPair {

@@ -101,10 +101,17 @@ fn net_of(scene: &str) -> Net {
 
 /// A road of two lanes with a limit of 30 m/s.
 fn road() -> Net {
-    let text = r#"<net><edge id="road" from="w" to="e">
-        <lane id="road_0" speed="30" length="900" shape="0,-1.6 900,-1.6"/>
-        <lane id="road_1" speed="30" length="900" shape="0,1.6 900,1.6"/>
-    </edge></net>"#;
+    road_of(r#"from="w" to="e""#, 1.6)
+}
+
+/// The same with an edge that is this, its lanes so far to the right and left of the x axis.
+fn road_of(edge: &str, beside: f64) -> Net {
+    let text = format!(
+        r#"<net><edge id="road" {edge}>
+        <lane id="road_0" speed="30" length="900" shape="0,-{beside} 900,-{beside}"/>
+        <lane id="road_1" speed="30" length="900" shape="0,{beside} 900,{beside}"/>
+    </edge></net>"#
+    );
     Net::parse(Path::new("road.net.xml"), text).unwrap()
 }
 
@@ -129,6 +136,41 @@ fn one_that_crosses_against_the_right_of_way_did_not_yield() {
         drive(&["from_west_0", ":crossing_1_0", "to_east_0"], 44.0, |_| 15.0),
     ];
     assert_eq!(logged(&net, &ways, &[], 9.0), [["side", "crossing", "did_not_yield"]]);
+}
+
+#[test]
+fn one_that_lets_the_other_go_first_has_yielded() {
+    let net = net_of("side");
+    let causes = |[south, west]: [f64; 2]| {
+        let ways = [
+            drive(&["from_south_0", ":crossing_0_0", "to_north_0"], south, |_| 15.0),
+            drive(&["from_west_0", ":crossing_1_0", "to_east_0"], west, |_| 15.0),
+        ];
+        let found = logged(&net, &ways, &[], 9.0);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!(manoeuvre, "crossing");
+        why.clone()
+    };
+    // In the one order the two miss each other as in the other; only one of them has to yield.
+    let [first, second] = [[36.0, 58.0], [58.0, 36.0]].map(causes);
+    assert!([("did_not_yield", ""), ("", "did_not_yield")].contains(&(&first, &second)), "{first} {second}");
+}
+
+#[test]
+fn the_light_at_the_entry_leaves_the_right_of_way() {
+    let net = net_of("left_turn");
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let turns = |time: f64| if time < 2.0 { 0.0 } else { 6.0 };
+    let ways = [
+        drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns),
+        drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0),
+    ];
+    // The oncoming car passes its stop line at 1.8 s.
+    for (red, cause) in [(1.9, "did_not_yield"), (1.5, "ran_red")] {
+        let found = logged(&net, &ways, &[(0.0, "rGrrrrrrgrrr"), (red, "rrrrrrrrrrrr")], 5.0);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((&**manoeuvre, &**why), ("left_turn_across", cause));
+    }
 }
 
 #[test]
@@ -188,6 +230,29 @@ fn one_that_moves_in_front_cuts_in() {
     let behind = Drive { change: Some((1.0, "road_1")), ..follower() };
     let found = logged(&road(), &[behind, leader(None)], &[], 2.5);
     assert_eq!(found, [["rear_end", "lane_change", "changed_lane"]]);
+}
+
+#[test]
+fn of_two_that_change_lanes_the_later_comes_into_the_way() {
+    for (ego, foe, manoeuvre) in [(0.5, 1.0, "cut_in"), (1.0, 0.5, "lane_change")] {
+        let changes = |start, speed, time| Drive { change: Some((time, "road_0")), ..drive(&["road_1"], start, speed) };
+        let found = logged(&road(), &[changes(100.0, |_| 20.0, ego), changes(119.0, |_| 17.0, foe)], &[], 2.5);
+        assert_eq!(found.last(), Some(&["rear_end", manoeuvre, "changed_lane"].map(str::to_owned)));
+    }
+}
+
+#[test]
+fn a_lane_change_within_a_junction_is_one() {
+    let change = Some((1.0, "road_0"));
+    let cars = [drive(&["road_0"], 100.0, |_| 20.0), Drive { change, ..drive(&["road_1"], 112.0, |_| 17.0) }];
+    let found = logged(&road_of(r#"function="internal""#, 1.6), &cars, &[], 2.5);
+    assert_eq!(found, [["rear_end", "cut_in", "changed_lane"]]);
+}
+
+#[test]
+fn lanes_that_overlap_as_drawn_have_no_lane_change() {
+    let cars = [drive(&["road_0"], 100.0, |_| 20.0), drive(&["road_1"], 112.0, |_| 17.0)];
+    assert_eq!(logged(&road_of(r#"from="w" to="e""#, 0.5), &cars, &[], 2.5), [["rear_end", "side_by_side", ""]]);
 }
 
 #[test]

@@ -30,8 +30,10 @@ pub enum Manoeuvre {
     Following,
     /// The foe has just moved into the lane of the ego behind it.
     CutIn,
-    /// One moves, or has just moved, into the other's lane, and does not cut in.
+    /// The ego moves, or has just moved, into the foe's lane.
     LaneChange,
+    /// Side by side in one direction, and neither changes lanes.
+    SideBySide,
     /// Two lanes become one, and both drive straight on.
     Merge,
     /// Their ways cross, and neither of them turns across the other's direction.
@@ -56,10 +58,11 @@ pub enum Manoeuvre {
 
 impl Manoeuvre {
     /// All manoeuvres, in the order used in tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Following,
         Self::CutIn,
         Self::LaneChange,
+        Self::SideBySide,
         Self::Merge,
         Self::Crossing,
         Self::LeftTurnAcross,
@@ -78,6 +81,7 @@ impl Manoeuvre {
             Self::Following => "following",
             Self::CutIn => "cut_in",
             Self::LaneChange => "lane_change",
+            Self::SideBySide => "side_by_side",
             Self::Merge => "merge",
             Self::Crossing => "crossing",
             Self::LeftTurnAcross => "left_turn_across",
@@ -147,34 +151,34 @@ fn follow_each_other(pair: &Pair) -> bool {
 
 /// Two that drive on one lane or beside each other.
 fn in_one_direction(pair: &Pair) -> Manoeuvre {
-    let [ego, foe] =
-        [(&pair.ego, &pair.foe), (&pair.foe, &pair.ego)].map(|(one, other)| changes_into(pair, one, other));
-    match pair.kind {
-        _ if foe && !ego => Manoeuvre::CutIn,
-        _ if ego => Manoeuvre::LaneChange,
-        _ if !shares_a_lane(pair) => Manoeuvre::LaneChange,
-        _ => Manoeuvre::Following,
+    let [ego, foe] = pair.both().map(|(one, other)| changed_into(pair, one, other));
+    // Of two that changed lanes, the later one came into the other's way.
+    match () {
+        () if foe > ego => Manoeuvre::CutIn,
+        () if ego.is_some() => Manoeuvre::LaneChange,
+        () if !shares_a_lane(pair) => Manoeuvre::SideBySide,
+        () => Manoeuvre::Following,
     }
 }
 
-/// Whether one changes lanes into that of the other, or did so just now.
-pub(super) fn changes_into(pair: &Pair, one: &Party, other: &Party) -> bool {
+/// Since when one is in the lane of the other to which it changed, or changes now; none where it came otherwise, or long ago.
+pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Second> {
     let course = &one.course;
-    let changed = course.change.is_some_and(|change| {
-        pair.time - change.time <= LANE_CHANGE
-            && other.course.of(change.to).is_some()
-            && other.course.change != course.change
+    // The other may have left the lane since, ahead of it.
+    let is_into = |lane| other.course.of(lane).is_some() || follow_each_other(pair);
+    let changed = course.change.filter(|change| {
+        pair.time - change.time <= LANE_CHANGE && other.course.change != course.change && is_into(change.to)
     });
-    let Some((net, own)) = pair.around.net.zip(course.at(0.0)) else { return changed };
-    let lane = &net.lanes[own.0 as usize];
-    let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
-    let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) };
-    let drifts = course.lateral_speed.abs() > DRIFT
-        && next.is_some_and(|next| {
-            let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize);
-            next.is_some_and(|next| other.course.of(*next).is_some()) && other.course.of(own).is_none()
-        });
-    changed || drifts
+    let drifts = || -> Option<Second> {
+        let (net, own) = pair.around.net.zip(course.at(0.0))?;
+        let lane = &net.lanes[own.0 as usize];
+        let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
+        let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) }?;
+        let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize)?;
+        let is_towards = other.course.of(*next).is_some() && other.course.of(own).is_none();
+        (is_towards && course.lateral_speed.abs() > DRIFT).then_some(pair.time)
+    };
+    drifts().or(changed.map(|change| change.time))
 }
 
 /// Two whose ways meet in a junction.

@@ -40,8 +40,24 @@ impl Why {
     /// The same with a later step that is worse.
     pub fn then(self, later: Self) -> Self {
         let [first, second] = if later.has_jumped { [self, later] } else { [later, self] };
+        let manoeuvre = first.manoeuvre.or(second.manoeuvre);
         let mut causes = self.causes;
         causes.add(later.causes);
-        Self { manoeuvre: first.manoeuvre.or(second.manoeuvre), causes, ..later }
+        Self { manoeuvre, causes: causes.that_fit(manoeuvre), ..later }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_of_lanes_is_no_cause_once_they_follow() {
+        let step = |manoeuvre, causes: &[Cause]| {
+            Why { manoeuvre: Some(manoeuvre), causes: causes.iter().copied().collect(), has_jumped: false }
+        };
+        let changes = step(Manoeuvre::CutIn, &[Cause::ChangedLane, Cause::TooFast]);
+        let causes = |later| changes.then(step(later, &[])).causes.to_string();
+        assert_eq!([Manoeuvre::Following, Manoeuvre::LaneChange].map(causes), ["too_fast", "changed_lane too_fast"]);
     }
 }
