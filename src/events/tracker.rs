@@ -2,13 +2,14 @@
 
 use smallvec::SmallVec;
 
-use super::alarm::Alarm;
+use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
 use super::under_way::{Event, Keeps, Pair};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
+use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::options::Options;
@@ -114,6 +115,18 @@ impl Tracker {
         self.events.iter().filter_map(|event| event.alarm)
     }
 
+    /// The conflicts that are over and wait for their PET, as in their last step, in no particular order.
+    pub fn waiting(&self) -> impl Iterator<Item = Alarm> {
+        self.waiting.iter().filter_map(|event| event.alarm)
+    }
+
+    /// The PET of an open or waiting conflict as far as it is known; `ahead` has the poses that a road user will go through.
+    pub fn pet_so_far(&self, alarm: &Alarm, ahead: impl Fn(UserIndex) -> Vec<Pose>) -> Option<PetSoFar> {
+        let pair = [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
+        let event = self.events.iter().chain(&self.waiting).find(|event| event.pair() == pair)?;
+        event.pet_so_far(self.last_time, ahead, self.crossing)
+    }
+
     /// The conflicts that are open or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
         let events = self.events.iter().chain(&self.waiting);
@@ -193,7 +206,13 @@ mod tests {
     fn nothing() -> Surroundings<'static> {
         static SIGNALS: std::sync::LazyLock<crate::traffic::signals::Signals> =
             std::sync::LazyLock::new(Default::default);
-        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default(), added: &|_| None, tadv: &|_| None }
+        Surroundings {
+            net: None,
+            signals: &SIGNALS,
+            course: &|_| Default::default(),
+            added: &|_| None,
+            tadv: &|_| None,
+        }
     }
 
     struct TrackedPair {

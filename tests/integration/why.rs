@@ -161,10 +161,8 @@ fn the_light_at_the_entry_leaves_the_right_of_way() {
     let net = net_of("left_turn");
     let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
     let turns = |time: f64| if time < 2.0 { 0.0 } else { 6.0 };
-    let ways = [
-        drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns),
-        drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0),
-    ];
+    let ways =
+        [drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0)];
     // The oncoming car passes its stop line at 1.8 s.
     for (red, cause) in [(1.9, "did_not_yield"), (1.5, "ran_red")] {
         let found = logged(&net, &ways, &[(0.0, "rGrrrrrrgrrr"), (red, "rrrrrrrrrrrr")], 5.0);

@@ -321,7 +321,9 @@ impl StepInputs<'_> {
         };
         let enough = |way: Metre| ahead > way.max(0.0) + TOLERANCE;
         let epsilon = self.options.epsilon;
-        enough(stop + epsilon) || enough(braking::mu(self.mu_model(), ego, foe, 1.0, epsilon))
+        let model = self.mu_model();
+        let stops = model != MuModel::Rss && enough(stop + epsilon);
+        stops || enough(braking::mu(model, ego, foe, 1.0, epsilon))
     }
 
     /// Whether the narrow boxes around both paths are apart.

@@ -140,7 +140,10 @@ impl Causes {
                 causes.add_if(Cause::LateAmber, entered_on(pair, party, passage, is_late_amber));
             }
             let ran = causes.has(Cause::RanRed);
-            causes.add_if(Cause::DidNotYield, !ran && [(ego, foe), (foe, ego)].into_iter().any(|ways| did_not_yield(net, pair, ways)));
+            causes.add_if(
+                Cause::DidNotYield,
+                !ran && [(ego, foe), (foe, ego)].into_iter().any(|ways| did_not_yield(net, pair, ways)),
+            );
         }
         let changed = || pair.both().iter().any(|(one, other)| changed_into(pair, one, other).is_some());
         let changes = matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange));

@@ -53,8 +53,10 @@ mod tests {
 
     #[test]
     fn a_change_of_lanes_is_no_cause_once_they_follow() {
-        let step = |manoeuvre, causes: &[Cause]| {
-            Why { manoeuvre: Some(manoeuvre), causes: causes.iter().copied().collect(), has_jumped: false }
+        let step = |manoeuvre, causes: &[Cause]| Why {
+            manoeuvre: Some(manoeuvre),
+            causes: causes.iter().copied().collect(),
+            has_jumped: false,
         };
         let changes = step(Manoeuvre::CutIn, &[Cause::ChangedLane, Cause::TooFast]);
         let causes = |later| changes.then(step(later, &[])).causes.to_string();
