@@ -115,7 +115,8 @@ def test_mu_by_rss_is_the_safe_distance(kind: str) -> None:
             conflict.mu == pytest.approx(conflict.rss_distance + 0.5, rel=1e-9) == pytest.approx(float(found), rel=1e-9)
         )
         assert conflict.margin == pytest.approx(conflict.gap - conflict.mu, abs=1e-9)
-        assert (conflict.response_left < 1.0) == (conflict.margin < 0.0)
+        left = conflict.response_left
+        assert (left is not None and left < 1.0) == (conflict.margin < 0.0)
 
 
 def test_mu_by_rss_finds_a_follower_far_behind() -> None:

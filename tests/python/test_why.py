@@ -85,10 +85,10 @@ import closecall, libsumo
 
 bounds, pets = {}, {}
 settled = {}
+libsumo.start(["sumo", "-c", sys.argv[1], "--no-warnings", "--end", "140"])
 checker = closecall.Checker(libsumo, on_conflict=lambda c: settled.update({f"{c.ego} {c.foe}": c.pet}))
-libsumo.start(["sumo", "-c", sys.argv[1], "--no-warnings", "--end", "90"])
 libsumo.addStepListener(checker)
-while libsumo.simulation.getTime() < 90:
+while libsumo.simulation.getTime() < 140:
     libsumo.simulationStep()
     for alarm in checker.active + checker.waiting:
         pair = f"{alarm.ego} {alarm.foe}"
@@ -103,7 +103,7 @@ print(json.dumps([bounds, pets, settled]))
 
 
 def test_the_pet_so_far_grows_to_the_pet_while_sumo_runs() -> None:
-    done = python(PET_SO_FAR, NETS / "left_turn" / "left_turn.sumocfg")
+    done = python(PET_SO_FAR, NETS / "priority" / "priority.sumocfg")
     assert done.returncode == 0, done.stderr
     bounds, pets, settled = json.loads(done.stdout.splitlines()[-1])
     known = {pair: pet for pair, pet in settled.items() if pet is not None and pair in bounds}

@@ -88,7 +88,9 @@ impl StepInputs<'_> {
         let reserve = if self.state(ego).moves() { self.options.epsilon } else { 0.0 };
         let ego_beyond = meeting.ego_distance - self.stand(ego) - reserve;
         let foe_beyond = meeting.foe_distance - self.stand(foe);
-        gap.max(mu + ego_beyond.max(foe_beyond).max(0.0))
+        let beyond = ego_beyond.max(foe_beyond);
+        // RSS has them stand further than their brakes do.
+        if self.mu_model() == MuModel::Rss && beyond <= 0.0 { gap } else { gap.max(mu + beyond.max(0.0)) }
     }
 
     /// The distance until a road user stands that brakes as the model of μ has it.

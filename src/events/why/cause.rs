@@ -120,6 +120,9 @@ impl Causes {
             Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),
             Cause::OutsideCrossing => manoeuvre == Some(Manoeuvre::PersonCrossing),
             Cause::Stood => manoeuvre == Some(Manoeuvre::Object),
+            Cause::LeaderBraked => {
+                matches!(manoeuvre, None | Some(Manoeuvre::Following | Manoeuvre::CutIn | Manoeuvre::LaneChange))
+            }
             _ => true,
         };
         Cause::ALL.into_iter().filter(|cause| self.has(*cause) && fits(*cause)).collect()
@@ -145,9 +148,7 @@ impl Causes {
                 !ran && [(ego, foe), (foe, ego)].into_iter().any(|ways| did_not_yield(net, pair, ways)),
             );
         }
-        let changed = || pair.both().iter().any(|(one, other)| changed_into(pair, one, other).is_some());
-        let changes = matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange));
-        causes.add_if(Cause::ChangedLane, changes && changed());
+        causes.add_if(Cause::ChangedLane, pair.both().iter().any(|(a, b)| changed_into(pair, a, b).is_some()));
         causes.add_if(Cause::Overtook, manoeuvre == Some(Manoeuvre::OvertakingOncoming));
         causes
             .add_if(Cause::OutsideCrossing, manoeuvre == Some(Manoeuvre::PersonCrossing) && is_outside_crossing(pair));
@@ -162,7 +163,7 @@ impl Causes {
         causes.add_if(Cause::TooFast, fast.into_iter().any(|(party, _)| is_too_fast(pair, party)));
         let is_new = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
         causes.add_if(Cause::Appeared, pair.both().iter().any(|(party, _)| is_new(party)));
-        causes
+        causes.that_fit(manoeuvre)
     }
 }
 
