@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::internals::study::car;
-use closecall::{Net, Options, Placement, Run, State};
+use closecall::{Category, Net, Options, Placement, Profile, Run, State};
 
 /// The time between two steps, in s.
 const STEP: f64 = 0.1;
 
-/// A car that drives along these lanes from a place on the first.
+/// A car, or a person, that goes along these lanes from a place on the first.
 struct Drive {
     lanes: Vec<&'static str>,
     /// Its front on the first lane, in m.
@@ -18,19 +18,24 @@ struct Drive {
     speed: fn(f64) -> f64,
     /// The number of a lane of the first lane's edge that it moves to, and when.
     change: Option<(f64, &'static str)>,
+    category: Category,
+    /// When it enters the scene.
+    enters: f64,
 }
 
 fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
-    Drive { lanes: lanes.to_vec(), start, speed, change: None }
+    Drive { lanes: lanes.to_vec(), start, speed, change: None, category: Category::Vehicle, enters: 0.0 }
 }
 
 /// What a run of some seconds logs of these cars: kind, manoeuvre and causes.
 fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<[String; 3]> {
     let net = Arc::new(net.clone());
     let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
-    let profile = run.roster.profile(car()).unwrap();
-    let users =
-        drives.iter().zip(0..).map(|(_, number)| run.enter(&format!("car{number}"), profile)).collect::<Vec<_>>();
+    let mut enter = |(drive, number): (&Drive, u32)| {
+        let profile = run.roster.profile(Profile { category: drive.category, ..car() }).unwrap();
+        run.enter(&format!("car{number}"), profile)
+    };
+    let users = drives.iter().zip(0..).map(&mut enter).collect::<Vec<_>>();
     let mut ways = drives.iter().map(|drive| drive.start).collect::<Vec<_>>();
     for step in 0..(lasts / STEP) as u32 {
         let time = f64::from(step) * STEP;
@@ -51,6 +56,9 @@ fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> V
             }
             if let Some((_, to)) = drive.change.filter(|(since, _)| *since <= time) {
                 lane = net.lane(to).unwrap();
+            }
+            if time < drive.enters {
+                continue;
             }
             let (at, heading) = place(&net, lane, position);
             run.frame.push(*user, State { x: at[0], y: at[1], z: 0.0, heading, speed });
@@ -251,6 +259,24 @@ fn a_lane_change_within_a_junction_is_one() {
 fn lanes_that_overlap_as_drawn_have_no_lane_change() {
     let cars = [drive(&["road_0"], 100.0, |_| 20.0), drive(&["road_1"], 112.0, |_| 17.0)];
     assert_eq!(logged(&road_of(r#"from="w" to="e""#, 0.5), &cars, &[], 2.5), [["rear_end", "side_by_side", ""]]);
+}
+
+#[test]
+fn a_lane_change_before_the_other_was_there_is_none() {
+    let leader = || Drive { change: Some((1.0, "road_0")), ..drive(&["road_1"], 112.0, |_| 17.0) };
+    for (enters, manoeuvre, cause) in [(0.0, "cut_in", "changed_lane"), (1.5, "following", "too_close appeared")] {
+        let follower = Drive { enters, ..drive(&["road_0"], 90.0, |_| 20.0) };
+        assert_eq!(logged(&road(), &[follower, leader()], &[], 2.5), [["rear_end", manoeuvre, cause]]);
+    }
+}
+
+#[test]
+fn a_person_that_stands_walks_neither_along_nor_across() {
+    for (speed, manoeuvre) in [((|_| 0.0) as fn(f64) -> f64, "person_standing"), (|_| 1.0, "person_along")] {
+        let person = Drive { category: Category::Person, ..drive(&["road_0"], 125.0, speed) };
+        let found = logged(&road(), &[drive(&["road_0"], 100.0, |_| 15.0), person], &[], 0.5);
+        assert_eq!(found, [["rear_end", manoeuvre, ""]]);
+    }
 }
 
 #[test]

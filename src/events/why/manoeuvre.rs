@@ -19,6 +19,8 @@ const DRIFT: MetrePerSecond = 0.3;
 const OPPOSITE: Radian = 0.75 * std::f64::consts::PI;
 /// Two that come from directions nearer than this drive side by side, in rad.
 const ALIKE: Radian = 0.25 * std::f64::consts::PI;
+/// A person slower than this waits, in m/s: SUMO's bound.
+const WAITS: MetrePerSecond = 0.1;
 /// Where two ways join, the first of both is behind the joint by at least this at the conflict point, in m.
 const AT_THE_JOINT: Metre = 0.1;
 
@@ -52,13 +54,15 @@ pub enum Manoeuvre {
     PersonCrossing,
     /// A person walks along the other's way.
     PersonAlong,
+    /// A person stands in the other's way, as at the corner of a pavement.
+    PersonStanding,
     /// One is an obstacle.
     Object,
 }
 
 impl Manoeuvre {
     /// All manoeuvres, in the order used in tables.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 15] = [
         Self::Following,
         Self::CutIn,
         Self::LaneChange,
@@ -72,6 +76,7 @@ impl Manoeuvre {
         Self::HeadOn,
         Self::PersonCrossing,
         Self::PersonAlong,
+        Self::PersonStanding,
         Self::Object,
     ];
 
@@ -91,6 +96,7 @@ impl Manoeuvre {
             Self::HeadOn => "head_on",
             Self::PersonCrossing => "person_crossing",
             Self::PersonAlong => "person_along",
+            Self::PersonStanding => "person_standing",
             Self::Object => "object",
         }
     }
@@ -102,6 +108,9 @@ impl Manoeuvre {
             return Some(Self::Object);
         }
         if categories.contains(&Category::Person) {
+            if pair.both().iter().any(|(party, _)| stands_aside(pair, party)) {
+                return Some(Self::PersonStanding);
+            }
             let across = pair.kind == Kind::Side || pair.passages.is_some();
             return Some(if across { Self::PersonCrossing } else { Self::PersonAlong });
         }
@@ -135,6 +144,12 @@ impl Manoeuvre {
     }
 }
 
+/// Whether a person stands, and not on a crossing.
+fn stands_aside(pair: &Pair, party: &Party) -> bool {
+    let is_on_crossing = || pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some());
+    party.category == Category::Person && party.speed < WAITS && !is_on_crossing()
+}
+
 /// Whether both take a lane.
 fn shares_a_lane(pair: &Pair) -> bool {
     pair.ego.course.stretches.iter().any(|stretch| pair.foe.course.of(stretch.lane).is_some())
@@ -166,8 +181,13 @@ pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Se
     let course = &one.course;
     // The other may have left the lane since, ahead of it.
     let is_into = |lane| other.course.of(lane).is_some() || follow_each_other(pair);
+    // One that was not there yet saw no change.
+    let was_there = |time| pair.past.of(other.user, pair.time).next().is_some_and(|(first, ..)| first <= time);
     let changed = course.change.filter(|change| {
-        pair.time - change.time <= LANE_CHANGE && other.course.change != course.change && is_into(change.to)
+        pair.time - change.time <= LANE_CHANGE
+            && other.course.change != course.change
+            && is_into(change.to)
+            && was_there(change.time)
     });
     let drifts = || -> Option<Second> {
         let (net, own) = pair.around.net.zip(course.at(0.0))?;
