@@ -221,7 +221,7 @@ fn through_a_junction(net: &Net, pair: &Pair, passages: [&Passage; 2]) -> Manoeu
     let across = match turned {
         Some(Direction::Right) => Manoeuvre::RightTurnAcross,
         Some(_) => Manoeuvre::LeftTurnAcross,
-        None if comes_from > OPPOSITE => Manoeuvre::HeadOn,
+        None if comes_from > OPPOSITE && pair.kind == Kind::Frontal => Manoeuvre::HeadOn,
         None => Manoeuvre::Crossing,
     };
     if comes_from > OPPOSITE {
