@@ -78,7 +78,7 @@ pub use detection::detector::Detector;
 pub use detection::encounter::{Encounter, Nearness};
 pub use detection::kind::{Kind, Severity};
 pub use error::{Error, Result};
-pub use events::{Alarm, Cause, Causes, Conflict, Manoeuvre, Snapshot, Surroundings, Tracker};
+pub use events::{Alarm, Cause, Causes, Conflict, Manoeuvre, PetSoFar, Snapshot, Surroundings, Tracker};
 pub use geometry::Point;
 pub use input::replay::Replay;
 pub use options::condition::Condition;

@@ -20,7 +20,7 @@ use rustc_hash::FxHashSet;
 use crate::detection::detector::Detector;
 use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
-use crate::events::{Alarm, Conflict, Tracker};
+use crate::events::{Alarm, Conflict, PetSoFar, Tracker};
 use crate::geometry::Point;
 use crate::options::Options;
 use crate::output::formats::Outputs;
@@ -304,6 +304,20 @@ impl Run {
     /// The conflicts that are still open in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()
+    }
+
+    /// The conflicts that are over and wait for their PET, as in their last step.
+    pub fn waiting(&self) -> impl Iterator<Item = Alarm> {
+        self.tracker.waiting()
+    }
+
+    /// The PET of an open or waiting conflict as far as it is known in this step.
+    pub fn pet_so_far(&self, alarm: &Alarm) -> Option<PetSoFar> {
+        let ahead = |user| {
+            let row = self.frame.row_of(user);
+            row.map(|row| self.detector.ahead(&self.frame, &self.roster, row)).unwrap_or_default()
+        };
+        self.tracker.pet_so_far(alarm, ahead)
     }
 
     /// The number of the first of [`Run::conflicts`], as in the log: closed conflicts before it are no longer in memory.

@@ -1,19 +1,22 @@
 //! Python's `Alarm`, and the functions of a script that are called while a simulation runs.
 
 use closecall::internals::output::{Context, LoggedConflict};
-use closecall::{Run, UserIndex};
+use closecall::{PetSoFar, Run, UserIndex};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 
 use crate::conflict::Conflict;
 
-/// A conflict that is open now, as it was in the last step that met the log's condition.
+/// A conflict that is open, or waits for its PET, as it was in the last step that met the log's condition. The PET so far is
+/// that of now.
 ///
 /// Args:
 ///     time: that step, in s.
 ///     ttb: time to brake: how long full braking may wait if the foe goes on as now, in s; None if the two would not touch.
 ///     response_left: the same if the foe brakes fully now, in s; None if the ego stands.
 ///     probability: that the driver does not brake in time if the foe goes on as now.
+///     pet: the PET, in s, once the second of both has entered the conflict area; None before.
+///     pet_at_least: while it has not: how long ago the first left the area, in s; None before.
 ///     x: the conflict point, in m.
 ///     y: the conflict point, in m.
 #[pyclass(frozen, get_all, module = "closecall")]
@@ -27,6 +30,8 @@ pub struct Alarm {
     ttb: Option<f64>,
     response_left: Option<f64>,
     probability: f64,
+    pet: Option<f64>,
+    pet_at_least: Option<f64>,
     x: f64,
     y: f64,
 }
@@ -43,6 +48,11 @@ impl Alarm {
     fn of(run: &Run, alarm: &closecall::Alarm) -> Self {
         let id = |user: UserIndex| run.roster.id(user).to_string();
         let near = alarm.nearness;
+        let (pet, pet_at_least) = match run.pet_so_far(alarm) {
+            Some(PetSoFar::Known(pet)) => (Some(pet), None),
+            Some(PetSoFar::AtLeast(pet)) => (None, Some(pet)),
+            None => (None, None),
+        };
         Self {
             ego: id(alarm.ego),
             foe: id(alarm.foe),
@@ -53,6 +63,8 @@ impl Alarm {
             ttb: near.and_then(|near| near.ttb),
             response_left: near.and_then(|near| near.response_left),
             probability: near.map_or(0.0, |near| near.crash_probability),
+            pet,
+            pet_at_least,
             x: alarm.at.x,
             y: alarm.at.y,
         }
@@ -61,7 +73,16 @@ impl Alarm {
 
 /// The open conflicts, in the order of the ids.
 pub fn active(run: &Run) -> Vec<Alarm> {
-    let mut alarms = run.alarms().map(|alarm| Alarm::of(run, &alarm)).collect::<Vec<_>>();
+    sorted(run, run.alarms())
+}
+
+/// The conflicts that wait for their PET, in the order of the ids.
+pub fn waiting(run: &Run) -> Vec<Alarm> {
+    sorted(run, run.waiting())
+}
+
+fn sorted(run: &Run, alarms: impl Iterator<Item = closecall::Alarm>) -> Vec<Alarm> {
+    let mut alarms = alarms.map(|alarm| Alarm::of(run, &alarm)).collect::<Vec<_>>();
     alarms.sort_by(|a, b| (&a.ego, &a.foe).cmp(&(&b.ego, &b.foe)));
     alarms
 }

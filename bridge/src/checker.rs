@@ -218,6 +218,13 @@ impl Checker {
         self.state.with(py, |state| Ok(alarm::active(&state.recorded.run)))
     }
 
+    /// The conflicts that are over but wait for the second road user to come, for at most 5 s: `pet_at_least` tells how long
+    /// ago the first left.
+    #[getter]
+    fn waiting(&self, py: Python) -> PyResult<Vec<Alarm>> {
+        self.state.with(py, |state| Ok(alarm::waiting(&state.recorded.run)))
+    }
+
     /// The conflicts so far; the latest `keep` of the closed ones, and the open ones as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {

@@ -21,7 +21,7 @@ use crate::numbers::numbers;
 ///     build_up: time t3 in which the deceleration builds up, in s; 0.1 by default.
 ///     epsilon: redundancy, in m; 0.5 by default.
 ///     kind: "rear_end", "side" or "frontal", which sets the cosine of the angle between the headings to 1, 0 or -1.
-///     model: "minimal", "at_rest" or "paper".
+///     model: "minimal", "at_rest", "paper" or "rss", which has values of its own for the times and decelerations.
 ///     angle: the angle between the headings in rad, 0 to π, instead of the kind.
 ///
 /// Raises:
@@ -54,8 +54,8 @@ pub fn mu<'py>(
         return Err(bad(format!("angle is {angle}, it must be 0 to π")));
     }
     let sigmas = angles.map_or_else(|| ArrayD::from_elem(IxDyn(&[]), kind.sigma()), |angles| angles.mapv(f64::cos));
-    let model =
-        MuModel::from_str(model, false).map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest or paper")))?;
+    let model = MuModel::from_str(model, false)
+        .map_err(|_| bad(format!("model is \"{model}\": minimal, at_rest, paper or rss")))?;
     let given = |name: &'static str, values: Option<&Bound<PyAny>>, default: f64| {
         let values = values.map_or_else(|| Ok(ArrayD::from_elem(IxDyn(&[]), default)), |values| numbers(name, values));
         Ok::<_, PyErr>((name, values?))

@@ -34,10 +34,12 @@ pub enum MuModel {
     AtRest,
     /// Eq. 19 and 21 as printed: always a minus sign, no floor.
     Paper,
+    /// The safe distance of RSS, whatever the brakes.
+    Rss,
 }
 
 impl MuModel {
-    /// All models, in the order of tables.
+    /// The models that follow from the brakes of both, in the order of tables.
     pub const ALL: [Self; 3] = [Self::Minimal, Self::AtRest, Self::Paper];
 }
 

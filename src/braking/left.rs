@@ -2,7 +2,7 @@
 
 use super::brakes::{Braking, MuModel};
 use super::late::{LateBraking, Leader};
-use super::narrowest;
+use super::{narrowest, rss};
 use crate::util::units::{Metre, Second};
 
 /// The longest response time T = t1 + t2 of the ego, in s, with which μ(T) is no larger than the gap: 0 where even an
@@ -26,6 +26,7 @@ pub fn response_left(model: MuModel, ego: Braking, foe: Braking, sigma: f64, eps
             let others = foe.speed / (2.0 * foe.brakes.deceleration) * foe.speed;
             (gap - epsilon + others - needed) / ego.speed
         }
+        (MuModel::Rss, _) => rss::longest_response(ego.speed, foe.speed, sigma, gap - epsilon),
         (model, leader) => {
             let ego = LateBraking {
                 speed: ego.speed,

@@ -2,7 +2,7 @@
 //!
 //! A braking road user keeps its speed V for its response time r = t1 + t2. Then its deceleration rises linearly to a
 //! over t3 and stays there until the road user stands, which may be before t3 is over. μ is the room that the ego needs
-//! so that both can brake without contact. [`MuModel`] lists its three models.
+//! so that both can brake without contact. [`MuModel`] lists its models.
 //!
 //! μ is logged with 15 digits, which must be right also where S − Si cancels. [`mu`] computes the formulas in plain
 //! f64; where the result is much smaller than its terms, it computes them again in twice the precision
@@ -13,6 +13,7 @@ mod late;
 mod left;
 mod narrowest;
 mod needed;
+pub mod rss;
 
 use crate::util::double_double::{DoubleDouble, Number};
 use crate::util::units::{Metre, MetrePerSecond};
@@ -43,6 +44,7 @@ pub fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre 
 /// minimal:  max over t ≥ 0 of ( travel_ego(t) − σ · travel_foe(t) ) + ε,  never below ε
 /// at_rest:  S − σ Si + ε,  never below ε
 /// paper:    S − Si + ε  (eq. 17–21; Si = Vi²/(2 ai))
+/// rss:      the safe distance of RSS, whatever the brakes, + ε
 /// ```
 ///
 /// For σ > 0 the foe brakes at once and fully; for σ ≤ 0 it needs response and build-up like the ego. The relative
@@ -81,6 +83,7 @@ fn needed<N: Number>(model: MuModel, ego: Braking, foe: Braking, sigma: f64) -> 
         MuModel::Minimal => narrowest::minimal::<N>(ego, foe, sigma),
         MuModel::AtRest => narrowest::at_rest::<N>(ego, foe, sigma),
         MuModel::Paper => narrowest::on_paper::<N>(ego, foe),
+        MuModel::Rss => Needed { distance: N::from(rss::safe_distance(ego.speed, foe.speed, sigma)), scale: 0.0 },
     }
 }
 

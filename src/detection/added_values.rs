@@ -11,6 +11,7 @@ use super::measures::mttc::{Accelerating, mttc};
 use super::measures::plane::{Moving, anticipated_collision_time, delta_s};
 use super::measures::ttc::SteadyMotion;
 use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss, threat};
+use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
 use crate::options::measures::{AddedMeasure, AddedValues, Measures};
 use crate::traffic::profile::{Category, Profile};
@@ -122,8 +123,8 @@ impl PairInStep<'_> {
     fn rss_distance(&self) -> Option<Metre> {
         let [ego, foe] = [self.ego.moving.speed, self.foe.moving.speed];
         match self.found.kind {
-            Kind::RearEnd => Some(rss::same_direction(ego, foe)),
-            Kind::Frontal => Some(rss::opposite_directions(ego, foe)),
+            Kind::RearEnd => Some(safe_distance(ego, foe, 1.0)),
+            Kind::Frontal => Some(safe_distance(ego, foe, -1.0)),
             Kind::Side => None,
         }
     }

@@ -6,6 +6,15 @@ use crate::geometry::Point;
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Second};
 
+/// The PET of a conflict as far as it is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PetSoFar {
+    /// The second has entered the conflict area this long after the first left it, in s.
+    Known(Second),
+    /// The first has left it for so long, in s, and the second has not entered it yet.
+    AtLeast(Second),
+}
+
 /// The road users of an open conflict and its current severity, as painted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alarm {

@@ -20,7 +20,7 @@ mod tracker;
 mod under_way;
 mod why;
 
-pub use alarm::Alarm;
+pub use alarm::{Alarm, PetSoFar};
 pub use event::Conflict;
 pub use moment::Moment;
 pub use snapshot::Snapshot;

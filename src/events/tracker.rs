@@ -2,13 +2,14 @@
 
 use smallvec::SmallVec;
 
-use super::alarm::Alarm;
+use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
 use super::under_way::{Event, Keeps, Pair};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
+use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::options::Options;
@@ -114,6 +115,18 @@ impl Tracker {
         self.events.iter().filter_map(|event| event.alarm)
     }
 
+    /// The conflicts that are over and wait for their PET, as in their last step, in no particular order.
+    pub fn waiting(&self) -> impl Iterator<Item = Alarm> {
+        self.waiting.iter().filter_map(|event| event.alarm)
+    }
+
+    /// The PET of an open or waiting conflict as far as it is known; `ahead` has the poses that a road user will go through.
+    pub fn pet_so_far(&self, alarm: &Alarm, ahead: impl Fn(UserIndex) -> Vec<Pose>) -> Option<PetSoFar> {
+        let pair = [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
+        let event = self.events.iter().chain(&self.waiting).find(|event| event.pair() == pair)?;
+        event.pet_so_far(self.last_time, ahead, self.crossing)
+    }
+
     /// The conflicts that are open or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
         let events = self.events.iter().chain(&self.waiting);
@@ -193,7 +206,13 @@ mod tests {
     fn nothing() -> Surroundings<'static> {
         static SIGNALS: std::sync::LazyLock<crate::traffic::signals::Signals> =
             std::sync::LazyLock::new(Default::default);
-        Surroundings { net: None, signals: &SIGNALS, course: &|_| Default::default(), added: &|_| None }
+        Surroundings {
+            net: None,
+            signals: &SIGNALS,
+            course: &|_| Default::default(),
+            added: &|_| None,
+            tadv: &|_| None,
+        }
     }
 
     struct TrackedPair {
@@ -353,8 +372,18 @@ mod tests {
 
     /// Two whose paths cross: the first leaves the conflict area at 1 s, the second enters it this much later.
     fn crossing(scene: &mut TrackedPair, pet: f64, margins: &[(f64, f64)]) -> Vec<Conflict> {
+        crossing_in(0..=100, scene, pet, margins)
+    }
+
+    /// The same in these steps of 0.1 s.
+    fn crossing_in(
+        steps: std::ops::RangeInclusive<u32>,
+        scene: &mut TrackedPair,
+        pet: f64,
+        margins: &[(f64, f64)],
+    ) -> Vec<Conflict> {
         let mut found = Vec::new();
-        for step in 0..=100 {
+        for step in steps {
             let time = f64::from(step) / 10.0;
             let margin =
                 margins.iter().find(|(at, _)| (at - time).abs() < 1e-9).map_or(f64::INFINITY, |(_, margin)| *margin);
@@ -397,6 +426,30 @@ mod tests {
         assert_eq!(spans(&short), [(0.2, 2.1, 7)]);
         assert_eq!(spans(&long), [(0.3, 0.4, 2), (2.0, 2.0, 1)]);
         assert!(long.iter().all(|conflict| (conflict.pet.unwrap() - 2.5).abs() < 1e-6));
+    }
+
+    #[test]
+    fn the_pet_so_far_is_a_lower_bound_until_the_second_comes() {
+        let mut scene = TrackedPair::new();
+        let mut so_far = |steps: std::ops::RangeInclusive<u32>| {
+            let now = f64::from(*steps.end()) / 10.0;
+            crossing_in(steps, &mut scene, 1.5, &[(0.2, -5.0), (0.3, -4.0)]);
+            let north = |way: f64| Pose {
+                distance: way,
+                front: Point::new(0.0, 10.0 * now - 26.0 + way),
+                axis: [0.0, 1.0].into(),
+            };
+            let ahead = |user| if user == scene.users[1] { vec![north(0.0), north(20.0)] } else { Vec::new() };
+            let alarm = scene.tracker.alarms().chain(scene.tracker.waiting()).next().unwrap();
+            (scene.tracker.waiting().count(), scene.tracker.pet_so_far(&alarm, ahead))
+        };
+        assert_eq!(so_far(0..=9), (0, None));
+        for (steps, waiting, wanted) in [(10..=12, 0, 0.2), (13..=20, 1, 1.0)] {
+            let (count, Some(PetSoFar::AtLeast(pet))) = so_far(steps) else { panic!() };
+            assert!(count == waiting && (pet - wanted).abs() < 1e-6, "{count} {pet}");
+        }
+        let (1, Some(PetSoFar::Known(pet))) = so_far(21..=26) else { panic!() };
+        assert!((pet - 1.5).abs() < 1e-6, "{pet}");
     }
 
     #[test]

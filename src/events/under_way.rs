@@ -1,6 +1,6 @@
 //! One event: a pair in the steps that meet the log's condition, until its PET is known.
 
-use super::alarm::Alarm;
+use super::alarm::{Alarm, PetSoFar};
 use super::between::{Between, Both};
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
@@ -9,6 +9,7 @@ use crate::detection::encounter::Encounter;
 use crate::detection::kind::Kind;
 use crate::detection::measures::driven_path::DrivenPath;
 use crate::detection::measures::pet::{self, Pet};
+use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::traffic::frame::{Frame, State};
@@ -135,6 +136,26 @@ impl Event {
             let met = met.filter(|met| met.extremes.end == before);
             [&mut self.followed].into_iter().chain(met).for_each(|span| span.extremes.come_closer(&closest, ego));
         }
+    }
+
+    /// The PET at this time, if the first of both has left the conflict area; `ahead` has the poses that a road user will go
+    /// through. Paths that meet at a smaller angle than `crossing` do not cross.
+    pub fn pet_so_far(
+        &self,
+        time: Second,
+        ahead: impl Fn(UserIndex) -> Vec<Pose>,
+        crossing: Radian,
+    ) -> Option<PetSoFar> {
+        let Driven { paths: [a, b], .. } = self.driven.as_deref()?;
+        let mut halves = Bisection::default();
+        if let Some(pet) = pet::post_encroachment_time(&mut halves, a, b, crossing) {
+            return Some(PetSoFar::Known(pet.lasts));
+        }
+        [(a, b, self.pair[1]), (b, a, self.pair[0])].into_iter().find_map(|(first, second, user)| {
+            let second = second.going_on(&ahead(user));
+            let Pet { lasts, enters, .. } = pet::post_encroachment_time(&mut halves, first, &second, crossing)?;
+            (enters > time).then(|| PetSoFar::AtLeast(time - (enters - lasts)))
+        })
     }
 
     /// Notes whether SUMO reports a collision of the two.

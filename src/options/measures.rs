@@ -74,12 +74,18 @@ impl Measures {
 
     /// Whether a measure is chosen.
     pub fn has(self, measure: AddedMeasure) -> bool {
-        self.0 & (1 << measure as u32) != 0
+        self.0 & Self::from(measure).0 != 0
     }
 
     /// The chosen ones, in the order of their columns.
     pub fn chosen(self) -> impl Iterator<Item = AddedMeasure> {
         AddedMeasure::ALL.into_iter().filter(move |measure| self.has(*measure))
+    }
+}
+
+impl From<AddedMeasure> for Measures {
+    fn from(measure: AddedMeasure) -> Self {
+        Self(1 << measure as u32)
     }
 }
 
@@ -93,7 +99,7 @@ impl FromStr for Measures {
                 "default" => 0,
                 "all" => Self::ALL.0,
                 _ => match AddedMeasure::ALL.into_iter().find(|measure| measure.name() == name) {
-                    Some(measure) => 1 << measure as u32,
+                    Some(measure) => Self::from(measure).0,
                     None => {
                         let names = AddedMeasure::ALL.map(AddedMeasure::name).join(", ");
                         return Err(format!("cannot add an unknown measure \"{name}\"; known are {names}"));

@@ -185,9 +185,9 @@ columns! { |conflict, context|
     /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
     /// would not touch
     [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
-    /// what the two were doing: `following`, `cut_in`, `lane_change`, `merge`, `crossing`, `left_turn_across`,
-    /// `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`, `person_along`, `object`
-    /// ([rules](causes.md)); empty where the lanes of the two are not known
+    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`,
+    /// `left_turn_across`, `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`,
+    /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
     [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
     /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`

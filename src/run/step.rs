@@ -112,7 +112,9 @@ impl Run {
         let path = |row| detector.path(frame, roster, row);
         let course = |row| detector.course(frame, roster, row);
         let added = |found: &Encounter| detector.added(frame, roster, found);
-        let around = Surroundings { net: self.net.as_deref(), signals: &self.signals, course: &course, added: &added };
+        let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
+        let net = self.net.as_deref();
+        let around = Surroundings { net, signals: &self.signals, course: &course, added: &added, tadv: &tadv };
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, roster, self.net.as_deref()));

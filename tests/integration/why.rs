@@ -4,12 +4,12 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::internals::study::car;
-use closecall::{Net, Options, Placement, Run, State};
+use closecall::{Category, Net, Options, Placement, Profile, Run, State};
 
 /// The time between two steps, in s.
 const STEP: f64 = 0.1;
 
-/// A car that drives along these lanes from a place on the first.
+/// A car, or a person, that goes along these lanes from a place on the first.
 struct Drive {
     lanes: Vec<&'static str>,
     /// Its front on the first lane, in m.
@@ -18,19 +18,24 @@ struct Drive {
     speed: fn(f64) -> f64,
     /// The number of a lane of the first lane's edge that it moves to, and when.
     change: Option<(f64, &'static str)>,
+    category: Category,
+    /// When it enters the scene.
+    enters: f64,
 }
 
 fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
-    Drive { lanes: lanes.to_vec(), start, speed, change: None }
+    Drive { lanes: lanes.to_vec(), start, speed, change: None, category: Category::Vehicle, enters: 0.0 }
 }
 
 /// What a run of some seconds logs of these cars: kind, manoeuvre and causes.
 fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<[String; 3]> {
     let net = Arc::new(net.clone());
     let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
-    let profile = run.roster.profile(car()).unwrap();
-    let users =
-        drives.iter().zip(0..).map(|(_, number)| run.enter(&format!("car{number}"), profile)).collect::<Vec<_>>();
+    let mut enter = |(drive, number): (&Drive, u32)| {
+        let profile = run.roster.profile(Profile { category: drive.category, ..car() }).unwrap();
+        run.enter(&format!("car{number}"), profile)
+    };
+    let users = drives.iter().zip(0..).map(&mut enter).collect::<Vec<_>>();
     let mut ways = drives.iter().map(|drive| drive.start).collect::<Vec<_>>();
     for step in 0..(lasts / STEP) as u32 {
         let time = f64::from(step) * STEP;
@@ -51,6 +56,9 @@ fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> V
             }
             if let Some((_, to)) = drive.change.filter(|(since, _)| *since <= time) {
                 lane = net.lane(to).unwrap();
+            }
+            if time < drive.enters {
+                continue;
             }
             let (at, heading) = place(&net, lane, position);
             run.frame.push(*user, State { x: at[0], y: at[1], z: 0.0, heading, speed });
@@ -101,10 +109,17 @@ fn net_of(scene: &str) -> Net {
 
 /// A road of two lanes with a limit of 30 m/s.
 fn road() -> Net {
-    let text = r#"<net><edge id="road" from="w" to="e">
-        <lane id="road_0" speed="30" length="900" shape="0,-1.6 900,-1.6"/>
-        <lane id="road_1" speed="30" length="900" shape="0,1.6 900,1.6"/>
-    </edge></net>"#;
+    road_of(r#"from="w" to="e""#, 1.6)
+}
+
+/// The same with an edge that is this, its lanes so far to the right and left of the x axis.
+fn road_of(edge: &str, beside: f64) -> Net {
+    let text = format!(
+        r#"<net><edge id="road" {edge}>
+        <lane id="road_0" speed="30" length="900" shape="0,-{beside} 900,-{beside}"/>
+        <lane id="road_1" speed="30" length="900" shape="0,{beside} 900,{beside}"/>
+    </edge></net>"#
+    );
     Net::parse(Path::new("road.net.xml"), text).unwrap()
 }
 
@@ -129,6 +144,39 @@ fn one_that_crosses_against_the_right_of_way_did_not_yield() {
         drive(&["from_west_0", ":crossing_1_0", "to_east_0"], 44.0, |_| 15.0),
     ];
     assert_eq!(logged(&net, &ways, &[], 9.0), [["side", "crossing", "did_not_yield"]]);
+}
+
+#[test]
+fn one_that_lets_the_other_go_first_has_yielded() {
+    let net = net_of("side");
+    let causes = |[south, west]: [f64; 2]| {
+        let ways = [
+            drive(&["from_south_0", ":crossing_0_0", "to_north_0"], south, |_| 15.0),
+            drive(&["from_west_0", ":crossing_1_0", "to_east_0"], west, |_| 15.0),
+        ];
+        let found = logged(&net, &ways, &[], 9.0);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!(manoeuvre, "crossing");
+        why.clone()
+    };
+    // In the one order the two miss each other as in the other; only one of them has to yield.
+    let [first, second] = [[36.0, 58.0], [58.0, 36.0]].map(causes);
+    assert!([("did_not_yield", ""), ("", "did_not_yield")].contains(&(&first, &second)), "{first} {second}");
+}
+
+#[test]
+fn the_light_at_the_entry_leaves_the_right_of_way() {
+    let net = net_of("left_turn");
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let turns = |time: f64| if time < 2.0 { 0.0 } else { 6.0 };
+    let ways =
+        [drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0)];
+    // The oncoming car passes its stop line at 1.8 s.
+    for (red, cause) in [(1.9, "did_not_yield"), (1.5, "ran_red")] {
+        let found = logged(&net, &ways, &[(0.0, "rGrrrrrrgrrr"), (red, "rrrrrrrrrrrr")], 5.0);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!((&**manoeuvre, &**why), ("left_turn_across", cause));
+    }
 }
 
 #[test]
@@ -188,6 +236,47 @@ fn one_that_moves_in_front_cuts_in() {
     let behind = Drive { change: Some((1.0, "road_1")), ..follower() };
     let found = logged(&road(), &[behind, leader(None)], &[], 2.5);
     assert_eq!(found, [["rear_end", "lane_change", "changed_lane"]]);
+}
+
+#[test]
+fn of_two_that_change_lanes_the_later_comes_into_the_way() {
+    for (ego, foe, manoeuvre) in [(0.5, 1.0, "cut_in"), (1.0, 0.5, "lane_change")] {
+        let changes = |start, speed, time| Drive { change: Some((time, "road_0")), ..drive(&["road_1"], start, speed) };
+        let found = logged(&road(), &[changes(100.0, |_| 20.0, ego), changes(119.0, |_| 17.0, foe)], &[], 2.5);
+        assert_eq!(found.last(), Some(&["rear_end", manoeuvre, "changed_lane"].map(str::to_owned)));
+    }
+}
+
+#[test]
+fn a_lane_change_within_a_junction_is_one() {
+    let change = Some((1.0, "road_0"));
+    let cars = [drive(&["road_0"], 100.0, |_| 20.0), Drive { change, ..drive(&["road_1"], 112.0, |_| 17.0) }];
+    let found = logged(&road_of(r#"function="internal""#, 1.6), &cars, &[], 2.5);
+    assert_eq!(found, [["rear_end", "cut_in", "changed_lane"]]);
+}
+
+#[test]
+fn lanes_that_overlap_as_drawn_have_no_lane_change() {
+    let cars = [drive(&["road_0"], 100.0, |_| 20.0), drive(&["road_1"], 112.0, |_| 17.0)];
+    assert_eq!(logged(&road_of(r#"from="w" to="e""#, 0.5), &cars, &[], 2.5), [["rear_end", "side_by_side", ""]]);
+}
+
+#[test]
+fn a_lane_change_before_the_other_was_there_is_none() {
+    let leader = || Drive { change: Some((1.0, "road_0")), ..drive(&["road_1"], 112.0, |_| 17.0) };
+    for (enters, manoeuvre, cause) in [(0.0, "cut_in", "changed_lane"), (1.5, "following", "too_close appeared")] {
+        let follower = Drive { enters, ..drive(&["road_0"], 90.0, |_| 20.0) };
+        assert_eq!(logged(&road(), &[follower, leader()], &[], 2.5), [["rear_end", manoeuvre, cause]]);
+    }
+}
+
+#[test]
+fn a_person_that_stands_walks_neither_along_nor_across() {
+    for (speed, manoeuvre) in [((|_| 0.0) as fn(f64) -> f64, "person_standing"), (|_| 1.0, "person_along")] {
+        let person = Drive { category: Category::Person, ..drive(&["road_0"], 125.0, speed) };
+        let found = logged(&road(), &[drive(&["road_0"], 100.0, |_| 15.0), person], &[], 0.5);
+        assert_eq!(found, [["rear_end", manoeuvre, ""]]);
+    }
 }
 
 #[test]

@@ -100,6 +100,39 @@ def by_the_values_of_closecall(speed: float, aside: float = 0.0) -> Any:
 
 
 @pytest.mark.parametrize("kind", ["rear_end", "frontal"])
+def test_mu_by_rss_is_the_safe_distance(kind: str) -> None:
+    ahead = math.pi if kind == "frontal" else 0.0
+    chance = random.Random(5)
+    compared = 0
+    for _ in range(20):
+        speed, foe_speed = chance.uniform(5, 40), chance.uniform(0.1, 30)
+        frame = {"id": ["ego", "foe"], "x": [0, 80], "y": [0, 0], "heading": [0, ahead], "speed": [speed, foe_speed]}
+        with cc.Checker(path="straight", mu="rss", measures="rss_distance", log="gap < 200") as checker:
+            checker.step(0.0, frame)
+        for conflict in checker.conflicts:
+            own, other = (speed, foe_speed) if conflict.ego == "ego" else (foe_speed, speed)
+            wanted = float(cc.mu(own, other, kind=kind, model="rss"))
+            assert conflict.mu == pytest.approx(wanted, rel=1e-12)
+            assert conflict.mu == pytest.approx(conflict.rss_distance + 0.5, rel=1e-9)
+            left = conflict.response_left
+            assert (left is not None and left < 1.0) == (conflict.margin < 0.0)
+            compared += 1
+    # The others do not meet before both stand.
+    assert compared > 10
+
+
+def test_mu_by_rss_finds_a_follower_far_behind() -> None:
+    # RSS asks for 90.78125 m at 20 m/s behind one that stands; the follower's own brakes stop it after 44 m.
+    frame = {"id": ["ego", "foe"], "x": [0, 70], "y": [0, 0], "heading": [0, 0], "speed": [20, 0]}
+    found = {}
+    for model in ("rss", "minimal"):
+        with cc.Checker(mu=model) as checker:
+            checker.step(0.0, frame)
+            found[model] = [round(conflict.margin, 3) for conflict in checker.conflicts]
+    assert found == {"rss": [round(65 - 90.78125 - 0.5, 3)], "minimal": []}
+
+
+@pytest.mark.parametrize("kind", ["rear_end", "frontal"])
 def test_the_safe_distances_are_those_of_ad_rss(kind: str) -> None:
     chance = random.Random(3)
     pairs = 200

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import closecall as cc
 import pytest
-from conftest import NETS, Row, closecall, rows
+from conftest import NETS, Row, closecall, python, rows
 
 
 def logged(scene: str, out: Path, *words: str | Path) -> list[Row]:
@@ -77,6 +77,42 @@ def test_listeners_hear_of_each_conflict_once() -> None:
         assert settled == []
     assert [(conflict.ego, conflict.foe) for conflict in settled] == [("a", "b")]
     assert settled == checker.conflicts
+
+
+PET_SO_FAR = """
+import json, sys
+import closecall, libsumo
+
+bounds, pets = {}, {}
+settled = {}
+libsumo.start(["sumo", "-c", sys.argv[1], "--no-warnings", "--end", "140"])
+checker = closecall.Checker(libsumo, on_conflict=lambda c: settled.update({f"{c.ego} {c.foe}": c.pet}))
+libsumo.addStepListener(checker)
+while libsumo.simulation.getTime() < 140:
+    libsumo.simulationStep()
+    for alarm in checker.active + checker.waiting:
+        pair = f"{alarm.ego} {alarm.foe}"
+        if alarm.pet_at_least is not None:
+            bounds.setdefault(pair, []).append(alarm.pet_at_least)
+        if alarm.pet is not None:
+            pets[pair] = alarm.pet
+checker.close()
+libsumo.close()
+print(json.dumps([bounds, pets, settled]))
+"""
+
+
+def test_the_pet_so_far_grows_to_the_pet_while_sumo_runs() -> None:
+    done = python(PET_SO_FAR, NETS / "priority" / "priority.sumocfg")
+    assert done.returncode == 0, done.stderr
+    bounds, pets, settled = json.loads(done.stdout.splitlines()[-1])
+    known = {pair: pet for pair, pet in settled.items() if pet is not None and pair in bounds}
+    assert len(known) >= 5
+    for pair, pet in known.items():
+        below = bounds[pair]
+        assert below == sorted(below) and below[-1] <= pet + 1e-6, (pair, below, pet)
+        # The last step before the second enters.
+        assert pet - below[-1] < 0.6 and pets.get(pair, pet) == pytest.approx(pet), (pair, below, pet)
 
 
 def test_an_error_in_a_listener_reaches_the_script() -> None:

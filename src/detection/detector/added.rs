@@ -7,17 +7,24 @@ use crate::detection::encounter::Encounter;
 use crate::detection::measures::plane::Moving;
 use crate::detection::measures::ttc::{HORIZON, SteadyMotion};
 use crate::geometry::rectangle::Rectangle;
-use crate::options::measures::AddedValues;
+use crate::options::measures::{AddedMeasure, AddedValues, Measures};
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::Roster;
+use crate::util::units::Second;
 
 impl Detector {
     /// The values of the chosen measures of a pair in this step; none where none is chosen.
     pub fn added(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<AddedValues>> {
         let measures = self.options.measures;
-        if measures.is_empty() {
-            return None;
-        }
+        (!measures.is_empty()).then(|| Box::new(self.values(frame, roster, found, measures)))
+    }
+
+    /// The time advantage of a pair in this step.
+    pub fn tadv(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Second> {
+        self.values(frame, roster, found, AddedMeasure::Tadv.into())[AddedMeasure::Tadv as usize]
+    }
+
+    fn values(&self, frame: &Frame, roster: &Roster, found: &Encounter, measures: Measures) -> AddedValues {
         let (sight, scene) = (self.sight(frame, roster), self.scene(frame, roster));
         let users = [found.ego_row, found.foe_row].map(|row| sight.user(row, &sight.see(row), &User::default()));
         let mut courses = [Vec::new(), Vec::new()];
@@ -41,6 +48,6 @@ impl Detector {
             }
         });
         let crossing = self.options.kind_bounds().rear_end_below;
-        Some(Box::new(PairInStep { found, ego, foe, crossing, step: self.step }.values(measures)))
+        PairInStep { found, ego, foe, crossing, step: self.step }.values(measures)
     }
 }

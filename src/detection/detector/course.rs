@@ -45,11 +45,12 @@ impl Detector {
         course
     }
 
-    /// Notes that a road user has changed lanes, if the one that it was on is of the same edge as that on which it is now.
+    /// Notes that a road user has changed lanes, if the one that it was on is of the same edge as that on which it is now; in a
+    /// junction, too.
     pub(super) fn take_lane(&mut self, user: UserIndex, from: Option<LaneIndex>, to: LaneIndex) {
         let (Some(net), Some(from)) = (&self.net, from.filter(|from| *from != to)) else { return };
         let edge = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
-        if edge(from) != edge(to) || net.function(to) != EdgeFunction::Normal {
+        if edge(from) != edge(to) || !matches!(net.function(to), EdgeFunction::Normal | EdgeFunction::Internal) {
             return;
         }
         if self.lane_changes.len() <= user.0 as usize {

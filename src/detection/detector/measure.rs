@@ -7,7 +7,7 @@ use super::overlap::shrinks;
 use super::reach::User;
 use super::step::StepInputs;
 use super::worker::{Findings, Met, Scratch, Worker};
-use crate::braking::{self, LateBraking, Leader};
+use crate::braking::{self, LateBraking, Leader, MuModel, rss};
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures::accident::BRAKES;
@@ -84,11 +84,22 @@ impl StepInputs<'_> {
         if !self.is_further() {
             return gap;
         }
-        let [(ego, of_ego), (foe, of_foe)] =
-            slots.map(|slot| self.user(slot)).map(|user| (self.state(user), self.profile(user)));
-        let ego_beyond = meeting.ego_distance - cover::reach(ego, of_ego, self.options.epsilon);
-        let foe_beyond = meeting.foe_distance - cover::stop(foe, of_foe);
-        gap.max(mu + ego_beyond.max(foe_beyond).max(0.0))
+        let [ego, foe] = slots.map(|slot| self.user(slot));
+        let reserve = if self.state(ego).moves() { self.options.epsilon } else { 0.0 };
+        let ego_beyond = meeting.ego_distance - self.stand(ego) - reserve;
+        let foe_beyond = meeting.foe_distance - self.stand(foe);
+        let beyond = ego_beyond.max(foe_beyond);
+        // RSS has them stand further than their brakes do.
+        if self.mu_model() == MuModel::Rss && beyond <= 0.0 { gap } else { gap.max(mu + beyond.max(0.0)) }
+    }
+
+    /// The distance until a road user stands that brakes as the model of μ has it.
+    fn stand(&self, user: &User) -> Metre {
+        let state = self.state(user);
+        match self.mu_model() {
+            MuModel::Rss if state.moves() => rss::way(state.speed),
+            _ => cover::stop(state, self.profile(user)),
+        }
     }
 
     /// Whether a foe that brakes fully now stands before it gets to the conflict point.
@@ -162,12 +173,12 @@ impl StepInputs<'_> {
         if encounter.collision {
             return Some(0.0);
         }
-        if self.stops_before(met) {
+        if met.further && met.meeting.foe_distance > self.stand(self.user(met.slots[1])) {
             return None;
         }
         let (model, epsilon) = (self.mu_model(), self.options.epsilon);
         let left = braking::response_left(model, ego.braking(), foe.braking(), met.sigma, epsilon, encounter.gap);
-        let response = ego.brakes.response;
+        let response = if model == MuModel::Rss { rss::RESPONSE } else { ego.brakes.response };
         let left = if encounter.margin < 0.0 { left.min(response.next_down()).max(0.0) } else { left.max(response) };
         Some(left).filter(|left| left.is_finite())
     }

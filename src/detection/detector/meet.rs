@@ -12,7 +12,7 @@ use super::reach::{Motion, User};
 use super::step::StepInputs;
 use super::work::Work;
 use super::worker::{Findings, Worker};
-use crate::braking::{self, Braking};
+use crate::braking::{self, Braking, MuModel};
 use crate::detection::narrow_phase::{self, Approach, ConflictPoint, Ego, Participant, side};
 use crate::geometry::sweep::{FINE, TOLERANCE};
 use crate::geometry::{contact, cross};
@@ -294,7 +294,9 @@ impl StepInputs<'_> {
         };
         let enough = |way: Metre| ahead > way.max(0.0) + TOLERANCE;
         let epsilon = self.options.epsilon;
-        enough(stop + epsilon) || enough(braking::mu(self.mu_model(), ego, foe, 1.0, epsilon))
+        let model = self.mu_model();
+        let stops = model != MuModel::Rss && enough(stop + epsilon);
+        stops || enough(braking::mu(model, ego, foe, 1.0, epsilon))
     }
 
     /// Whether the narrow boxes around both paths are apart.

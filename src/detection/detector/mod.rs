@@ -33,8 +33,11 @@ use std::sync::Arc;
 use super::broad_phase::Search;
 use super::course::LaneChange;
 use super::encounter::Encounter;
+use super::measures::ttc::HORIZON;
+use super::path::Pose;
 use super::path::lanes::{LanePath, PathStart};
 use super::path::turning::Turning;
+use crate::braking::MuModel;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::options::condition::LookAhead;
@@ -54,6 +57,9 @@ use row_order::RowOrder;
 use shortcuts::Shortcuts;
 use step::StepInputs;
 use worker::Worker;
+
+/// As far ahead of a road user that stands at a junction its way through it is followed, in m.
+const AHEAD: Metre = 20.0;
 
 /// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
 const LEVEL: Metre = 2.5;
@@ -130,7 +136,7 @@ impl Detector {
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
-            look: Some(options.log.look_ahead()).filter(|look| !look.is_none() && options.mode == Mode::Closecall),
+            look: look_ahead(options),
             users_further: Vec::new(),
             paths: Vec::new(),
             turnings: Vec::new(),
@@ -388,6 +394,17 @@ impl Detector {
         self.look.map_or(Cover::UntilTheyStand, Cover::Further)
     }
 
+    /// The poses that the road user of a row will go through within [`HORIZON`] at its speed, and at least [`AHEAD`].
+    pub fn ahead(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Pose> {
+        let (sight, scene, mut poses) = (self.sight(frame, roster), self.scene(frame, roster), Vec::new());
+        let user = sight.user(row, &sight.see(row), &User::default());
+        if let Some(first) = scene.carriages(&user).next() {
+            let way = AHEAD.max(frame.state(row).speed * HORIZON);
+            scene.course(&user, first, &[way], true, &mut poses);
+        }
+        poses
+    }
+
     /// The path of a row's front bumper from where it is until it stands and ε further; empty for an obstacle.
     pub fn path(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Point> {
         let (sight, mut poses) = (self.sight(frame, roster), Vec::new());
@@ -398,4 +415,10 @@ impl Detector {
         }
         poses.iter().map(|pose| pose.front).collect()
     }
+}
+
+/// How far pairs have to be looked for beyond where both stand; none where they have not.
+fn look_ahead(options: &Options) -> Option<LookAhead> {
+    let look = LookAhead { rss: options.mu == MuModel::Rss, ..options.log.look_ahead() };
+    (options.mode == Mode::Closecall && !look.is_none()).then_some(look)
 }

@@ -55,6 +55,16 @@ impl DrivenPath {
         }
     }
 
+    /// The same if it goes on along these poses. When it comes to each is left open: a second later for each metre.
+    pub fn going_on(&self, poses: &[Pose]) -> Self {
+        let mut path = self.clone();
+        let now = self.poses.last().map_or(0.0, |last| last.time);
+        for pose in poses.iter().filter(|pose| pose.distance > 0.0) {
+            path.push(now + pose.distance, pose.front, pose.axis.y.atan2(pose.axis.x));
+        }
+        path
+    }
+
     /// Marks that it has left the scene.
     pub fn end(&mut self) {
         self.ended = true;

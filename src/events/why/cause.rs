@@ -5,7 +5,7 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use super::manoeuvre::{Manoeuvre, changes_into};
+use super::manoeuvre::{Manoeuvre, changed_into};
 use super::pair::{BESIDE_A_CROSSING, Pair, Party};
 use crate::detection::kind::Kind;
 use crate::traffic::net::{Net, Passage};
@@ -14,6 +14,8 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// A driver who sees amber and can stop with [`COMFORTABLE`] after this, has to, in s (ITE's change interval).
 const SEES_AMBER: Second = 1.0;
+/// One that crosses behind another after less than this did not let it go first, in s; our choice.
+const LETS_GO_FIRST: Second = 0.5;
 /// The deceleration for which a change interval is made, in m/s²: 10 ft/s² (ITE).
 const COMFORTABLE: MetrePerSecondSquared = 3.05;
 /// One is too fast from this share of the limit on …
@@ -107,8 +109,23 @@ impl Causes {
 
     /// Those that tell how one entered the junction.
     pub fn at_the_entry(self) -> Self {
-        let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield];
-        Self(self.0 & entry.iter().fold(0, |bits, cause| bits | 1 << *cause as u16))
+        let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield].into_iter().collect::<Self>();
+        Self(self.0 & entry.0)
+    }
+
+    /// Those without what only another manoeuvre than this is.
+    pub(super) fn that_fit(self, manoeuvre: Option<Manoeuvre>) -> Self {
+        let fits = |cause| match cause {
+            Cause::ChangedLane => matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange)),
+            Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),
+            Cause::OutsideCrossing => manoeuvre == Some(Manoeuvre::PersonCrossing),
+            Cause::Stood => manoeuvre == Some(Manoeuvre::Object),
+            Cause::LeaderBraked => {
+                matches!(manoeuvre, None | Some(Manoeuvre::Following | Manoeuvre::CutIn | Manoeuvre::LaneChange))
+            }
+            _ => true,
+        };
+        Cause::ALL.into_iter().filter(|cause| self.has(*cause) && fits(*cause)).collect()
     }
 
     fn add_if(&mut self, cause: Cause, is_there: bool) {
@@ -120,17 +137,18 @@ impl Causes {
         let mut causes = Self::default();
         let is_following = matches!(manoeuvre, None | Some(Manoeuvre::Following)) && pair.kind == Kind::RearEnd;
         if let (Some(net), Some([ego, foe]), false) = (pair.around.net, pair.passages, is_following) {
-            let ways = [(&pair.ego, ego, foe), (&pair.foe, foe, ego)];
-            for (party, passage, _) in ways {
+            let [ego, foe] = [(&pair.ego, ego), (&pair.foe, foe)];
+            for (party, passage) in [ego, foe] {
                 causes.add_if(Cause::RanRed, entered_on(pair, party, passage, is_red));
                 causes.add_if(Cause::LateAmber, entered_on(pair, party, passage, is_late_amber));
             }
             let ran = causes.has(Cause::RanRed);
-            causes.add_if(Cause::DidNotYield, !ran && ways.iter().any(|way| did_not_yield(net, pair, *way)));
+            causes.add_if(
+                Cause::DidNotYield,
+                !ran && [(ego, foe), (foe, ego)].into_iter().any(|ways| did_not_yield(net, pair, ways)),
+            );
         }
-        let changed = || pair.both().iter().any(|(one, other)| changes_into(pair, one, other));
-        let changes = matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange));
-        causes.add_if(Cause::ChangedLane, changes && changed());
+        causes.add_if(Cause::ChangedLane, pair.both().iter().any(|(a, b)| changed_into(pair, a, b).is_some()));
         causes.add_if(Cause::Overtook, manoeuvre == Some(Manoeuvre::OvertakingOncoming));
         causes
             .add_if(Cause::OutsideCrossing, manoeuvre == Some(Manoeuvre::PersonCrossing) && is_outside_crossing(pair));
@@ -145,7 +163,13 @@ impl Causes {
         causes.add_if(Cause::TooFast, fast.into_iter().any(|(party, _)| is_too_fast(pair, party)));
         let is_new = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
         causes.add_if(Cause::Appeared, pair.both().iter().any(|(party, _)| is_new(party)));
-        causes
+        causes.that_fit(manoeuvre)
+    }
+}
+
+impl FromIterator<Cause> for Causes {
+    fn from_iter<I: IntoIterator<Item = Cause>>(causes: I) -> Self {
+        Self(causes.into_iter().fold(0, |bits, cause| bits | 1 << cause as u16))
     }
 }
 
@@ -165,6 +189,9 @@ impl Serialize for Causes {
         serializer.collect_str(self)
     }
 }
+
+/// A road user and its way through the junction.
+type Way<'a> = (&'a Party, &'a Passage);
 
 /// What a traffic light shows to one that passes it: the letter, since how long, and how fast it is.
 struct Shown {
@@ -188,16 +215,28 @@ fn entered_on(pair: &Pair, party: &Party, passage: &Passage, is_wrong: fn(&Shown
         let (letter, since) = pair.around.signals.at(signal, time)?;
         Some(Shown { letter, lasts: time - since, speed: party.speed })
     };
-    let Some(signal) = passage.signal else { return false };
-    let time = if party.category == Category::Person {
-        entered_crossing(pair, party)
-    } else {
-        party
-            .way_to(passage.lanes[0])
-            .filter(|way| party.passes(*way))
-            .and_then(|way| if way < 0.0 { passed_before(pair, party, -way) } else { Some(pair.time) })
+    let enters = || match party.category {
+        Category::Person => is_on_a_crossing(pair, party),
+        _ => party.way_to(passage.lanes[0]).is_some_and(|way| party.passes(way)),
     };
-    time.and_then(|time| shown(signal, time)).is_some_and(|shown| is_wrong(&shown))
+    let Some(signal) = passage.signal.filter(|_| enters()) else { return false };
+    entered(pair, party, passage).and_then(|time| shown(signal, time)).is_some_and(|shown| is_wrong(&shown))
+}
+
+/// When a road user entered its way through a junction, now if it has not yet; none where that is longer ago than is known.
+fn entered(pair: &Pair, party: &Party, passage: &Passage) -> Option<Second> {
+    match party.category {
+        Category::Person if is_on_a_crossing(pair, party) => entered_crossing(pair, party),
+        Category::Person => Some(pair.time),
+        _ => party.way_to(passage.lanes[0]).and_then(|way| match way {
+            ..0.0 => passed_before(pair, party, -way),
+            _ => Some(pair.time),
+        }),
+    }
+}
+
+fn is_on_a_crossing(pair: &Pair, party: &Party) -> bool {
+    pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some())
 }
 
 /// When a vehicle was this far behind where it is now; none where that is longer ago than is known.
@@ -219,28 +258,38 @@ fn passed_before(pair: &Pair, party: &Party, driven: Metre) -> Option<Second> {
 /// When a person that is on a crossing now stepped on it; none where that is longer ago than is known.
 fn entered_crossing(pair: &Pair, party: &Party) -> Option<Second> {
     let net = pair.around.net?;
-    let is_on = |place| net.crossing_at(place, 0.0).is_some();
-    if !is_on(party.front) {
-        return None;
-    }
     let places = pair.past.of(party.user, pair.time).collect::<Vec<_>>();
-    let before = places.iter().rposition(|(_, place, _)| !is_on(*place))?;
+    let before = places.iter().rposition(|(_, place, _)| net.crossing_at(*place, 0.0).is_none())?;
     Some(places.get(before + 1).map_or(pair.time, |(time, ..)| *time))
 }
 
-/// Whether a road user that has to yield on its way goes on: it has passed the place to wait, or can no longer stop there.
-fn did_not_yield(net: &Net, pair: &Pair, (party, passage, other): (&Party, &Passage, &Passage)) -> bool {
+/// Whether a road user that has to yield on its way goes on, having passed the place to wait or unable to stop there, and
+/// does not let the other go first.
+fn did_not_yield(net: &Net, pair: &Pair, (one, other): (Way, Way)) -> bool {
+    let (party, passage) = one;
     let goes_on = || match party.category {
-        Category::Person => net.crossing_at(party.front, 0.0).is_some(),
+        Category::Person => is_on_a_crossing(pair, party),
         _ => passage.lanes.last().and_then(|lane| party.way_to(*lane)).is_some_and(|way| party.passes(way)),
     };
-    net.yields(passage, other) && [passage, other].iter().all(|way| is_open(pair, way)) && goes_on()
+    // The right of way holds between the two from when both are in the junction.
+    let both = || [one, other].into_iter().filter_map(|(party, way)| entered(pair, party, way)).reduce(f64::max);
+    net.yields(passage, other.1)
+        && goes_on()
+        && !goes_second(pair, party, other.0)
+        && both().is_some_and(|time| is_open(pair, passage, time) && is_open(pair, other.1, time))
 }
 
-/// Whether a traffic light leaves the order to the right of way; false where its state is not known.
-fn is_open(pair: &Pair, passage: &Passage) -> bool {
+/// Whether one passes the conflict point behind the other, and with room, as both drive now.
+fn goes_second(pair: &Pair, one: &Party, other: &Party) -> bool {
+    one.way * other.speed > other.way * one.speed
+        && pair.found.nearness.is_none_or(|near| near.ttc.is_none())
+        && (pair.around.tadv)(pair.found).is_none_or(|tadv| tadv >= LETS_GO_FIRST)
+}
+
+/// Whether a traffic light left the order to the right of way at a time; false where its state is not known.
+fn is_open(pair: &Pair, passage: &Passage, time: Second) -> bool {
     let Some(signal) = passage.signal else { return true };
-    let shown = pair.around.signals.at(signal, pair.time);
+    let shown = pair.around.signals.at(signal, time);
     shown.is_some_and(|(letter, _)| !matches!(letter, b'r' | b'u' | b'y' | b'Y'))
 }
 

@@ -19,6 +19,8 @@ const DRIFT: MetrePerSecond = 0.3;
 const OPPOSITE: Radian = 0.75 * std::f64::consts::PI;
 /// Two that come from directions nearer than this drive side by side, in rad.
 const ALIKE: Radian = 0.25 * std::f64::consts::PI;
+/// A person slower than this waits, in m/s: SUMO's bound.
+const WAITS: MetrePerSecond = 0.1;
 /// Where two ways join, the first of both is behind the joint by at least this at the conflict point, in m.
 const AT_THE_JOINT: Metre = 0.1;
 
@@ -30,8 +32,10 @@ pub enum Manoeuvre {
     Following,
     /// The foe has just moved into the lane of the ego behind it.
     CutIn,
-    /// One moves, or has just moved, into the other's lane, and does not cut in.
+    /// The ego moves, or has just moved, into the foe's lane.
     LaneChange,
+    /// Side by side in one direction, and neither changes lanes.
+    SideBySide,
     /// Two lanes become one, and both drive straight on.
     Merge,
     /// Their ways cross, and neither of them turns across the other's direction.
@@ -50,16 +54,19 @@ pub enum Manoeuvre {
     PersonCrossing,
     /// A person walks along the other's way.
     PersonAlong,
+    /// A person stands in the other's way, as at the corner of a pavement.
+    PersonStanding,
     /// One is an obstacle.
     Object,
 }
 
 impl Manoeuvre {
     /// All manoeuvres, in the order used in tables.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Following,
         Self::CutIn,
         Self::LaneChange,
+        Self::SideBySide,
         Self::Merge,
         Self::Crossing,
         Self::LeftTurnAcross,
@@ -69,6 +76,7 @@ impl Manoeuvre {
         Self::HeadOn,
         Self::PersonCrossing,
         Self::PersonAlong,
+        Self::PersonStanding,
         Self::Object,
     ];
 
@@ -78,6 +86,7 @@ impl Manoeuvre {
             Self::Following => "following",
             Self::CutIn => "cut_in",
             Self::LaneChange => "lane_change",
+            Self::SideBySide => "side_by_side",
             Self::Merge => "merge",
             Self::Crossing => "crossing",
             Self::LeftTurnAcross => "left_turn_across",
@@ -87,6 +96,7 @@ impl Manoeuvre {
             Self::HeadOn => "head_on",
             Self::PersonCrossing => "person_crossing",
             Self::PersonAlong => "person_along",
+            Self::PersonStanding => "person_standing",
             Self::Object => "object",
         }
     }
@@ -98,6 +108,9 @@ impl Manoeuvre {
             return Some(Self::Object);
         }
         if categories.contains(&Category::Person) {
+            if pair.both().iter().any(|(party, _)| stands_aside(pair, party)) {
+                return Some(Self::PersonStanding);
+            }
             let across = pair.kind == Kind::Side || pair.passages.is_some();
             return Some(if across { Self::PersonCrossing } else { Self::PersonAlong });
         }
@@ -131,6 +144,12 @@ impl Manoeuvre {
     }
 }
 
+/// Whether a person stands, and not on a crossing.
+fn stands_aside(pair: &Pair, party: &Party) -> bool {
+    let is_on_crossing = || pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some());
+    party.category == Category::Person && party.speed < WAITS && !is_on_crossing()
+}
+
 /// Whether both take a lane.
 fn shares_a_lane(pair: &Pair) -> bool {
     pair.ego.course.stretches.iter().any(|stretch| pair.foe.course.of(stretch.lane).is_some())
@@ -147,34 +166,39 @@ fn follow_each_other(pair: &Pair) -> bool {
 
 /// Two that drive on one lane or beside each other.
 fn in_one_direction(pair: &Pair) -> Manoeuvre {
-    let [ego, foe] =
-        [(&pair.ego, &pair.foe), (&pair.foe, &pair.ego)].map(|(one, other)| changes_into(pair, one, other));
-    match pair.kind {
-        _ if foe && !ego => Manoeuvre::CutIn,
-        _ if ego => Manoeuvre::LaneChange,
-        _ if !shares_a_lane(pair) => Manoeuvre::LaneChange,
-        _ => Manoeuvre::Following,
+    let [ego, foe] = pair.both().map(|(one, other)| changed_into(pair, one, other));
+    // Of two that changed lanes, the later one came into the other's way.
+    match () {
+        () if foe > ego => Manoeuvre::CutIn,
+        () if ego.is_some() => Manoeuvre::LaneChange,
+        () if !shares_a_lane(pair) => Manoeuvre::SideBySide,
+        () => Manoeuvre::Following,
     }
 }
 
-/// Whether one changes lanes into that of the other, or did so just now.
-pub(super) fn changes_into(pair: &Pair, one: &Party, other: &Party) -> bool {
+/// Since when one is in the lane of the other to which it changed, or changes now; none where it came otherwise, or long ago.
+pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Second> {
     let course = &one.course;
-    let changed = course.change.is_some_and(|change| {
+    // The other may have left the lane since, ahead of it.
+    let is_into = |lane| other.course.of(lane).is_some() || follow_each_other(pair);
+    // One that was not there yet saw no change.
+    let was_there = |time| pair.past.of(other.user, pair.time).next().is_some_and(|(first, ..)| first <= time);
+    let changed = course.change.filter(|change| {
         pair.time - change.time <= LANE_CHANGE
-            && other.course.of(change.to).is_some()
             && other.course.change != course.change
+            && is_into(change.to)
+            && was_there(change.time)
     });
-    let Some((net, own)) = pair.around.net.zip(course.at(0.0)) else { return changed };
-    let lane = &net.lanes[own.0 as usize];
-    let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
-    let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) };
-    let drifts = course.lateral_speed.abs() > DRIFT
-        && next.is_some_and(|next| {
-            let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize);
-            next.is_some_and(|next| other.course.of(*next).is_some()) && other.course.of(own).is_none()
-        });
-    changed || drifts
+    let drifts = || -> Option<Second> {
+        let (net, own) = pair.around.net.zip(course.at(0.0))?;
+        let lane = &net.lanes[own.0 as usize];
+        let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
+        let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) }?;
+        let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize)?;
+        let is_towards = other.course.of(*next).is_some() && other.course.of(own).is_none();
+        (is_towards && course.lateral_speed.abs() > DRIFT).then_some(pair.time)
+    };
+    drifts().or(changed.map(|change| change.time))
 }
 
 /// Two whose ways meet in a junction.
@@ -197,7 +221,7 @@ fn through_a_junction(net: &Net, pair: &Pair, passages: [&Passage; 2]) -> Manoeu
     let across = match turned {
         Some(Direction::Right) => Manoeuvre::RightTurnAcross,
         Some(_) => Manoeuvre::LeftTurnAcross,
-        None if comes_from > OPPOSITE => Manoeuvre::HeadOn,
+        None if comes_from > OPPOSITE && pair.kind == Kind::Frontal => Manoeuvre::HeadOn,
         None => Manoeuvre::Crossing,
     };
     if comes_from > OPPOSITE {

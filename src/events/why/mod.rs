@@ -36,8 +36,23 @@ impl Why {
 
     /// The same with a later step that is worse.
     pub fn then(self, later: Self) -> Self {
+        let manoeuvre = later.manoeuvre.or(self.manoeuvre);
         let mut causes = self.causes;
         causes.add(later.causes);
-        Self { manoeuvre: later.manoeuvre.or(self.manoeuvre), causes }
+        Self { manoeuvre, causes: causes.that_fit(manoeuvre) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_change_of_lanes_is_no_cause_once_they_follow() {
+        let step =
+            |manoeuvre, causes: &[Cause]| Why { manoeuvre: Some(manoeuvre), causes: causes.iter().copied().collect() };
+        let changes = step(Manoeuvre::CutIn, &[Cause::ChangedLane, Cause::TooFast]);
+        let causes = |later| changes.then(step(later, &[])).causes.to_string();
+        assert_eq!([Manoeuvre::Following, Manoeuvre::LaneChange].map(causes), ["too_fast", "changed_lane too_fast"]);
     }
 }

@@ -28,6 +28,8 @@ pub struct Surroundings<'a> {
     pub course: &'a dyn Fn(u32) -> Course,
     /// The chosen measures of an encounter, if any is chosen.
     pub added: &'a dyn Fn(&Encounter) -> Option<Box<AddedValues>>,
+    /// The time advantage of an encounter.
+    pub tadv: &'a dyn Fn(&Encounter) -> Option<Second>,
 }
 
 /// One road user of a pair.
@@ -50,6 +52,7 @@ pub(super) struct Pair<'a> {
     pub time: Second,
     pub kind: Kind,
     pub gap: Metre,
+    pub found: &'a Encounter,
     /// The conflict point.
     pub at: Point,
     pub around: Surroundings<'a>,
@@ -90,7 +93,11 @@ impl Party {
 }
 
 impl<'a> Pair<'a> {
-    pub fn of((frame, roster, found): (&Frame, &Roster, &Encounter), around: Surroundings<'a>, past: &'a Past) -> Self {
+    pub fn of(
+        (frame, roster, found): (&Frame, &Roster, &'a Encounter),
+        around: Surroundings<'a>,
+        past: &'a Past,
+    ) -> Self {
         let party = |user, row, way| {
             let mut course = (around.course)(row);
             if past.is_new(user, frame.time) {
@@ -103,7 +110,7 @@ impl<'a> Pair<'a> {
         let foe = party(found.foe, found.foe_row, found.foe_distance);
         let at = Point::new(found.x, found.y);
         let passages = around.net.and_then(|net| passages(net, &ego, &foe, at));
-        Self { ego, foe, time: frame.time, kind: found.kind, gap: found.gap, at, around, past, passages }
+        Self { ego, foe, time: frame.time, kind: found.kind, gap: found.gap, found, at, around, past, passages }
     }
 
     /// Each road user, and the other.

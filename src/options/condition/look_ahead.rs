@@ -1,5 +1,6 @@
 //! How far beyond where both stand a condition looks for pairs.
 
+use crate::braking::rss;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// How long after an event its PET is waited for, in s: no condition may ask for a later one.
@@ -21,11 +22,13 @@ pub struct LookAhead {
     pub response: Second,
     /// For so long, speeding up.
     pub pet: Second,
+    /// Until both stand as RSS has them brake.
+    pub rss: bool,
 }
 
 impl LookAhead {
     /// No further than until both stand.
-    pub const NONE: Self = Self { metres: 0.0, seconds: 0.0, response: 0.0, pet: 0.0 };
+    pub const NONE: Self = Self { metres: 0.0, seconds: 0.0, response: 0.0, pet: 0.0, rss: false };
 
     /// Whether it looks no further than until both stand.
     pub fn is_none(&self) -> bool {
@@ -35,7 +38,8 @@ impl LookAhead {
     /// How far ahead of a road user with this speed, which would stand after `stop` m, another is met. One that stands is
     /// met where it stands, or where it may be within the PET.
     pub fn distance(&self, speed: MetrePerSecond, stop: Metre, horizon: Second) -> Metre {
-        let Self { metres, seconds, response, pet } = *self;
+        let Self { metres, seconds, response, pet, rss } = *self;
+        let stop = if rss { stop.max(rss::way(speed)) } else { stop };
         let speeding_up = (speed + SPEEDS_UP * pet / 2.0) * pet;
         let until_it_stands = stop + metres + speed * response;
         let steady = if speed > 0.0 { until_it_stands.max(speed * seconds.min(horizon)) } else { 0.0 };
@@ -49,6 +53,7 @@ impl LookAhead {
             seconds: self.seconds.max(other.seconds),
             response: self.response.max(other.response),
             pet: self.pet.max(other.pet),
+            rss: self.rss || other.rss,
         }
     }
 
