@@ -75,8 +75,9 @@ impl Passed {
 
     /// The words of `closecall run` that all runs share, and the files whose content matters.
     pub fn shared(&self, scenario: &Path, varied: &[Vary]) -> Result<(Vec<String>, Vec<PathBuf>)> {
-        // The workers already use all processors, so one thread per run is fastest.
-        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned()];
+        // The workers already use all processors, so one thread per run is fastest. Clips of thousands of runs are made only
+        // if they are asked for.
+        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned(), "--log-clips=none".to_owned()];
         words.extend_from_slice(&self.words);
         let mut files = self.files.clone();
         for vary in varied.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {

@@ -1,6 +1,7 @@
 //! What a run writes: its log, its record, and files for other tools.
 
 pub mod badness;
+pub mod clips;
 pub mod earlier_log;
 pub mod folder;
 pub mod formats;
