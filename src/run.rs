@@ -305,6 +305,12 @@ impl Run {
         self.detector.encounters()
     }
 
+    /// The expected path of a road user's front bumper, from where it is; empty where it is absent in this step.
+    pub fn path(&self, user: UserIndex) -> Vec<Point> {
+        let row = self.frame.row_of(user);
+        row.map_or_else(Vec::new, |row| self.detector.path(&self.frame, &self.roster, row))
+    }
+
     /// The conflicts that are still open in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()

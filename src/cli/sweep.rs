@@ -90,8 +90,20 @@ impl Passed {
 }
 
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 10] =
-    ["scenario", "configuration_file", "gui", "out", "force", "seed", "quiet", "explain", "ssm_output", "trj_output"];
+const OWN: [&str; 12] = [
+    "scenario",
+    "configuration_file",
+    "gui",
+    "label",
+    "quit_on_end",
+    "out",
+    "force",
+    "seed",
+    "quiet",
+    "explain",
+    "ssm_output",
+    "trj_output",
+];
 /// The name of the results' default folder.
 const RESULTS: &str = "closecall-sweep";
 /// The folder of unfinished logs in that of the results, hidden; a run that is done by itself adds its name, as others may be

@@ -22,7 +22,7 @@ mod under_way;
 mod why;
 
 pub use alarm::Alarm;
-pub use clips::{AFTER, AROUND, BEFORE, Clip, ClipCategory, ClipSignal, ClipUser, Clips, MOST, Scene};
+pub use clips::{Clip, ClipCategory, ClipSignal, ClipUser, Clips, MOST, Scene};
 pub use event::Conflict;
 pub use moment::Moment;
 pub use snapshot::Snapshot;

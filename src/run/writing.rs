@@ -31,13 +31,7 @@ impl Writing {
     ///
     /// # Errors
     /// As in [`Writing::trajectories`].
-    pub fn conflicts(
-        &mut self,
-        closed: &[Conflict],
-        clips: &[Clip],
-        roster: &Roster,
-        net: Option<&Net>,
-    ) -> Result<()> {
+    pub fn conflicts(&mut self, closed: &[Conflict], clips: &[Clip], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
             it.append(closed, clips, roster, net)?;
             it.log.as_mut().map_or(Ok(()), Log::sync_now_and_then)

@@ -23,6 +23,28 @@ pub struct Clip {
     pub signals: Vec<ClipSignal>,
 }
 
+impl Clip {
+    /// The worst severity of the pair so far, while it is in conflict.
+    pub fn worst_so_far(&self, place: usize) -> Option<Severity> {
+        self.severity[place].and_then(|_| self.severity[..=place].iter().flatten().max().copied())
+    }
+
+    /// Whether it is as a run writes it: values at each time, ascending, and the two of the conflict.
+    pub fn is_whole(&self) -> bool {
+        let count = self.times.len();
+        let is_full = |user: &ClipUser| {
+            let lists = [&user.x, &user.y, &user.heading, &user.speed];
+            lists.iter().all(|list| list.len() == count && list.iter().flatten().all(|value| value.is_finite()))
+        };
+        count > 0
+            && [self.severity.len(), self.time_left.len()] == [count; 2]
+            && self.times.is_sorted_by(|a, b| a < b)
+            && self.users.len() >= 2
+            && self.users.iter().all(is_full)
+            && self.signals.iter().all(|signal| signal.states.is_ascii() && signal.states.len() == count)
+    }
+}
+
 /// A road user of a clip; where it is absent at a time, its values are none.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClipUser {

@@ -149,13 +149,7 @@ impl Take {
         let near = step.places.iter().filter(is_near).collect::<Vec<_>>();
         let places = near.into_iter().map(|place| (self.number(place.user, time, source), *place)).collect();
         let shown = self.signals.iter().map(|(signal, _)| source.signals.at(*signal, time).map_or(UNKNOWN, |at| at.0));
-        Step {
-            time,
-            severity,
-            time_left,
-            places,
-            shown: shown.collect(),
-        }
+        Step { time, severity, time_left, places, shown: shown.collect() }
     }
 
     /// The place in [`Take::users`] of a road user.
@@ -212,7 +206,9 @@ impl Take {
 fn user_at(user: UserIndex, time: Second, source: &Source) -> ClipUser {
     let (id, profile) = source.recent.who(user, time, source.roster);
     let profile = source.roster.profile_at(profile);
-    let corners = |part: &Polygon| part.outline.corners().iter().map(|corner| [rounded(corner.x, 2), rounded(corner.y, 2)]).collect();
+    let corners = |part: &Polygon| {
+        part.outline.corners().iter().map(|corner| [rounded(corner.x, 2), rounded(corner.y, 2)]).collect()
+    };
     ClipUser {
         id: id.to_string(),
         category: match profile.category {

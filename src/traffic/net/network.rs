@@ -3,7 +3,9 @@
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal};
+use super::elements::{
+    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
+};
 use super::finder::Finder;
 use crate::geometry::Bounds;
 use crate::geometry::polylines::{Lines, stretch};
