@@ -259,7 +259,11 @@ class Painter:
             return
         (left, bottom), (right, top) = self.sumo.gui.getBoundary(self.view)
         width, height = right - left, top - bottom
-        entries = [*self.colours.items(), ("ego: thick ring", (255, 255, 255, 255)), ("foe: thin ring", (255, 255, 255, 255))]
+        entries = [
+            *self.colours.items(),
+            ("ego: thick ring", (255, 255, 255, 255)),
+            ("foe: thin ring", (255, 255, 255, 255)),
+        ]
         for number, (text, colour) in enumerate(entries):
             poi = f"closecall.legend.{number}"
             from_left, from_top, apart = PLACE_OF_LEGEND

@@ -35,7 +35,9 @@ def show(scene: str, colours: dict[str, tuple[int, int, int]], label: bool, quit
 class Player:
     """A clip in sumo-gui."""
 
-    def __init__(self, scene: dict[str, Any], colours: dict[str, tuple[int, int, int]], label: bool, is_asked: bool) -> None:
+    def __init__(
+        self, scene: dict[str, Any], colours: dict[str, tuple[int, int, int]], label: bool, is_asked: bool
+    ) -> None:
         """Start sumo-gui on the net of the scene."""
         self.scene, self.clip, self.is_asked = scene, scene["clip"], is_asked
         times = self.clip["times"]

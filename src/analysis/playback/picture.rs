@@ -96,10 +96,11 @@ pub fn svg(playback: &Playback) -> String {
     let time = Loop::new(&clip.times, worst);
     let [width, height] = SIZE;
     let field = height - PANEL;
-    let title = escaped(&heading(playback));
+    let title = heading(playback);
+    let full = escaped(&format!("{title}: {} and {}", conflict.ego, conflict.foe));
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"{FONT}\" \
-         role=\"img\" aria-label=\"{title}\">\n<title>{title}</title>\n\
+         role=\"img\" aria-label=\"{full}\">\n<title>{full}</title>\n\
          <clipPath id=\"f\"><rect width=\"{width}\" height=\"{field}\"/></clipPath>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
          <g clip-path=\"url(#f)\"><rect width=\"{width}\" height=\"{field}\" fill=\"{GRASS}\"/>\n"
