@@ -22,11 +22,12 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// A painter in the sumo-gui of libsumo or a traci connection; `label` writes beside each conflict what it is.
-    pub fn new(source: &Bound<PyAny>, label: bool) -> PyResult<Self> {
+    /// A painter in the sumo-gui of libsumo or a traci connection. `label` writes beside each conflict what it is; in a
+    /// view of closecall's own there is a legend, and it begins at the traffic.
+    pub fn new(source: &Bound<PyAny>, label: bool, own_view: bool) -> PyResult<Self> {
         let py = source.py();
         let module = py.import("closecall._paint")?;
-        let painter = module.call_method1("Painter", (source, colours(py)?, label))?;
+        let painter = module.call_method1("Painter", (source, colours(py)?, label, own_view))?;
         Ok(Self { module: module.unbind(), painter: painter.unbind() })
     }
 

@@ -1,4 +1,4 @@
-"""`closecall clip` in a real browser: the picture moves without a script, and shows the conflict where and when it was."""
+"""`closecall clip` in a real browser: the picture moves without a script, and shows the conflict while it lasts."""
 
 from __future__ import annotations
 

@@ -137,7 +137,7 @@ def test_a_missing_display_is_reported(scenario: Copy, tmp_path: Path, monkeypat
     monkeypatch.delenv("DISPLAY", raising=False)
     config = scenario("side")
     assert closecall("run", config, "--quiet", "--out", tmp_path, "--log-clips", "caution").returncode == 0
-    for words in (["run", config, "--gui"], ["show", tmp_path, "--worst", "1"]):
+    for words in (("run", str(config), "--gui"), ("show", str(tmp_path), "--worst", "1")):
         done = closecall(*words)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1)
         assert "needs a display" in done.stderr
@@ -174,7 +174,8 @@ _sumo.close(gui=True)
 def scene_of(log: Path, net: Path) -> dict[str, Any]:
     """What `closecall show` plays of the only conflict of a log."""
     (row,) = rows(log / "conflicts.csv")
-    (clip,) = [json.loads(line) for line in gzip.open(log / "clips.jsonl.gz", "rt")]
+    with gzip.open(log / "clips.jsonl.gz", "rt") as file:
+        (clip,) = map(json.loads, file)
     paths = []
     for user in ("ego", "foe"):
         numbers = [float(number) for number in row[f"{user}_path"].split()]

@@ -1,8 +1,8 @@
 """Conflicts in sumo-gui, while they last.
 
-Each of a pair has the colour of the worst severity of its conflicts, and a ring in a colour of the pair: thick around the
-ego, thin around the foe. A line leads from each to the conflict point, and their predicted paths lie on the road. Rings and
-lines are at least a fixed share of the view, so that they are seen at any zoom.
+Each of a pair has the colour of the worst severity of its conflicts, and a ring in a colour of the pair: thick around
+the ego, thin around the foe. A line leads from each to the conflict point, and their predicted paths lie on the road.
+Rings and lines are at least a fixed share of the view, so that they are seen at any zoom.
 """
 
 from __future__ import annotations
@@ -78,11 +78,17 @@ class Shown:
 class Painter:
     """Paints in the sumo-gui of libsumo or of a traci connection."""
 
-    def __init__(self, sumo: Any, colours: dict[str, tuple[int, int, int]], label: bool = False) -> None:
-        """Paint severities, mildest first, in these colours; `label` writes beside each conflict what it is."""
+    def __init__(
+        self, sumo: Any, colours: dict[str, tuple[int, int, int]], label: bool = False, own_view: bool = True
+    ) -> None:
+        """Paint severities, mildest first, in these colours.
+
+        `label` writes beside each conflict what it is. In a view of closecall's own there is a legend, and it begins at
+        the traffic.
+        """
         self.sumo = sumo
         self.colours = {severity: (*colour, 255) for severity, colour in colours.items()}
-        self.label = label
+        self.label, self.own_view = label, own_view
         self.shown: dict[tuple[str, str], Shown] = {}
         self.former: dict[tuple[str, str], Colour] = {}
         self.legend: list[str] = []
@@ -120,7 +126,8 @@ class Painter:
     def _view(self) -> str | None:
         try:
             views = self.sumo.gui.getIDList()
-        except Exception:  # noqa: BLE001 - libsumo and traci have exceptions of their own for a SUMO without a window
+        except Exception:
+            # libsumo and traci have exceptions of their own for a SUMO without a window.
             return None
         return views[0] if views else None
 
@@ -132,7 +139,7 @@ class Painter:
 
     def _begin(self, pairs: list[Pair]) -> None:
         """Show the traffic at the begin, and then the first conflict, unless the user has moved the view meanwhile."""
-        if self.view is None or self.is_shown:
+        if self.view is None or self.is_shown or not self.own_view:
             return
         now = self.sumo.gui.getBoundary(self.view)
         if self.is_at_traffic and self.first_view is None:
@@ -168,11 +175,11 @@ class Painter:
             colour = self.former.pop(key)
             if key[1] in present[key[0]]:
                 getattr(self.sumo, key[0]).setColor(key[1], colour)
-        for (domain, user), severity in worst.items():
-            vehicles = getattr(self.sumo, domain)
-            if (domain, user) not in self.former:
-                self.former[domain, user] = vehicles.getColor(user)
-            vehicles.setColor(user, self.colours[severity])
+        for key, severity in worst.items():
+            vehicles = getattr(self.sumo, key[0])
+            if key not in self.former:
+                self.former[key] = vehicles.getColor(key[1])
+            vehicles.setColor(key[1], self.colours[severity])
 
     def _draw(self, shown: Shown, pair: Pair, present: dict[str, set[str]]) -> None:
         view = self._width_of_view()
@@ -202,10 +209,10 @@ class Painter:
             self._remove_polygon(shown, name)
 
     def _place(self, user: User, at: Point) -> tuple[Point, float]:
-        """The middle and the radius of the ring; an articulated vehicle may bend, so its ring is where the conflict is."""
+        """The middle and the radius of the ring: around the conflict for an articulated vehicle, as that may bend."""
         if user.is_articulated:
             return at, RING_MARGIN + 2.5
-        vehicles = getattr(self.sumo, user.domain)
+        vehicles = getattr(self.sumo, str(user.domain))
         x, y = vehicles.getPosition(user.id)
         angle = math.radians(90.0 - vehicles.getAngle(user.id))
         back = user.length / 2.0
@@ -255,7 +262,7 @@ class Painter:
 
     def _draw_legend(self) -> None:
         """Points of interest in the upper left corner, wherever the view is."""
-        if self.view is None:
+        if self.view is None or not self.own_view:
             return
         (left, bottom), (right, top) = self.sumo.gui.getBoundary(self.view)
         width, height = right - left, top - bottom

@@ -12,7 +12,7 @@ import time
 from typing import Any
 
 from . import _sumo
-from ._paint import Colour, Pair, Painter, User
+from ._paint import Colour, Painter, Pair, User
 
 SLOWER = 2.0
 """How many times slower than in reality it plays."""

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::animation::Loop;
-use super::picture::View;
+use super::view::View;
 use crate::events::ClipSignal;
 use crate::geometry::{Point, Vector, left_of};
 use crate::traffic::net::{EdgeFunction, Lane, Net};

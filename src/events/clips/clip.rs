@@ -5,6 +5,13 @@ use serde::{Deserialize, Serialize};
 use crate::detection::kind::Severity;
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
+/// A clip begins this long before the conflict's worst moment, in s.
+pub const BEFORE: Second = 5.0;
+/// It ends this long after it, in s.
+pub const AFTER: Second = 3.0;
+/// It shows the road users within this distance of the two or of the conflict, in m.
+pub const AROUND: Metre = 50.0;
+
 /// The seconds around a conflict's worst moment: lists of equal length, one value per time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Clip {

@@ -3,9 +3,9 @@
 
 use std::collections::VecDeque;
 
-use super::BEFORE;
+use super::clip::BEFORE;
 use crate::detection::kind::Severity;
-use crate::events::Alarm;
+use crate::events::alarm::Alarm;
 use crate::events::under_way::Pair;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};

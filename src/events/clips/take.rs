@@ -2,11 +2,10 @@
 
 use smallvec::SmallVec;
 
-use super::clip::{Clip, ClipCategory, ClipSignal, ClipUser};
+use super::clip::{AFTER, AROUND, BEFORE, Clip, ClipCategory, ClipSignal, ClipUser};
 use super::recent::{Place, Recent, RecentStep};
-use super::{AFTER, AROUND, BEFORE};
 use crate::detection::kind::Severity;
-use crate::events::Conflict;
+use crate::events::event::Conflict;
 use crate::events::under_way::Pair;
 use crate::geometry::Point;
 use crate::geometry::polygon::Polygon;
