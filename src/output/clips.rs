@@ -3,7 +3,7 @@
 //! It is compressed because the numbers of a clip, some thousands, resemble each other. Like other files that are no rows it
 //! appears when the run ends, whole; a run without clips has none.
 
-use std::io::Write;
+use std::io::{BufWriter, Write};
 use std::path::PathBuf;
 
 use flate2::Compression;
@@ -16,12 +16,15 @@ use crate::{Error, Result};
 /// The name of the file.
 pub const CLIPS: &str = "clips.jsonl.gz";
 
+/// What the compressor gets at once, in bytes: each time it clears its tables, which takes as long as compressing some kilobytes.
+const BLOCK: usize = 1 << 16;
+
 /// The file of a run's clips.
 #[derive(Debug)]
 pub struct ClipsFile {
     path: PathBuf,
     /// None before the first clip.
-    file: Option<GzEncoder<OutputFile>>,
+    file: Option<BufWriter<GzEncoder<OutputFile>>>,
     count: u64,
 }
 
@@ -44,7 +47,10 @@ impl ClipsFile {
         let Self { path, file, count } = self;
         let file = match file {
             Some(file) => file,
-            None => file.insert(GzEncoder::new(OutputFile::create(path)?, Compression::fast())),
+            None => {
+                let compressed = GzEncoder::new(OutputFile::create(path)?, Compression::fast());
+                file.insert(BufWriter::with_capacity(BLOCK, compressed))
+            }
         };
         let written = serde_json::to_writer(&mut *file, clip).map_err(std::io::Error::from);
         written.and_then(|()| file.write_all(b"\n")).map_err(|source| Error::file(path, source))?;
@@ -58,6 +64,8 @@ impl ClipsFile {
     /// [`Error::File`] that names the file.
     pub fn finish(&mut self) -> Result<()> {
         let Some(file) = self.file.take() else { return Ok(()) };
-        file.finish().map_err(|source| Error::file(&self.path, source))?.finish()
+        let fault = |source| Error::file(&self.path, source);
+        let compressed = file.into_inner().map_err(|error| fault(error.into_error()))?;
+        compressed.finish().map_err(fault)?.finish()
     }
 }

@@ -8,8 +8,8 @@ use std::process::{Command, Output};
 use flate2::read::GzDecoder;
 use serde_json::Value;
 
-/// Two cars that meet at a right angle 10 s after the begin, at the place 0, 0; one waits behind, another is far away, and one
-/// has gone before.
+/// Two cars that meet at a right angle 10 s after the begin, at the place 0, 0; one waits behind, another is far away, one has
+/// gone before, and one comes in its stead.
 fn record(folder: &Path) {
     let mut text = "<fcd-export>\n".to_owned();
     for step in 0..200 {
@@ -21,6 +21,7 @@ fn record(folder: &Path) {
             ("north", 0.0, -13.0 * to_go, 0.0, 13.0, true),
             ("waits", -30.0, 40.0, 90.0, 0.0, true),
             ("gone", 20.0, 30.0, 90.0, 0.0, time < 7.0),
+            ("new", 25.0, -30.0, 90.0, 0.0, time > 7.55),
             ("far", 300.0, 300.0, 90.0, 0.0, true),
         ];
         for (id, x, y, angle, speed, is_there) in cars {
@@ -76,13 +77,16 @@ fn a_clip_has_all_within_50_m_from_5_s_before_to_3_after() {
     let ids = users.iter().map(|user| user["id"].as_str().unwrap()).collect::<Vec<_>>();
     assert_eq!((ids[0], ids[1]), (&row[1], &row[2]), "the ego, the foe");
     assert!(ids.contains(&"waits") && ids.contains(&"gone") && !ids.contains(&"far"), "{ids:?}");
-    let gone = users.iter().find(|user| user["id"] == "gone").unwrap()["x"].as_array().unwrap();
-    for (time, x) in times.iter().zip(gone) {
-        assert_eq!(x.as_f64(), (*time < 6.99).then_some(20.0), "at {time}");
-    }
-    let east = users.iter().find(|user| user["id"] == "east\"&<").unwrap()["x"].as_array().unwrap();
-    for (time, x) in times.iter().zip(east) {
-        assert!((x.as_f64().unwrap() + 14.0 * (10.0 - time)).abs() < 0.01);
+    let x_of = |id: &str| {
+        let user = users.iter().find(|user| user["id"] == id).unwrap();
+        user["x"].as_array().unwrap().iter().map(Value::as_f64).collect::<Vec<_>>()
+    };
+    // The second has the place of the first in the roster.
+    let (gone, new, east) = (x_of("gone"), x_of("new"), x_of("east\"&<"));
+    for (place, time) in times.iter().enumerate() {
+        assert_eq!(gone[place], (*time < 6.99).then_some(20.0), "at {time}");
+        assert_eq!(new[place], (*time > 7.55).then_some(25.0), "at {time}");
+        assert!((east[place].unwrap() + 14.0 * (10.0 - time)).abs() < 0.01, "at {time}");
     }
 }
 

@@ -85,8 +85,8 @@ def pixels_like(picture: Path, colour: tuple[int, int, int], within: int = 25) -
 
 
 def path_colour(colour: tuple[int, int, int]) -> tuple[int, int, int]:
-    """A severity's colour as the ego's path shows it, through which one sees the road."""
-    share = 150 / 255
+    """A severity's colour as the ego's path has it, mixed with the road's."""
+    share = 0.6
     red, green, blue = (round(share * own + (1 - share) * road) for own, road in zip(colour, ROAD))
     return red, green, blue
 

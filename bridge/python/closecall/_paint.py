@@ -32,7 +32,11 @@ THIN = 0.25
 """The width of a line and of the foe's ring, in m; the ego's ring is four times as wide."""
 LABEL_ABOVE = 7.0
 """How far above the conflict point its label is, in m."""
-PATH_ALPHA = {"ego": 150, "foe": 80}
+ROAD: Colour = (70, 75, 81, 255)
+"""As in gui-settings.xml."""
+PATH_SHARE = {"ego": 0.6, "foe": 0.35}
+"""The share of the severity's colour in that of a path; the rest is road. sumo-gui draws what is half transparent over
+its background, not over the road."""
 
 ON_ROAD = 50
 """The layer of paths: above lanes and junctions, below vehicles."""
@@ -193,7 +197,7 @@ class Painter:
 
         for name, user, width in (("ego", pair.ego, 4 * thin), ("foe", pair.foe, thin)):
             if len(user.path) > 1:
-                colour = (*severity[:3], PATH_ALPHA[name])
+                colour = mixed(severity, ROAD, PATH_SHARE[name])
                 polygon(f"{name}_path", band(user.path, user.width), colour, True, ON_ROAD, 1.0)
             if user.domain is None or user.id not in present[user.domain]:
                 continue
@@ -287,6 +291,12 @@ def ring(middle: Point, inner: float, outer: float) -> list[Point]:
     turns = [2.0 * math.pi * corner / CORNERS for corner in range(CORNERS + 1)]
     side = [[(middle[0] + r * math.cos(a), middle[1] + r * math.sin(a)) for a in turns] for r in (outer, inner)]
     return side[0] + side[1][::-1] if inner > 0.0 else side[0]
+
+
+def mixed(colour: Colour, other: Colour, share: float) -> Colour:
+    """A colour mixed with another."""
+    red, green, blue, alpha = (round(share * own + (1.0 - share) * rest) for own, rest in zip(colour, other))
+    return red, green, blue, alpha
 
 
 def band(path: list[Point], width: float) -> list[Point]:

@@ -1,5 +1,7 @@
 //! What is recorded of one pair, from which the clips of its conflicts are cut.
 
+use ecow::EcoString;
+use rustc_hash::FxHashMap;
 use smallvec::SmallVec;
 
 use super::clip::{AFTER, AROUND, BEFORE, Clip, ClipCategory, ClipSignal, ClipUser};
@@ -31,8 +33,10 @@ pub(super) struct Take {
     pub is_under_way: bool,
     /// When it became severe enough.
     since: Second,
-    /// The ids of the pair, then all that came near.
+    /// The pair, then all that came near.
     users: Vec<ClipUser>,
+    /// By id, the place among these.
+    numbers: FxHashMap<EcoString, usize>,
     steps: Vec<Step>,
     signals: Vec<(Signal, ClipSignal)>,
     moments: SmallVec<[Moment; 1]>,
@@ -80,6 +84,7 @@ impl Take {
             is_under_way: true,
             since,
             users: pair.map(|user| user_at(user, since, source)).into(),
+            numbers: pair.into_iter().zip(0..).map(|(user, of)| (source.roster.id(user).clone(), of)).collect(),
             steps: Vec::new(),
             signals: at.map_or_else(Vec::new, |((_, at), net)| signals_near(net, *at, source.signals, since)),
             moments: SmallVec::new(),
@@ -154,10 +159,12 @@ impl Take {
     /// The place in [`Take::users`] of a road user.
     fn number(&mut self, user: UserIndex, time: Second, source: &Source) -> usize {
         let (id, _) = source.recent.who(user, time, source.roster);
-        self.users.iter().position(|known| *id == *known.id).unwrap_or_else(|| {
-            self.users.push(user_at(user, time, source));
-            self.users.len() - 1
-        })
+        if let Some(number) = self.numbers.get(id) {
+            return *number;
+        }
+        self.users.push(user_at(user, time, source));
+        self.numbers.insert(id.clone(), self.users.len() - 1);
+        self.users.len() - 1
     }
 
     /// Whether nothing more is wanted at this time.
