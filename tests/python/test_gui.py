@@ -33,7 +33,7 @@ import json, signal, sys
 from closecall import _sumo, Checker
 
 config, near, far = sys.argv[1:4]
-sumo = _sumo.start(["-c", config, "--no-warnings", "--window-size", "900,500"], gui=True)
+sumo = _sumo.start(["-c", config, "--no-warnings", "--window-size", "620,520"], gui=True)
 checker = Checker(sumo)
 states, before = [], {}
 while sumo.simulation.getMinExpectedNumber() > 0:
@@ -47,7 +47,7 @@ while sumo.simulation.getMinExpectedNumber() > 0:
     number = len([state for state in states if state["painted"]])
     if painted and number in (5, 7):
         x, y = checker.active[0].x, checker.active[0].y
-        half = {5: 30, 7: 1500}[number]
+        half = {5: 22, 7: 1500}[number]
         sumo.gui.setBoundary("View #0", x - half, y - half, x + half, y + half)
     if painted and number in (6, 8):
         sumo.gui.screenshot("View #0", {6: near, 8: far}[number])

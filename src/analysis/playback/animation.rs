@@ -40,15 +40,26 @@ impl Loop {
 
     /// An attribute that changes steadily between the values of each place in the clip.
     pub fn smooth(&self, attribute: &str, value: impl Fn(usize) -> String) -> String {
-        let values = self.places.iter().map(|place| value(*place)).collect::<Vec<_>>();
-        self.element("animate", &format!("attributeName=\"{attribute}\""), &values, &self.keys)
+        let (values, keys) = self.steady(value);
+        self.element("animate", &format!("attributeName=\"{attribute}\""), &values, &keys)
     }
 
     /// The same of a transformation: `translate` or `rotate`.
     pub fn transform(&self, kind: &str, value: impl Fn(usize) -> String) -> String {
-        let values = self.places.iter().map(|place| value(*place)).collect::<Vec<_>>();
+        let (values, keys) = self.steady(value);
         let what = format!("attributeName=\"transform\" type=\"{kind}\"");
-        self.element("animateTransform", &what, &values, &self.keys)
+        self.element("animateTransform", &what, &values, &keys)
+    }
+
+    /// The values and their key times, without those between two that are the same: much stands still.
+    fn steady(&self, value: impl Fn(usize) -> String) -> (Vec<String>, Vec<f64>) {
+        let values = self.places.iter().map(|place| value(*place)).collect::<Vec<_>>();
+        let is_needed = |place: &usize| {
+            let is_end = *place == 0 || place + 1 == values.len();
+            is_end || values[*place] != values[place - 1] || values[*place] != values[place + 1]
+        };
+        let needed = (0..values.len()).filter(is_needed);
+        needed.map(|place| (values[place].clone(), self.keys[place])).unzip()
     }
 
     /// An attribute that jumps from one value to the next; nothing where it never changes.
@@ -96,5 +107,7 @@ mod tests {
         let jumps = all.jumps("fill", |place| ["a", "a", "b"][place].to_owned());
         assert!(jumps.contains("values=\"a;b\" keyTimes=\"0.0000;0.7500\""), "{jumps}");
         assert_eq!(all.jumps("fill", |_| "a".to_owned()), "");
+        let stands = all.smooth("x", |_| "1".to_owned());
+        assert!(stands.contains("values=\"1;1\" keyTimes=\"0.0000;1.0000\""), "{stands}");
     }
 }

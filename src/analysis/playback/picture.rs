@@ -47,7 +47,11 @@ pub fn svg(playback: &Playback) -> String {
         text += &signals(net, &clip.signals, &view, &time);
     }
     text += &paths(playback, &view, &time);
-    for user in clip.users.iter().skip(2) {
+    let is_seen = |user: &&ClipUser| {
+        user.category == ClipCategory::Obstacle
+            || (0..clip.times.len()).filter_map(|place| front(user, place)).any(|at| view.sees(&[at], user.length))
+    };
+    for user in clip.users.iter().skip(2).filter(is_seen) {
         text += &road_user(user, None, playback, &view, &time);
     }
     // The ego above the foe.
