@@ -67,7 +67,9 @@ pub fn clip(arguments: &ClipArgs) -> Result<()> {
     check_is_svg(out)?;
     check_keeps_logs(out, std::slice::from_ref(&choice.folder), choice.net.as_deref())?;
     let playback = choice.find()?;
-    playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
+    if !quiet {
+        playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
+    }
     output_file::write(out, svg(&playback).as_bytes())?;
     if *quiet {
         return Ok(());
@@ -80,10 +82,10 @@ pub fn clip(arguments: &ClipArgs) -> Result<()> {
 pub fn show(arguments: &ShowArgs, sumo: Option<Sumo>) -> Result<()> {
     let Some(sumo) = sumo else { return no_sumo() };
     let playback = arguments.choice.find()?;
-    playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
     if playback.net.is_none() {
         return Err(value("sumo-gui shows nothing without a net; --net gives one, and closecall clip needs none"));
     }
+    playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
     let scene = serde_json::to_string(&playback.show()).map_err(|error| value(error.to_string()))?;
     (sumo.show)(&ShowRequest { scene, label: arguments.label, quit_on_end: arguments.quit_on_end })
 }

@@ -8,6 +8,9 @@ use std::process::{Command, Output};
 use flate2::read::GzDecoder;
 use serde_json::Value;
 
+const NET: &str =
+    r#"<net><edge id="e" from="a" to="b"><lane id="e_0" index="0" length="90" shape="0,-50 0,40"/></edge></net>"#;
+
 /// Two cars that meet at a right angle 10 s after the begin, at the place 0, 0; one waits behind, another is far away, one has
 /// gone before, and one comes in its stead.
 fn record(folder: &Path) {
@@ -35,6 +38,7 @@ fn record(folder: &Path) {
         text += "</timestep>\n";
     }
     fs::write(folder.join("fcd.xml"), text + "</fcd-export>\n").unwrap();
+    fs::write(folder.join("net.xml"), NET).unwrap();
 }
 
 fn closecall(folder: &Path, words: &str) -> Output {
@@ -45,7 +49,7 @@ fn closecall(folder: &Path, words: &str) -> Output {
 fn replayed(more: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     record(folder.path());
-    let done = closecall(folder.path(), &format!("replay fcd.xml --quiet --align never --out log{more}"));
+    let done = closecall(folder.path(), &format!("replay fcd.xml --net net.xml --quiet --align never --out log{more}"));
     assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
     folder
 }

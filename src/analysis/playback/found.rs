@@ -19,7 +19,7 @@ use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
 use crate::util::input_file;
 use crate::util::limits::TEXT;
-use crate::util::units::{Metre, Second};
+use crate::util::units::{Metre, Second, counted};
 use crate::{Error, Result};
 
 /// Which conflict of a log.
@@ -115,7 +115,8 @@ fn worst(folder: &Path, place: usize) -> Result<u64> {
     found.sort_unstable_by(|a, b| b.cmp(a));
     let count = found.len();
     let Some((_, Reverse(id))) = place.checked_sub(1).and_then(|place| found.get(place)) else {
-        return Err(Error::Value(format!("--worst {place}: {} has {count} conflicts", folder.display())));
+        let count = counted(count as u64, "conflict");
+        return Err(Error::Value(format!("--worst {place}: {} has {count}", folder.display())));
     };
     Ok(*id)
 }
