@@ -46,8 +46,10 @@ while sumo.simulation.getMinExpectedNumber() > 0:
     states.append({"time": sumo.simulation.getTime(), "painted": painted, "colours": colours})
     number = len([state for state in states if state["painted"]])
     if painted and number in (5, 7):
-        x, y = checker.active[0].x, checker.active[0].y
-        half = {5: 22, 7: 1500}[number]
+        (x0, y0), (x1, y1) = map(sumo.vehicle.getPosition, (checker.active[0].ego, checker.active[0].foe))
+        x, y = (x0 + x1) / 2, (y0 + y1) / 2
+        # The view is twice as wide as high.
+        half = {5: 10 + max(abs(x1 - x0) / 4, abs(y1 - y0) / 2), 7: 1500}[number]
         sumo.gui.setBoundary("View #0", x - half, y - half, x + half, y + half)
     if painted and number in (6, 8):
         sumo.gui.screenshot("View #0", {6: near, 8: far}[number])
