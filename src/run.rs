@@ -20,9 +20,9 @@ use rustc_hash::FxHashSet;
 use crate::detection::detector::Detector;
 use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
-use crate::events::{Alarm, Conflict, PetSoFar, Tracker};
+use crate::events::{Alarm, Clips, Conflict, PetSoFar, Tracker};
 use crate::geometry::Point;
-use crate::options::Options;
+use crate::options::{ClipLevel, Options};
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
 use crate::output::summary::{Skipped, Summary};
@@ -54,6 +54,8 @@ pub struct Run {
     tracker: Tracker,
     warm_up: WarmUp,
     writing: Writing,
+    /// None where no log wants them.
+    clips: Option<Clips>,
     /// The closed conflicts that are kept in memory, and how many there may be: the latest.
     conflicts: VecDeque<Conflict>,
     most_conflicts: usize,
@@ -100,6 +102,7 @@ impl Run {
             tracker: Tracker::new(options),
             warm_up: WarmUp::new(options.warmup),
             writing: Writing::default(),
+            clips: None,
             conflicts: VecDeque::new(),
             most_conflicts: usize::MAX,
             leaving: Vec::new(),
@@ -129,9 +132,10 @@ impl Run {
         net.chain(steps).collect()
     }
 
-    /// Writes the conflicts to a log too.
-    pub fn set_log(&mut self, log: Log) {
+    /// Writes the conflicts to a log too, with clips from this severity on.
+    pub fn set_log(&mut self, log: Log, clips: ClipLevel) {
         self.writing.log = Some(log);
+        self.clips = Clips::new(clips);
     }
 
     /// Counts closed conflicts, but does not keep them in memory for [`Run::conflicts`].
@@ -301,6 +305,12 @@ impl Run {
         self.detector.encounters()
     }
 
+    /// The expected path of a road user's front bumper, from where it is; empty where it is absent in this step.
+    pub fn path(&self, user: UserIndex) -> Vec<Point> {
+        let row = self.frame.row_of(user);
+        row.map_or_else(Vec::new, |row| self.detector.path(&self.frame, &self.roster, row))
+    }
+
     /// The conflicts that are still open in this step.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()
@@ -360,8 +370,10 @@ impl Run {
     /// [`Error::File`] that names what cannot be written; the run is over then too, and counted.
     pub fn finish(&mut self) -> Result<Summary> {
         self.count_exposure(self.step_length.unwrap_or_default());
+        let first = self.closed_conflicts() + 1;
         let closed = self.tracker.finish(&self.roster);
-        let written = self.writing.finish(closed, &self.roster, self.net.as_deref());
+        let clips = self.clips.as_mut().map_or_else(Vec::new, |clips| clips.finish(closed, first));
+        let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster, self.net.as_deref()));
         self.summary.left_out = self.detector.left_out();

@@ -2,6 +2,8 @@
 
     xvfb-run -a .venv/bin/python sumo_nets/pictures.py [NAME ...]
 
+The first picture of the repository's README is a clip: `pictures.py --clip`.
+
 Some scenarios have no conflict; the picture then shows the step with the most vehicles.
 """
 
@@ -61,8 +63,24 @@ def shoot(config: Path, spot: tuple[float, float, float] | None) -> None:
     _sumo.close(gui=True)
 
 
+def draw_clip() -> None:
+    """Draw a car of `left_turn` that turns before an oncoming one."""
+    with tempfile.TemporaryDirectory() as folder:
+        closecall = [sys.executable, "-m", "closecall"]
+        config = HERE / "left_turn" / "left_turn.sumocfg"
+        run = ["run", config, "--seed", "42", "--step-length", "0.1", "--end", "230", "--quiet", "--out", folder]
+        subprocess.run([*closecall, *map(str, run), "--", "--no-warnings"], check=True)
+        with (Path(folder) / "conflicts.csv").open(newline="") as file:
+            sides = [row for row in csv.DictReader(file) if row["kind"] == "side" and row["severity"] != "caution"]
+        picture = HERE.parent / "docs" / "pictures" / "near_miss.svg"
+        subprocess.run([*closecall, "clip", folder, sides[-1]["id"], "-o", str(picture)], check=True)
+
+
 def main() -> None:
     """Take the pictures, each in a process of its own, because libsumo allows one simulation per process."""
+    if sys.argv[1:2] == ["--clip"]:
+        draw_clip()
+        return
     if sys.argv[1:2] == ["--shoot"]:
         words = sys.argv[2:]
         shoot(Path(words[0]), tuple(map(float, words[1:])) if words[1:] else None)  # type: ignore[arg-type]

@@ -131,8 +131,8 @@ impl Checker {
             None => RecordedRun::in_memory(run),
         };
         let painter = match (source, paint) {
-            (Some(source), None) if has_gui(source) => Some(Painter::new(source)),
-            (Some(source), Some(true)) => Some(Painter::new(source)),
+            (Some(source), None) if has_gui(source) => Some(Painter::new(source, false, false)?),
+            (Some(source), Some(true)) => Some(Painter::new(source, false, false)?),
             _ => None,
         };
         let listeners = Listeners::new(on_conflict, on_alarm);

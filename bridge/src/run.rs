@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::cli::{ReportEnd, RunRequest, Sumo, Workers};
+use closecall::cli::{ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
 use closecall::internals::batch::Task;
 use closecall::internals::detection::LeftOut;
 use closecall::internals::input as sumo_files;
@@ -26,6 +26,7 @@ use crate::{provenance, sweep};
 pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let interrupts = Interrupts::new(py)?;
     let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
+    let mut show = |request: &ShowRequest| start::show(py, request);
     let mut interrupted = || interrupts.had_any();
     let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd| {
         interrupts.report();
@@ -33,6 +34,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     };
     let sumo = Sumo {
         simulate: &mut simulate,
+        show: &mut show,
         distribute: &mut distribute,
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
@@ -59,7 +61,10 @@ fn simulate(py: Python, request: &RunRequest, folder: LogFolder, interrupts: &In
     let ahead = NetAhead::begin(request);
     let sumo = start::start(py, request)?;
     let result = attach(&sumo, request, folder, ahead, interrupts);
-    start::close(py, request.gui);
+    if request.gui.is_some_and(|gui| !gui.quit_on_end) && result.is_ok() {
+        start::wait_for_user(py);
+    }
+    start::close(py, request.gui.is_some());
     interrupts.end_the_process();
     result
 }
@@ -105,11 +110,11 @@ fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult
     run.drop_closed_conflicts();
     pull::add_obstacles(sumo, run, &request.options.obstacles)?;
     // In sumo-gui the user may do anything, even add a rerouter.
-    if !request.gui && has_no_rerouters(sumo)? {
+    if request.gui.is_none() && has_no_rerouters(sumo)? {
         run.set_fixed_routes(true);
     }
     let mut source = Source::new(sumo, run, &request.options)?;
-    if !request.gui {
+    if request.gui.is_none() {
         source.set_exclusive();
     }
     Ok(source)
@@ -155,7 +160,7 @@ fn has_no_rerouters(sumo: &Bound<PyAny>) -> PyResult<bool> {
 /// The work that the bridge could skip.
 fn left_out(request: &RunRequest, persons: u64) -> Vec<LeftOut> {
     let mut left_out = Vec::new();
-    if !request.gui {
+    if request.gui.is_none() {
         left_out.push(LeftOut::altogether("painting", "no sumo-gui"));
     }
     if persons == 0 {

@@ -93,7 +93,7 @@ impl<'a, 'py> Session<'a, 'py> {
             simulation,
             request,
             source,
-            painter: request.gui.then(|| Painter::new(sumo)),
+            painter: request.gui.map(|gui| Painter::new(sumo, gui.label, true)).transpose()?,
             step_length: step_length.unwrap_or_default(),
             spent: StepTimes::default(),
             is_unfinished: false,

@@ -5,13 +5,14 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use closecall::cli::RunRequest;
+use closecall::cli::{RunRequest, ShowRequest};
 use closecall::internals::input as sumo_files;
 use closecall::{Error, Net, Result};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 
 use crate::error::message;
+use crate::paint::colours;
 
 /// A sumo-gui that does not close within this time never will.
 const CLOSES_WITHIN: Duration = Duration::from_secs(10);
@@ -47,11 +48,43 @@ pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, Py
         }
     };
     let starter = py.import("closecall._sumo").map_err(refused)?;
-    if request.gui && starter.call_method0("has_display").is_ok_and(|has| !has.is_truthy().unwrap_or(true)) {
-        let message = "sumo-gui needs a display: set DISPLAY, or run closecall under xvfb-run";
+    if request.gui.is_some() {
+        check_display(&starter)?;
+    }
+    starter.call_method1("start", (request.sumo_words.clone(), request.gui.is_some())).map_err(refused)
+}
+
+/// Checks that sumo-gui can be shown: without a display it ends the whole process without a message.
+pub fn check_display(starter: &Bound<PyModule>) -> Result<()> {
+    if starter.call_method0("has_display").is_ok_and(|has| !has.is_truthy().unwrap_or(true)) {
+        let message = "sumo-gui needs a display: set DISPLAY, or run closecall under xvfb-run (apt install xvfb); closecall \
+                       clip draws a conflict without one";
         return Err(Error::Value(message.to_owned()));
     }
-    starter.call_method1("start", (request.sumo_words.clone(), request.gui)).map_err(refused)
+    Ok(())
+}
+
+/// Shows a clip in sumo-gui until the user has seen enough of it.
+pub fn show(py: Python, request: &ShowRequest) -> Result<()> {
+    let failed = |error: PyErr| {
+        let message = message(py, &error);
+        if error.is_instance_of::<PyImportError>(py) {
+            return Error::Value(format!("libsumo is not installed ({message}): pip install libsumo eclipse-sumo"));
+        }
+        Error::Value(format!("sumo-gui: {message}"))
+    };
+    check_display(&py.import("closecall._sumo").map_err(failed)?)?;
+    let ShowRequest { scene, label, quit_on_end } = request;
+    let player = py.import("closecall._show").map_err(failed)?;
+    let shown = colours(py).and_then(|colours| player.call_method1("show", (scene, colours, label, quit_on_end)));
+    close(py, true);
+    shown.map(drop).map_err(failed)
+}
+
+/// Leaves the window as it is until the user presses Enter; at once where nobody can.
+pub fn wait_for_user(py: Python) {
+    // What is to be reported is reported by now.
+    let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method0("wait_for_user"));
 }
 
 /// Closes SUMO. Errors are ignored, because what matters is reported by now.

@@ -2,6 +2,7 @@
 
 pub mod dataset;
 pub mod logged;
+pub mod playback;
 #[cfg(feature = "plot")]
 pub mod plot;
 pub mod report;

@@ -8,6 +8,7 @@ mod ending;
 mod files;
 mod mu;
 mod parse;
+mod playback;
 #[cfg(feature = "plot")]
 mod plot;
 pub mod progress;
@@ -40,7 +41,7 @@ use crate::{Error, Result};
 use parse::{Command, ParseError, command, parse};
 
 pub use crate::util::panics::keep_quiet as keep_panics_quiet;
-pub use sumo::{RunRequest, Simulate, Sumo};
+pub use sumo::{GuiRequest, RunRequest, ShowRequest, Simulate, Sumo};
 #[cfg(feature = "parquet")]
 pub use workers::{Distribute, ReportEnd, Workers};
 
@@ -66,6 +67,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         #[cfg(feature = "study")]
         Command::Study(arguments) => study::run(*arguments, sumo, &parse::parse_run),
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
+        Command::Clip(arguments) => playback::clip(&arguments).map(|()| 0),
+        Command::Show(arguments) => playback::show(&arguments, sumo).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         #[cfg(feature = "plot")]
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),

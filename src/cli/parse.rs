@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::say::value;
-use super::{mu, regress, replay, report, run, settings, stats};
+use super::{mu, playback, regress, replay, report, run, settings, stats};
 use crate::{Error, Result};
 
 #[cfg(feature = "plot")]
@@ -49,6 +49,12 @@ pub(super) enum Command {
     /// Make an HTML page from logs: map, time line, distributions, hot spots, the worst conflicts
     #[command(args_override_self = true)]
     Report(report::ReportArgs),
+    /// Draw the seconds around a conflict as an animated SVG
+    #[command(args_override_self = true)]
+    Clip(playback::ClipArgs),
+    /// Show the seconds around a conflict in sumo-gui
+    #[command(args_override_self = true)]
+    Show(playback::ShowArgs),
     /// Draw the charts of the report as PNG or SVG files
     #[cfg(feature = "plot")]
     #[command(args_override_self = true)]

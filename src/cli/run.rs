@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check_args::CheckArgs;
-use super::sumo::{RunRequest, Sumo, no_sumo};
+use super::sumo::{GuiRequest, RunRequest, Sumo, no_sumo};
 use crate::input::sumo_files;
 use crate::options::{step_length, time};
 use crate::util::input_file;
@@ -24,6 +24,12 @@ pub struct RunArgs {
     /// Show the run in sumo-gui and paint the conflicts.
     #[arg(long)]
     gui: bool,
+    /// With `--gui`, write the kind and the time left beside each conflict.
+    #[arg(long, requires = "gui")]
+    label: bool,
+    /// With `--gui`, close sumo-gui when the run ends.
+    #[arg(long, requires = "gui")]
+    quit_on_end: bool,
     /// Simulated time at which the run begins, in s.
     #[arg(short = 'b', long, value_name = "S", value_parser = time)]
     begin: Option<Second>,
@@ -81,7 +87,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     sumo_words.extend_from_slice(&arguments.sumo_options);
     Ok(RunRequest {
         scenario,
-        gui: arguments.gui,
+        gui: arguments.gui.then_some(GuiRequest { label: arguments.label, quit_on_end: arguments.quit_on_end }),
         out,
         threads: arguments.threads,
         quiet: arguments.check.quiet,

@@ -101,7 +101,7 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
     ];
     RunRequest {
         scenario: scenario.to_owned(),
-        gui: false,
+        gui: None,
         out: recording.with_extension("log"),
         threads: 2,
         quiet: true,

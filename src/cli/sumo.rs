@@ -17,6 +17,8 @@ use super::workers::Distribute;
 pub struct Sumo<'a> {
     /// Runs a simulation in this process.
     pub simulate: &'a mut Simulate<'a>,
+    /// Shows a clip in sumo-gui.
+    pub show: &'a mut dyn FnMut(&ShowRequest) -> Result<()>,
     /// Distributes the runs of a sweep to workers.
     #[cfg(feature = "parquet")]
     pub distribute: &'a mut Distribute<'a>,
@@ -37,8 +39,8 @@ pub(super) fn no_sumo() -> Result<()> {
 pub struct RunRequest {
     /// The SUMO configuration file.
     pub scenario: PathBuf,
-    /// Whether to show the run in sumo-gui.
-    pub gui: bool,
+    /// How to show the run in sumo-gui; none if not at all.
+    pub gui: Option<GuiRequest>,
     /// Folder for the log.
     pub out: PathBuf,
     /// Threads, SUMO's own included. The number does not change the results.
@@ -51,6 +53,26 @@ pub struct RunRequest {
     pub options: Options,
     /// Words for SUMO, after the program's name.
     pub sumo_words: Vec<String>,
+}
+
+/// How to show a run in sumo-gui.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GuiRequest {
+    /// Whether to write the kind and the time left beside each conflict.
+    pub label: bool,
+    /// Whether to close sumo-gui at the end.
+    pub quit_on_end: bool,
+}
+
+/// A clip that is to be shown in sumo-gui.
+#[derive(Clone, Debug)]
+pub struct ShowRequest {
+    /// The net, the clip and the conflict as JSON (`analysis::playback::Show`).
+    pub scene: String,
+    /// Whether to write the kind and the time left beside the conflict.
+    pub label: bool,
+    /// Whether to close sumo-gui at the end, and not to halt before.
+    pub quit_on_end: bool,
 }
 
 /// Runs SUMO with the checker attached; the folder is the request's, for this run alone.

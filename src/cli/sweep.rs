@@ -75,8 +75,9 @@ impl Passed {
 
     /// The words of `closecall run` that all runs share, and the files whose content matters.
     pub fn shared(&self, scenario: &Path, varied: &[Vary]) -> Result<(Vec<String>, Vec<PathBuf>)> {
-        // The workers already use all processors, so one thread per run is fastest.
-        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned()];
+        // The workers already use all processors, so one thread per run is fastest. Clips of thousands of runs are made only
+        // if they are asked for.
+        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned(), "--log-clips=none".to_owned()];
         words.extend_from_slice(&self.words);
         let mut files = self.files.clone();
         for vary in varied.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
@@ -89,8 +90,20 @@ impl Passed {
 }
 
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
-const OWN: [&str; 10] =
-    ["scenario", "configuration_file", "gui", "out", "force", "seed", "quiet", "explain", "ssm_output", "trj_output"];
+const OWN: [&str; 12] = [
+    "scenario",
+    "configuration_file",
+    "gui",
+    "label",
+    "quit_on_end",
+    "out",
+    "force",
+    "seed",
+    "quiet",
+    "explain",
+    "ssm_output",
+    "trj_output",
+];
 /// The name of the results' default folder.
 const RESULTS: &str = "closecall-sweep";
 /// The folder of unfinished logs in that of the results, hidden; a run that is done by itself adds its name, as others may be

@@ -10,6 +10,7 @@
 mod added;
 mod alarm;
 mod between;
+mod clips;
 mod event;
 mod extremes;
 mod moment;
@@ -21,6 +22,7 @@ mod under_way;
 mod why;
 
 pub use alarm::{Alarm, PetSoFar};
+pub use clips::{Clip, ClipCategory, ClipSignal, ClipUser, Clips, MOST, Scene};
 pub use event::Conflict;
 pub use moment::Moment;
 pub use snapshot::Snapshot;

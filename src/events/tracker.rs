@@ -6,9 +6,10 @@ use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
-use super::under_way::{Event, Keeps, Pair};
+use super::under_way::{Event, Keeps, Pair, SevereEvent};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
+use crate::detection::kind::Severity;
 use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
@@ -127,6 +128,12 @@ impl Tracker {
         event.pet_so_far(self.last_time, ahead, self.crossing)
     }
 
+    /// The events that are not settled yet and of which a part is at least this severe.
+    pub(super) fn severe(&self, least: Severity) -> impl Iterator<Item = SevereEvent> {
+        let events = self.events.iter().chain(&self.waiting);
+        events.map(move |event| event.severe(least)).filter(|event| !event.worst.is_empty())
+    }
+
     /// The conflicts that are open or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
         let events = self.events.iter().chain(&self.waiting);
@@ -193,7 +200,7 @@ fn sort(conflicts: &mut [Conflict]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::detection::kind::{Kind, Severity};
+    use crate::detection::kind::Kind;
     use crate::events::Moment;
     use crate::traffic::frame::State;
     use crate::traffic::profile::Profile;

@@ -1,12 +1,14 @@
 //! One event: a pair in the steps that meet the log's condition, until its PET is known.
 
+use smallvec::SmallVec;
+
 use super::alarm::{Alarm, PetSoFar};
 use super::between::{Between, Both};
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
 use super::span::Span;
 use crate::detection::encounter::Encounter;
-use crate::detection::kind::Kind;
+use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::driven_path::DrivenPath;
 use crate::detection::measures::pet::{self, Pet};
 use crate::detection::path::Pose;
@@ -46,6 +48,14 @@ pub(super) struct Event {
 struct Driven {
     paths: [DrivenPath; 2],
     pet: Option<Pet>,
+}
+
+/// An event that is severe in some steps.
+#[derive(Debug)]
+pub(super) struct SevereEvent {
+    pub pair: Pair,
+    /// When and where each of its severe parts has been the worst so far.
+    pub worst: SmallVec<[(Second, Point); 2]>,
 }
 
 /// What an event keeps of its steps.
@@ -99,6 +109,14 @@ impl Event {
     /// The two road users.
     pub fn pair(&self) -> Pair {
         self.pair
+    }
+
+    /// Its parts that are at least this severe.
+    pub fn severe(&self, least: Severity) -> SevereEvent {
+        let spans = [&self.followed].into_iter().chain(self.met.iter().flatten());
+        let severe = spans.map(|span| &span.extremes).filter(|extremes| extremes.severity >= least);
+        let worst = severe.map(|extremes| (extremes.worst.time, Point::new(extremes.worst.x, extremes.worst.y)));
+        SevereEvent { pair: self.pair, worst: worst.collect() }
     }
 
     /// The conflicts that it is, by the PET so far.

@@ -4,6 +4,7 @@
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
 mod align;
+mod clip_level;
 pub mod condition;
 mod driver;
 pub mod measures;
@@ -32,6 +33,7 @@ use measures::Measures;
 use shortcut::Shortcut;
 
 pub use align::Align;
+pub use clip_level::ClipLevel;
 pub use driver::{DriverModel, DriverOptions};
 pub use severity_rule::SeverityRule;
 #[cfg(feature = "cli")]
@@ -193,6 +195,11 @@ pub struct Options {
     #[cfg_attr(feature = "cli", arg(long, hide = true))]
     #[serde(skip)]
     pub log_encounters: bool,
+    /// Keep where the road users were around each conflict of at least this severity, in clips.jsonl.gz: `closecall clip`
+    /// and `closecall show` play it.
+    #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "SEVERITY", default_value_t))]
+    #[serde(skip_serializing_if = "ClipLevel::is_default")]
+    pub log_clips: ClipLevel,
     /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
     #[cfg_attr(feature = "cli", arg(long))]
     pub keep_all: bool,
@@ -236,6 +243,7 @@ impl Default for Options {
             warmup: 0.0,
             log_series: None,
             log_encounters: false,
+            log_clips: ClipLevel::default(),
             keep_all: false,
             keep: Vec::new(),
             types: FxHashMap::default(),

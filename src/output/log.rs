@@ -1,4 +1,4 @@
-//! The log of a run: `conflicts.csv`, `series.csv` or `series.parquet` on request, `run.json`.
+//! The log of a run: `conflicts.csv`, `series.csv` or `series.parquet` on request, `clips.jsonl.gz`, `run.json`.
 //!
 //! Rows of a CSV file are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had
 //! closed. A kill during that call may cut the last row short (Linux then ends a write between two pages);
@@ -10,13 +10,14 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use super::clips::{CLIPS, ClipsFile};
 use super::input_hash::Hasher;
 #[cfg(feature = "parquet")]
 use super::parquet_file::ParquetFile;
 use super::record::RunRecord;
 use super::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
 use super::series;
-use crate::events::Conflict;
+use crate::events::{Clip, Conflict};
 use crate::options::measures::Measures;
 use crate::options::{Options, SERIES_FILES, SeriesFormat};
 use crate::traffic::net::Net;
@@ -40,7 +41,7 @@ fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    [CONFLICTS].into_iter().chain(SERIES_FILES).chain([RUN]).map(|name| folder.join(name))
+    [CONFLICTS].into_iter().chain(SERIES_FILES).chain([CLIPS, RUN]).map(|name| folder.join(name))
 }
 
 /// The log of one run.
@@ -49,6 +50,7 @@ pub struct Log {
     folder: PathBuf,
     conflicts: CsvFile,
     series: Option<Series>,
+    clips: ClipsFile,
     written: u64,
     /// When rows were last forced to disk.
     synced: Instant,
@@ -70,6 +72,7 @@ impl Log {
         Ok(Self {
             conflicts: CsvFile::create(folder.join(CONFLICTS), columns(measures).copied())?,
             series: series.transpose()?,
+            clips: ClipsFile::new(folder.join(CLIPS)),
             folder: folder.to_owned(),
             written: 0,
             synced: Instant::now(),
@@ -93,6 +96,19 @@ impl Log {
         self.conflicts.flush()?;
         self.written += conflicts.len() as u64;
         self.series.as_mut().and_then(Series::csv).map_or(Ok(()), CsvFile::flush)
+    }
+
+    /// Appends clips that are whole.
+    ///
+    /// # Errors
+    /// [`Error::File`] where the file cannot be written.
+    pub fn append_clips(&mut self, clips: &[Clip]) -> Result<()> {
+        clips.iter().try_for_each(|clip| self.clips.append(clip))
+    }
+
+    /// The number of its clips.
+    pub fn clips(&self) -> u64 {
+        self.clips.count()
     }
 
     /// The number of whole rows in `conflicts.csv`.
@@ -119,12 +135,13 @@ impl Log {
         Ok(())
     }
 
-    /// Forces all rows to disk and completes the series: no more follow.
+    /// Forces all rows to disk and completes the series and the clips: no more follow.
     ///
     /// # Errors
     /// [`Error::File`] or [`Error::Content`] that names what cannot be written.
     pub fn finish(&mut self) -> Result<()> {
         self.sync()?;
+        self.clips.finish()?;
         match self.series.take() {
             #[cfg(feature = "parquet")]
             Some(Series::Parquet(file)) => file.finish(),

@@ -1,11 +1,13 @@
 //! What a run writes: its log, its record, and files for other tools.
 
 pub mod badness;
+pub mod clips;
 pub mod earlier_log;
 pub mod folder;
 pub mod formats;
 pub mod input_hash;
 pub mod log;
+pub mod palette;
 #[cfg(feature = "parquet")]
 pub mod parquet_columns;
 #[cfg(feature = "parquet")]

@@ -36,6 +36,8 @@ pub struct RunRecord {
     pub error: Option<String>,
     /// The SHA-256 of `conflicts.csv`; none while the run goes on.
     pub conflicts_sha256: Option<String>,
+    /// The number of clips in `clips.jsonl.gz`; none while the run goes on.
+    pub clips: Option<u64>,
     /// Whether texts that spreadsheets would run as formulas begin with an apostrophe in the CSV files.
     pub csv_safe: bool,
     /// What it found.
@@ -58,6 +60,7 @@ impl RunRecord {
             complete: false,
             error: None,
             conflicts_sha256: None,
+            clips: None,
             csv_safe: false,
             summary: Summary::default(),
         }

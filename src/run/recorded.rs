@@ -56,7 +56,7 @@ impl RecordedRun {
         let earlier = if files.force { None } else { EarlierLog::keep(path)? };
         let record = RunRecord { csv_safe: files.csv_safe, ..record };
         match begin_log(path, &record) {
-            Ok(log) => run.set_log(log),
+            Ok(log) => run.set_log(log, record.options.log_clips),
             Err(error) => {
                 earlier.into_iter().for_each(EarlierLog::restore);
                 return Err(error);
@@ -99,6 +99,7 @@ impl RecordedRun {
                 complete: error.is_none(),
                 error,
                 conflicts_sha256: Some(log.digest()),
+                clips: Some(log.clips()),
                 ..*record
             }),
             _ => Ok(()),

@@ -2,7 +2,7 @@
 
 use super::{Run, count};
 use crate::detection::encounter::Encounter;
-use crate::events::Surroundings;
+use crate::events::{Scene, Surroundings};
 use crate::geometry::Point;
 use crate::{Error, Result};
 
@@ -125,10 +125,22 @@ impl Run {
     /// # Errors
     /// [`Error::File`] that names what cannot be written.
     fn write(&mut self) -> Result<()> {
-        let written = self.writing.conflicts(self.tracker.closed(), &self.roster, self.net.as_deref());
+        let (roster, net, closed) = (&self.roster, self.net.as_deref(), self.tracker.closed());
+        let clips = match &mut self.clips {
+            Some(clips) => {
+                let first = self.summary.count(None, None) + 1 - closed.len() as u64;
+                let (frame, signals, tracker) = (&self.frame, &self.signals, &self.tracker);
+                clips.step(Scene { frame, roster, net, signals, tracker }, closed, first)
+            }
+            None => Vec::new(),
+        };
+        let written = self.writing.conflicts(closed, &clips, roster, net);
         self.tracker.forget_closed();
         // The indices become free only now: this step's events had to see that the road users are gone.
         for user in self.leaving.drain(..) {
+            if let Some(clips) = &mut self.clips {
+                clips.forget(user, self.frame.time, &self.roster);
+            }
             self.roster.leave(user);
             self.detector.forget(user);
             self.tracker.forget(user);

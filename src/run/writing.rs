@@ -1,7 +1,7 @@
 //! What a run writes: its log and its other files. After a write that failed it writes nothing more, because rows would
 //! be missing in between, even where the disk has room again.
 
-use crate::events::Conflict;
+use crate::events::{Clip, Conflict};
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
 use crate::traffic::frame::Frame;
@@ -27,13 +27,13 @@ impl Writing {
         self.attempt(|it| it.outputs.write_step(frame, roster, net))
     }
 
-    /// Writes the conflicts that have closed in a step.
+    /// Writes the conflicts that have closed in a step, and the clips that are whole.
     ///
     /// # Errors
     /// As in [`Writing::trajectories`].
-    pub fn conflicts(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
+    pub fn conflicts(&mut self, closed: &[Conflict], clips: &[Clip], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
-            it.append(closed, roster, net)?;
+            it.append(closed, clips, roster, net)?;
             it.log.as_mut().map_or(Ok(()), Log::sync_now_and_then)
         })
     }
@@ -42,17 +42,20 @@ impl Writing {
     ///
     /// # Errors
     /// As in [`Writing::trajectories`].
-    pub fn finish(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
+    pub fn finish(&mut self, closed: &[Conflict], clips: &[Clip], roster: &Roster, net: Option<&Net>) -> Result<()> {
         self.attempt(|it| {
-            it.append(closed, roster, net)?;
+            it.append(closed, clips, roster, net)?;
             it.log.as_mut().map_or(Ok(()), Log::finish)?;
             it.outputs.finish()
         })
     }
 
-    fn append(&mut self, closed: &[Conflict], roster: &Roster, net: Option<&Net>) -> Result<()> {
+    fn append(&mut self, closed: &[Conflict], clips: &[Clip], roster: &Roster, net: Option<&Net>) -> Result<()> {
         if let (Some(log), false) = (&mut self.log, closed.is_empty()) {
             log.append_conflicts(closed, net, roster)?;
+        }
+        if let Some(log) = &mut self.log {
+            log.append_clips(clips)?;
         }
         self.outputs.write_conflicts(closed)
     }

@@ -5,6 +5,7 @@
 mod align;
 mod articulated;
 mod bisection;
+mod clips;
 mod command_line;
 mod contact;
 mod detector;

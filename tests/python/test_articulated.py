@@ -37,9 +37,10 @@ while sumo.simulation.getTime() < 40:
         sumo.vehicle.setSpeed("rams", 10)
         sumo.vehicle.setLaneChangeMode("rams", 0)
     checker.step()
-    if "tram_hl0" in sumo.polygon.getIDList():
+    around_the_tram = [ring for ring in sumo.polygon.getIDList() if ring.endswith(".foe_ring")]
+    if around_the_tram:
         places = {name: sumo.vehicle.getPosition(name) for name in sumo.vehicle.getIDList()}
-        shape = sumo.polygon.getShape("tram_hl0")
+        shape = sumo.polygon.getShape(around_the_tram[0])
         middle = [sum(point[axis] for point in shape) / len(shape) for axis in (0, 1)]
         rings.append({"time": sumo.simulation.getTime(), "middle": middle, **places})
 checker.close()

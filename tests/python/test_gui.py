@@ -1,7 +1,8 @@
-"""Painting in real sumo-gui, under Xvfb: colours and rings while a conflict lasts, and none afterwards."""
+"""Painting in real sumo-gui, under Xvfb: what is seen while a conflict lasts, and that nothing is left afterwards."""
 
 from __future__ import annotations
 
+import gzip
 import json
 import os
 import shutil
@@ -9,7 +10,7 @@ import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Callable
+from typing import Any, Callable
 
 import numpy as np
 import pytest
@@ -18,18 +19,21 @@ from PIL import Image
 
 Copy = Callable[[str], Path]
 
-RINGS = {"rear_end": (60, 120, 255), "frontal": (230, 0, 230), "side": (0, 205, 205)}
-SEVERITIES = {"caution": (255, 225, 0), "serious": (255, 140, 0), "critical": (235, 0, 0)}
+SEVERITIES = {"caution": (0x6F, 0xA8, 0xDC), "serious": (0xFF, 0xAB, 0x40), "critical": (0xFF, 0x5C, 0x6C)}
+WHITE = (255, 255, 255)
+"""The colour of the first pair's rings."""
+ROAD = (70, 75, 81)
 
 # A package of the system, which .ci/run installs.
 needs_xvfb = pytest.mark.skipif(shutil.which("Xvfb") is None, reason="Xvfb is not installed: apt install xvfb")
 
+# Takes a picture in the sixth step of a conflict, from near and from far away.
 WATCH = """
 import json, signal, sys
 from closecall import _sumo, Checker
 
-config, shot = sys.argv[1:3]
-sumo = _sumo.start(["-c", config, "--no-warnings", "--window-size", "900,500"], gui=True)
+config, near, far = sys.argv[1:4]
+sumo = _sumo.start(["-c", config, "--no-warnings", "--window-size", "620,520"], gui=True)
 checker = Checker(sumo)
 states, before = [], {}
 while sumo.simulation.getMinExpectedNumber() > 0:
@@ -37,16 +41,20 @@ while sumo.simulation.getMinExpectedNumber() > 0:
     for vehicle in sumo.vehicle.getIDList():
         before.setdefault(vehicle, sumo.vehicle.getColor(vehicle))
     checker.step()
-    rings = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+    painted = [polygon for polygon in sumo.polygon.getIDList() if sumo.polygon.getType(polygon) == "closecall"]
     colours = {vehicle: sumo.vehicle.getColor(vehicle) for vehicle in sumo.vehicle.getIDList()}
-    states.append({"time": sumo.simulation.getTime(), "rings": rings, "colours": colours})
-    if rings and len([state for state in states if state["rings"]]) == 6:
-        places = [sumo.vehicle.getPosition(ring[: -len("_hl0")]) for ring in rings]
-        x, y = (sum(place[axis] for place in places) / len(places) for axis in (0, 1))
-        sumo.gui.setBoundary("View #0", x - 45, y - 25, x + 45, y + 25)
-        sumo.gui.screenshot("View #0", shot)
+    states.append({"time": sumo.simulation.getTime(), "painted": painted, "colours": colours})
+    number = len([state for state in states if state["painted"]])
+    if painted and number in (5, 7):
+        (x0, y0), (x1, y1) = map(sumo.vehicle.getPosition, (checker.active[0].ego, checker.active[0].foe))
+        x, y = (x0 + x1) / 2, (y0 + y1) / 2
+        # The view is twice as wide as high.
+        half = {5: 10 + max(abs(x1 - x0) / 4, abs(y1 - y0) / 2), 7: 1500}[number]
+        sumo.gui.setBoundary("View #0", x - half, y - half, x + half, y + half)
+    if painted and number in (6, 8):
+        sumo.gui.screenshot("View #0", {6: near, 8: far}[number])
 checker.close()
-left = [polygon for polygon in sumo.polygon.getIDList() if polygon.endswith("_hl0")]
+left = [*sumo.polygon.getIDList(), *sumo.poi.getIDList()]
 conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
              for conflict in checker.conflicts]
 print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}), flush=True)
@@ -71,51 +79,133 @@ def display(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
             server.kill()
 
 
-def pixels_like(picture: Path, colour: tuple[int, int, int]) -> int:
-    """The number of pixels of about this colour: rings are drawn half transparent over the road."""
+def pixels_like(picture: Path, colour: tuple[int, int, int], within: int = 25) -> int:
+    """The number of pixels of about this colour, without those of the legend in the left quarter."""
     pixels = np.asarray(Image.open(picture).convert("RGB")).astype(int)
-    return int((np.abs(pixels - colour).max(-1) < 25).sum())
+    pixels = pixels[:, pixels.shape[1] // 4 :]
+    return int((np.abs(pixels - colour).max(-1) < within).sum())
+
+
+def path_colour(colour: tuple[int, int, int]) -> tuple[int, int, int]:
+    """A severity's colour as the ego's path has it, mixed with the road's."""
+    share = 0.6
+    red, green, blue = (round(share * own + (1 - share) * road) for own, road in zip(colour, ROAD))
+    return red, green, blue
 
 
 @needs_xvfb
 @pytest.mark.usefixtures("display")
 @pytest.mark.parametrize("kind", ["frontal", "rear_end", "side"])
 def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_path: Path) -> None:
-    shot = tmp_path / f"{kind}.png"
-    done = python(WATCH, scenario(kind), shot)
+    near, far = tmp_path / f"{kind}.png", tmp_path / f"{kind}_far.png"
+    done = python(WATCH, scenario(kind), near, far)
     assert done.returncode in (0, -signal.SIGALRM), done.stderr
     seen = json.loads(done.stdout.splitlines()[-1])
     ((ego, foe, found, begin, end),) = seen["conflicts"]
     assert found == kind
-    during = [state for state in seen["states"] if state["rings"]]
+    during = [state for state in seen["states"] if state["painted"]]
     assert begin <= during[0]["time"] - 0.05 <= begin + 0.2
     assert during[-1]["time"] <= end + 1.2
-    assert set(during[0]["rings"]) == {f"{ego}_hl0", f"{foe}_hl0"}
+    parts = {name.rpartition(".")[2] for state in during for name in state["painted"]}
+    assert parts >= {"ego_ring", "foe_ring", "ego_line", "foe_line", "point", "ego_path"}
     severities = [list(colour) for colour in SEVERITIES.values()]
-    assert all(list(state["colours"][ego])[:3] in severities for state in during if ego in state["colours"])
+    for user in (ego, foe):
+        assert all(state["colours"][user][:3] in severities for state in during if user in state["colours"])
     assert seen["left"] == []
     for state in seen["states"]:
-        if not state["rings"]:
+        if not state["painted"]:
             assert all(state["colours"][vehicle] == seen["before"][vehicle] for vehicle in state["colours"])
-    assert shot.exists()
-    assert sum(pixels_like(shot, colour) for colour in SEVERITIES.values()) > 20
-    assert pixels_like(shot, RINGS[kind]) > 20
+    assert sum(pixels_like(near, colour) for colour in SEVERITIES.values()) > 20
+    assert sum(pixels_like(near, path_colour(colour), 6) for colour in SEVERITIES.values()) > 20
+    assert pixels_like(near, WHITE) > 400
+    # 3 km across, where a car is a third of a pixel wide.
+    assert pixels_like(far, WHITE, 60) > 60
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
-        shutil.copy(shot, pictures)
+        shutil.copy(near, pictures)
+        shutil.copy(far, pictures)
 
 
 @needs_xvfb
 @pytest.mark.usefixtures("display")
 def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
-    done = closecall("run", config, "--gui", "--end", "8", "--out", tmp_path / "shown")
+    done = closecall("run", config, "--gui", "--label", "--quit-on-end", "--end", "8", "--out", tmp_path / "shown")
     assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr
     assert closecall("run", config, "--end", "8", "--out", tmp_path / "unseen").returncode == 0
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
 
 
-def test_a_missing_display_is_reported(scenario: Copy, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_display_is_reported(scenario: Copy, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("DISPLAY", raising=False)
-    done = closecall("run", scenario("side"), "--gui")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "needs a display" in done.stderr
+    config = scenario("side")
+    assert closecall("run", config, "--quiet", "--out", tmp_path, "--log-clips", "caution").returncode == 0
+    for words in (("run", str(config), "--gui"), ("show", str(tmp_path), "--worst", "1")):
+        done = closecall(*words)
+        assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+        assert "needs a display" in done.stderr
+
+
+# Plays a clip, takes a picture at the worst step, and says where the two were then.
+PLAY = """
+import json, signal, sys
+from closecall import _show, _sumo
+
+scene, colours = json.loads(sys.argv[1]), json.loads(sys.argv[2])
+player = _show.Player(scene, colours, True, False)
+_show.SLOWER = 0.0
+seen = []
+
+
+def halt():
+    ids = [user["id"] for user in scene["clip"]["users"][:2]]
+    seen.extend(player.sumo.vehicle.getPosition(name) for name in ids)
+    player.sumo.gui.screenshot("View #0", sys.argv[3])
+
+
+player._halt = halt
+player._play()
+player.sumo.simulationStep()
+player.painter.clear()
+left = [*player.sumo.polygon.getIDList(), *player.sumo.poi.getIDList()]
+print(json.dumps({"seen": seen, "left": left}), flush=True)
+signal.alarm(10)
+_sumo.close(gui=True)
+"""
+
+
+def scene_of(log: Path, net: Path) -> dict[str, Any]:
+    """What `closecall show` plays of the only conflict of a log."""
+    (row,) = rows(log / "conflicts.csv")
+    with gzip.open(log / "clips.jsonl.gz", "rt") as file:
+        (clip,) = map(json.loads, file)
+    paths = []
+    for user in ("ego", "foe"):
+        numbers = [float(number) for number in row[f"{user}_path"].split()]
+        points = [list(point) for point in zip(numbers[::2], numbers[1::2])]
+        paths.append([[float(row[f"{user}_x"]), float(row[f"{user}_y"])], *points] if points else [])
+    at = [float(row["x"]), float(row["y"])]
+    return {
+        "net": str(net), "clip": clip, "kind": row["kind"], "severity": row["severity"], "time": float(row["time"]),
+        "at": at, "paths": paths,
+    }  # fmt: skip
+
+
+@needs_xvfb
+@pytest.mark.usefixtures("display")
+def test_show_plays_a_clip_where_the_conflict_was(scenario: Copy, tmp_path: Path) -> None:
+    config, log, shot = scenario("side"), tmp_path / "log", tmp_path / "worst.png"
+    assert closecall("run", config, "--quiet", "--out", log, "--log-clips", "caution").returncode == 0
+    scene = scene_of(log, config.with_name("side.net.xml"))
+    done = python(PLAY, json.dumps(scene), json.dumps(SEVERITIES), shot)
+    assert done.returncode in (0, -signal.SIGALRM), done.stderr
+    seen = json.loads(done.stdout.splitlines()[-1])
+    (row,) = rows(log / "conflicts.csv")
+    for user, place in zip(("ego", "foe"), seen["seen"]):
+        assert place == pytest.approx((float(row[f"{user}_x"]), float(row[f"{user}_y"])), abs=0.02)
+    assert seen["left"] == []
+    assert sum(pixels_like(shot, colour) for colour in SEVERITIES.values()) > 20
+    assert pixels_like(shot, WHITE) > 400
+    if pictures := os.environ.get("CLOSECALL_PICTURES"):
+        shutil.copy(shot, pictures)
+    done = closecall("show", log, "--worst", "1", "--quit-on-end")
+    assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr

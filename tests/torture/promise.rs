@@ -14,6 +14,8 @@ use crate::{Fault, NO_FAULT};
 const ROWS: [&str; 2] = ["log/conflicts.csv", "log/series.csv"];
 /// Files that are written whole or not at all.
 const WHOLE: [&str; 4] = ["report.html", "stats.json", "ssm.xml", "all.trj"];
+/// A file of the log that is written whole; a run that fails may have moved that of before aside.
+const CLIPS: &str = "log/clips.jsonl.gz";
 /// Where a second run keeps the log that it finds.
 const EARLIER: &str = "log/earlier/1/conflicts.csv";
 
@@ -33,7 +35,7 @@ pub struct Content {
 
 impl Content {
     pub fn of(folder: &Path) -> Self {
-        let names = ROWS.into_iter().chain(WHOLE).chain([EARLIER]);
+        let names = ROWS.into_iter().chain(WHOLE).chain([CLIPS, EARLIER]);
         let files = names.filter_map(|name| Some((name, fs::read(folder.join(name)).ok()?)));
         Self { files: files.collect(), printed: Vec::new() }
     }
@@ -64,7 +66,7 @@ impl Disturbed<'_> {
         self.check_log(&after)?;
         let again = crate::closecall(self.words, self.folder, NO_FAULT);
         let same = |name: &&str| Content::of(self.folder).files.get(*name) == self.reference.files.get(*name);
-        if !again.status.success() || !ROWS.iter().chain(&WHOLE).all(same) {
+        if !again.status.success() || !ROWS.iter().chain(&WHOLE).chain([&CLIPS]).all(same) {
             return Err(format!("the same command does not repair it: {}", String::from_utf8_lossy(&again.stderr)));
         }
         Ok(())
@@ -88,12 +90,14 @@ impl Disturbed<'_> {
     }
 
     fn check_files(&self, after: &Content) -> Result<(), String> {
-        for name in ROWS.into_iter().chain(WHOLE) {
+        for name in ROWS.into_iter().chain(WHOLE).chain([CLIPS]) {
             let [found, before, wanted] = [after, self.before, self.reference].map(|content| content.files.get(name));
             let is_prefix = |found: &Vec<u8>| wanted.is_some_and(|wanted| wanted.starts_with(found));
             let is_right = found == wanted
                 || !self.done.status.success()
-                    && (found == before || ROWS.contains(&name) && found.is_none_or(is_prefix));
+                    && (found == before
+                        || ROWS.contains(&name) && found.is_none_or(is_prefix)
+                        || name == CLIPS && found.is_none());
             if !is_right {
                 let length = |content: Option<&Vec<u8>>| content.map(Vec::len);
                 let [found, before, wanted] = [found, before, wanted].map(length);

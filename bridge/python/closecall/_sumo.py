@@ -14,6 +14,9 @@ from typing import IO, Any
 
 GUI_SETTINGS = Path(__file__).with_name("gui-settings.xml")
 
+WINDOW_SIZE = "1200,800"
+"""In pixels: it fits on the screen of a small laptop."""
+
 UNUSED = ("numpy", "lxml", "importlib.metadata")
 """Optional imports of libsumo and its sumolib that closecall does not need. They cost 0.1 s of each run and numpy's
 threads."""
@@ -30,7 +33,7 @@ def start(words: list[str], gui: bool) -> Any:
         RuntimeError: SUMO refuses, with its own message.
     """
     libsumo = import_libsumo()
-    command = ["sumo-gui", "--start", "--quit-on-end", *gui_settings(words)] if gui else ["sumo"]
+    command = ["sumo-gui", "--start", "--quit-on-end", *window_size(words), *gui_settings(words)] if gui else ["sumo"]
     with caught_stderr() as caught:
         try:
             libsumo.start([*command, *NO_CLIENT, *words])
@@ -65,6 +68,12 @@ def has_display() -> bool:
     return bool(display) and (local is None or Path(f"/tmp/.X11-unix/X{local.group(1)}").exists())
 
 
+def wait_for_user() -> None:
+    """Keep the window open until the user presses Enter; where nobody can, return at once."""
+    if sys.stdin is not None and sys.stdin.isatty():
+        input("the run is over; Enter closes sumo-gui: ")
+
+
 def close(gui: bool) -> None:
     """Close SUMO.
 
@@ -81,10 +90,19 @@ def close(gui: bool) -> None:
 def gui_settings(words: list[str]) -> list[str]:
     """The options for settings that show painted colours, unless the user has settings of their own."""
     has_own = any(word.startswith(("-g", "--gui-settings-file")) for word in words)
-    config = Path(words[words.index("-c") + 1])
-    if has_own or re.search(r"<(gui-settings-file|g)\b", config.read_text(errors="replace")):
-        return []
-    return ["--gui-settings-file", str(GUI_SETTINGS)]
+    has_own = has_own or re.search(r"<(gui-settings-file|g)\b", configuration(words)) is not None
+    return [] if has_own else ["--gui-settings-file", str(GUI_SETTINGS)]
+
+
+def window_size(words: list[str]) -> list[str]:
+    """The options for a window in which a junction can be seen, unless the user has a size of their own."""
+    has_own = any(word.startswith("--window-size") for word in words) or "<window-size" in configuration(words)
+    return [] if has_own else ["--window-size", WINDOW_SIZE]
+
+
+def configuration(words: list[str]) -> str:
+    """The text of the configuration that the words name; empty where they name none."""
+    return Path(words[words.index("-c") + 1]).read_text(errors="replace") if "-c" in words else ""
 
 
 def first_error(text: str) -> str:

@@ -18,6 +18,8 @@ const HEAD: u64 = 1 << 16;
 pub struct Ground {
     /// The net; none if its file is gone.
     pub net: Option<Net>,
+    /// Its file.
+    pub file: Option<PathBuf>,
     /// What the reader of the report should know about it.
     pub notes: Vec<String>,
 }
@@ -44,6 +46,7 @@ pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result
     }
     if let Some(path) = given {
         ground.net = Some(Net::read(path)?);
+        ground.file = Some(path.to_owned());
         note_change(path, &hashes, &mut ground.notes);
         return Ok(ground);
     }
@@ -55,6 +58,7 @@ pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result
         Ok(net) => {
             ground.net = Some(net);
             note_change(&first.path, &[&first.sha256], &mut ground.notes);
+            ground.file = Some(first.path);
         }
         Err(error) => {
             let gone = matches!(error, Error::File { .. });

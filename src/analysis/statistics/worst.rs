@@ -1,4 +1,4 @@
-//! The worst conflicts, and the sumo-gui command that shows each.
+//! The worst conflicts, and the command that shows each in sumo-gui.
 
 use std::collections::BinaryHeap;
 use std::path::Path;
@@ -7,6 +7,7 @@ use std::sync::Arc;
 use serde::Serialize;
 
 use crate::analysis::logged::{LoggedConflict, LoggedRun};
+use crate::analysis::playback::may_have_clip;
 use crate::analysis::variants::Variants;
 use crate::output::badness::Badness;
 use crate::util::units::{Metre, Second};
@@ -117,13 +118,17 @@ impl WorstOf {
             let of_run = variants.all.iter().find(|variant| variant.runs.binary_search(&found.run).is_ok());
             found.variant = of_run.filter(|_| variants.are_several()).map(|variant| variant.name.clone());
             found.seed.clone_from(&run.seed);
-            found.command = show(run, &found.conflict);
+            found.command = if may_have_clip(&found.folder, run, found.conflict.severity) {
+                Some(format!("closecall show {} {}", quoted(&found.folder.to_string_lossy()), found.conflict.id))
+            } else {
+                show(run, &found.conflict)
+            };
         }
         worst
     }
 }
 
-/// The command that shows a conflict in sumo-gui.
+/// The command that shows a conflict without a clip in sumo-gui.
 ///
 /// The run begins at its original begin, because vehicles that departed before a later `--begin` would be missing.
 /// sumo-gui runs without delay to a breakpoint a few seconds before the conflict and halts there, zoomed to the conflict

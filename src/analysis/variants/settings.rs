@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::analysis::logged::LoggedRun;
 
 /// Options of closecall that do not change what it finds.
-const WITHOUT_EFFECT: [&str; 2] = ["keep_all", "log_series"];
+const WITHOUT_EFFECT: [&str; 3] = ["keep_all", "log_series", "log_clips"];
 /// Options of SUMO that do not change what it simulates, or whose effect is compared by other means; besides those for
 /// files, outputs and messages, which [`of_sumo`] knows by their names.
 const OF_SUMO_WITHOUT_EFFECT: [&str; 9] =

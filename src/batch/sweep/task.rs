@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::analysis::logged::{self, Label, LoggedRun, PARQUET, RunTime};
 use crate::options::SERIES_FILES;
+use crate::output::clips::CLIPS;
 use crate::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.
@@ -31,7 +32,7 @@ pub struct Task {
 }
 
 impl Task {
-    /// Adds the run's log to the data set; its series, if there is one, goes to a folder beside it.
+    /// Adds the run's log to the data set; its series and its clips, if there are any, go to a folder beside it.
     ///
     /// # Errors
     /// [`Error::Content`] if the run did not reach its end; those of [`logged::pack`].
@@ -45,7 +46,7 @@ impl Task {
             // The series of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;
         }
-        for name in SERIES_FILES.into_iter().filter(|name| log.join(name).is_file()) {
+        for name in SERIES_FILES.into_iter().chain([CLIPS]).filter(|name| log.join(name).is_file()) {
             fs::create_dir_all(&folder).map_err(fault)?;
             fs::rename(log.join(name), folder.join(name)).map_err(fault)?;
         }

@@ -3,7 +3,9 @@
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
-use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage};
+use super::elements::{
+    Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
+};
 use super::finder::Finder;
 use crate::geometry::Bounds;
 use crate::geometry::polylines::{Lines, stretch};
@@ -46,6 +48,15 @@ impl Net {
     /// The way through a junction that a lane is part of: a lane within a junction, or a crossing.
     pub fn passage(&self, lane: LaneIndex) -> Option<&Passage> {
         self.passages.get(*self.passage_of.get(lane.0 as usize)? as usize)
+    }
+
+    /// The signals within a distance of a place, each with the lane at whose end it stands; those of vehicles.
+    pub fn signals_near(&self, place: Point2<Metre>, distance: Metre) -> impl Iterator<Item = (Signal, LaneIndex)> {
+        let of_vehicles = self.passages.iter().filter(|passage| self.function(passage.from) == EdgeFunction::Normal);
+        of_vehicles.filter_map(move |passage| {
+            let end = self.lanes[passage.from.0 as usize].shape.last()?;
+            Some((passage.signal?, passage.from)).filter(|_| (end - place).norm() <= distance)
+        })
     }
 
     /// The purpose of a lane's edge.

@@ -1,0 +1,10 @@
+//! A conflict of a log, played: as an animated picture, or in sumo-gui.
+
+mod animation;
+mod found;
+mod picture;
+mod roads;
+mod view;
+
+pub use found::{Playback, Which, may_have_clip};
+pub use picture::svg;

@@ -1,0 +1,26 @@
+//! Of which conflicts a run keeps clips.
+
+use serde::Serialize;
+
+/// The mildest severity of which `clips.jsonl.gz` has clips.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[serde(rename_all = "kebab-case")]
+pub enum ClipLevel {
+    /// No clips.
+    None,
+    /// All conflicts.
+    Caution,
+    /// Serious and critical ones.
+    #[default]
+    Serious,
+    /// Critical ones.
+    Critical,
+}
+
+impl ClipLevel {
+    /// Whether it is the default.
+    pub fn is_default(&self) -> bool {
+        *self == Self::default()
+    }
+}
