@@ -114,7 +114,7 @@ mod tests {
             ("colour", "false", "unknown option \"colour\""),
             ("serious_tcc", "1", "unknown option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
             ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be 0 to 3600 s"),
-            ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper"),
+            ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper, rss"),
             ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),
         ] {
             let message = Options::from_settings([(name, value.to_owned())]).unwrap_err().to_string();
