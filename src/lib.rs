@@ -86,6 +86,7 @@ pub use options::shortcut::Shortcut;
 pub use options::{Align, BrakeSystem, Deceleration, Mode, Options, PathModel, TypeOptions};
 pub use output::folder::LogFolder;
 pub use output::formats::OutputFiles;
+pub use output::palette;
 pub use output::record::RunRecord;
 pub use output::summary::Summary;
 pub use run::Run;

@@ -6,6 +6,7 @@ pub mod folder;
 pub mod formats;
 pub mod input_hash;
 pub mod log;
+pub mod palette;
 #[cfg(feature = "parquet")]
 pub mod parquet_columns;
 #[cfg(feature = "parquet")]

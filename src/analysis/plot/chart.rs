@@ -5,17 +5,15 @@ use plotters::prelude::{DrawingArea, DrawingBackend, RGBColor};
 
 use crate::analysis::dataset::Conflicts;
 use crate::detection::kind::Severity;
+use crate::output::palette::{self, Ground};
 
 /// The colour of text, axes and legends.
 pub(super) const INK: RGBColor = RGBColor(28, 33, 40);
 
 /// The colour of a severity, as on the report's light page.
 pub(super) fn colour(severity: Severity) -> RGBColor {
-    match severity {
-        Severity::Caution => RGBColor(0xc4, 0x8a, 0x00),
-        Severity::Serious => RGBColor(0xd1, 0x43, 0x1f),
-        Severity::Critical => RGBColor(0x6a, 0x1b, 0x9a),
-    }
+    let [red, green, blue] = palette::colour(severity, Ground::Light);
+    RGBColor(red, green, blue)
 }
 
 /// A chart that any backend can draw.

@@ -12,12 +12,15 @@ use std::path::{Path, PathBuf};
 use super::dataset::read;
 use super::logged::{LostRows, Progress, check_keeps_logs};
 use crate::Result;
+use crate::detection::kind::Severity;
+use crate::output::palette::{self, Ground};
 use crate::util::output_file;
 
 /// The template, with a mark for each part.
 const PAGE: &str = include_str!("page.html");
 /// The parts of the page with their marks, in the order of the page.
-const STYLE: (&str, &str) = ("{{style}}", include_str!("report.css"));
+const STYLE: &str = "{{style}}";
+const STYLE_SHEET: &str = include_str!("report.css");
 const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
@@ -63,12 +66,23 @@ pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut
     Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
 }
 
+/// The style sheet with the severities' colours, those of a dark page where the reader prefers it.
+fn style() -> String {
+    let names = |ground| {
+        let one = |severity: Severity| format!("--{}: {};", severity.name(), palette::hex(severity, ground));
+        format!(":root {{ {} }}", Severity::ALL.map(one).join(" "))
+    };
+    let [light, dark] = [Ground::Light, Ground::Dark].map(names);
+    format!("{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}\n{STYLE_SHEET}")
+}
+
 /// Replaces each mark by its part. The parts themselves are not searched for marks, since an id may look like one.
 fn page(data: &str) -> String {
     let scripts = OWN_SCRIPTS.concat();
+    let style = style();
     let mut page = String::with_capacity(data.len() + LIBRARY.1.len() + (1 << 17));
     let mut rest = PAGE;
-    for (mark, part) in [STYLE, (DATA, data), LIBRARY, (SCRIPTS, &scripts)] {
+    for (mark, part) in [(STYLE, &*style), (DATA, data), LIBRARY, (SCRIPTS, &scripts)] {
         let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
         page.extend([before, part]);
         rest = after;
@@ -82,7 +96,7 @@ mod tests {
 
     #[test]
     fn every_part_has_one_mark_and_ends_no_script() {
-        for mark in [STYLE.0, DATA, LIBRARY.0, SCRIPTS] {
+        for mark in [STYLE, DATA, LIBRARY.0, SCRIPTS] {
             assert_eq!(PAGE.matches(mark).count(), 1, "{mark}");
         }
         for script in OWN_SCRIPTS.iter().chain([&LIBRARY.1]) {
