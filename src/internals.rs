@@ -4,6 +4,7 @@
 
 #[cfg(feature = "cli")]
 pub mod analysis {
+    pub use crate::analysis::filter::ConflictFilter;
     pub use crate::analysis::logged::{ConflictReader, LoggedRun};
     #[cfg(feature = "plot")]
     pub use crate::analysis::plot;

@@ -7,8 +7,9 @@ use clap::Args;
 use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
+use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::check_none_lost;
-use crate::analysis::plot::{self, PictureFormat};
+use crate::analysis::plot::{self, PictureFormat, PictureStyle};
 
 /// Which logs to draw, and where to.
 #[derive(Args)]
@@ -22,19 +23,25 @@ pub struct PlotArgs {
     /// File format of the images.
     #[arg(long, value_enum, default_value = "svg")]
     format: PictureFormat,
+    /// What the images are for.
+    #[arg(long, value_enum, default_value = "screen")]
+    style: PictureStyle,
     /// Net for the map [default: the net file named in the first log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
     /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    filter: ConflictFilter,
 }
 
 /// Draws the charts and prints the files' names.
 pub fn run(arguments: &PlotArgs) -> Result<()> {
-    let PlotArgs { folders, out, format, net, quiet } = arguments;
+    let PlotArgs { folders, out, format, net, quiet, filter, style } = arguments;
     let mut bar = CountBar::new("conflicts", !quiet);
-    let (files, lost) = plot::write(folders, net.as_deref(), out, *format, &mut |read, all| bar.show(read, all))?;
+    let (files, lost) =
+        plot::write(folders, net.as_deref(), filter, (out, *format, *style), &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if !quiet {
         for file in files {

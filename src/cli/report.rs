@@ -7,6 +7,7 @@ use clap::Args;
 use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
+use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::check_none_lost;
 use crate::analysis::report;
 use crate::util::units::counted;
@@ -26,13 +27,20 @@ pub struct ReportArgs {
     /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
+    /// Runs to compare with, such as those before a change: log folders, or folders that contain log folders.
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    against: Vec<PathBuf>,
+    #[command(flatten)]
+    filter: ConflictFilter,
 }
 
 /// Writes the page and prints its size.
 pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut bar = CountBar::new("conflicts", !arguments.quiet);
+    let ReportArgs { folders, against, net, filter, .. } = arguments;
+    let request = report::Request { folders, against, net: net.as_deref(), filter };
     let mut progress = |read, all| bar.show(read, all);
-    let made = report::write(&arguments.folders, arguments.net.as_deref(), &arguments.out, &mut progress)?;
+    let made = report::write(&request, &arguments.out, &mut progress)?;
     drop(bar);
     let report::Made { runs, conflicts, bytes, lost } = made;
     if !arguments.quiet {

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::progress::CountBar;
 use super::say::{say, value};
 use crate::Result;
+use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{check_keeps_logs, check_none_lost};
 use crate::analysis::statistics::{By, Request, Statistics, table};
 use crate::util::output_file;
@@ -35,6 +36,8 @@ pub struct StatsArgs {
     /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
+    #[command(flatten)]
+    filter: ConflictFilter,
 }
 
 /// How statistics are printed.
@@ -52,12 +55,13 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, csv_safe, out, worst } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, out, worst, filter } = arguments;
     if let Some(out) = &out {
         check_keeps_logs(out, &[&folders[..], &against].concat(), None)?;
     }
     let mut bar = CountBar::new("conflicts", true);
-    let statistics = Statistics::of(&Request { folders, by, against, worst }, &mut |read, all| bar.show(read, all))?;
+    let statistics =
+        Statistics::of(&Request { folders, by, against, filter, worst }, &mut |read, all| bar.show(read, all))?;
     drop(bar);
     for log in &statistics.left_out {
         eprintln!("closecall: {}: {}", log.folder.display(), log.why);
@@ -66,7 +70,7 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Format::Json => serde_json::to_string_pretty(&statistics).map_err(|error| value(error.to_string()))? + "\n",
         Format::Text => table::text(&table::tables(&statistics)),
         Format::Csv => table::csv(&table::tables(&statistics), csv_safe)?,
-        Format::Html => table::html(&table::tables(&statistics)),
+        Format::Html => table::html(&statistics.name, &table::tables(&statistics)),
     };
     match out {
         Some(out) => output_file::write(&out, printed.as_bytes())?,

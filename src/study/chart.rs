@@ -54,7 +54,7 @@ pub(super) fn draw(folder: &Path, name: &str, panels: &[Panel], note: &str) -> R
     let lines = panels.len().div_ceil(columns) as u32;
     let size = (PANEL.0 * columns as u32, PANEL.1 * lines + LEGEND);
     let file = |ending: &str| folder.join(format!("{name}.{ending}"));
-    file::svg(&file("svg"), size, |area| page(area, panels, columns, note))?;
+    file::svg(&file("svg"), size, None, |area| page(area, panels, columns, note))?;
     file::png(&file("png"), size, |area| page(area, panels, columns, note))
 }
 

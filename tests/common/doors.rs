@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::analysis::{ConflictReader, LoggedRun, Request, Statistics, plot, report};
+use closecall::internals::analysis::{ConflictFilter, ConflictReader, LoggedRun, Request, Statistics, plot, report};
 use closecall::internals::input::{RecordedStep, Recording, check_xml, demand, fault};
 use closecall::internals::options::OptionsFile;
 use closecall::internals::traffic::Filter;
@@ -129,10 +129,21 @@ fn of_log(files: &[(&str, &[u8])]) {
     if let Ok(conflicts) = ConflictReader::open(&log) {
         conflicts.with_snapshots().for_each(|conflict| drop(conflict.map(|conflict| conflict.delta_v())));
     }
-    let request = Request { folders: vec![log.clone()], by: Default::default(), against: Vec::new(), worst: 3 };
+    let filter = ConflictFilter::default();
+    let folders = vec![log];
+    let request = Request {
+        folders: folders.clone(),
+        by: Default::default(),
+        against: folders.clone(),
+        filter: filter.clone(),
+        worst: 3,
+    };
     let _ = Statistics::of(&request, &mut |_, _| ());
-    let _ = report::write(std::slice::from_ref(&log), None, &folder.path().join("report.html"), &mut |_, _| ());
-    let _ = plot::write(&[log], None, &folder.path().join("plots"), plot::PictureFormat::Svg, &mut |_, _| ());
+    let report = report::Request { folders: &folders, against: &folders, net: None, filter: &filter };
+    let _ = report::write(&report, &folder.path().join("report.html"), &mut |_, _| ());
+    let plots = folder.path().join("plots");
+    let (format, style) = (plot::PictureFormat::Svg, plot::PictureStyle::Screen);
+    let _ = plot::write(&folders, None, &filter, (&plots, format, style), &mut |_, _| ());
 }
 
 /// Any bytes as a recording, after a NUL those of a demand, give conflicts or an error.

@@ -6,6 +6,7 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
+use super::filter::ConflictFilter;
 use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
 use crate::Result;
@@ -32,6 +33,8 @@ pub struct Conflicts {
     pub(super) conflicts: Vec<RunConflict>,
     /// How many there are in the logs.
     pub(super) seen: u64,
+    /// The filter that they passed, as the words of a command line; none for all.
+    pub(super) filter: Option<String>,
     /// The logs that lack rows.
     pub(super) lost: Vec<LostRows>,
 }
@@ -42,7 +45,13 @@ pub struct Conflicts {
 /// # Errors
 /// [`crate::Error::File`] where a folder cannot be read, [`crate::Error::Content`] where a folder holds no log,
 /// [`crate::Error::Line`] where a row of `conflicts.csv` is not as docs/log.md describes it.
-pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) -> Result<Conflicts> {
+pub fn read(
+    folders: &[PathBuf],
+    net: Option<&Path>,
+    filter: &ConflictFilter,
+    progress: &mut Progress,
+) -> Result<Conflicts> {
+    filter.check()?;
     let logs = log_folders(folders)?;
     let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
     let runs = records.iter().map(logs::run).collect::<Vec<_>>();
@@ -52,11 +61,16 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
     let mut lost = Vec::new();
+    let mut all = 0_u64;
     for (run, log) in (0..).zip(&logs) {
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
         for conflict in &mut conflicts {
-            worst.push(RunConflict { run, conflict: conflict? });
+            let conflict = conflict?;
             reading.count();
+            all += 1;
+            if filter.passes(&conflict) {
+                worst.push(RunConflict { run, conflict });
+            }
         }
         lost.extend(conflicts.lost());
     }
@@ -84,7 +98,12 @@ pub fn read(folders: &[PathBuf], net: Option<&Path>, progress: &mut Progress) ->
     ground.notes.append(&mut variants.notes);
     ground.notes.extend(lost.iter().map(ToString::to_string));
     let seen = worst.seen();
-    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen, lost })
+    if !filter.is_empty() {
+        let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };
+        ground.notes.push(format!("Filtered: {passed} of {all} conflicts, by {filter}."));
+    }
+    let filter = (!filter.is_empty()).then(|| filter.to_string());
+    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen, filter, lost })
 }
 
 impl Conflicts {

@@ -96,6 +96,12 @@ impl LoggedRun {
         if begin > end { Err(format!("its end, {end} s, is before its begin, {begin} s")) } else { Ok(()) }
     }
 
+    /// The scenario's name: that of its file, without what follows the first dot.
+    pub fn name(&self) -> String {
+        let file = self.scenario.file_name().unwrap_or_default().to_string_lossy();
+        file.split('.').find(|part| !part.is_empty()).unwrap_or("closecall").to_owned()
+    }
+
     /// Whether it logs only conflicts in the sense of margin < 0: unless its options name another condition.
     pub fn logs_margins_below_zero(&self) -> bool {
         matches!(self.options.get("log").and_then(serde_json::Value::as_str), None | Some("margin < 0" | "paper"))

@@ -31,17 +31,26 @@ pub(crate) fn png<E: Display>(
     output_file::write(path, &encoded)
 }
 
-/// Writes an SVG.
+/// Writes an SVG; with a `width` in mm it is shown that wide.
 ///
 /// # Errors
 /// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
 pub(crate) fn svg<E: Display>(
     path: &Path,
     size: (u32, u32),
+    width: Option<f64>,
     draw: impl FnOnce(DrawingArea<SVGBackend<'_>, Shift>) -> std::result::Result<(), E>,
 ) -> Result<()> {
     let mut text = String::new();
     draw(SVGBackend::with_string(&mut text, size).into_drawing_area()).map_err(|error| undrawn(path, &error))?;
+    if let Some(width) = width {
+        let high = width * f64::from(size.1) / f64::from(size.0);
+        let (pixels, shown) = (
+            format!("width=\"{}\" height=\"{}\"", size.0, size.1),
+            format!("width=\"{width}mm\" height=\"{high:.2}mm\""),
+        );
+        text = text.replacen(&pixels, &shown, 1);
+    }
     output_file::write(path, text.as_bytes())
 }
 

@@ -1,6 +1,7 @@
 //! `closecall plot`: the report's charts as PNG or SVG, for papers.
 //!
-//! Map, time line and distributions become one file each, in the colours of the report's light page. The font is part of
+//! Map, time line and distributions become one file each, in the colours of the report's light page, for a screen or for
+//! the column of a paper. The font is part of
 //! the crate, so the pictures are the same on every machine.
 
 mod chart;
@@ -16,14 +17,17 @@ use plotters::coord::Shift;
 use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 
 use super::dataset::{self, Conflicts};
+use super::filter::ConflictFilter;
 use super::logged::{LostRows, Progress, check_keeps_logs};
 use crate::{Error, Result};
 use chart::{Chart, message};
 
-/// Width and height of the map, in pixels.
-const MAP_SIZE: (u32, u32) = (1600, 1200);
-/// Width and height of the other charts, in pixels.
-const CHART_SIZE: (u32, u32) = (1200, 700);
+pub use chart::PictureStyle;
+
+/// Width and height of the map, and of the other charts, in pixels.
+const SIZES: [(u32, u32); 2] = [(1600, 1200), (1200, 740)];
+/// The same in a paper.
+const SIZES_IN_PAPER: [(u32, u32); 2] = [(PictureStyle::WIDTH, 1240), (PictureStyle::WIDTH, 1040)];
 
 /// The format of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -42,28 +46,32 @@ pub enum PictureFormat {
 pub fn write(
     folders: &[PathBuf],
     net: Option<&Path>,
-    out: &Path,
-    format: PictureFormat,
+    filter: &ConflictFilter,
+    (out, format, style): (&Path, PictureFormat, PictureStyle),
     progress: &mut Progress,
 ) -> Result<(Vec<PathBuf>, Vec<LostRows>)> {
-    let conflicts = dataset::read(folders, net, progress)?;
+    if (format, style) == (PictureFormat::Png, PictureStyle::Paper) {
+        return Err(Error::Value(
+            "--style paper is for --format svg: a paper's pictures are lines, not pixels".to_owned(),
+        ));
+    }
+    let conflicts = dataset::read(folders, net, filter, progress)?;
     fs::create_dir_all(out).map_err(|source| Error::file(out, source))?;
     font::register()?;
+    let [map, chart] = if style == PictureStyle::Paper { SIZES_IN_PAPER } else { SIZES };
     let from = (&conflicts, net);
-    let mut files = vec![picture(out, "map", format, MAP_SIZE, from, map::Map)?];
-    files.push(picture(out, "time", format, CHART_SIZE, from, charts::TimeLine)?);
+    let mut files = vec![picture((out, "map"), (format, style, map), from, map::Map)?];
+    files.push(picture((out, "time"), (format, style, chart), from, charts::TimeLine)?);
     for measure in &charts::MEASURES {
-        files.push(picture(out, measure.name, format, CHART_SIZE, from, charts::Distribution(measure))?);
+        files.push(picture((out, measure.name), (format, style, chart), from, charts::Distribution(measure))?);
     }
     Ok((files, conflicts.lost))
 }
 
 /// Draws one chart into the file `name` with the format's extension.
 fn picture(
-    out: &Path,
-    name: &str,
-    format: PictureFormat,
-    size: (u32, u32),
+    (out, name): (&Path, &str),
+    (format, style, size): (PictureFormat, PictureStyle, (u32, u32)),
     (conflicts, net): (&Conflicts, Option<&Path>),
     chart: impl Chart,
 ) -> Result<PathBuf> {
@@ -73,8 +81,11 @@ fn picture(
     });
     check_keeps_logs(&path, &conflicts.logs, net)?;
     match format {
-        PictureFormat::Png => file::png(&path, size, |area| on(&area, conflicts, &chart))?,
-        PictureFormat::Svg => file::svg(&path, size, |area| on(&area, conflicts, &chart))?,
+        PictureFormat::Png => file::png(&path, size, |area| on(&area, conflicts, style, &chart))?,
+        PictureFormat::Svg => {
+            let width = (style == PictureStyle::Paper).then_some(PictureStyle::COLUMN);
+            file::svg(&path, size, width, |area| on(&area, conflicts, style, &chart))?;
+        }
     }
     Ok(path)
 }
@@ -82,9 +93,10 @@ fn picture(
 fn on<B: DrawingBackend>(
     area: &DrawingArea<B, Shift>,
     conflicts: &Conflicts,
+    style: PictureStyle,
     chart: &impl Chart,
 ) -> std::result::Result<(), String> {
     area.fill(&WHITE).map_err(message)?;
-    chart.draw(area, conflicts)?;
+    chart.draw(area, conflicts, style)?;
     area.present().map_err(message)
 }

@@ -9,6 +9,7 @@ use super::contact::parts;
 use super::roads;
 use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
+use crate::analysis::statistics::Effects;
 use crate::detection::kind::{Kind, Severity};
 use crate::options::Options;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
@@ -20,8 +21,8 @@ const DRAWN: usize = 2_000;
 const NOT_SHOWN: &str = "clearance";
 
 /// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
-pub fn json(found: Conflicts) -> String {
-    let Conflicts { logs, records, variants, ground, mut conflicts, seen, .. } = found;
+pub fn json(found: Conflicts, before: Option<Value>) -> String {
+    let Conflicts { logs, records, variants, ground, mut conflicts, seen, filter, .. } = found;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
@@ -38,8 +39,23 @@ pub fn json(found: Conflicts) -> String {
         "defaults": Options::default(),
         "net": ground.net.as_ref().map(roads::json),
         "notes": ground.notes,
+        "before": before,
+        "filter": filter,
     });
     data.to_string().replace('<', "\\u003c")
+}
+
+/// The runs that the report compares with: how the rates differ, and where their conflicts are.
+pub fn before(effects: &Effects, found: &Conflicts) -> Value {
+    let conflicts = || found.conflicts.iter().map(|one| &one.conflict);
+    let probability = |conflict: &LoggedConflict| rounded(conflict.crash_probability.unwrap_or_default(), 3);
+    json!({
+        "effects": effects,
+        "x": conflicts().map(|conflict| rounded(conflict.x, 1)).collect::<Vec<_>>(),
+        "y": conflicts().map(|conflict| rounded(conflict.y, 1)).collect::<Vec<_>>(),
+        "severity": conflicts().map(|conflict| rank(&Severity::ALL, conflict.severity)).collect::<Vec<_>>(),
+        "crash_probability": conflicts().map(probability).collect::<Vec<_>>(),
+    })
 }
 
 /// Each run's record, and where it was found.
@@ -206,15 +222,19 @@ mod tests {
         };
         let conflict = LoggedConflict::from_cells(cell).unwrap();
         let conflicts = vec![RunConflict { run: 0, conflict }];
-        let text = json(Conflicts {
-            lost: Vec::new(),
-            logs: Vec::new(),
-            records: Vec::new(),
-            variants: Vec::new(),
-            ground: Default::default(),
-            conflicts,
-            seen: 1,
-        });
+        let text = json(
+            Conflicts {
+                lost: Vec::new(),
+                logs: Vec::new(),
+                records: Vec::new(),
+                variants: Vec::new(),
+                ground: Default::default(),
+                conflicts,
+                seen: 1,
+                filter: None,
+            },
+            None,
+        );
         assert!(!text.contains('<'));
         let read: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(read["conflicts"]["ids"][0], "</script><script>");

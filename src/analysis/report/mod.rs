@@ -10,29 +10,35 @@ mod roads;
 use std::path::{Path, PathBuf};
 
 use super::dataset::read;
+use super::filter::ConflictFilter;
 use super::logged::{LostRows, Progress, check_keeps_logs};
+use super::statistics::Effects;
+use super::style;
 use crate::Result;
-use crate::detection::kind::Severity;
-use crate::output::palette::{self, Ground};
 use crate::util::output_file;
 
 /// The template, with a mark for each part.
 const PAGE: &str = include_str!("page.html");
 /// The parts of the page with their marks, in the order of the page.
 const STYLE: &str = "{{style}}";
-const STYLE_SHEET: &str = include_str!("report.css");
 const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
 /// The page's own scripts, each after those that it needs.
-const OWN_SCRIPTS: [&str; 8] = [
+const OWN_SCRIPTS: [&str; 14] = [
     include_str!("script/data.js"),
+    include_str!("script/filter.js"),
     include_str!("script/colours.js"),
     include_str!("script/roads.js"),
+    include_str!("script/words.js"),
+    include_str!("script/density.js"),
+    include_str!("script/signs.js"),
     include_str!("script/map.js"),
     include_str!("script/charts.js"),
-    include_str!("script/words.js"),
+    include_str!("script/spots.js"),
     include_str!("script/tables.js"),
+    include_str!("script/against.js"),
+    include_str!("script/export.js"),
     include_str!("script/page.js"),
 ];
 
@@ -49,37 +55,46 @@ pub struct Made {
     pub lost: Vec<LostRows>,
 }
 
-/// Writes the report of the logs in `folders`: each is a log itself, or a folder of logs.
-///
-/// The net is read from `net`, or from the path in the first log.
+/// What a report is made of.
+#[derive(Clone, Debug)]
+pub struct Request<'a> {
+    /// Logs, or folders of logs.
+    pub folders: &'a [PathBuf],
+    /// Those to compare with; empty for no comparison.
+    pub against: &'a [PathBuf],
+    /// The net; none for the one in the first log.
+    pub net: Option<&'a Path>,
+    /// Which conflicts count.
+    pub filter: &'a ConflictFilter,
+}
+
+/// Writes a report to `out`.
 ///
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing `out`.
-pub fn write(folders: &[PathBuf], net: Option<&Path>, out: &Path, progress: &mut Progress) -> Result<Made> {
-    check_keeps_logs(out, folders, net)?;
-    let conflicts = read(folders, net, progress)?;
+pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<Made> {
+    let Request { folders, against, net, filter } = *request;
+    check_keeps_logs(out, &[folders, against].concat(), net)?;
+    let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
     let seen = conflicts.seen;
-    let lost = conflicts.lost.clone();
-    let page = page(&data::json(conflicts));
+    let mut lost = conflicts.lost.clone();
+    let before = if against.is_empty() {
+        None
+    } else {
+        let (effects, lost_before) = Effects::of(folders, against, filter, progress)?;
+        lost.extend(lost_before.into_iter().filter(|rows| !conflicts.lost.contains(rows)));
+        Some(data::before(&effects, &read(against, net, filter, progress)?))
+    };
+    let page = page(&data::json(conflicts, before));
     output_file::write(out, page.as_bytes())?;
     Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
-}
-
-/// The style sheet with the severities' colours, those of a dark page where the reader prefers it.
-fn style() -> String {
-    let names = |ground| {
-        let one = |severity: Severity| format!("--{}: {};", severity.name(), palette::hex(severity, ground));
-        format!(":root {{ {} }}", Severity::ALL.map(one).join(" "))
-    };
-    let [light, dark] = [Ground::Light, Ground::Dark].map(names);
-    format!("{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}\n{STYLE_SHEET}")
 }
 
 /// Replaces each mark by its part. The parts themselves are not searched for marks, since an id may look like one.
 fn page(data: &str) -> String {
     let scripts = OWN_SCRIPTS.concat();
-    let style = style();
+    let style = style::sheet();
     let mut page = String::with_capacity(data.len() + LIBRARY.1.len() + (1 << 17));
     let mut rest = PAGE;
     for (mark, part) in [(STYLE, &*style), (DATA, data), LIBRARY, (SCRIPTS, &scripts)] {

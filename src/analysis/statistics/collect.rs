@@ -11,7 +11,9 @@ use super::chosen::{Chosen, LeftOutLog, choose};
 use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::quantile;
+use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
+use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
@@ -78,6 +80,8 @@ pub struct Spot {
     pub counts: Counts,
     /// The number of conflicts of each severity.
     pub severities: [u64; 3],
+    /// The conflicts with their crash probabilities.
+    pub crashes: WeightedEvents,
 }
 
 /// The result of one pass over a set of runs.
@@ -93,6 +97,10 @@ pub struct Collection {
     pub left_out: Vec<LeftOutLog>,
     /// The logs that lack rows.
     pub lost: Vec<LostRows>,
+    /// How many conflicts the logs have.
+    pub read: u64,
+    /// How many of them count.
+    pub passed: u64,
     /// The conflicts of each variant, by group.
     pub groups: Vec<FxHashMap<String, ConflictGroup>>,
     /// Counts by kind and severity.
@@ -115,8 +123,15 @@ impl Collection {
     /// # Errors
     /// An error that names the folder, or the file and its line: missing, not a log, empty, cut short, with other columns
     /// than the first log, or if no run has a result.
-    pub fn read(named: &[PathBuf], by: By, worst: usize, progress: &mut Progress) -> Result<Self> {
-        let Chosen { runs, variants, left_out } = choose(&log_folders(named)?)?;
+    pub fn read(
+        named: &[PathBuf],
+        by: By,
+        filter: &ConflictFilter,
+        worst: usize,
+        progress: &mut Progress,
+    ) -> Result<Self> {
+        let Chosen { mut runs, variants, left_out } = choose(&log_folders(named)?)?;
+        runs.iter_mut().for_each(|(_, run)| filter.clip(run));
         let (folders, runs) = runs.into_iter().unzip::<_, _, Vec<Arc<Path>>, Vec<_>>();
         let mut found = Self {
             medians: Vec::with_capacity(runs.len()),
@@ -126,17 +141,20 @@ impl Collection {
             variants,
             left_out,
             lost: Vec::new(),
+            read: 0,
+            passed: 0,
             tallies: Default::default(),
             edges: FxHashMap::default(),
             junctions: FxHashMap::default(),
             worst: WorstOf::new(worst),
             tails: Tails::default(),
         };
+        let conflicts = found.runs.iter().map(LoggedRun::conflicts).sum();
         let mut variant_of = vec![0; found.runs.len()];
         for (variant, members) in found.variants.all.iter().enumerate() {
             members.runs.iter().for_each(|run| variant_of[*run] = variant);
         }
-        let mut progress = Reading::new(found.runs.iter().map(LoggedRun::conflicts).sum(), progress);
+        let mut progress = Reading::new(conflicts, progress);
         let mut columns: Option<(PathBuf, Vec<String>)> = None;
         for (run, variant) in variant_of.into_iter().enumerate() {
             let reader = ConflictReader::open(&found.folders[run])?;
@@ -153,17 +171,17 @@ impl Collection {
                 Some(_) => {}
                 None => columns = Some((reader.path().to_owned(), header)),
             }
-            found.add_run(run, variant, reader, by, &mut progress)?;
+            found.add_run((run, variant), reader, by, filter, &mut progress)?;
         }
         Ok(found)
     }
 
     fn add_run(
         &mut self,
-        run: usize,
-        variant: usize,
+        (run, variant): (usize, usize),
         mut reader: ConflictReader,
         by: By,
+        filter: &ConflictFilter,
         progress: &mut Reading,
     ) -> Result<()> {
         let folder = self.folders[run].clone();
@@ -171,6 +189,11 @@ impl Collection {
         for conflict in &mut reader {
             let conflict = conflict?;
             progress.count();
+            self.read += 1;
+            if !filter.passes(&conflict) {
+                continue;
+            }
+            self.passed += 1;
             self.add(run, variant, &folder, &conflict, by);
             for (column, value) in own.iter_mut().zip(measures(&conflict)) {
                 column.extend(value);
@@ -200,11 +223,38 @@ impl Collection {
                 update(spots, name, |spot: &mut Spot| {
                     spot.counts.add(run);
                     spot.severities[severity] += 1;
+                    spot.crashes.add(run, conflict.crash_probability.unwrap_or_default());
                 });
             }
         }
         self.worst.take(run, folder, conflict);
         self.tails.take(conflict);
+    }
+
+    /// What the filter left, in words; none where there is no filter.
+    pub fn filtered(&self, filter: &ConflictFilter) -> Vec<String> {
+        if filter.is_empty() {
+            return Vec::new();
+        }
+        let counts = match (self.passed, self.read) {
+            (0, 1..) => format!("none of {} conflicts passes {filter}", self.read),
+            (passed, read) => format!("{passed} of {read} conflicts pass {filter}"),
+        };
+        let period = "the traffic of the period alone is not known: its rates are per hour only".to_owned();
+        std::iter::once(counts).chain(filter.has_period().then_some(period)).collect()
+    }
+
+    /// Checks that the runs have one setting: a comparison tells two settings apart.
+    ///
+    /// # Errors
+    /// [`Error::Value`] that names in what the runs in `folders` differ.
+    pub fn check_alike(&self, folders: &[PathBuf]) -> Result<()> {
+        if !self.variants.are_several() {
+            return Ok(());
+        }
+        let named = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(" ");
+        let varied = self.variants.varied.join(", ");
+        Err(Error::Value(format!("{named}: the runs differ in {varied}: for --against name those of one variant")))
     }
 
     /// The records of a variant's runs.

@@ -1,4 +1,4 @@
-//! Hot spots: the edges and junctions with the most conflicts.
+//! Hot spots: the edges and junctions with the most crashes to be expected.
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
@@ -18,16 +18,18 @@ pub struct HotSpot {
     pub serious: u64,
     /// The number of critical ones.
     pub critical: u64,
+    /// The sum of the crash probabilities: an index for comparing places, not a forecast.
+    pub expected_crashes: Option<Rate>,
     /// Per simulated hour.
     pub per_hour: Option<Rate>,
     /// Per 1,000 vehicles of the run.
     pub per_1000_vehicles: Option<Rate>,
 }
 
-/// The `wanted` spots with the most conflicts, the most first; equal ones by id.
+/// The `wanted` spots with the most expected crashes, the most first; equal ones by their conflicts, then by id.
 pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wanted: usize) -> Vec<HotSpot> {
     let mut spots = spots.iter().map(|(id, spot)| (spot.counts.sum(), id, spot)).collect::<Vec<_>>();
-    spots.sort_by(|a, b| (b.0, a.1).cmp(&(a.0, b.1)));
+    spots.sort_by(|a, b| b.2.crashes.sum().total_cmp(&a.2.crashes.sum()).then_with(|| (b.0, a.1).cmp(&(a.0, b.1))));
     spots.truncate(wanted);
     let statistics = |(count, id, spot): (u64, &String, &Spot)| {
         // Runs that differ in their settings have no common rate.
@@ -41,6 +43,7 @@ pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wante
             count,
             serious,
             critical,
+            expected_crashes: spot.crashes.interval(set.runs.len()),
             per_hour: rates.per_hour,
             per_1000_vehicles: rates.per_1000_vehicles,
         }

@@ -7,6 +7,7 @@
 mod chosen;
 mod collect;
 mod compare;
+mod effects;
 mod extremes;
 mod gpd;
 mod group;
@@ -18,19 +19,22 @@ mod rate;
 mod rates;
 pub mod table;
 mod variant;
+mod weighted;
 mod worst;
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::logged::{LostRows, Progress};
+use super::filter::ConflictFilter;
+use super::logged::{LoggedRun, LostRows, Progress};
 use crate::{Error, Result};
 use hot_spots::hot_spots;
 
 pub use chosen::LeftOutLog;
 pub use collect::Collection;
 pub use compare::{Comparison, Significance, compare};
+pub use effects::Effects;
 pub use extremes::{Crashes, Extrapolation};
 pub use group::By;
 pub use hot_spots::HotSpot;
@@ -50,6 +54,8 @@ pub struct Request {
     pub by: By,
     /// The runs to compare with; empty for no comparison.
     pub against: Vec<PathBuf>,
+    /// Which conflicts count.
+    pub filter: ConflictFilter,
     /// The number of worst conflicts, and of hot spots, to list.
     pub worst: usize,
 }
@@ -57,6 +63,9 @@ pub struct Request {
 /// Statistics of a set of runs.
 #[derive(Clone, Debug, Serialize)]
 pub struct Statistics {
+    /// The scenario's name.
+    #[serde(skip)]
+    pub name: String,
     /// The number of runs.
     pub runs: usize,
     /// The traffic of all runs.
@@ -72,13 +81,15 @@ pub struct Statistics {
     /// The logs that lack rows, whose other rows count.
     #[serde(skip)]
     pub lost: Vec<LostRows>,
+    /// Which conflicts count, as the words of a command line; none for all.
+    pub filter: Option<String>,
     /// How conflicts are grouped.
     pub by: By,
     /// For each variant all conflicts as one group, then each group.
     pub groups: Vec<GroupStatistics>,
-    /// Edges with the most conflicts.
+    /// Edges with the most expected crashes.
     pub edges: Vec<HotSpot>,
-    /// Junctions with the most conflicts.
+    /// Junctions with the most expected crashes.
     pub junctions: Vec<HotSpot>,
     /// The worst conflicts, the worst first.
     pub worst: Vec<RankedConflict>,
@@ -98,18 +109,18 @@ impl Statistics {
         if request.folders.is_empty() {
             return Err(Error::Value("no log folder is named".to_owned()));
         }
-        let mut set = Collection::read(&request.folders, request.by, request.worst, progress)?;
+        request.filter.check()?;
+        let mut set = Collection::read(&request.folders, request.by, &request.filter, request.worst, progress)?;
         let mut left_out = std::mem::take(&mut set.left_out);
         let mut lost = std::mem::take(&mut set.lost);
         let comparison = if request.against.is_empty() {
             None
         } else {
-            let mut other = Collection::read(&request.against, request.by, 0, progress)?;
+            let mut other = Collection::read(&request.against, request.by, &request.filter, 0, progress)?;
             left_out.append(&mut other.left_out);
             lost.append(&mut other.lost);
-            for (set, folders) in [(&set, &request.folders), (&other, &request.against)] {
-                check_alike(set, folders)?;
-            }
+            set.check_alike(&request.folders)?;
+            other.check_alike(&request.against)?;
             Some(compare(&set, &other))
         };
         let traffic = Traffic::of(set.runs.iter());
@@ -120,13 +131,15 @@ impl Statistics {
         };
         let variants = set.variants.clone();
         Ok(Self {
+            name: set.runs.first().map_or_else(|| "closecall".to_owned(), LoggedRun::name),
             runs: set.runs.len(),
             traffic,
             varied: variants.varied.clone(),
             variants: variant::statistics(&set),
-            notes: variants.notes.clone(),
+            notes: variants.notes.iter().cloned().chain(set.filtered(&request.filter)).collect(),
             left_out,
             lost,
+            filter: (!request.filter.is_empty()).then(|| request.filter.to_string()),
             by: request.by,
             edges: hot_spots(&set, &set.edges, request.worst),
             junctions: hot_spots(&set, &set.junctions, request.worst),
@@ -136,14 +149,4 @@ impl Statistics {
             worst: set.worst.into_sorted(&set.runs, &variants),
         })
     }
-}
-
-/// A comparison tells two settings apart, so that each set must have one.
-fn check_alike(set: &Collection, folders: &[PathBuf]) -> Result<()> {
-    if !set.variants.are_several() {
-        return Ok(());
-    }
-    let named = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(" ");
-    let varied = set.variants.varied.join(", ");
-    Err(Error::Value(format!("{named}: the runs differ in {varied}: for --against name those of one variant")))
 }

@@ -12,7 +12,7 @@ use statrs::distribution::{Beta, ContinuousCDF, Gamma, StudentsT};
 /// The probability that an interval covers.
 pub const CONFIDENCE: f64 = 0.95;
 /// The probability below an interval, and above it.
-const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
+pub const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
 
 /// Runs whose rates spread by less than this, relatively, are equal: the order of a sum changes its last digits.
 const EQUAL: f64 = 1e-9;
@@ -27,6 +27,8 @@ pub enum IntervalMethod {
     TOverPairs,
     /// Poisson's exact interval of the count.
     PoissonExact,
+    /// That of a sum of independent rare events, each with its weight.
+    WeightedEvents,
 }
 
 /// A rate and its 95 % interval.
@@ -155,7 +157,7 @@ pub fn t_quantile(freedom: f64) -> Option<f64> {
 }
 
 /// Poisson's exact interval of a count (Garwood 1936).
-fn poisson_interval(count: f64) -> Option<(f64, f64)> {
+pub fn poisson_interval(count: f64) -> Option<(f64, f64)> {
     let low = if count > 0.0 { Gamma::new(count, 1.0).ok()?.inverse_cdf(TAIL) } else { 0.0 };
     Some((low, Gamma::new(count + 1.0, 1.0).ok()?.inverse_cdf(1.0 - TAIL)))
 }

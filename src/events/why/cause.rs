@@ -33,6 +33,7 @@ const HARD: MetrePerSecondSquared = 4.41;
 
 /// Why a conflict came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 pub enum Cause {
     /// One drove, or walked, into the junction on red.
     RanRed,

@@ -34,13 +34,41 @@ function clock(seconds) {
   return [hours, minutes, ...(rest ? [rest] : [])].map((part) => String(part).padStart(2, "0")).join(":");
 }
 
-/** Stacked bars, one series per severity. */
-function bars(counts, centres, more) {
+/** Stacked bars, one series per severity; `height` turns the count of a bar into its height. */
+function bars(counts, centres, more, height = (many) => many) {
+  const totals = centres.map((_, bin) => counts.reduce((all, of_bin) => all + of_bin[bin], 0));
   return counts.map((of_bin, severity) => ({
     id: SEVERITIES[severity], name: SEVERITIES[severity], type: "bar", stack: "all", barCategoryGap: "8%", silent: false,
-    itemStyle: { color: severityColour(severity) }, data: of_bin.map((many, bin) => [centres[bin], many]), clip: true,
-    ...(more && severity === 0 ? more : {}),
+    itemStyle: { color: severityColour(severity) }, clip: true,
+    data: of_bin.map((many, bin) => [centres[bin], many ? (height(totals[bin]) * many) / totals[bin] : 0]),
+    ...(more && more[severity]),
   }));
+}
+
+/** From this ratio of the highest bar to the median one on, a few bars hide the others: heights are logarithmic. */
+const SPREAD = 40;
+/** The height of a bar of one, in decades. */
+const FIRST_DECADE = 0.3;
+
+/** How high bars with these counts are, and what stands beside the axis. */
+function heights(counts) {
+  const totals = counts[0].map((_, bin) => counts.reduce((all, of_bin) => all + of_bin[bin], 0)).filter((total) => total > 0).sort((a, b) => a - b);
+  const highest = totals[totals.length - 1] || 0;
+  if (highest < SPREAD * (totals[Math.floor(totals.length / 2)] || 1)) return { height: (many) => many, isLogarithmic: false, axis: {} };
+  return {
+    height: (many) => (many ? Math.log10(many) + FIRST_DECADE : 0),
+    isLogarithmic: true,
+    axis: { min: 0, max: Math.ceil(Math.log10(highest)) + FIRST_DECADE, interval: 1, minInterval: undefined, splitNumber: undefined,
+      axisLabel: { color: colours.faint, formatter: (value) => (value === 0 ? "0" : "") } },
+  };
+}
+
+/** The lines and labels of a logarithmic axis: 1, 10, 100, … */
+function decades({ isLogarithmic, axis: { max } }) {
+  if (!isLogarithmic) return [];
+  return Array.from({ length: Math.floor(max) + 1 }, (_, decade) => ({ yAxis: decade + FIRST_DECADE,
+    label: { show: true, position: "start", formatter: number(10 ** decade), color: colours.faint, fontSize: 12 },
+    lineStyle: { color: colours.rule, type: "solid", width: 1 } }));
 }
 
 /** The tooltip of a bar: a heading, then a count per severity. */
@@ -63,6 +91,7 @@ const times = {
     this.end = this.first + this.bins * this.bin;
     const width = this.bin % 60 ? `${this.bin} s` : this.bin === 60 ? "minute" : `${this.bin / 60} minutes`;
     const runs = data.runs.length > 1 ? `, all ${data.runs.length} runs together` : "";
+    this.width = width;
     byId("bins").textContent = `Conflicts per ${width} by severity${runs}. The slider sets the period for the whole page.`;
     this.chart = chartIn(this.element);
     this.chart.on("datazoom", () => {
@@ -93,6 +122,9 @@ const times = {
         selectedDataBackground: { lineStyle: { color: colours.accent }, areaStyle: { color: colours.accent } } }],
       series: bars(counts, centres),
     });
+    const totals = centres.map((_, bin) => counts.reduce((all, of_bin) => all + of_bin[bin], 0));
+    const most = totals.reduce((best, total, bin) => (total > totals[best] ? bin : best), 0);
+    describeChart(this.element, `Conflicts over time: ${number(totals.reduce((a, b) => a + b, 0))} in all; the most per ${this.width}, ${number(totals[most])}, from ${label(this.first + most * this.bin)} on.`);
   },
 
   tip(item, counts, label) {
@@ -125,7 +157,7 @@ const MEASURES = [
   { name: "delta_v", title: "Largest speed change in a collision (ΔV)", unit: "m/s", low: 0 },
 ];
 const DISTRIBUTION_BINS = 30;
-/** The share of the values that the axis covers; values beyond it count in the last bar. */
+/** The share of the values that the axis covers; values beyond it count in a labelled bar of their own. */
 const COVERED = 0.99;
 
 /** A quantile of values in ascending order, defined as in `closecall stats`. */
@@ -164,7 +196,7 @@ const distributions = {
       element.setAttribute("role", "img");
       element.setAttribute("aria-label", title);
       byId("distributions").append(make("div", {}, make("h3", { textContent: title }), note, element));
-      return { note, element, chart: chartIn(element) };
+      return { note, element, title, chart: chartIn(element) };
     };
     for (const measure of MEASURES) this.panels.push({ ...panel(`${measure.title}, ${measure.unit}`), measure, range: range(measure) });
     this.kinds = panel("Kinds");
@@ -175,7 +207,7 @@ const distributions = {
     this.showKinds(rows);
   },
 
-  showMeasure({ note, chart, measure, range: [low, high, width] }, rows) {
+  showMeasure({ note, element, title, chart, measure, range: [low, high, width] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
     const sorted = Float64Array.from(known, (row) => values[row]).sort();
@@ -183,36 +215,55 @@ const distributions = {
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "no conflict has one";
     const bins = Math.round((high - low) / width);
-    const place = (row) => Math.max(0, Math.floor((values[row] - low) / width));
-    const counts = histogram(known, place, bins);
-    const centres = Array.from({ length: bins }, (_, bin) => low + (bin + 0.5) * width);
-    const beyond = (bin) => (bin === 0 && measure.high === 0 ? "or less" : bin === bins - 1 && high > 0 ? "or more" : "");
-    const says = (bin) => {
-      const [from, to] = [low + bin * width, low + (bin + 1) * width].map((value) => number(value, 2));
-      return beyond(bin) ? `${beyond(bin) === "or less" ? to : from} ${measure.unit} ${beyond(bin)}` : `${from} to ${to} ${measure.unit}`;
+    // The bars within the axis, then those of the values below and above it, which stand apart.
+    const place = (row) => {
+      const bin = values[row] === high ? bins - 1 : Math.floor((values[row] - low) / width);
+      return bin < 0 ? bins : bin >= bins ? bins + 1 : bin;
     };
-    const line = measure.threshold && { markLine: {
-      silent: true, symbol: "none", data: [{ xAxis: measure.threshold.at }],
-      lineStyle: { color: colours.ink, type: "dashed", width: 1.5 },
+    const counts = histogram(known, place, bins + 2);
+    const beyond = [bins, bins + 1].map((bin) => counts.reduce((all, of_bin) => all + of_bin[bin], 0));
+    const centres = Array.from({ length: bins }, (_, bin) => low + (bin + 0.5) * width).concat(low - 1.5 * width, high + 1.5 * width);
+    const edge = (value) => `${number(value, value % 1 ? 2 : 0)} ${measure.unit}`;
+    const says = (bin) => {
+      if (bin >= bins) return bin === bins ? `below ${edge(low)}` : `above ${edge(high)}`;
+      const [from, to] = [low + bin * width, low + (bin + 1) * width].map((value) => number(value, 2));
+      return `${from} to ${to} ${measure.unit}`;
+    };
+    const scale = heights(counts);
+    if (scale.isLogarithmic) note.textContent += "; heights are logarithmic, colours divide each bar in proportion";
+    const threshold_line = measure.threshold ? [{ xAxis: measure.threshold.at, lineStyle: { color: colours.ink, type: "dashed", width: 1.5 },
       label: { formatter: measure.threshold.text, color: colours.ink, position: "end", fontSize: 11,
-        align: measure.threshold.at < (low + high) / 2 ? "left" : "right" } } };
+        align: measure.threshold.at < (low + high) / 2 ? "left" : "right" } }] : [];
+    const lines = { silent: true, symbol: "none", animation: false };
+    const more = [{
+      markLine: { ...lines, data: threshold_line },
+      markPoint: { silent: true, symbol: "circle", symbolSize: 0.1, animation: false, data: [0, 1].filter((side) => beyond[side] > 0).map((side) => ({
+        coord: [centres[bins + side], scale.height(beyond[side])], label: { show: true, position: "top", distance: 3, color: colours.ink, fontSize: 11,
+          formatter: side ? `>${number(high, high % 1 ? 1 : 0)}: ${number(beyond[1])}` : `<${number(low, low % 1 ? 1 : 0)}: ${number(beyond[0])}`,
+          align: side ? "right" : "left", offset: [side ? 12 : -12, 0] } })) },
+    }, { markLine: { ...lines, z: 0, data: decades(scale) } }];
     chart.setOption({
       ...basics(),
       tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
         formatter: ([item]) => (item ? barTip(says(item.dataIndex), counts, item.dataIndex) : "") },
-      grid: { left: 4, right: 14, top: 24, bottom: 4, containLabel: true },
-      xAxis: axis({ type: "value", min: low, max: high, splitLine: { show: false },
-        axisLabel: { color: colours.faint, hideOverlap: true, showMaxLabel: high === roundUp(high),
-          formatter: (value) => number(value, value % 1 ? 1 : 0) } }),
-      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false } }),
-      series: bars(counts, centres, line),
-    });
+      grid: { left: 4 + (scale.isLogarithmic ? 28 : 0), right: 14, top: 24, bottom: 4, containLabel: true },
+      xAxis: axis({ type: "value", min: low - (beyond[0] ? 3 * width : 0), max: high + (beyond[1] ? 3 * width : 0), splitLine: { show: false },
+        axisLabel: { color: colours.faint, hideOverlap: true, showMaxLabel: beyond[1] ? false : high === roundUp(high), showMinLabel: !beyond[0],
+          formatter: (value) => (value < low || value > high ? "" : number(value, value % 1 ? 1 : 0)) } }),
+      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false },
+        ...scale.axis, splitLine: { show: !scale.isLogarithmic, lineStyle: { color: colours.rule } } }),
+      series: bars(counts, centres, more, scale.height),
+    }, { replaceMerge: ["series"] });
+    const outside = beyond[1] ? ` ${number(beyond[1])} are above ${edge(high)}.` : beyond[0] ? ` ${number(beyond[0])} are below ${edge(low)}.` : "";
+    const beyond_threshold = measure.threshold ? ` The threshold: ${measure.threshold.text}.` : "";
+    describeChart(element, `${title}: ${note.textContent}.${outside}${beyond_threshold}`);
   },
 
   showKinds(rows) {
     const counts = SEVERITIES.map(() => KINDS.map(() => 0));
     for (const row of rows) counts[column.severity[row]][column.kind[row]]++;
     this.kinds.note.textContent = "by severity";
+    describeChart(this.kinds.element, `Kinds: ${KINDS.map((name, kind) => `${name} ${SEVERITIES.map((severity, place) => `${number(counts[place][kind])} ${severity}`).join(", ")}`).join("; ")}.`);
     this.kinds.chart.setOption({
       ...basics(),
       tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },

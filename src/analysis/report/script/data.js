@@ -17,35 +17,29 @@ const options = (data.runs.find((run) => run.options) || {}).options || data.def
 const variantOf = [];
 data.variants.forEach((variant, place) => variant.runs.forEach((run) => { variantOf[run] = place; }));
 
+/** The probability of a crash in each conflict; their sum is the number of expected crashes. Logs of early versions have none. */
+const risk = Float64Array.from(column.crash_probability, (value) => value || 0);
+
+/** Whether the log has crash probabilities: then places are ranked, and the map is coloured, by their sum. */
+const hasRisk = risk.some((of_row) => of_row > 0);
+
+/** The name of the first run's scenario: that of its file, without what follows the first dot. */
+const scenarioName = (() => {
+  const scenario = (data.runs.find((run) => run.scenario) || {}).scenario || "closecall";
+  return scenario.split(/[/\\]/).pop().split(".").find((part) => part) || "closecall";
+})();
+
+/** The causes, each once, and for each combination of causes in the log whether it has each of them. */
+const CAUSES = [...new Set(conflicts.causes.flatMap((causes) => causes.split(" ")))].filter(Boolean).sort();
+const causesOf = conflicts.causes.map((causes) => {
+  const words = causes.split(" ");
+  return CAUSES.map((cause) => words.includes(cause));
+});
+/** The strongest cause of a conflict; empty where none is known. */
+const strongestCause = (row) => conflicts.causes[column.cause[row]].split(" ")[0];
+
 /** The conflicts that have a drawing: row → [row, ego, foe]. */
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
-
-/** The filter: kinds, severities, a period in s, a type (of ego or foe), a variant, a run; null for all. */
-const filter = {};
-
-function resetFilter() {
-  Object.assign(filter, { kinds: [true, true, true], severities: [true, true, true], from: -Infinity, to: Infinity,
-    type: null, variant: null, run: null });
-}
-resetFilter();
-
-/** The rows that pass the filter; with `always`, those of all times. */
-function shownRows(always) {
-  const rows = [];
-  const { kinds, severities, type, variant, run } = filter;
-  const from = always ? -Infinity : filter.from;
-  const to = always ? Infinity : filter.to;
-  for (let row = 0; row < count; row++) {
-    if (kinds[column.kind[row]] && severities[column.severity[row]]
-      && column.time[row] >= from && column.time[row] <= to
-      && (type === null || column.ego_type[row] === type || column.foe_type[row] === type)
-      && (variant === null || variantOf[column.run[row]] === variant)
-      && (run === null || column.run[row] === run)) {
-      rows.push(row);
-    }
-  }
-  return rows;
-}
 
 /** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin. */
 function byBadness(a, b) {
@@ -87,5 +81,8 @@ function make(name, properties = {}, ...children) {
   element.append(...children);
   return element;
 }
+
+/** A name of the log in words. */
+const inWords = (name) => name.replaceAll("_", " ");
 
 const byId = (id) => document.getElementById(id);

@@ -1,103 +1,60 @@
-// The map: a sign on the net for each conflict, by kind and severity.
+// The map: on the net, a sign for each conflict by kind and severity, or hexagons coloured by the crashes to be expected; the
+// most dangerous places are numbered as in the table. A click filters by the place.
 
-/** The size of a sign on the screen, in pixels, by kind. */
-const SIGN_SIZES = [7, 9, 9];
-/** The pointer selects a sign within this distance, in pixels. */
-const NEAR = 12;
+/** From more conflicts than this on, the map shows the density at first. */
+const FEW = 500;
+/** This many of the most dangerous places have a number on the map. */
+const MOST_BADGES = 3;
+const MODE_WORDS = { density: "expected crashes", points: "each conflict", difference: "after − before" };
 
-/** More signs than this are drawn dot by dot, without smooth edges, which is ten times as fast. */
-const MANY = 10000;
-
-/** One picture of each sign, its size, and the dots that it covers, relative to its centre. */
-function stamps() {
-  const sharp = window.devicePixelRatio || 1;
-  return SEVERITIES.map((_, severity) => KINDS.map((_, kind) => {
-    const size = SIGN_SIZES[kind] + severity;
-    const dots = Math.ceil(size * sharp);
-    const canvas = make("canvas", { width: dots, height: dots });
-    const context = canvas.getContext("2d");
-    context.scale(dots / 10, dots / 10);
-    context.fillStyle = severityColour(severity);
-    context.fill(new Path2D(SIGN_PATHS[kind]));
-    const picture = new Uint32Array(context.getImageData(0, 0, dots, dots).data.buffer);
-    const covered = [];
-    let colour = 0;
-    picture.forEach((dot, at) => {
-      // The highest byte is the opacity.
-      if (dot >>> 24 < 128) return;
-      colour = Math.max(colour, dot);
-      covered.push([(at % dots) - (dots >> 1), Math.floor(at / dots) - (dots >> 1)]);
-    });
-    return { canvas, size, covered, colour };
-  }));
+/** The numbers of the most dangerous places, each where its conflicts are. */
+function badgesOf(view, rows) {
+  const most = spotRows(rows).slice(0, MOST_BADGES).filter((spot) => spot.risk > 0);
+  const taken = [];
+  return most.flatMap((spot, rank) => {
+    let [cx, cy] = [view.x + (spot.x - view.left) * view.scale, view.y + view.height - (spot.y - view.bottom) * view.scale - 18];
+    while (taken.some(([x, y]) => Math.hypot(cx - x, cy - y) < 20)) cx += 21;
+    taken.push([cx, cy]);
+    return [{ type: "circle", z2: 20, shape: { cx, cy, r: 10 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1.5 } },
+      { type: "text", z2: 21, x: cx, y: cy, style: { text: String(rank + 1), fill: colours.ink, font: `700 12px ${FONT}`, align: "center", verticalAlign: "middle" } }];
+  });
 }
-
-/** All signs as one shape, drawn as stamps; one path per sign would take seconds. */
-const Signs = echarts.graphic.extendShape({
-  shape: { rows: null, stamps: null, view: null },
-  buildPath(path) {
-    this.context = path.getContext ? path.getContext() : null;
-  },
-  afterBrush() {
-    if (!this.context || !this.shape.rows) return;
-    if (this.shape.rows.length > MANY) drawDots(this.context, this.shape);
-    else drawStamps(this.context, this.shape);
-  },
-});
-
-function drawStamps(context, { rows, stamps: of_look, view }) {
-  const { x, y, width, height, scale, left, bottom } = view;
-  context.globalAlpha = 0.85;
-  for (const row of rows) {
-    const at_x = (column.x[row] - left) * scale;
-    const at_y = height - (column.y[row] - bottom) * scale;
-    if (at_x < -NEAR || at_y < -NEAR || at_x > width + NEAR || at_y > height + NEAR) continue;
-    const { canvas, size } = of_look[column.severity[row]][column.kind[row]];
-    context.drawImage(canvas, x + at_x - size / 2, y + at_y - size / 2, size, size);
-  }
-  context.globalAlpha = 1;
-}
-
-function drawDots(context, { rows, stamps: of_look, view }) {
-  const { x, y, scale, left, bottom } = view;
-  const sharp = window.devicePixelRatio || 1;
-  const [width, height] = [Math.ceil(view.width * sharp), Math.ceil(view.height * sharp)];
-  const canvas = make("canvas", { width, height });
-  const picture = new ImageData(width, height);
-  const dots = new Uint32Array(picture.data.buffer);
-  for (const row of rows) {
-    const at_x = Math.round((column.x[row] - left) * scale * sharp);
-    const at_y = Math.round((view.height - (column.y[row] - bottom) * scale) * sharp);
-    if (!(at_x > -NEAR && at_y > -NEAR && at_x < width + NEAR && at_y < height + NEAR)) continue;
-    const { covered, colour } = of_look[column.severity[row]][column.kind[row]];
-    for (const [aside, down] of covered) {
-      const [dot_x, dot_y] = [at_x + aside, at_y + down];
-      if (dot_x >= 0 && dot_y >= 0 && dot_x < width && dot_y < height) dots[dot_y * width + dot_x] = colour;
-    }
-  }
-  canvas.getContext("2d").putImageData(picture, 0, 0);
-  context.drawImage(canvas, x, y, width / sharp, height / sharp);
-}
-echarts.graphic.registerShape("signs", Signs);
 
 /** The map of the conflicts that pass the filter. */
 const map = {
   element: byId("map"),
   chart: null,
   rows: [],
-  start() {
+  mode: "points",
+
+  /** What the map can show. */
+  modes: () => [...(hasRisk ? ["density"] : []), "points", ...(data.before && hasRisk ? ["difference"] : [])],
+
+  /** What it shows at first: each conflict, as long as they do not cover each other. */
+  first() {
+    this.at_first ||= !hasRisk ? "points" : data.before ? "difference" : shownRows(false).length > FEW ? "density" : "points";
+    return this.at_first;
+  },
+
+  start(changed) {
     this.chart = chartIn(this.element, () => this.show(this.rows));
-    this.chart.on("datazoom", () => {
-      this.point(null);
-      this.chart.setOption({ graphic: { elements: this.ruler() } });
-    });
+    this.chart.on("datazoom", () => this.point(null));
     const surface = this.chart.getZr();
     surface.on("mousemove", (event) => this.point(event));
-    surface.on("click", (event) => this.point(event));
+    surface.on("click", (event) => this.choose(event));
     surface.on("globalout", () => this.point(null));
     byId("closer").onclick = () => this.zoom(0.5);
     byId("further").onclick = () => this.zoom(2);
     byId("whole").onclick = () => this.window(0, 100, 0, 100);
+    for (const mode of this.modes()) {
+      const button = make("input", { type: "radio", name: "mode", value: mode });
+      button.onchange = () => {
+        this.mode = mode;
+        changed();
+      };
+      byId("modes").append(make("label", {}, button, MODE_WORDS[mode]));
+    }
+    this.element.onkeydown = (event) => this.press(event);
   },
 
   show(rows) {
@@ -113,9 +70,12 @@ const map = {
       yAxis: this.axes.yAxis,
       dataZoom: [{ id: "x", xAxisIndex: 0, ...zoom }, { id: "y", yAxisIndex: 0, ...zoom }],
       series: [...(net ? [roadsSeries()] : []), this.series(rows)],
-      graphic: { elements: this.ruler() },
     });
+    document.querySelectorAll("input[name=mode]").forEach((button) => { button.checked = button.value === this.mode; });
     this.point(null);
+    this.showLegend();
+    const most = spotRows(rows).slice(0, MOST_BADGES).map(spotSentence);
+    describeChart(this.element, `Map of ${number(rows.length)} conflicts. ${most.join(" ")} The table of hot spots has the same as numbers.`);
   },
 
   /** The series of all signs, the worst on top. */
@@ -126,7 +86,11 @@ const map = {
       id: "signs", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 3, clip: false,
       renderItem: (params, api) => {
         this.view = viewOf(params, api);
-        return { type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } };
+        const over = [...badgesOf(this.view, rows), ...scaleBar(1 / this.view.scale, this.view.height)];
+        if (this.mode !== "points") {
+          return { type: "group", children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
+        }
+        return { type: "group", children: [{ type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } }, ...over] };
       },
     };
   },
@@ -150,15 +114,70 @@ const map = {
 
   /** Shows the tooltip of the conflict under the pointer. */
   point(event) {
-    const row = event && this.view ? this.at(event.offsetX, event.offsetY) : null;
+    const place = event && this.view ? this.place(event) : null;
+    byId("at").textContent = place ? `x ${number(place[0], 1)} m, y ${number(place[1], 1)} m` : "";
     const tip = byId("tip");
-    tip.hidden = row === null;
-    if (row === null) return;
-    tip.replaceChildren(tipOf(row));
+    const shown = place && (this.mode === "points" ? this.at(event.offsetX, event.offsetY) : this.cell(place));
+    tip.hidden = shown === null;
+    if (shown === null) return;
+    tip.replaceChildren(this.mode === "points" ? tipOf(shown) : this.cellTip(shown));
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     const side = event.offsetX + 16 + tip.offsetWidth < width ? event.offsetX + 16 : event.offsetX - 16 - tip.offsetWidth;
     tip.style.left = `${Math.max(side, 4)}px`;
     tip.style.top = `${Math.min(event.offsetY + 12, height - tip.offsetHeight - 4)}px`;
+  },
+
+  /** The coordinates under the pointer, in m. */
+  place({ offsetX, offsetY }) {
+    const { x, y, height, scale, left, bottom } = this.view;
+    return [left + (offsetX - x) / scale, bottom + (y + height - offsetY) / scale];
+  },
+
+  /** The hexagon at a place with its sum; null where it is empty. */
+  cell([x, y]) {
+    const { x: centre_x, y: centre_y, radius } = density.at(x, y, this.view.scale);
+    const near = (cell) => Math.hypot(cell[0] - centre_x, cell[1] - centre_y) < radius / 2;
+    return (density.cells || []).find(near) || null;
+  },
+
+  cellTip([x, y, value]) {
+    const what = this.mode === "difference" ? "expected crashes, after − before" : "expected crashes";
+    const text = `${value > 0 && this.mode === "difference" ? "+" : ""}${number(value, 3)} ${what}`;
+    const many = this.rows.filter((row) => Math.hypot(column.x[row] - x, column.y[row] - y) <= density.radius(this.view.scale)).length;
+    return make("div", { className: "tip" }, make("b", { textContent: text }),
+      make("div", { textContent: `${number(many)} conflicts here and around` }));
+  },
+
+  /** Filters by the place that is clicked: the spot of the conflict there, or the circle of its hexagon. */
+  choose(event) {
+    if (!this.view) return;
+    if (this.mode === "points") {
+      const row = this.at(event.offsetX, event.offsetY);
+      if (row !== null) choosePlace(spotOf(row), null);
+      return;
+    }
+    const cell = this.cell(this.place(event));
+    if (cell) choosePlace(null, [Math.round(cell[0]), Math.round(cell[1]), Math.ceil(density.radius(this.view.scale))]);
+  },
+
+  /** Moves and zooms by the keyboard. */
+  press(event) {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (step) this.move(...step);
+    else if (event.key === "+") this.zoom(0.5);
+    else if (event.key === "-") this.zoom(2);
+    else if (event.key === "0") this.window(0, 100, 0, 100);
+    else return;
+    event.preventDefault();
+  },
+
+  /** Moves by a fifth of what is shown. */
+  move(along, up) {
+    const [x_start, x_end, y_start, y_end] = this.spans();
+    const span = x_end - x_start;
+    const start = (from, by) => Math.min(Math.max(from + (by * span) / 5, 0), 100 - span);
+    const [x, y] = [start(x_start, along), start(y_start, up)];
+    this.window(x, x + span, y, y + span);
   },
 
   /** The part of each axis that is shown, in percent. */
@@ -192,9 +211,35 @@ const map = {
     this.element.scrollIntoView({ block: "center" });
   },
 
-  /** The scale bar at the present zoom. */
-  ruler() {
-    const [start, end] = this.chart.getOption() ? this.spans() : [0, 100];
-    return scaleBar((this.axes.metresPerPixel * (end - start)) / 100, this.chart.getHeight());
+  /** What the signs or the colours mean. */
+  showLegend() {
+    const entry = (picture, text) => make("span", { className: "key" }, picture, text);
+    const patch = (colour) => {
+      const box = make("i");
+      box.style.background = colour;
+      return box;
+    };
+    const entries = [];
+    if (this.mode === "points") {
+      KINDS.forEach((name, kind) => entries.push(entry(sign(kind, "var(--ink)"), name)));
+      SEVERITIES.forEach((name, severity) => filter.severities[severity] && entries.push(entry(patch(`var(--${name})`), name)));
+    } else if (density.ends) {
+      const digits = density.ends[0] < 0.01 ? 3 : density.ends[0] < 0.1 ? 2 : 1;
+      const upTo = (end) => number(density.ends[end], digits);
+      if (this.mode === "difference") {
+        [[3, "fewer"], [2, "fewer"], [1, "fewer"], [1, "more"], [2, "more"], [3, "more"]].forEach(([step, what]) => {
+          const text = { 1: `up to ${upTo(1)} ${what}`, 2: `to ${upTo(3)} ${what}`, 3: `above ${upTo(3)} ${what}` }[step];
+          entries.push(entry(patch(`var(--${what}-${step})`), text));
+        });
+      } else {
+        density.ends.forEach((end, heat) => entries.push(entry(patch(`var(--heat-${heat + 1})`), `to ${upTo(heat)}`)));
+      }
+    }
+    const words = { points: "", density: `Expected crashes in a hexagon of ${number(2 * density.radius(this.view?.scale || 1), 0)} m:`,
+      difference: "Expected crashes after minus before, for as much traffic as after; only the choice of severities applies:" };
+    if (net) {
+      entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
+    }
+    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "key", textContent: "Circled numbers: ranks of hot spots" }));
   },
 };

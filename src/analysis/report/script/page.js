@@ -3,101 +3,95 @@
 /** The most variants whose rates are shown. */
 const MOST_VARIANTS = 12;
 
+/** What the page is about; drawn once. */
 function showHeader() {
   const records = data.runs.filter((run) => run.summary);
   const scenarios = [...new Set(records.map((run) => run.scenario))];
   const runs = data.runs.length === 1 ? "one run" : `${number(data.runs.length)} runs`;
   const more = scenarios.length > 3 ? ` and ${scenarios.length - 3} more` : "";
-  byId("subject").textContent = `${scenarios.slice(0, 3).join(", ") || data.runs.map((run) => run.folder)[0]}${more}: ${runs}`;
-  byId("maker").textContent = `Made by closecall ${data.version}. Charts: Apache ECharts ${echarts.version} (Apache-2.0).`;
   const sum = (pick) => records.reduce((all, run) => all + pick(run.summary), 0);
-  const of_severity = (severity) => column.severity.reduce((all, of_row) => all + (of_row === severity), 0);
-  const kilometres = sum((summary) => summary.exposure.vehicle_kilometres);
-  const figures = [["critical", number(of_severity(2))], ["serious", number(of_severity(1))]];
-  figures.push(["conflicts", number(data.seen)]);
-  figures.push(["collisions", number(column.collision.reduce((all, is) => all + is, 0))]);
-  figures.push(["expected crashes (an index, not a forecast)", number(sum((summary) => summary.expected_crashes || 0), 2)]);
-  if (records.length) {
-    figures.push(["vehicles", number(sum((summary) => summary.exposure.vehicles))], ["vehicle-km", number(kilometres)]);
-    // A run that was killed has conflicts but no record of its traffic.
-    const isKnown = data.runs.every((run) => run.summary?.steps > 0);
-    if (kilometres > 0 && isKnown && data.variants.length < 2) {
-      figures.push(["conflicts per vehicle-km", number(data.seen / kilometres, 2)]);
-    }
-    // Runs that differ in their settings have no common rate.
-    if (data.variants.length > 1) data.variants.slice(0, MOST_VARIANTS).forEach((variant) => {
-      const summaries = variant.runs.map((run) => data.runs[run].summary);
-      const driven = summaries.reduce((all, summary) => all + summary.exposure.vehicle_kilometres, 0);
-      const found = summaries.reduce((all, summary) => all + summary.conflicts.reduce((sum, { count }) => sum + count, 0), 0);
-      if (driven > 0) figures.push([`conflicts per vehicle-km, ${variant.name}`, number(found / driven, 2)]);
-    });
-  }
-  byId("figures").append(...figures.map(([name, value]) =>
-    make("div", {}, make("dt", { textContent: name }), make("dd", { textContent: value }))));
+  const traffic = records.length ? `, ${number(sum((summary) => summary.exposure.vehicles))} vehicles, `
+    + `${number(sum((summary) => summary.exposure.vehicle_kilometres))} vehicle-km` : "";
+  const title = scenarios.length > 1 ? `${scenarioName} and others` : scenarioName;
+  document.title = `${title} – conflicts`;
+  byId("name").textContent = title;
+  byId("subject").textContent = `Traffic conflicts in ${scenarios.slice(0, 3).join(", ") || data.runs.map((run) => run.folder)[0]}${more}: ${runs}${traffic}`;
+  byId("maker").textContent = `Made by closecall ${data.version}. Charts: Apache ECharts ${echarts.version} (Apache-2.0).`;
   const notes = [...data.notes];
   if (count < data.seen) notes.push(`This page contains the ${number(count)} worst of ${number(data.seen)} conflicts.`);
   byId("notes").textContent = notes.join(" ");
   byId("notes").hidden = !notes.length;
 }
 
-/** The filter's fields; each change calls `changed`. */
-function makeFilter(changed) {
-  const boxes = (id, names, chosen, picture) => names.forEach((name, place) => {
-    const box = make("input", { type: "checkbox", checked: true, name: `${id}-${name}` });
-    box.onchange = () => {
-      filter[chosen][place] = box.checked;
-      changed();
-    };
-    byId(id).append(make("label", {}, box, picture(place), name));
+/** The tiles: what the shown conflicts come to. */
+function showFigures(rows) {
+  const { counts, risk: crashes } = sums(rows);
+  const all = risk.reduce((sum, of_row) => sum + of_row, 0);
+  const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
+  const kilometres = runs.reduce((sum, run) => sum + (run.summary?.exposure.vehicle_kilometres || 0), 0);
+  const of_all = all > crashes + 0.005 ? `of ${number(all, 2)} in all; ` : "";
+  const figures = hasRisk ? [["expected crashes", number(crashes, 2), `${of_all}an index, not a forecast`]] : [];
+  [2, 1, 0].forEach((severity) => {
+    if (filter.severities[severity]) figures.push([SEVERITIES[severity], number(counts[severity]), "", SEVERITIES[severity]]);
   });
-  boxes("kinds", KINDS, "kinds", (kind) => sign(kind, "var(--ink)"));
-  boxes("severities", SEVERITIES, "severities", (severity) => sign(0, `var(--${SEVERITIES[severity]})`));
-  const choice = (id, field, words) => {
-    byId(field).hidden = words.length < 2;
-    byId(id).append(make("option", { value: "", textContent: "all" }), ...words.map(([value, textContent]) => make("option", { value, textContent })));
-    byId(id).onchange = () => {
-      filter[id] = byId(id).value === "" ? null : Number(byId(id).value);
-      changed();
-    };
-  };
-  const types = conflicts.types.map((type, place) => [place, type]).filter(([, type]) => type !== "");
-  choice("type", "who", types.sort((a, b) => (a[1] < b[1] ? -1 : 1)));
-  choice("variant", "how", data.variants.map((variant, place) => [place, variant.name]));
-  choice("run", "which", data.runs.map((run, place) => [place, `${place + 1}: ${run.folder}`]));
-  const limit = (id, otherwise) => {
-    byId(id).onchange = () => {
-      filter[id] = byId(id).value === "" ? otherwise : Number(byId(id).value);
-      times.follow();
-      changed();
-    };
-  };
-  limit("from", -Infinity);
-  limit("to", Infinity);
-  byId("filter").onsubmit = (event) => event.preventDefault();
-  byId("filter").onreset = () => {
-    resetFilter();
-    times.follow();
-    changed();
-  };
+  figures.push(["collisions", number(rows.reduce((sum, row) => sum + column.collision[row], 0))]);
+  // A run that was killed has conflicts but no record of its traffic; a period's traffic is not known.
+  const isKnown = runs.every((run) => run.summary?.steps > 0) && !Number.isFinite(filter.from) && !Number.isFinite(filter.to);
+  if (isKnown && kilometres > 0 && data.variants.length < 2) {
+    figures.push(["conflicts per vehicle-km", number((rows.length * (data.seen / count)) / kilometres, 2)]);
+  }
+  // Runs that differ in their settings have no common rate.
+  if (isKnown && data.variants.length > 1) data.variants.slice(0, MOST_VARIANTS).forEach((variant) => {
+    const summaries = variant.runs.map((run) => data.runs[run].summary);
+    const driven = summaries.reduce((sum, summary) => sum + summary.exposure.vehicle_kilometres, 0);
+    const found = rows.reduce((sum, row) => sum + variant.runs.includes(column.run[row]), 0);
+    if (driven > 0) figures.push([`conflicts per vehicle-km, ${variant.name}`, number(found / driven, 2)]);
+  });
+  byId("figures").replaceChildren(...figures.map(([name, value, note, look]) =>
+    make("div", { className: look || "" }, make("dt", { textContent: name }), make("dd", { textContent: value }), ...(note ? [make("dd", { className: "note", textContent: note })] : []))));
 }
 
-function showPeriod() {
-  byId("from").value = Number.isFinite(filter.from) ? Math.round(filter.from * 10) / 10 : "";
-  byId("to").value = Number.isFinite(filter.to) ? Math.round(filter.to * 10) / 10 : "";
-  byId("from").placeholder = Math.floor(period[0]);
-  byId("to").placeholder = Math.ceil(period[1]);
+/** Where and why it is dangerous, in a sentence or two. */
+function showVerdict(rows) {
+  const spots = spotRows(rows).filter((spot) => spot.risk > 0);
+  const element = byId("verdict");
+  if (!spots.length) {
+    element.textContent = !rows.length ? "No conflict passes the filter."
+      : hasRisk ? "No crash is to be expected from the conflicts that are shown." : "";
+    return;
+  }
+  const all = rows.reduce((sum, row) => sum + risk[row], 0);
+  const [first, ...others] = spots.slice(0, 3);
+  const manoeuvre = inWords(usual(first.rows, manoeuvreOf));
+  const cause = inWords(usual(first.rows, strongestCause));
+  const share = Math.round((100 * first.risk) / all);
+  element.replaceChildren(make("strong", { textContent: `Most dangerous: ${spotName(first)}` }),
+    `, with ${share} % of the ${number(all, 2)} expected crashes`
+    + `${manoeuvre ? `, mostly ${manoeuvre}` : ""}${cause ? ` (${cause})` : ""}. `
+    + (others.length ? `Then ${others.map((spot) => `${spotName(spot)} (${Math.round((100 * spot.risk) / all)} %)`).join(" and ")}.` : ""));
+}
+
+/** One conflict of this log, read aloud. */
+function showExample() {
+  const [row] = worstRows(Array.from({ length: count }, (_, place) => place), 1);
+  byId("example").textContent = row === undefined ? "" : `For example, the worst conflict here, no. ${column.id[row]}: ${describe(row)}`;
 }
 
 /** Draws the parts that follow the filter. */
 function show() {
   const rows = shownRows(false);
   byId("shown").textContent = `${number(rows.length)} of ${number(count)} conflicts`;
-  showPeriod();
+  const words = filterWords().map(([name, value]) => `${name} ${inWords(value)}`);
+  byId("printed").textContent = words.length || !filter.severities[0] ? `Shown: ${[!filter.severities[0] && "serious and critical conflicts", ...words].filter(Boolean).join("; ")}.` : "";
+  showFilter();
+  showFigures(rows);
+  showVerdict(rows);
   map.show(rows);
   times.show(shownRows(true));
   distributions.show(rows);
   showSpots(rows);
   worst.show(rows);
+  writeAddress();
 }
 
 /** A function that calls `call` after a pause: a moving slider sends many events. */
@@ -113,15 +107,29 @@ function startPage() {
   showHeader();
   showRuns();
   if (count === 0) {
-    byId("nothing").textContent = "No conflicts were found: no pair came closer than its minimal collision distance μ.";
+    byId("nothing").textContent = data.filter ? `No conflict passes the filter ${data.filter}.`
+      : "No conflicts were found: no pair came closer than its minimal collision distance μ.";
     byId("nothing").hidden = false;
     byId("filter").hidden = true;
-    document.querySelectorAll("main > section").forEach((section) => { section.hidden = !section.querySelector("#runs"); });
+    document.querySelectorAll("main > section, #reading, #figures").forEach((part) => { part.hidden = !part.querySelector("#runs"); });
     return;
   }
   const showSoon = quietly(show, 150);
+  choose = (name, value) => {
+    filter[name] = value;
+    show();
+  };
+  choosePlace = (spot, circle) => {
+    Object.assign(filter, { spot, circle });
+    show();
+  };
   makeFilter(show);
-  map.start();
+  map.first();
+  readAddress();
+  showExample();
+  showAgainst();
+  startExport();
+  map.start(show);
   times.start((from, to) => {
     if (filter.from === from && filter.to === to) return;
     Object.assign(filter, { from, to });
@@ -130,9 +138,27 @@ function startPage() {
   distributions.start();
   byId("more").onclick = () => worst.more();
   show();
-  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+  times.follow();
+  window.addEventListener("hashchange", () => {
+    readAddress();
+    times.follow();
+    show();
+  });
+  // Paper is white, and what is drawn follows.
+  const redraw = () => {
     readColours();
     show();
+    // At once: a page that is about to be printed waits for no frame.
+    document.querySelectorAll(".chart").forEach((element) => echarts.getInstanceByDom(element)?.getZr().flush());
+  };
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  window.addEventListener("beforeprint", () => {
+    document.documentElement.dataset.print = "";
+    redraw();
+  });
+  window.addEventListener("afterprint", () => {
+    delete document.documentElement.dataset.print;
+    redraw();
   });
 }
 

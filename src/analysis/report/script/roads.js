@@ -2,8 +2,11 @@
 
 /** The least width of a lane on the screen, in pixels. */
 const THINNEST = 0.8;
-/** From this many pixels per metre on, lanes within junctions are drawn too. */
+/** From this many pixels per metre on, lanes within junctions, stripes of crossings and stop lines are drawn too. */
 const CLOSE = 2;
+/** The stripes of a crossing and the gaps between them, and the width of a stop line, in m. */
+const STRIPE = 0.5;
+const STOP = 0.5;
 
 /** Lines from whole numbers (a count, then differences in cm): points in m, the index of each line's start, its box. */
 function readLines(numbers) {
@@ -34,6 +37,7 @@ function readLines(numbers) {
 const net = data.net && {
   lanes: data.net.lanes.map((group) => ({ look: group.look, width: group.width, lines: readLines(group.lines) })),
   junctions: readLines(data.net.junctions),
+  stops: data.net.stops.map(({ rule, lines }) => ({ rule, lines: readLines(lines) })),
 };
 
 /** All lines of a group as one shape, so that thousands of lanes take a few strokes. */
@@ -78,13 +82,17 @@ function roadsSeries() {
       const { scale } = view;
       const children = [{ type: "roads", shape: { lines: net.junctions, view, closed: true },
         style: { fill: colours.junction, stroke: null } }];
+      const draw = (lines, stroke, lineWidth, more) => children.push({ type: "roads", shape: { lines, view, closed: false },
+        style: { fill: null, stroke, lineWidth, lineCap: "butt", lineJoin: "round", ...more } });
+      const isClose = scale >= CLOSE;
       for (const { look, width: lane, lines } of net.lanes) {
-        if (look === "within" && scale < CLOSE) continue;
+        if (look === "within" && isClose) draw(lines, colours.within, 1, { lineDash: [4, 4] });
         // Drawn slightly narrower than it is, so that adjacent lanes remain distinct.
-        const wide = look === "within" ? 1 : Math.max((lane - 0.25) * scale, THINNEST);
-        children.push({ type: "roads", shape: { lines, view, closed: false },
-          style: { fill: null, stroke: colours[look], lineWidth: wide, lineCap: "butt", lineJoin: "round" } });
+        if (look === "road") draw(lines, colours.road, Math.max((lane - 0.25) * scale, THINNEST));
+        if (look === "foot" && isClose) draw(lines, colours.foot, Math.max((lane - 0.25) * scale, THINNEST));
+        if (look === "crossing" && isClose) draw(lines, colours.crossing, lane * scale, { lineDash: [STRIPE * scale, STRIPE * scale], opacity: 0.9 });
       }
+      if (isClose) for (const { rule, lines } of net.stops) draw(lines, colours[rule], STOP * scale);
       return { type: "group", children };
     },
   };
@@ -112,7 +120,7 @@ function equalAxes(box, width, height, margin) {
   return { xAxis: one(x, width), yAxis: one(y, height), metresPerPixel: metres };
 }
 
-/** A bar of a round length with a label, on a layer of its own, so that nothing else is redrawn with it. */
+/** A bar of a round length with a label. */
 function scaleBar(metresPerPixel, height) {
   const wanted = metresPerPixel * 110;
   const power = 10 ** Math.floor(Math.log10(wanted));
@@ -121,8 +129,8 @@ function scaleBar(metresPerPixel, height) {
   const pixels = length / metresPerPixel;
   const line = { points: [[10, height - 18], [10, height - 12], [10 + pixels, height - 12], [10 + pixels, height - 18]] };
   return [
-    { id: "bar", type: "polyline", silent: true, zlevel: 1, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
-    { id: "length", type: "text", silent: true, zlevel: 1, x: 16 + pixels, y: height - 22,
+    { type: "polyline", silent: true, z2: 30, shape: line, style: { stroke: colours.ink, fill: null, lineWidth: 1.5 } },
+    { type: "text", silent: true, z2: 30, x: 16 + pixels, y: height - 22,
       style: { text, fill: colours.ink, stroke: colours.ground, lineWidth: 3, font: `12px ${FONT}` } },
   ];
 }

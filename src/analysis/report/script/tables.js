@@ -1,45 +1,7 @@
-// The hot spots, the worst conflicts with drawings, and the records of the runs.
+// The worst conflicts with drawings, and the records of the runs.
 
-const MOST_SPOTS = 15;
 const FIRST_WORST = 6;
 const MOST_WORST = 60;
-
-/** Draws the table of counts by edge or junction. */
-function showSpots(rows) {
-  const spots = new Map();
-  for (const row of rows) {
-    const place = spotOf(row);
-    if (!spots.has(place)) spots.set(place, { place, all: 0, counts: SEVERITIES.map(() => 0), box: [Infinity, Infinity, -Infinity, -Infinity] });
-    const spot = spots.get(place);
-    const [x, y] = [column.x[row], column.y[row]];
-    spot.all++;
-    spot.counts[column.severity[row]]++;
-    spot.box = [Math.min(spot.box[0], x), Math.min(spot.box[1], y), Math.max(spot.box[2], x), Math.max(spot.box[3], y)];
-  }
-  const most = [...spots.values()].sort((a, b) => b.all - a.all || a.place - b.place).slice(0, MOST_SPOTS);
-  const head = make("tr");
-  for (const [text, is_number] of [["Place", false], ["All", true], ...SEVERITIES.map((name) => [name, true]), ["", false]]) {
-    head.append(make("th", { textContent: text, className: is_number ? "number" : "", scope: "col" }));
-  }
-  const lines = most.map((spot) => {
-    const go = make("button", { type: "button", textContent: conflicts.spots[spot.place] || "no lane" });
-    const [left, bottom, right, top] = spot.box;
-    go.onclick = () => map.go((left + right) / 2, (bottom + top) / 2, Math.max(right - left, top - bottom, 60) * 1.3);
-    const share = make("td", { className: "share" });
-    share.setAttribute("aria-hidden", "true");
-    [...spot.counts.entries()].reverse().forEach(([severity, many]) => {
-      if (!many) return;
-      const bar = make("span");
-      bar.style.width = `${(100 * many) / most[0].all}%`;
-      bar.style.background = severityColour(severity);
-      share.append(bar);
-    });
-    return make("tr", {}, make("td", {}, go), make("td", { className: "number", textContent: number(spot.all) }),
-      ...spot.counts.map((many) => make("td", { className: "number", textContent: number(many) })), share);
-  });
-  if (!lines.length) lines.push(make("tr", {}, make("td", { textContent: "none", colSpan: 6 })));
-  byId("spots").replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
-}
 
 const worst = {
   rows: [],
@@ -143,6 +105,7 @@ function drawScene(element, row) {
     children.push(...labels(figures.map(({ corners, id, colour }) => ({ corners: on(corners), id, colour })), chart.getWidth()));
     const [x, y] = api.coord(meeting);
     children.push({ type: "circle", shape: { cx: x, cy: y, r: 6 }, style: { fill: null, stroke: colours.meeting, lineWidth: 2.5 } });
+    children.push(...scaleBar(axes.metresPerPixel, chart.getHeight()));
     return { type: "group", children };
   };
   chart.setOption({
@@ -150,7 +113,6 @@ function drawScene(element, row) {
     grid: { left: 0, right: 0, top: 0, bottom: 0 }, xAxis: axes.xAxis, yAxis: axes.yAxis,
     series: [...(net ? [roadsSeries()] : []),
       { id: "scene", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], z: 5, silent: true, clip: true, renderItem: render }],
-    graphic: { elements: scaleBar(axes.metresPerPixel, chart.getHeight()) },
   });
   return chart;
 }

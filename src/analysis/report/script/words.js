@@ -31,6 +31,11 @@ function deed(row, ego, foe) {
     : `${mover} ${did("touched", "touch")} with its ${PARTS[parts[by]]} ${part}`;
 }
 
+/** Tells a reader who does not see a chart what is in it. */
+function describeChart(element, text) {
+  element.setAttribute("aria-label", text);
+}
+
 function typed(id, type) {
   const word = conflicts.types[type];
   return word ? `${id} (${word})` : id;
@@ -41,7 +46,7 @@ function whyWords(row) {
   const manoeuvre = conflicts.manoeuvres[column.manoeuvre[row]];
   const causes = conflicts.causes[column.cause[row]].split(" ").join(", ");
   const parts = [manoeuvre && `Manoeuvre: ${manoeuvre}`, causes && `Cause: ${causes}`];
-  return parts.filter(Boolean).map((part) => `${part.replaceAll("_", " ")}.`).join(" ");
+  return parts.filter(Boolean).map((part) => `${inWords(part)}.`).join(" ");
 }
 
 function spotWords(row) {

@@ -52,13 +52,15 @@ fn traffic(statistics: &Statistics) -> Table {
     let row = |of_variant: &VariantStatistics| {
         let traffic = &of_variant.traffic;
         let name = several.then(|| Cell::Text(of_variant.variant.name.clone()));
+        // That of a part of the runs is not known.
+        let known = |cell: Cell| if traffic.vehicle_hours > 0.0 { cell } else { Cell::None };
         let cells = [
             Cell::Count(of_variant.runs as u64),
             Cell::Number(traffic.hours),
-            Cell::Count(traffic.vehicles),
-            Cell::Count(traffic.persons),
-            Cell::Number(traffic.vehicle_kilometres),
-            Cell::Number(traffic.vehicle_hours),
+            known(Cell::Count(traffic.vehicles)),
+            known(Cell::Count(traffic.persons)),
+            known(Cell::Number(traffic.vehicle_kilometres)),
+            known(Cell::Number(traffic.vehicle_hours)),
         ];
         name.into_iter().chain(cells).collect()
     };
@@ -81,6 +83,7 @@ fn ratios(statistics: &Statistics) -> Table {
             IntervalMethod::TOverPairs => "t over pairs",
             IntervalMethod::TOverRuns => "t over runs",
             IntervalMethod::PoissonExact => "counts",
+            IntervalMethod::WeightedEvents => "weighted events",
         };
         let ends = [value, Some(low), high].map(Cell::maybe);
         let head = [variant_cell(&group.variant)?, Cell::Text(group.group.clone())];
@@ -159,7 +162,7 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
 fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     let rows = spots.iter().map(|spot| {
         let counts = [spot.count, spot.serious, spot.critical].map(Cell::Count);
-        let rates = [spot.per_hour, spot.per_1000_vehicles].into_iter().flat_map(with_interval);
+        let rates = [spot.expected_crashes, spot.per_hour, spot.per_1000_vehicles].into_iter().flat_map(with_interval);
         std::iter::once(Cell::Text(spot.id.clone())).chain(counts).chain(rates).collect()
     });
     Table {
@@ -169,6 +172,9 @@ fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
             "conflicts",
             "serious",
             "critical",
+            "expected crashes",
+            "low",
+            "high",
             "per hour",
             "low",
             "high",
