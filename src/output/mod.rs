@@ -10,6 +10,7 @@ pub mod log;
 pub mod parquet_columns;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod place;
 pub mod record;
 pub mod schema;
 mod series;

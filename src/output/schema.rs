@@ -7,6 +7,7 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::place::{edge_of, junction_of};
 use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
@@ -16,7 +17,7 @@ use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::decimal;
 use crate::util::units::{
-    Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio, Second,
+    Degree, Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio, Second,
     SecondSquared,
 };
 
@@ -131,7 +132,7 @@ columns! { |conflict, context|
     /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
-    [Required] lane: OptionalText = context.lane(conflict);
+    [Required] lane: OptionalText = context.lane(conflict).to_owned();
     /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
@@ -193,6 +194,22 @@ columns! { |conflict, context|
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`
     /// ([rules](causes.md)); empty where none of them is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
+    /// the lane of the ego's front bumper; the nearest where its way is not known
+    [Optional] ego_lane: OptionalText = context.lane_of(conflict.lanes[0], &conflict.ego_snapshot);
+    /// how far along that lane it is, in SUMO's metres of the lane
+    [Optional] ego_lane_position: Option<Metre> = context.position_of(conflict.lanes[0], &conflict.ego_snapshot);
+    /// the lane of the foe's front bumper, or of an obstacle's corner
+    [Optional] foe_lane: OptionalText = context.lane_of(conflict.lanes[1], &conflict.foe_snapshot);
+    /// how far along that lane it is
+    [Optional] foe_lane_position: Option<Metre> = context.position_of(conflict.lanes[1], &conflict.foe_snapshot);
+    /// the edge of `lane`
+    [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
+    /// the junction that `lane` is within; empty outside junctions
+    [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
+    /// longitude of `x` and `y`, by the net's own projection, as SUMO converts it; empty for a net without one
+    [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
+    /// latitude of `x` and `y`
+    [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
     /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
     /// course; side and frontal conflicts only
     [Chosen] tadv: Option<Second> = conflict.added(AddedMeasure::Tadv);
@@ -317,6 +334,7 @@ impl Column {
             "MetrePerSecond" => "m/s",
             "MetrePerSecondSquared" => "m/s²",
             "Radian" => "rad",
+            "Degree" => "°",
             "SecondSquared" => "s²",
             "MetreSquaredPerSecondCubed" => "m²/s³",
             "Probability" | "Ratio" => "1",
@@ -345,10 +363,6 @@ fn next_field<'a, T: Field>(
 }
 
 impl Context<'_> {
-    fn lane(&self, conflict: &Conflict) -> String {
-        conflict.lane.zip(self.net).map(|(lane, net)| net.lane_id(lane).to_owned()).unwrap_or_default()
-    }
-
     fn type_name(&self, profile: ProfileIndex) -> String {
         self.roster.profile_at(profile).name.to_string()
     }

@@ -3,7 +3,6 @@
 //! Statistics, reports and Python take conflicts from here. A folder is a log if it holds `conflicts.csv`, or
 //! `conflicts.parquet` as a sweep writes it. Several logs may be below one folder, at any depth.
 
-mod conflicts;
 mod csv;
 mod folders;
 #[cfg(feature = "parquet")]

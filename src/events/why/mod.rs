@@ -15,6 +15,7 @@ pub use pair::Surroundings;
 use super::past::Past;
 use crate::detection::encounter::Encounter;
 use crate::traffic::frame::Frame;
+use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::Roster;
 use pair::Pair;
 
@@ -24,6 +25,8 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
+    /// The lanes that the ego and the foe are on.
+    pub lanes: [Option<LaneIndex>; 2],
     /// Whether one of them has jumped to the lanes that the manoeuvre follows from.
     has_jumped: bool,
 }
@@ -34,7 +37,8 @@ impl Why {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
         let has_jumped = pair.both().iter().any(|(party, _)| party.course.has_jumped);
-        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), has_jumped }
+        let lanes = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0));
+        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), lanes, has_jumped }
     }
 
     /// The same with a later step that is worse.

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::lanes::{Lanes, distance};
-use super::projection::Projection;
 use super::recording::Recording;
 use super::rows::{RecordedRow, RecordedStep};
+use crate::traffic::net::projection::Projection;
 use crate::traffic::net::{LaneIndex, Net};
 use crate::util::units::Metre;
 use crate::{Error, Result};

@@ -20,7 +20,6 @@ mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "no_parquet.rs"]
 mod parquet;
-pub mod projection;
 pub mod recording;
 pub mod routes;
 pub mod rows;
@@ -41,13 +40,13 @@ use crate::options::{Options, PathModel};
 use crate::run::Run;
 use crate::traffic::frame::State;
 use crate::traffic::net::Net;
+use crate::traffic::net::projection::Projection;
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
 use lanes::{Lanes, heading};
-use projection::Projection;
 use recording::Recording;
 use routes::Routes;
 use rows::{RecordedRow, RecordedStep};
@@ -211,7 +210,7 @@ impl Replay {
     /// Fills the run's frame with the rows of the step.
     fn fill(&mut self, run: &mut Run) -> Result<()> {
         if let Some(projection) = &self.projection {
-            projection.project(&mut self.step).map_err(|message| Error::content(&self.path, message))?;
+            self.step.project(projection).map_err(|message| Error::content(&self.path, message))?;
         }
         self.vehicles.clear();
         if self.step.persons() > 0 {

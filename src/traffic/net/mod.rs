@@ -9,6 +9,7 @@ pub mod filter;
 mod finder;
 mod network;
 mod overlaps;
+pub mod projection;
 mod quality;
 mod reader;
 
