@@ -23,6 +23,7 @@ use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Conflict, Tracker};
 use crate::geometry::Point;
 use crate::options::Options;
+use crate::options::measures::Measures;
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
 use crate::output::summary::{Skipped, Summary};
@@ -190,6 +191,11 @@ impl Run {
     /// Whether road users move sideways without changing lanes.
     pub fn sublane(&self) -> bool {
         self.detector.sublane()
+    }
+
+    /// The measures that are computed besides those that every run has.
+    pub fn measures(&self) -> Measures {
+        self.detector.measures()
     }
 
     /// Whether no road user's route changes while it is in the scene.

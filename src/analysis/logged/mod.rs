@@ -19,7 +19,7 @@ mod run;
 
 pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
-pub use pack::{Label, LabelValue, pack};
+pub use pack::{Label, LabelValue, pack, pack_in_place};
 #[cfg(feature = "parquet")]
 pub use parquet::{Packed, RunTime};
 pub use reader::{ConflictReader, LostRows, check_none_lost};

@@ -7,11 +7,16 @@ use crate::detection::encounter::Encounter;
 use crate::detection::measures::plane::Moving;
 use crate::detection::measures::ttc::{HORIZON, SteadyMotion};
 use crate::geometry::rectangle::Rectangle;
-use crate::options::measures::AddedValues;
+use crate::options::measures::{AddedValues, Measures};
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::Roster;
 
 impl Detector {
+    /// The measures that are computed besides those that every run has.
+    pub fn measures(&self) -> Measures {
+        self.options.measures
+    }
+
     /// The values of the chosen measures of a pair in this step; none where none is chosen.
     pub fn added(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<AddedValues>> {
         let measures = self.options.measures;

@@ -92,8 +92,8 @@ impl Replay {
     ///
     /// # Errors
     /// An error that names the file and what is wrong with it.
-    pub fn open(path: &Path, demand_files: &[PathBuf], net: &Net, options: &Options) -> Result<Self> {
-        let (types, planned) = demand::read(demand_files, net)?;
+    pub fn open(path: &Path, demand_files: &[PathBuf], net: Option<&Net>, options: &Options) -> Result<Self> {
+        let (types, planned) = demand::read(demand_files, net.unwrap_or(&Net::default()))?;
         let mut recording = Recording::open(path)?;
         let mut step = RecordedStep::default();
         let mut second_step = RecordedStep::default();
@@ -109,9 +109,9 @@ impl Replay {
             Err(error) => return Err(error),
         };
         let step_length = if has_second_step { second_step.time - step.time } else { 1.0 };
-        let projection = fit::projection(path, net)?;
-        let follows_lanes = options.path == PathModel::Lanes;
-        let routes = follows_lanes.then(|| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
+        let projection = net.map(|net| fit::projection(path, net)).transpose()?.flatten();
+        let on_lanes = net.filter(|_| options.path == PathModel::Lanes);
+        let routes = on_lanes.map(|net| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
         Ok(Self {
             path: path.to_path_buf(),
             recording,

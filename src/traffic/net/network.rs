@@ -8,8 +8,8 @@ use rustc_hash::FxHashMap;
 use super::elements::{Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage};
 use super::finder::Finder;
 use super::projection::Projection;
-use crate::geometry::{Bounds, Point};
 use crate::geometry::polylines::{Lines, stretch};
+use crate::geometry::{Bounds, Point};
 use crate::util::units::{Degree, Metre};
 
 /// A road network.
@@ -101,6 +101,11 @@ impl Net {
         self.finder.lane_at(&self.lanes, place)
     }
 
+    /// The lanes that a place is on, or within a distance of, in no particular order.
+    pub fn lanes_at(&self, place: Point2<Metre>, within: Metre) -> impl Iterator<Item = LaneIndex> {
+        self.finder.lanes_at(&self.lanes, place, within)
+    }
+
     /// The length of a lane's shape.
     pub fn drawn_length(&self, lane: LaneIndex) -> Metre {
         let line = self.lines.line(lane.0);
@@ -125,7 +130,8 @@ impl Net {
 
     /// The degrees of longitude and latitude of a place; none where its projection is not known or not supported.
     pub fn degrees(&self, place: Point) -> Option<[Degree; 2]> {
-        let projection = self.projection.get_or_init(|| Projection::of(self).ok().flatten().map(Arc::new));
+        let projection =
+            self.projection.get_or_init(|| Projection::of(self.location.as_ref()).ok().flatten().map(Arc::new));
         projection.as_ref()?.degrees(place)
     }
 

@@ -6,7 +6,7 @@
 use proj4rs::Proj;
 use proj4rs::transform::transform;
 
-use super::{Location, Net};
+use super::elements::Location;
 use crate::geometry::{Point, Vector};
 use crate::util::limits::POSITION;
 use crate::util::units::{Degree, Metre};
@@ -30,12 +30,12 @@ enum Plane {
 }
 
 impl Projection {
-    /// The projection of a net, if it has one.
+    /// The projection of a net with this location, if it has one.
     ///
     /// # Errors
     /// A message if it is not supported.
-    pub fn of(net: &Net) -> Result<Option<Self>, String> {
-        let Some(Location { offset, projection }) = &net.location else { return Ok(None) };
+    pub fn of(location: Option<&Location>) -> Result<Option<Self>, String> {
+        let Some(Location { offset, projection }) = location else { return Ok(None) };
         let plane = match projection.as_str() {
             "!" => return Ok(None),
             "-" => Plane::Simple,
@@ -89,13 +89,14 @@ mod tests {
     use std::path::Path;
 
     use super::*;
+    use crate::traffic::net::Net;
 
     fn projection(parameters: &str) -> Result<Option<Projection>, String> {
         let text = format!(
             r#"<net><location netOffset="-385000.00,-5819000.00" projParameter="{parameters}"/>
             <edge id="a"><lane id="a_0" length="9" shape="0,0 9,0"/></edge></net>"#
         );
-        Projection::of(&Net::parse(Path::new("net"), text).unwrap())
+        Projection::of(Net::parse(Path::new("net"), text).unwrap().location.as_ref())
     }
 
     /// The places are sumolib's, by pyproj.
