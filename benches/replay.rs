@@ -130,7 +130,7 @@ impl Measured {
     fn replay(&mut self, net: &Arc<Net>) {
         let options = Options::default();
         let seconds = seconds(|| {
-            let mut replay = Replay::open(&self.path, &[], net, &options).unwrap();
+            let mut replay = Replay::open(&self.path, &[], Some(net), &options).unwrap();
             let mut run = Run::new(&options, Some(net.clone())).unwrap();
             run.set_fixed_routes(true);
             while let Ok(Some(_)) = replay.next(&mut run) {}

@@ -14,7 +14,7 @@ fn main() -> Result<()> {
     };
     let options = Options::default();
     let net = Arc::new(Net::read(&net)?);
-    let mut replay = Replay::open(&recording, &[], &net, &options)?;
+    let mut replay = Replay::open(&recording, &[], Some(&net), &options)?;
     let mut run = Run::new(&options, Some(net))?;
     run.set_fixed_routes(true);
     while replay.next(&mut run)?.is_some() {}

@@ -52,6 +52,8 @@ pub mod input {
     pub use crate::input::replay::routes::Routes;
     pub use crate::input::replay::rows::RecordedStep;
     pub use crate::input::sumo_files::{check_xml, fault, net_of};
+    #[cfg(feature = "cli")]
+    pub use crate::input::tracks::{RecordingFormat, TrackOptions, TrackOrigin, open as open_tracks};
 }
 
 pub mod options {
@@ -64,7 +66,7 @@ pub mod output {
     pub use crate::output::input_hash::Input;
     pub use crate::output::log::Log;
     pub use crate::output::record::Versions;
-    pub use crate::output::schema::{COLUMNS, Column, Context, LoggedConflict, Value};
+    pub use crate::output::schema::{COLUMNS, Column, ColumnType, Context, LoggedConflict, Presence, Value};
 }
 
 pub mod run {

@@ -22,6 +22,7 @@ use crate::detection::detector::shortcuts::Shortcuts;
 use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Clips, Conflict, PetSoFar, Tracker};
 use crate::geometry::Point;
+use crate::options::measures::Measures;
 use crate::options::{ClipLevel, Options};
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
@@ -194,6 +195,11 @@ impl Run {
     /// Whether road users move sideways without changing lanes.
     pub fn sublane(&self) -> bool {
         self.detector.sublane()
+    }
+
+    /// The measures that are computed besides those that every run has.
+    pub fn measures(&self) -> Measures {
+        self.detector.measures()
     }
 
     /// Whether no road user's route changes while it is in the scene.

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::internals::output::{Context, LoggedConflict};
+use closecall::internals::output::{COLUMNS, Context, LoggedConflict};
 use closecall::internals::util::caught;
 use closecall::{Ending, Error, LogFolder, Net, Options, OutputFiles, RecordedRun, Run};
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError, PyValueError};
@@ -17,6 +17,7 @@ use crate::frames::Frames;
 use crate::paint::Painter;
 use crate::pull::{self, Identity, Source};
 use crate::rows::Rows;
+use crate::table::Table;
 use crate::{provenance, say};
 
 /// The closed conflicts that stay in memory where a log has all of them: about 10 MB.
@@ -228,13 +229,17 @@ impl Checker {
     /// The conflicts so far; the latest `keep` of the closed ones, and the open ones as they are now.
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
-        let conflicts = self.state.with(py, |state| {
+        let conflicts = self.state.with(py, |state| Ok(logged(&state.recorded.run)))?;
+        PyList::new(py, conflicts.into_iter().map(Conflict))
+    }
+
+    /// The same conflicts as a `Table` of Arrow columns, for pandas, Polars, DuckDB or PyArrow.
+    fn table(&self, py: Python) -> PyResult<Table> {
+        self.state.with(py, |state| {
             let run = &state.recorded.run;
-            let context = |number| Context { number, net: run.net(), roster: &run.roster };
-            let logged = |(number, conflict): (u64, &_)| Conflict(LoggedConflict::new(conflict, context(number)));
-            Ok((run.first_number()..).zip(&run.conflicts()).map(logged).collect::<Vec<_>>())
-        })?;
-        PyList::new(py, conflicts)
+            let columns = COLUMNS.iter().filter(|column| column.is_in(run.measures())).collect::<Vec<_>>();
+            Table::of(&columns, logged(run).into_iter().map(Ok), |error: PyErr| error)
+        })
     }
 
     /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
@@ -261,6 +266,14 @@ impl Checker {
     fn log_error(&self, py: Python) -> PyResult<Option<String>> {
         self.state.with(py, |state| Ok(state.recorded.run.log_error().map(str::to_owned)))
     }
+}
+
+/// The conflicts of a run as a log has them.
+pub fn logged(run: &Run) -> Vec<LoggedConflict> {
+    let context = |number| Context { number, net: run.net(), roster: &run.roster };
+    let conflicts = run.conflicts();
+    let numbered = (run.first_number()..).zip(&conflicts);
+    numbered.map(|(number, conflict)| LoggedConflict::new(conflict, context(number))).collect()
 }
 
 impl Checker {

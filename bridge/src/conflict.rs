@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use closecall::internals::analysis::ConflictReader;
-use closecall::internals::output::{COLUMNS, Column, LoggedConflict, Value};
+use closecall::internals::output::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
@@ -32,6 +32,24 @@ impl Conflict {
         let severity = severity.name();
         format!("Conflict(ego={ego:?}, foe={foe:?}, kind={kind}, severity={severity}, time={time}, margin={margin:.3})")
     }
+
+    /// The columns that have a value, one a line, with their units.
+    fn __str__(&self) -> String {
+        let mut buffer = String::new();
+        let lines = self.told(&mut buffer, |text, name, value, unit| {
+            text.push_str(&format!("\n  {name:25} {value}{}{unit}", if unit.is_empty() { "" } else { " " }));
+        });
+        format!("{}{lines}", self.__repr__())
+    }
+
+    /// The same as a table for a notebook.
+    fn _repr_html_(&self) -> String {
+        let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;");
+        let rows = self.told(&mut String::new(), |text, name, value, unit| {
+            text.push_str(&format!("<tr><th>{name}</th><td>{}</td><td>{unit}</td></tr>", escaped(value)));
+        });
+        format!("<table>{rows}</table>")
+    }
 }
 
 impl Conflict {
@@ -48,6 +66,18 @@ impl Conflict {
             class.setattr(column.name, property.call((getter,), Some(&keywords))?)?;
         }
         Ok(())
+    }
+
+    /// Writes the columns that have a value, but for what only drawings need.
+    fn told(&self, buffer: &mut String, write: impl Fn(&mut String, &str, &str, &str)) -> String {
+        let mut text = String::new();
+        for column in COLUMNS.iter().filter(|column| column.presence != Presence::Snapshot) {
+            match (column.get)(&self.0).text(buffer) {
+                "" => {}
+                value => write(&mut text, column.name, value, column.unit()),
+            }
+        }
+        text
     }
 
     fn attribute(arguments: &Bound<PyTuple>, column: &Column) -> PyResult<Py<PyAny>> {

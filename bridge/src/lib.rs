@@ -15,6 +15,7 @@ mod numbers;
 mod paint;
 mod provenance;
 mod pull;
+mod replay;
 mod rows;
 mod run;
 mod say;
@@ -22,6 +23,7 @@ mod session;
 mod start;
 mod step_times;
 mod sweep;
+mod table;
 
 use pyo3::prelude::*;
 
@@ -37,9 +39,13 @@ mod _closecall {
     #[pymodule_export]
     use super::functions::{distance, mu, touches};
     #[pymodule_export]
+    use super::replay::replay;
+    #[pymodule_export]
     use super::run::{main, scenario};
     #[pymodule_export]
     use super::sweep::finish_run;
+    #[pymodule_export]
+    use super::table::{Table, read};
 
     use super::{Bound, PyModule, PyModuleMethods, PyResult};
 

@@ -1,6 +1,7 @@
-//! What is made of logs: statistics, a report, pictures.
+//! What is made of logs: statistics, a report, pictures, files for other tools.
 
 pub mod dataset;
+pub mod export;
 pub mod filter;
 pub mod logged;
 pub mod playback;

@@ -7,8 +7,12 @@ use clap::Args;
 use super::ending;
 use super::files::{default_folder, kept, say_if_elsewhere};
 use crate::Result;
+#[cfg(feature = "parquet")]
+use crate::analysis::logged::pack_in_place;
 use crate::options::Options;
 use crate::output::folder::LogFolder;
+#[cfg(feature = "parquet")]
+use crate::output::formats::LogFormat;
 use crate::output::formats::OutputFiles;
 use crate::output::summary::Summary;
 
@@ -66,8 +70,16 @@ impl CheckArgs {
         Ok(options)
     }
 
-    /// Prints what was found in a scenario or recording, unless only errors are wanted.
-    pub fn print(&self, summary: &Summary, input: &Path, log: &Path) -> Result<()> {
+    /// Completes the log in the format that was asked for, and prints what was found in a scenario or recording, unless only
+    /// errors are wanted.
+    ///
+    /// # Errors
+    /// Those of writing the log anew.
+    pub fn finish(&self, summary: &Summary, input: &Path, log: &Path) -> Result<()> {
+        #[cfg(feature = "parquet")]
+        if self.outputs.log_format == LogFormat::Parquet {
+            pack_in_place(log)?;
+        }
         if self.quiet {
             return Ok(());
         }

@@ -5,7 +5,9 @@
 
 mod check_args;
 mod ending;
+mod export;
 mod files;
+mod inspect;
 mod mu;
 mod parse;
 mod playback;
@@ -69,6 +71,8 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
         Command::Clip(arguments) => playback::clip(&arguments).map(|()| 0),
         Command::Show(arguments) => playback::show(&arguments, sumo).map(|()| 0),
+        Command::Inspect(arguments) => inspect::run(&arguments).map(|()| 0),
+        Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         #[cfg(feature = "plot")]
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::say::value;
-use super::{mu, playback, regress, replay, report, run, settings, stats};
+use super::{export, inspect, mu, playback, regress, replay, report, run, settings, stats};
 use crate::{Error, Result};
 
 #[cfg(feature = "plot")]
@@ -30,9 +30,11 @@ pub(super) enum Command {
     /// Run a scenario with many seeds and options in parallel and collect the conflicts in one data set
     #[cfg(feature = "parquet")]
     Sweep(Box<sweep::SweepArgs>),
-    /// Check a recording (SUMO's fcd-output) for conflicts
+    /// Check a recording for conflicts: SUMO's fcd-output, SSAM's .trj, Vissim's .fzp, tables of trajectories
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
+    /// Tell what a recording is taken for, what it lacks, and the command that replays it
+    Inspect(inspect::InspectArgs),
     /// Run scenarios and compare their conflicts with the blessed ones
     Regress(regress::RegressArgs),
     /// Print the minimal collision distance μ of two road users by all three models
@@ -55,6 +57,9 @@ pub(super) enum Command {
     /// Show the seconds around a conflict in sumo-gui
     #[command(args_override_self = true)]
     Show(playback::ShowArgs),
+    /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
+    #[command(args_override_self = true)]
+    Export(export::ExportArgs),
     /// Draw the charts of the report as PNG or SVG files
     #[cfg(feature = "plot")]
     #[command(args_override_self = true)]

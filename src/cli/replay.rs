@@ -9,6 +9,7 @@ use super::check_args::CheckArgs;
 use super::progress::Progress;
 use super::sumo::Sumo;
 use crate::input::replay::Replay;
+use crate::input::tracks::{self, TrackOptions};
 use crate::options::Options;
 use crate::output::input_hash::Input;
 use crate::output::record::RunRecord;
@@ -20,12 +21,15 @@ use crate::{Error, Result};
 /// A recording and how to check it.
 #[derive(Args)]
 pub struct ReplayArgs {
-    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, also gzipped.
-    #[arg(value_name = "FCD")]
+    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
+    /// gzipped.
+    #[arg(value_name = "FILE")]
     recording: PathBuf,
-    /// Net on which the recording was made.
+    /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
     #[arg(short = 'n', long, value_name = "NET")]
-    net: PathBuf,
+    net: Option<PathBuf>,
+    #[command(flatten)]
+    tracks: TrackOptions,
     /// Route and additional files that define the vehicle types and the routes; types they do not define are SUMO's default
     /// ones.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
@@ -46,17 +50,20 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let options = arguments.check.checked(&out)?;
     let folder = arguments.check.claim(&out)?;
     let out = folder.path().to_owned();
-    let net = Arc::new(Net::read(&arguments.net)?);
-    let mut replay = Replay::open(&arguments.recording, &arguments.route_files, &net, &options)?;
-    let mut run = Run::new(&options, Some(net))?;
+    let net = arguments.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
+    let opened = tracks::open(&arguments.recording, &arguments.tracks, net.as_deref())?;
+    let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
+    let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options)?;
+    let mut run = Run::new(&options, net)?;
     run.set_threads(arguments.threads.into());
     run.set_fixed_routes(true);
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();
     if !arguments.check.quiet {
-        run.opening_remarks(Some(replay.step_length())).iter().for_each(|remark| eprintln!("closecall: {remark}"));
+        let remarks = run.opening_remarks(Some(replay.step_length()));
+        opened.remarks().iter().chain(&remarks).for_each(|remark| eprintln!("closecall: {remark}"));
     }
-    run.set_averaged_over(replay.averaged_over());
+    run.set_averaged_over(if opened.is_measured() { 0.0 } else { replay.averaged_over() });
     let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;
@@ -69,14 +76,14 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
         ..Ending::default()
     });
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        arguments.check.print(&closed?, &arguments.recording, &out)?;
+        arguments.check.finish(&closed?, &arguments.recording, &out)?;
     }
     ended
 }
 
 /// The record of a replay that begins.
 fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
-    let files = [&arguments.recording, &arguments.net].into_iter().chain(&arguments.route_files);
+    let files = [&arguments.recording].into_iter().chain(&arguments.net).chain(&arguments.route_files);
     Ok(RunRecord {
         sublane: arguments.sublane,
         inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,

@@ -60,7 +60,7 @@ pub fn run(arguments: RunArgs, sumo: Option<Sumo>) -> Result<()> {
     let folder = arguments.check.claim(&request.out)?;
     folder.path().clone_into(&mut request.out);
     let summary = (sumo.simulate)(&request, folder)?;
-    arguments.check.print(&summary, &request.scenario, &request.out)
+    arguments.check.finish(&summary, &request.scenario, &request.out)
 }
 
 /// The request for the bridge, with everything checked that can be before SUMO starts.

@@ -89,6 +89,9 @@ pub struct Conflict {
     /// The lane of the conflict point.
     #[serde(skip)]
     pub lane: Option<LaneIndex>,
+    /// The lanes of the ego and the foe, where their courses are known.
+    #[serde(skip)]
+    pub lanes: [Option<LaneIndex>; 2],
     /// Whether the rectangles overlapped by more than the contact tolerance in any step.
     pub collision: bool,
     /// Deepest overlap of the rectangles over the event: the shortest displacement that parts them, in m; 0 where they never
@@ -139,7 +142,7 @@ impl Conflict {
             ref found,
             ref worst,
             ref added,
-            why: Why { manoeuvre, causes, .. },
+            why: Why { manoeuvre, causes, lanes, .. },
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
@@ -183,6 +186,7 @@ impl Conflict {
             x,
             y,
             lane,
+            lanes,
             collision,
             overlap,
             collision_sumo,

@@ -1,4 +1,6 @@
-//! Files that come from SUMO: recordings to replay, and the inputs of a simulation.
+//! Recordings to replay, of SUMO and of others, and the inputs of a simulation.
 
 pub mod replay;
 pub mod sumo_files;
+#[cfg(feature = "cli")]
+pub mod tracks;

@@ -28,6 +28,8 @@ use crate::{Error, Result};
 
 /// The name of the conflicts' file.
 pub const CONFLICTS: &str = "conflicts.csv";
+/// The name of the conflicts' file in a sweep, and where a run was told so.
+pub const PARQUET: &str = "conflicts.parquet";
 /// The name of the file that records how the run was made.
 pub const RUN: &str = "run.json";
 
@@ -41,7 +43,7 @@ fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    [CONFLICTS].into_iter().chain(SERIES_FILES).chain([CLIPS, RUN]).map(|name| folder.join(name))
+    [CONFLICTS, PARQUET].into_iter().chain(SERIES_FILES).chain([CLIPS, RUN]).map(|name| folder.join(name))
 }
 
 /// The log of one run.

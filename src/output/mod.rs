@@ -12,6 +12,7 @@ pub mod palette;
 pub mod parquet_columns;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod place;
 pub mod record;
 pub mod schema;
 mod series;

@@ -44,6 +44,12 @@ pub fn typed(name: &str, physical: Physical, repetition: Repetition) -> Result<T
     column.build().map(Arc::new)
 }
 
+/// A column of bytes in the schema, which may be missing.
+pub fn binary(name: &str) -> Result<TypePtr> {
+    let column = Type::primitive_type_builder(name, Physical::BYTE_ARRAY).with_repetition(Repetition::OPTIONAL);
+    column.build().map(Arc::new)
+}
+
 /// How Parquet stores a column.
 pub fn physical(column_type: ColumnType) -> Physical {
     match column_type {
@@ -82,7 +88,8 @@ pub fn fill(column: &mut SerializedColumnWriter<'_>, rows: &[LoggedConflict], of
     Ok(())
 }
 
-fn write_optional<T: DataType>(
+/// Writes values that may be missing.
+pub fn write_optional<T: DataType>(
     column: &mut SerializedColumnWriter<'_>,
     values: impl Iterator<Item = Option<T::T>>,
 ) -> Result<()> {

@@ -3,10 +3,12 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use parquet::data_type::{ByteArray, ByteArrayType};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::writer::SerializedFileWriter;
 
-use super::parquet_columns::{fill, of_log, properties, schema};
+use super::parquet_columns::{binary, fill, of_log, properties, schema, write_optional};
 use super::schema::{Column, LoggedConflict};
 use crate::Result;
 use crate::util::output_file::OutputFile;
@@ -20,9 +22,14 @@ pub(super) struct ParquetFile {
     path: PathBuf,
     columns: Vec<Column>,
     writer: SerializedFileWriter<OutputFile>,
+    /// A column that is not of the log, after the others.
+    added: Option<(&'static str, Binary)>,
     /// Those of the row group under way.
     rows: Vec<LoggedConflict>,
 }
+
+/// Bytes that a column has of a conflict.
+pub(super) type Binary = fn(&LoggedConflict) -> Option<Vec<u8>>;
 
 impl fmt::Debug for ParquetFile {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -32,12 +39,26 @@ impl fmt::Debug for ParquetFile {
 
 impl ParquetFile {
     pub fn create(path: &Path, columns: impl Iterator<Item = Column>) -> Result<Self> {
+        Self::create_with(path, columns, None)
+    }
+
+    /// With a column of bytes after those of the log.
+    pub fn create_with(
+        path: &Path,
+        columns: impl Iterator<Item = Column>,
+        added: Option<(&'static str, Binary)>,
+    ) -> Result<Self> {
         let columns = columns.collect::<Vec<_>>();
         let file = OutputFile::create(path)?;
-        let writer =
-            schema(columns.iter().map(of_log)).and_then(|schema| SerializedFileWriter::new(file, schema, properties()));
+        let writer = schema(columns.iter().map(of_log).chain(added.iter().map(|(name, _)| binary(name))))
+            .and_then(|schema| SerializedFileWriter::new(file, schema, properties()));
         let writer = writer.map_err(|error| unreadable(path, &error))?;
-        Ok(Self { path: path.to_owned(), columns, writer, rows: Vec::new() })
+        Ok(Self { path: path.to_owned(), columns, writer, added, rows: Vec::new() })
+    }
+
+    /// Adds a key to the file's metadata.
+    pub fn describe(&mut self, key: &str, value: String) {
+        self.writer.append_key_value_metadata(KeyValue::new(key.to_owned(), value));
     }
 
     pub fn write_row(&mut self, row: LoggedConflict) -> Result<()> {
@@ -55,6 +76,12 @@ impl ParquetFile {
                 fill(&mut column, &self.rows, of_log)?;
                 column.close()?;
             }
+        }
+        if let Some((_, of)) = self.added
+            && let Some(mut column) = group.next_column()?
+        {
+            write_optional::<ByteArrayType>(&mut column, self.rows.iter().map(|row| of(row).map(ByteArray::from)))?;
+            column.close()?;
         }
         self.rows.clear();
         group.close().map(drop)

@@ -7,17 +7,19 @@
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
+use super::place::{edge_of, junction_of, on_lane};
 use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
 use crate::events::{Conflict, Manoeuvre, Snapshot};
+use crate::geometry::Point;
 use crate::options::measures::{AddedMeasure, Measures};
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::decimal;
 use crate::util::units::{
-    Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio, Second,
-    SecondSquared,
+    Degree, Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio,
+    Second, SecondSquared,
 };
 
 pub use super::value::{ColumnType, Value};
@@ -131,7 +133,7 @@ columns! { |conflict, context|
     /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
-    [Required] lane: OptionalText = context.lane(conflict);
+    [Required] lane: OptionalText = context.lane(conflict).to_owned();
     /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
@@ -193,6 +195,22 @@ columns! { |conflict, context|
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`
     /// ([rules](causes.md)); empty where none of them is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
+    /// the lane of the ego's front bumper; the nearest where its way is not known
+    [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    /// how far along that lane it is, in SUMO's metres of the lane
+    [Optional] ego_lane_position: Option<Metre> = context.on_lane(conflict, 0).map(|(_, position)| position);
+    /// the lane of the foe's front bumper, or of an obstacle's corner
+    [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    /// how far along that lane it is
+    [Optional] foe_lane_position: Option<Metre> = context.on_lane(conflict, 1).map(|(_, position)| position);
+    /// the edge of `lane`
+    [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
+    /// the junction that `lane` is within; empty outside junctions
+    [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
+    /// longitude of `x` and `y`, by the net's own projection, as SUMO converts it; empty for a net without one
+    [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
+    /// latitude of `x` and `y`
+    [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
     /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
     /// course; side and frontal conflicts only
     [Chosen] tadv: Option<Second> = conflict.added(AddedMeasure::Tadv);
@@ -254,6 +272,16 @@ columns! { |conflict, context|
 }
 
 impl LoggedConflict {
+    /// The edge of the conflict point; empty without a lane. Logs of earlier versions have no column for it.
+    pub fn edge(&self) -> &str {
+        edge_of(&self.lane)
+    }
+
+    /// The junction of the conflict point; empty where it is not within one.
+    pub fn junction(&self) -> &str {
+        junction_of(&self.lane)
+    }
+
     /// ΔV of the one whose speed changes most in a collision; the ego's where the log does not have the foe's.
     pub fn delta_v(&self) -> MetrePerSecond {
         self.foe_delta_v.map_or(self.ego_delta_v, |foe| foe.max(self.ego_delta_v))
@@ -317,6 +345,7 @@ impl Column {
             "MetrePerSecond" => "m/s",
             "MetrePerSecondSquared" => "m/s²",
             "Radian" => "rad",
+            "Degree" => "°",
             "SecondSquared" => "s²",
             "MetreSquaredPerSecondCubed" => "m²/s³",
             "Probability" | "Ratio" => "1",
@@ -344,9 +373,20 @@ fn next_field<'a, T: Field>(
     cell(place).and_then(T::from_value).map_err(|why| format!("{}: {why}", column.name))
 }
 
-impl Context<'_> {
-    fn lane(&self, conflict: &Conflict) -> String {
-        conflict.lane.zip(self.net).map(|(lane, net)| net.lane_id(lane).to_owned()).unwrap_or_default()
+impl<'a> Context<'a> {
+    fn lane(&self, conflict: &Conflict) -> &'a str {
+        conflict.lane.zip(self.net).map_or("", |(lane, net)| net.lane_id(lane))
+    }
+
+    /// The lane of the ego (0) or the foe (1), and how far along it that is.
+    fn on_lane(&self, conflict: &Conflict, user: usize) -> Option<(&'a str, Metre)> {
+        let front = [&conflict.ego_snapshot, &conflict.foe_snapshot][user].front;
+        on_lane(self.net?, conflict.lanes[user], front)
+    }
+
+    /// The longitude and latitude of the conflict point.
+    fn degrees(&self, conflict: &Conflict) -> Option<[Degree; 2]> {
+        self.net?.degrees(Point::new(conflict.x, conflict.y))
     }
 
     fn type_name(&self, profile: ProfileIndex) -> String {
@@ -388,7 +428,6 @@ impl Serialize for LoggedConflict {
 mod tests {
     use std::path::Path;
 
-    use crate::geometry::Point;
     use crate::output::schema::*;
 
     /// The variable with which the tests write what they otherwise compare.

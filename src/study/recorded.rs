@@ -48,7 +48,7 @@ impl RecordedScenario {
     /// Replays a recording of it; what is done after each step does not count.
     pub fn replay(&self, recording: &Path, options: &Options, after: &mut dyn FnMut(&Run)) -> Result<Replayed> {
         let started = Instant::now();
-        let mut replay = Replay::open(recording, &self.types, &self.net, options)?;
+        let mut replay = Replay::open(recording, &self.types, Some(&self.net), options)?;
         let mut run = Run::new(options, Some(self.net.clone()))?;
         run.set_fixed_routes(true);
         let mut rows = 0;

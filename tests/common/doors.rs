@@ -156,7 +156,7 @@ pub fn replay(bytes: &[u8]) {
     let net = Arc::new(a_net());
     for path in ["lanes", "arc"] {
         let options = Options::from_settings([("path", path.to_owned())]).unwrap();
-        let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), &net, &options) else { return };
+        let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), Some(&net), &options) else { return };
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
         while let Ok(Some(_)) = replay.next(&mut run) {}
         let _ = run.finish();

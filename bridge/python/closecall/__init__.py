@@ -10,13 +10,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from . import geometry
-from ._closecall import Alarm, Conflict, __version__, mu
+from ._closecall import Alarm, Conflict, Table, __version__, mu, read, replay
 from .reward import Reward
 
 if TYPE_CHECKING:
     from ._checker import Checker
 
-__all__ = ["Alarm", "Checker", "Conflict", "Reward", "__version__", "geometry", "mu"]
+__all__ = ["Alarm", "Checker", "Conflict", "Reward", "Table", "__version__", "geometry", "mu", "read", "replay"]
 
 
 def __getattr__(name: str) -> type[Checker]:

@@ -7,12 +7,11 @@ use std::path::{Path, PathBuf};
 use rustc_hash::FxHashSet;
 
 use crate::output::earlier_log::EARLIER;
+pub use crate::output::log::PARQUET;
 use crate::output::log::{CONFLICTS, files};
 use crate::util::output_file::same_file;
 use crate::{Error, Result};
 
-/// The name of the conflicts' file in a sweep.
-pub const PARQUET: &str = "conflicts.parquet";
 /// The name of the file of counts that a blessed scenario has.
 pub const SUMMARY: &str = "summary.json";
 
@@ -45,7 +44,7 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// Those of [`log_folders`]; [`Error::Value`] that names the file.
 pub fn check_keeps_logs(out: &Path, folders: &[PathBuf], net: Option<&Path>) -> Result<()> {
     let logs = log_folders(folders)?;
-    let read = logs.iter().flat_map(|log| files(log).chain([log.join(PARQUET)])).chain(net.map(Path::to_owned));
+    let read = logs.iter().flat_map(|log| files(log)).chain(net.map(Path::to_owned));
     let read = read.collect::<Vec<_>>();
     let over = same_file(out, read.iter().map(|file| &**file));
     over.map_or(Ok(()), |over| Err(Error::Value(format!("--out would be written over {}", over.display()))))

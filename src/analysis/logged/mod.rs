@@ -3,7 +3,6 @@
 //! Statistics, reports and Python take conflicts from here. A folder is a log if it holds `conflicts.csv`, or
 //! `conflicts.parquet` as a sweep writes it. Several logs may be below one folder, at any depth.
 
-mod conflicts;
 mod csv;
 mod folders;
 #[cfg(feature = "parquet")]
@@ -20,7 +19,7 @@ mod run;
 
 pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
-pub use pack::{Label, LabelValue, pack};
+pub use pack::{Label, LabelValue, pack, pack_in_place};
 #[cfg(feature = "parquet")]
 pub use parquet::{Packed, RunTime};
 pub use reader::{ConflictReader, LostRows, check_none_lost};

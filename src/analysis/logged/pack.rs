@@ -15,8 +15,9 @@ use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunT
 use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;
+use crate::output::log::{CONFLICTS, PARQUET};
 use crate::output::parquet_columns::{self, fill};
-use crate::output::schema::{COLUMNS, Column, Presence};
+use crate::output::schema::Column;
 use crate::util::output_file::OutputFile;
 use crate::util::parquet_column::unreadable;
 use crate::{Error, Result};
@@ -61,6 +62,16 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTim
     file.finish()
 }
 
+/// Turns the `conflicts.csv` of a log into `conflicts.parquet`.
+///
+/// # Errors
+/// Those of [`pack`]; [`Error::File`] where the CSV file cannot be removed.
+pub fn pack_in_place(folder: &Path) -> Result<()> {
+    pack(folder, &[], "", RunTime::default(), &folder.join(PARQUET))?;
+    let csv = folder.join(CONFLICTS);
+    std::fs::remove_file(&csv).map_err(|source| Error::file(&csv, source))
+}
+
 enum Fault {
     Own(Error),
     Parquet(ParquetError),
@@ -79,10 +90,7 @@ fn write(
     metadata: [(&str, String); 3],
 ) -> std::result::Result<(), Fault> {
     let file = HashedFile { file, hasher: Hasher::default() };
-    let logged = conflicts.columns();
-    let is_there =
-        |column: &&Column| column.presence != Presence::Chosen || logged.iter().any(|name| name == column.name);
-    let columns = COLUMNS.iter().filter(is_there).collect::<Vec<_>>();
+    let columns = conflicts.columns_of_schema();
     let mut writer = SerializedFileWriter::new(file, schema(&columns, labels)?, parquet_columns::properties())?;
     let mut rows = Vec::with_capacity(1024);
     loop {
@@ -175,7 +183,7 @@ mod tests {
     use crate::analysis::logged::pack::*;
     use crate::analysis::logged::{PARQUET, Packed};
     use crate::output::log::{CONFLICTS, RUN};
-    use crate::output::schema::{ColumnType, LoggedConflict};
+    use crate::output::schema::{COLUMNS, ColumnType, LoggedConflict};
 
     fn labels() -> [Label; 3] {
         [

@@ -7,7 +7,7 @@ use super::folders::PARQUET;
 use super::parquet::ParquetLog;
 use super::run::LoggedRun;
 use crate::output::log::CONFLICTS;
-use crate::output::schema::LoggedConflict;
+use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
 use crate::{Error, Result};
 
 /// The conflicts of one log folder, one by one, in the order of the file. Memory does not grow with their number.
@@ -141,6 +141,14 @@ impl ConflictReader {
             LogFile::Csv(log) => log.columns(),
             LogFile::Parquet(log) => log.columns(),
         }
+    }
+
+    /// The columns of the schema without those that its run was not told to add.
+    pub fn columns_of_schema(&self) -> Vec<&'static Column> {
+        let logged = self.columns();
+        let is_there =
+            |column: &&Column| column.presence != Presence::Chosen || logged.iter().any(|name| name == column.name);
+        COLUMNS.iter().filter(is_there).collect()
     }
 
     /// The file.

@@ -13,6 +13,11 @@ use crate::traffic::roster::Roster;
 use crate::util::units::Second;
 
 impl Detector {
+    /// The measures that are computed besides those that every run has.
+    pub fn measures(&self) -> Measures {
+        self.options.measures
+    }
+
     /// The values of the chosen measures of a pair in this step; none where none is chosen.
     pub fn added(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<AddedValues>> {
         let measures = self.options.measures;

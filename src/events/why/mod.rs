@@ -15,6 +15,7 @@ pub use pair::Surroundings;
 use super::past::Past;
 use crate::detection::encounter::Encounter;
 use crate::traffic::frame::Frame;
+use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::Roster;
 use pair::Pair;
 
@@ -24,6 +25,8 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
+    /// The lanes that the ego and the foe are on.
+    pub lanes: [Option<LaneIndex>; 2],
 }
 
 impl Why {
@@ -31,7 +34,8 @@ impl Why {
     pub fn of(step: (&Frame, &Roster, &Encounter), around: Surroundings, past: &Past) -> Self {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
-        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre) }
+        let lanes = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0));
+        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), lanes }
     }
 
     /// The same with a later step that is worse.
@@ -39,7 +43,7 @@ impl Why {
         let manoeuvre = later.manoeuvre.or(self.manoeuvre);
         let mut causes = self.causes;
         causes.add(later.causes);
-        Self { manoeuvre, causes: causes.that_fit(manoeuvre) }
+        Self { manoeuvre, causes: causes.that_fit(manoeuvre), ..later }
     }
 }
 
@@ -49,8 +53,11 @@ mod tests {
 
     #[test]
     fn a_change_of_lanes_is_no_cause_once_they_follow() {
-        let step =
-            |manoeuvre, causes: &[Cause]| Why { manoeuvre: Some(manoeuvre), causes: causes.iter().copied().collect() };
+        let step = |manoeuvre, causes: &[Cause]| Why {
+            manoeuvre: Some(manoeuvre),
+            causes: causes.iter().copied().collect(),
+            ..Why::default()
+        };
         let changes = step(Manoeuvre::CutIn, &[Cause::ChangedLane, Cause::TooFast]);
         let causes = |later| changes.then(step(later, &[])).causes.to_string();
         assert_eq!([Manoeuvre::Following, Manoeuvre::LaneChange].map(causes), ["too_fast", "changed_lane too_fast"]);

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::lanes::{Lanes, distance};
-use super::projection::Projection;
 use super::recording::Recording;
 use super::rows::{RecordedRow, RecordedStep};
+use crate::traffic::net::projection::Projection;
 use crate::traffic::net::{LaneIndex, Net};
 use crate::util::units::Metre;
 use crate::{Error, Result};
@@ -57,7 +57,7 @@ fn end_of_cut_short(error: Error) -> Result<bool> {
 fn fitting(row: &RecordedRow, net: &Net, lane: LaneIndex) -> std::result::Result<Option<Projection>, String> {
     let in_metres = distance(row, net, lane);
     let may_be_degrees = row.x.abs() <= 180.0 && row.y.abs() <= 90.0;
-    let projection = if may_be_degrees { Projection::of(net) } else { Ok(None) };
+    let projection = if may_be_degrees { Projection::of(net.location.as_ref()) } else { Ok(None) };
     let place = projection.as_ref().ok().and_then(|projection| projection.as_ref()?.place(row.x, row.y));
     let in_degrees =
         place.map_or(f64::INFINITY, |place| distance(&RecordedRow { x: place.x, y: place.y, ..*row }, net, lane));

@@ -20,7 +20,6 @@ mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "no_parquet.rs"]
 mod parquet;
-pub mod projection;
 pub mod recording;
 pub mod routes;
 pub mod rows;
@@ -41,13 +40,13 @@ use crate::options::{Options, PathModel};
 use crate::run::Run;
 use crate::traffic::frame::State;
 use crate::traffic::net::Net;
+use crate::traffic::net::projection::Projection;
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
 use lanes::{Lanes, heading};
-use projection::Projection;
 use recording::Recording;
 use routes::Routes;
 use rows::{RecordedRow, RecordedStep};
@@ -93,8 +92,8 @@ impl Replay {
     ///
     /// # Errors
     /// An error that names the file and what is wrong with it.
-    pub fn open(path: &Path, demand_files: &[PathBuf], net: &Net, options: &Options) -> Result<Self> {
-        let (types, planned) = demand::read(demand_files, net)?;
+    pub fn open(path: &Path, demand_files: &[PathBuf], net: Option<&Net>, options: &Options) -> Result<Self> {
+        let (types, planned) = demand::read(demand_files, net.unwrap_or(&Net::default()))?;
         let mut recording = Recording::open(path)?;
         let mut step = RecordedStep::default();
         let mut second_step = RecordedStep::default();
@@ -110,9 +109,9 @@ impl Replay {
             Err(error) => return Err(error),
         };
         let step_length = if has_second_step { second_step.time - step.time } else { 1.0 };
-        let projection = fit::projection(path, net)?;
-        let follows_lanes = options.path == PathModel::Lanes;
-        let routes = follows_lanes.then(|| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
+        let projection = net.map(|net| fit::projection(path, net)).transpose()?.flatten();
+        let on_lanes = net.filter(|_| options.path == PathModel::Lanes);
+        let routes = on_lanes.map(|net| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
         Ok(Self {
             path: path.to_path_buf(),
             recording,
@@ -211,7 +210,7 @@ impl Replay {
     /// Fills the run's frame with the rows of the step.
     fn fill(&mut self, run: &mut Run) -> Result<()> {
         if let Some(projection) = &self.projection {
-            projection.project(&mut self.step).map_err(|message| Error::content(&self.path, message))?;
+            self.step.project(projection).map_err(|message| Error::content(&self.path, message))?;
         }
         self.vehicles.clear();
         if self.step.persons() > 0 {

@@ -16,10 +16,10 @@ use super::demand::PlannedRoutes;
 use super::drive::Moment;
 use super::lanes::{Lanes, edges_of, is_against};
 use super::lists::{ListWriter, Lists, Place, temporary, unusable};
-use super::projection::Projection;
 use super::recording::Recording;
 use super::rows::RecordedStep;
 use super::vehicles::{Vehicle, Vehicles};
+use crate::traffic::net::projection::Projection;
 use crate::traffic::net::{EdgeIndex, Net};
 use crate::{Error, Result};
 
@@ -67,7 +67,7 @@ impl Routes {
                 Err(error) => return Err(error),
             }
             if let Some(projection) = projection {
-                projection.project(&mut step).map_err(|message| Error::content(path, message))?;
+                step.project(projection).map_err(|message| Error::content(path, message))?;
             }
             let time = step.time;
             let now = moment.map_or(Moment { step: 0, time, before: time }, |last| Moment {

@@ -6,6 +6,7 @@ use super::names::{Numbers, Users};
 use super::number::number;
 use crate::Error;
 use crate::traffic::frame::is_nowhere;
+use crate::traffic::net::projection::Projection;
 use crate::util::limits::{ANGLE, HEIGHT, LANE_LENGTH, Limit, POSITION, SPEED, TIME};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
@@ -62,8 +63,18 @@ impl RecordedStep {
         &self.gone
     }
 
-    pub(super) fn rows_mut(&mut self) -> &mut [RecordedRow] {
-        &mut self.rows
+    /// Moves all road users from degrees to metres.
+    ///
+    /// # Errors
+    /// A message that names a position without a place in the net.
+    pub(super) fn project(&mut self, projection: &Projection) -> Result<(), String> {
+        for row in &mut self.rows {
+            let place = projection.place(row.x, row.y);
+            let place =
+                place.ok_or_else(|| format!("({}, {}) are not degrees of longitude and latitude", row.x, row.y))?;
+            (row.x, row.y) = (place.x, place.y);
+        }
+        Ok(())
     }
 
     pub(super) fn begin(&mut self, time: Second, users: &mut Users) {

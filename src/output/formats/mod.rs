@@ -1,5 +1,14 @@
-//! Files in the formats of other tools, written next to the log: SUMO's SSM device, FHWA's SSAM.
+//! Files in the formats of other tools: written next to the log (SUMO's SSM device, FHWA's SSAM), or exported from it (these,
+//! maps, sumo-gui).
 
+mod exported;
+mod geojson;
+#[cfg(feature = "parquet")]
+mod geoparquet;
+#[cfg(feature = "gpkg")]
+mod gpkg;
+mod place;
+mod poi;
 mod ssm;
 mod trajectories;
 
@@ -13,8 +22,10 @@ use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::output_file::same_file;
 use crate::{Error, Result};
+pub use exported::{ExportFormat, Exported};
 use ssm::Ssm;
 use trajectories::Trajectories;
+pub use trajectories::{FAR, origin as origin_of_trajectories};
 
 /// Which files to write besides the log, and what becomes of an earlier log.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -29,9 +40,24 @@ pub struct OutputFiles {
     /// Replace an earlier log in the folder, instead of keeping it in the folder's own folder earlier.
     #[cfg_attr(feature = "cli", arg(long))]
     pub force: bool,
+    /// Format of the conflicts in the log. Parquet is made of conflicts.csv when the run has ended, and replaces it.
+    #[cfg(feature = "parquet")]
+    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
+    pub log_format: LogFormat,
     /// Begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
     #[cfg_attr(feature = "cli", arg(long))]
     pub csv_safe: bool,
+}
+
+/// The format of the conflicts in a log.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum LogFormat {
+    /// conflicts.csv.
+    #[default]
+    Csv,
+    /// conflicts.parquet, with run.json in it.
+    Parquet,
 }
 
 impl OutputFiles {

@@ -11,8 +11,10 @@ use quick_xml::escape::escape;
 use crate::Result;
 use crate::detection::kind::Kind;
 use crate::events::{Conflict, Moment};
+use crate::output::schema::LoggedConflict;
 use crate::util::decimal::shortest;
 use crate::util::output_file::OutputFile;
+use crate::util::units::Second;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;
@@ -42,6 +44,19 @@ impl Ssm {
 
     /// Appends a conflict.
     pub fn write_conflict(&mut self, conflict: &Conflict) -> Result<()> {
+        let Conflict { kind, collision, begin, end, ttc, drac, pet, found, .. } = *conflict;
+        let (ego, foe) = (&*conflict.ego, &*conflict.foe);
+        self.append(&Element { ego, foe, kind, collision, begin, end, values: [ttc, drac, pet], found })
+    }
+
+    /// Appends a conflict of a log, which does not tell when and where its extremes were.
+    pub fn write_logged(&mut self, conflict: &LoggedConflict) -> Result<()> {
+        let LoggedConflict { kind, collision, begin, end, ttc, drac, pet, .. } = *conflict;
+        let (ego, foe) = (&*conflict.ego, &*conflict.foe);
+        self.append(&Element { ego, foe, kind, collision, begin, end, values: [ttc, drac, pet], found: [None; 3] })
+    }
+
+    fn append(&mut self, conflict: &Element) -> Result<()> {
         self.file.append(element(conflict).as_bytes())
     }
 
@@ -52,25 +67,35 @@ impl Ssm {
     }
 }
 
-fn element(conflict: &Conflict) -> String {
+/// A conflict as the format has it.
+struct Element<'a> {
+    ego: &'a str,
+    foe: &'a str,
+    kind: Kind,
+    collision: bool,
+    begin: Second,
+    end: Second,
+    /// The TTC, the DRAC and the PET.
+    values: [Option<f64>; 3],
+    /// When and where they were found, if that is known.
+    found: [Option<Moment>; 3],
+}
+
+fn element(conflict: &Element) -> String {
     let code = match conflict.kind {
         _ if conflict.collision => COLLISION,
         Kind::RearEnd => FOLLOWING_FOLLOWER,
         Kind::Side => CROSSING_FOLLOWER,
         Kind::Frontal => ONCOMING,
     };
-    let (ego, foe) = (escape(&*conflict.ego), escape(&*conflict.foe));
+    let (ego, foe) = (escape(conflict.ego), escape(conflict.foe));
     let mut text = format!(
         "    <conflict begin=\"{}\" end=\"{}\" ego=\"{ego}\" foe=\"{foe}\">\n",
         decimal(conflict.begin),
         decimal(conflict.end)
     );
-    let [ttc, drac, pet] = conflict.found;
-    for (name, value, moment, code) in [
-        ("minTTC", conflict.ttc, ttc, code),
-        ("maxDRAC", conflict.drac, drac, code),
-        ("PET", conflict.pet, pet, BOTH_LEFT),
-    ] {
+    let names = [("minTTC", code), ("maxDRAC", code), ("PET", BOTH_LEFT)];
+    for (((name, code), value), moment) in names.into_iter().zip(conflict.values).zip(conflict.found) {
         // Writing to a String cannot fail.
         let _ = match (value, moment) {
             (Some(value), Some(Moment { time, x, y, speed })) => writeln!(
@@ -82,7 +107,14 @@ fn element(conflict: &Conflict) -> String {
                 decimal(value),
                 decimal(speed)
             ),
-            _ => writeln!(text, "        <{name} time=\"NA\" position=\"NA\" type=\"NA\" value=\"NA\" speed=\"NA\"/>"),
+            (Some(value), None) => writeln!(
+                text,
+                "        <{name} time=\"NA\" position=\"NA\" type=\"{code}\" value=\"{}\" speed=\"NA\"/>",
+                decimal(value)
+            ),
+            (None, _) => {
+                writeln!(text, "        <{name} time=\"NA\" position=\"NA\" type=\"NA\" value=\"NA\" speed=\"NA\"/>")
+            }
         };
     }
     text + "    </conflict>\n"

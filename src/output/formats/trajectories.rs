@@ -35,7 +35,7 @@ const VERSION: f32 = 3.0;
 const METRIC: u8 = 1;
 const SCALE: f32 = 1.0;
 /// An f32 of up to this is right to 4 mm, in m.
-const FAR: Metre = 131_072.0;
+pub const FAR: Metre = 131_072.0;
 /// A vehicle's middle is at most this far outside the lanes' bounds, in m.
 const MARGIN: Metre = 20.0;
 const DAY: Second = 86_400.0;
@@ -57,6 +57,19 @@ pub struct Trajectories {
     record: Vec<u8>,
 }
 
+fn bounds(net: &Net) -> Bounds {
+    let mut bounds = Bounds::EMPTY;
+    net.lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
+    bounds
+}
+
+/// What places in the file are relative to: the corner of a net that is far from SUMO's origin.
+pub fn origin(net: &Net) -> Vector {
+    let bounds = bounds(net);
+    let is_far = bounds.low.coords.amax().max(bounds.high.coords.amax()) > FAR;
+    if is_far { bounds.low.coords.map(f64::floor) } else { Vector::zeros() }
+}
+
 /// A vehicle in the previous step.
 #[derive(Debug)]
 struct PreviousStep {
@@ -73,10 +86,7 @@ impl Trajectories {
         file.append(&VERSION.to_le_bytes())?;
         // The flag that records have heights.
         file.append(&[1])?;
-        let mut bounds = Bounds::EMPTY;
-        net.lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
-        let is_far = bounds.low.coords.amax().max(bounds.high.coords.amax()) > FAR;
-        let origin = if is_far { bounds.low.coords.map(f64::floor) } else { Vector::zeros() };
+        let (bounds, origin) = (bounds(net), origin(net));
         let (low, high) = (bounds.low - origin, bounds.high - origin);
         file.append(&[DIMENSIONS, METRIC])?;
         file.append(&SCALE.to_le_bytes())?;

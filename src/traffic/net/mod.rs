@@ -10,10 +10,11 @@ pub mod filter;
 mod finder;
 mod network;
 mod overlaps;
+pub mod projection;
 mod quality;
 mod reader;
 
-pub use elements::{Direction, EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Location, Passage, Signal};
+pub use elements::{Direction, EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Passage, Signal};
 pub use network::Net;
 pub use overlaps::{Overlap, Overlaps};
 

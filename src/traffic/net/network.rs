@@ -1,5 +1,7 @@
 //! A road network.
 
+use std::sync::{Arc, OnceLock};
+
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
@@ -7,9 +9,10 @@ use super::elements::{
     Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
 };
 use super::finder::Finder;
-use crate::geometry::Bounds;
+use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
-use crate::util::units::Metre;
+use crate::geometry::{Bounds, Point};
+use crate::util::units::{Degree, Metre};
 
 /// A road network.
 #[derive(Clone, Debug, Default)]
@@ -37,6 +40,8 @@ pub struct Net {
     pub(super) passages: Vec<Passage>,
     /// By lane, the passage that it is part of; [`NO_PASSAGE`] for others.
     pub(super) passage_of: Vec<u32>,
+    /// What [`Net::degrees`] takes, made where it is first needed; none where the net has none that is supported.
+    pub(super) projection: OnceLock<Option<Arc<Projection>>>,
     /// The lowest and the highest point of all lanes, in m.
     pub(super) heights: [Metre; 2],
 }
@@ -107,6 +112,11 @@ impl Net {
         self.finder.lane_at(&self.lanes, place)
     }
 
+    /// The lanes that a place is on, or within a distance of, in no particular order.
+    pub fn lanes_at(&self, place: Point2<Metre>, within: Metre) -> impl Iterator<Item = LaneIndex> {
+        self.finder.lanes_at(&self.lanes, place, within)
+    }
+
     /// The length of a lane's shape.
     pub fn drawn_length(&self, lane: LaneIndex) -> Metre {
         let line = self.lines.line(lane.0);
@@ -127,6 +137,13 @@ impl Net {
     pub fn is_near(&self, junction: JunctionIndex, place: Point2<Metre>, distance: Metre) -> bool {
         let bounds = &self.junction_bounds[junction.0 as usize];
         bounds.is_empty() || bounds.grown(distance).meet(&Bounds { low: place, high: place })
+    }
+
+    /// The degrees of longitude and latitude of a place; none where its projection is not known or not supported.
+    pub fn degrees(&self, place: Point) -> Option<[Degree; 2]> {
+        let projection =
+            self.projection.get_or_init(|| Projection::of(self.location.as_ref()).ok().flatten().map(Arc::new));
+        projection.as_ref()?.degrees(place)
     }
 
     /// The id of a lane.

@@ -1,4 +1,4 @@
-//! From degrees (`--fcd-output.geo`) to the net's metres.
+//! Between degrees (`--fcd-output.geo`, the columns `lon` and `lat`) and the net's metres.
 //!
 //! As in SUMO, only the net's projection is applied, without a shift between datums: the degrees are those of the
 //! projection's own ellipsoid.
@@ -6,11 +6,10 @@
 use proj4rs::Proj;
 use proj4rs::transform::transform;
 
-use super::rows::RecordedStep;
+use super::elements::Location;
 use crate::geometry::{Point, Vector};
-use crate::traffic::net::{Location, Net};
 use crate::util::limits::POSITION;
-use crate::util::units::Metre;
+use crate::util::units::{Degree, Metre};
 
 /// Parameters of a projection that describe its ellipsoid.
 const ELLIPSOID: [&str; 9] = ["+ellps=", "+datum=", "+a=", "+b=", "+rf=", "+f=", "+R=", "+towgs84=", "+nadgrids="];
@@ -18,23 +17,25 @@ const ELLIPSOID: [&str; 9] = ["+ellps=", "+datum=", "+a=", "+b=", "+rf=", "+f=",
 const SIMPLE: [Metre; 2] = [111_320.0, 111_136.0];
 
 /// The projection of a net.
+#[derive(Debug)]
 pub struct Projection {
     plane: Plane,
     offset: Vector,
 }
 
+#[derive(Debug)]
 enum Plane {
     Simple,
     Proj { degrees: Box<Proj>, metres: Box<Proj> },
 }
 
 impl Projection {
-    /// The projection of a net, if it has one.
+    /// The projection of a net with this location, if it has one.
     ///
     /// # Errors
     /// A message if it is not supported.
-    pub fn of(net: &Net) -> Result<Option<Self>, String> {
-        let Some(Location { offset, projection }) = &net.location else { return Ok(None) };
+    pub fn of(location: Option<&Location>) -> Result<Option<Self>, String> {
+        let Some(Location { offset, projection }) = location else { return Ok(None) };
         let plane = match projection.as_str() {
             "!" => return Ok(None),
             "-" => Plane::Simple,
@@ -53,7 +54,7 @@ impl Projection {
     }
 
     /// The place in the net of degrees of longitude and latitude; none where the projection has none.
-    pub fn place(&self, longitude: f64, latitude: f64) -> Option<Point> {
+    pub fn place(&self, longitude: Degree, latitude: Degree) -> Option<Point> {
         let place = match &self.plane {
             Plane::Simple => Point::new(longitude * SIMPLE[0] * latitude.to_radians().cos(), latitude * SIMPLE[1]),
             Plane::Proj { degrees, metres } => {
@@ -65,18 +66,21 @@ impl Projection {
         Some(place + self.offset).filter(|place| POSITION.holds(place.x) && POSITION.holds(place.y))
     }
 
-    /// Moves all road users of a step from degrees to metres.
-    ///
-    /// # Errors
-    /// A message that names a position without a place in the net.
-    pub(super) fn project(&self, step: &mut RecordedStep) -> Result<(), String> {
-        for row in step.rows_mut() {
-            let place = self.place(row.x, row.y);
-            let place =
-                place.ok_or_else(|| format!("({}, {}) are not degrees of longitude and latitude", row.x, row.y))?;
-            (row.x, row.y) = (place.x, place.y);
-        }
-        Ok(())
+    /// The degrees of longitude and latitude of a place in the net; none where the projection has none.
+    pub fn degrees(&self, place: Point) -> Option<[Degree; 2]> {
+        let place = place - self.offset;
+        let degrees = match &self.plane {
+            Plane::Simple => {
+                let latitude = place.y / SIMPLE[1];
+                [place.x / (SIMPLE[0] * latitude.to_radians().cos()), latitude]
+            }
+            Plane::Proj { degrees, metres } => {
+                let mut place = (place.x, place.y, 0.0);
+                transform(metres, degrees, &mut place).ok()?;
+                [place.0.to_degrees(), place.1.to_degrees()]
+            }
+        };
+        Some(degrees).filter(|degrees| degrees.iter().all(|degree| degree.is_finite()))
     }
 }
 
@@ -84,19 +88,20 @@ impl Projection {
 mod tests {
     use std::path::Path;
 
-    use crate::input::replay::projection::*;
+    use super::*;
+    use crate::traffic::net::Net;
 
     fn projection(parameters: &str) -> Result<Option<Projection>, String> {
         let text = format!(
             r#"<net><location netOffset="-385000.00,-5819000.00" projParameter="{parameters}"/>
             <edge id="a"><lane id="a_0" length="9" shape="0,0 9,0"/></edge></net>"#
         );
-        Projection::of(&Net::parse(Path::new("net"), text).unwrap())
+        Projection::of(Net::parse(Path::new("net"), text).unwrap().location.as_ref())
     }
 
     /// The places are sumolib's, by pyproj.
     #[test]
-    fn degrees_become_the_metres_of_the_projection() {
+    fn degrees_become_metres_and_metres_degrees() {
         for (parameters, place) in [
             ("+proj=utm +zone=33 +ellps=WGS84 +datum=WGS84 +units=m +no_defs", (4404.6735, 1125.2065)),
             (
@@ -107,6 +112,8 @@ mod tests {
         ] {
             let found = projection(parameters).unwrap().unwrap().place(13.37, 52.52).unwrap();
             assert!((found - Point::new(place.0, place.1)).norm() < 1e-3, "{parameters}: {found}");
+            let back = projection(parameters).unwrap().unwrap().degrees(found).unwrap();
+            assert!((back[0] - 13.37).abs() < 1e-9 && (back[1] - 52.52).abs() < 1e-9, "{parameters}: {back:?}");
         }
     }
 

@@ -1,0 +1,242 @@
+//! Python's `Table`: conflicts as Arrow columns, which pandas, Polars, DuckDB and PyArrow take without a copy.
+//!
+//! Arrow's own C interface carries them (`__arrow_c_stream__`), so that neither side needs the other's library: PyArrow and
+//! libsumo cannot be loaded into one process.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use arrow_array::builder::{BooleanBuilder, Float64Builder, StringBuilder, UInt64Builder};
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::{
+    Array, ArrayRef, BooleanArray, Float64Array, RecordBatch, RecordBatchIterator, StringArray, UInt64Array,
+};
+use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
+use closecall::internals::analysis::ConflictReader;
+use closecall::internals::output::{Column, ColumnType, LoggedConflict, Value};
+use numpy::PyArray1;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyDict, PyList};
+
+use crate::error::exception;
+
+/// Rows of a batch.
+const BATCH: usize = 1 << 16;
+/// Rows that a notebook shows.
+const SHOWN: usize = 10;
+/// The columns that a notebook shows.
+const TELLING: [&str; 10] = ["id", "time", "kind", "severity", "ego", "foe", "margin", "ttc", "pet", "lane"];
+
+/// Conflicts as a table of Arrow columns: those of conflicts.csv (docs/log.md), null where a value is missing.
+///
+/// Whatever takes Arrow data takes it as it is: `polars.DataFrame(table)`, `pyarrow.table(table)`, `duckdb.sql("FROM table")`.
+#[pyclass(frozen, module = "closecall", name = "Table")]
+pub struct Table {
+    schema: SchemaRef,
+    batches: Vec<RecordBatch>,
+}
+
+impl Table {
+    /// The table of these conflicts with these columns.
+    pub fn of<E>(
+        columns: &[&'static Column],
+        mut conflicts: impl Iterator<Item = Result<LoggedConflict, E>>,
+        wrong: impl Fn(E) -> PyErr,
+    ) -> PyResult<Self> {
+        let fields = columns.iter().map(|column| {
+            let unit = [("unit".to_owned(), column.unit().to_owned())].into_iter().filter(|(_, unit)| !unit.is_empty());
+            Field::new(column.name, data_type(column.column_type), true)
+                .with_metadata(unit.collect::<std::collections::HashMap<_, _>>())
+        });
+        let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
+        let mut batches = Vec::new();
+        loop {
+            let rows = conflicts.by_ref().take(BATCH).collect::<Result<Vec<_>, E>>().map_err(&wrong)?;
+            if rows.is_empty() {
+                return Ok(Self { schema, batches });
+            }
+            let arrays = columns.iter().map(|column| array(column, &rows)).collect();
+            batches.push(RecordBatch::try_new(schema.clone(), arrays).map_err(failed)?);
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.batches.iter().map(RecordBatch::num_rows).sum()
+    }
+}
+
+#[pymethods]
+impl Table {
+    /// The names of the columns.
+    #[getter]
+    fn columns(&self) -> Vec<String> {
+        self.schema.fields().iter().map(|field| field.name().clone()).collect()
+    }
+
+    /// The columns by name: numbers as NumPy arrays, NaN where they are missing; texts and flags as lists, None where they are.
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (place, field) in self.schema.fields().iter().enumerate() {
+            let parts = self.batches.iter().map(|batch| batch.column(place));
+            dict.set_item(field.name(), python(py, field.data_type(), parts)?)?;
+        }
+        Ok(dict)
+    }
+
+    /// A `pandas.DataFrame`; PyArrow is not needed.
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        py.import("pandas")?.getattr("DataFrame")?.call1((self.to_dict(py)?,))
+    }
+
+    /// A `polars.DataFrame`.
+    fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        slf.py().import("polars")?.getattr("DataFrame")?.call1((slf,))
+    }
+
+    /// The Arrow C stream of the columns; the schema that a caller may ask for is not regarded, as Arrow allows.
+    #[pyo3(signature = (requested_schema=None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        let _ = requested_schema;
+        let batches = self.batches.clone().into_iter().map(Ok::<_, ArrowError>);
+        let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new(batches, self.schema.clone())));
+        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+    }
+
+    fn __len__(&self) -> usize {
+        self.rows()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Table({} conflicts, {} columns)", self.rows(), self.schema.fields().len())
+    }
+
+    /// The first rows for a notebook.
+    fn _repr_html_(&self) -> String {
+        let shown = TELLING.iter().filter_map(|name| Some((*name, self.schema.index_of(name).ok()?)));
+        let shown = shown.collect::<Vec<_>>();
+        let mut html = "<table><thead><tr>".to_owned();
+        shown.iter().for_each(|(name, _)| _ = write!(html, "<th>{name}</th>"));
+        html += "</tr></thead><tbody>";
+        for row in 0..SHOWN.min(self.rows()) {
+            html += "<tr>";
+            for (_, place) in &shown {
+                // The first batch has more rows than are shown.
+                _ = write!(html, "<td>{}</td>", escaped(&cell(self.batches[0].column(*place), row)));
+            }
+            html += "</tr>";
+        }
+        _ = write!(html, "</tbody></table><p>{} conflicts, {} columns</p>", self.rows(), self.schema.fields().len());
+        html
+    }
+}
+
+fn data_type(column: ColumnType) -> DataType {
+    match column {
+        ColumnType::Count => DataType::UInt64,
+        ColumnType::Text => DataType::Utf8,
+        ColumnType::Number => DataType::Float64,
+        ColumnType::Flag => DataType::Boolean,
+    }
+}
+
+/// A column of these rows.
+fn array(column: &Column, rows: &[LoggedConflict]) -> ArrayRef {
+    let values = rows.iter().map(column.get);
+    match column.column_type {
+        ColumnType::Count => {
+            let mut builder = UInt64Builder::with_capacity(rows.len());
+            values.for_each(|value| {
+                builder.append_option(if let Value::Count(count) = value { Some(count) } else { None })
+            });
+            Arc::new(builder.finish())
+        }
+        ColumnType::Number => {
+            let mut builder = Float64Builder::with_capacity(rows.len());
+            values.for_each(|value| builder.append_option(if let Value::Number(it) = value { Some(it) } else { None }));
+            Arc::new(builder.finish())
+        }
+        ColumnType::Flag => {
+            let mut builder = BooleanBuilder::with_capacity(rows.len());
+            values
+                .for_each(|value| builder.append_option(if let Value::Flag(flag) = value { Some(flag) } else { None }));
+            Arc::new(builder.finish())
+        }
+        ColumnType::Text => {
+            let mut builder = StringBuilder::new();
+            values.for_each(|value| {
+                builder.append_option(if let Value::Text(text) = value {
+                    Some(text).filter(|it| !it.is_empty())
+                } else {
+                    None
+                });
+            });
+            Arc::new(builder.finish())
+        }
+    }
+}
+
+/// A column as NumPy and Python have it.
+fn python<'py, 'a>(
+    py: Python<'py>,
+    data_type: &DataType,
+    parts: impl Iterator<Item = &'a ArrayRef>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let parts = parts.map(|part| part.as_any());
+    Ok(match data_type {
+        DataType::Float64 => {
+            let numbers = parts.filter_map(|part| part.downcast_ref::<Float64Array>()).flatten();
+            PyArray1::from_iter(py, numbers.map(|number| number.unwrap_or(f64::NAN))).into_any()
+        }
+        DataType::UInt64 => {
+            let counts = parts.filter_map(|part| part.downcast_ref::<UInt64Array>()).flatten();
+            PyArray1::from_iter(py, counts.map(Option::unwrap_or_default)).into_any()
+        }
+        DataType::Boolean => {
+            let flags = parts.filter_map(|part| part.downcast_ref::<BooleanArray>()).flatten();
+            PyList::new(py, flags.collect::<Vec<_>>())?.into_any()
+        }
+        _ => {
+            let texts = parts.filter_map(|part| part.downcast_ref::<StringArray>()).flatten();
+            PyList::new(py, texts.collect::<Vec<_>>())?.into_any()
+        }
+    })
+}
+
+/// A value as a notebook shows it; empty where it is missing.
+fn cell(array: &ArrayRef, row: usize) -> String {
+    if array.is_null(row) {
+        return String::new();
+    }
+    let any = array.as_any();
+    let number = any.downcast_ref::<Float64Array>().map(|numbers| format!("{:.2}", numbers.value(row)));
+    let count = || any.downcast_ref::<UInt64Array>().map(|counts| counts.value(row).to_string());
+    let text = || any.downcast_ref::<StringArray>().map(|texts| texts.value(row).to_owned());
+    number.or_else(count).or_else(text).unwrap_or_default()
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+fn failed(error: ArrowError) -> PyErr {
+    PyRuntimeError::new_err(error.to_string())
+}
+
+/// The conflicts of a log folder as a table, in the order of the file.
+///
+/// Raises:
+///     OSError: the log is missing or cannot be read.
+///     ValueError: it is not a log.
+#[pyfunction]
+pub fn read(py: Python, folder: PathBuf) -> PyResult<Table> {
+    py.detach(|| {
+        let conflicts = ConflictReader::open(&folder).map_err(exception)?.with_snapshots();
+        Table::of(&conflicts.columns_of_schema(), conflicts, exception)
+    })
+}

@@ -1,0 +1,46 @@
+//! A log in the formats of other tools: maps (QGIS), sumo-gui and netedit, SUMO's SSM device. Memory does not grow with it.
+
+use std::path::{Path, PathBuf};
+
+use super::logged::{ConflictReader, LostRows, Progress, Reading, check_keeps_logs, log_folders};
+use crate::output::formats::{ExportFormat, Exported};
+use crate::{Error, Result};
+
+/// What was written.
+#[derive(Debug)]
+pub struct Made {
+    /// The number of conflicts.
+    pub conflicts: u64,
+    /// What the log lacks.
+    pub lost: Option<LostRows>,
+}
+
+/// Writes the log in a folder, or in one below it, to `out`, whole or not at all.
+///
+/// # Errors
+/// Those of reading the log; [`Error::Content`] where the folder holds several; [`Error::Value`] where the format cannot
+/// hold it or it would be written over the log; those of writing `out`.
+pub fn write(folder: &Path, format: ExportFormat, out: &Path, progress: &mut Progress) -> Result<Made> {
+    let named = [PathBuf::from(folder)];
+    check_keeps_logs(out, &named, None)?;
+    let logs = log_folders(&named)?;
+    let [log] = &logs[..] else {
+        let first = logs.first().map(|log| log.display().to_string()).unwrap_or_default();
+        return Err(Error::content(
+            folder,
+            format!("{} logs are in it; name one of them, such as {first}", logs.len()),
+        ));
+    };
+    let mut conflicts = ConflictReader::open(log)?.with_snapshots();
+    let mut reading = Reading::new(0, progress);
+    let first = conflicts.next().transpose()?;
+    let mut file = Exported::create(out, format, conflicts.columns_of_schema(), first.as_ref())?;
+    let mut written = 0;
+    for conflict in first.map(Ok).into_iter().chain(conflicts.by_ref()) {
+        file.write(conflict?)?;
+        written += 1;
+        reading.count();
+    }
+    file.finish()?;
+    Ok(Made { conflicts: written, lost: conflicts.lost() })
+}

@@ -1,0 +1,33 @@
+//! The formats of recordings.
+
+/// A format of recordings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+pub enum RecordingFormat {
+    /// SUMO's fcd-output.
+    Fcd,
+    /// SSAM's trajectories, 1.04 and 3.0.
+    Trj,
+    /// Vissim's vehicle record, with COORDFRONT and COORDREAR.
+    Fzp,
+    /// Any table, with --columns.
+    Table,
+    /// inD, rounD, exiD and uniD.
+    #[cfg_attr(feature = "cli", value(name = "inD", alias = "ind", aliases = ["rounD", "exiD", "uniD"]))]
+    InD,
+    /// highD.
+    #[cfg_attr(feature = "cli", value(name = "highD", alias = "highd"))]
+    HighD,
+    /// NGSIM.
+    Ngsim,
+    /// INTERACTION.
+    Interaction,
+    /// SinD.
+    #[cfg_attr(feature = "cli", value(name = "sind", alias = "SinD"))]
+    Sind,
+    /// CitySim.
+    #[cfg_attr(feature = "cli", value(name = "citysim", alias = "CitySim"))]
+    CitySim,
+    /// OMEGA-Prime.
+    OmegaPrime,
+}

@@ -1,0 +1,169 @@
+//! A table of trajectories, row by row: CSV, plain or gzipped, or Parquet.
+
+use std::borrow::Cow;
+use std::io::{BufRead, Read};
+use std::path::Path;
+
+#[cfg(feature = "parquet")]
+use parquet::file::reader::{FileReader, SerializedFileReader};
+#[cfg(feature = "parquet")]
+use parquet::record::Field;
+
+use crate::util::input_file::{self, longer};
+use crate::util::limits::LINE;
+#[cfg(feature = "parquet")]
+use crate::util::parquet_column::guarded;
+use crate::{Error, Result};
+
+/// What may stand between values, in the order in which it is looked for.
+const SEPARATORS: [u8; 3] = *b";\t,";
+/// The first bytes of a Parquet file.
+const PARQUET: &[u8; 4] = b"PAR1";
+
+/// A value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Cell<'a> {
+    Text(Cow<'a, str>),
+    Number(f64),
+    Missing,
+}
+
+impl Cell<'_> {
+    /// Its number; none where there is no value.
+    pub fn number(&self) -> std::result::Result<Option<f64>, String> {
+        let number = match self {
+            Self::Missing => return Ok(None),
+            Self::Number(number) => Some(*number),
+            Self::Text(text) => match text.trim() {
+                "" => return Ok(None),
+                text => text.parse().ok(),
+            },
+        };
+        number
+            .filter(|number| number.is_finite())
+            .map(Some)
+            .ok_or_else(|| format!("\"{}\" is not a number", self.text()))
+    }
+
+    /// Its text; empty where there is no value.
+    pub fn text(&self) -> Cow<'_, str> {
+        match self {
+            Self::Missing => Cow::Borrowed(""),
+            Self::Text(text) => Cow::Borrowed(text.trim()),
+            Self::Number(number) => Cow::Owned(number.to_string()),
+        }
+    }
+}
+
+/// The names of the columns of a table.
+///
+/// # Errors
+/// [`Error::File`] where it cannot be read; [`Error::Line`] where it is no table.
+pub(super) fn names(path: &Path) -> Result<Vec<String>> {
+    #[cfg(feature = "parquet")]
+    if let Some(file) = parquet_of(path)? {
+        return Ok(parquet_names(&file));
+    }
+    csv_names(path, &mut csv_of(path)?)
+}
+
+/// Reads a table: `begin` gets the names of its columns, `row` each row.
+///
+/// # Errors
+/// Those of [`names`], and what `begin` and `row` return, with the row.
+pub(super) fn read(
+    path: &Path,
+    begin: impl FnOnce(&[String]) -> std::result::Result<(), String>,
+    mut row: impl FnMut(&[Cell]) -> std::result::Result<(), String>,
+) -> Result<()> {
+    #[cfg(feature = "parquet")]
+    if let Some(file) = parquet_of(path)? {
+        begin(&parquet_names(&file)).map_err(|why| Error::content(path, why))?;
+        let mut rows = guarded(path, || file.get_row_iter(None))?;
+        for number in 1_u64.. {
+            let Some(next) = guarded(path, || rows.next().transpose())? else { break };
+            let cells =
+                next.get_column_iter().map(|(_, field)| cell(field)).collect::<std::result::Result<Vec<_>, _>>();
+            let done = cells.and_then(|cells| row(&cells));
+            done.map_err(|why| Error::content(path, format!("row {number}: {why}")))?;
+        }
+        return Ok(());
+    }
+    let mut reader = csv_of(path)?;
+    begin(&csv_names(path, &mut reader)?).map_err(|why| Error::line(path, 1, why))?;
+    let mut record = csv::StringRecord::new();
+    loop {
+        let line = reader.position().line();
+        if !reader.read_record(&mut record).map_err(|error| unreadable(path, line, &error))? {
+            return Ok(());
+        }
+        let cells = record.iter().map(|text| Cell::Text(Cow::Borrowed(text))).collect::<Vec<_>>();
+        row(&cells).map_err(|why| Error::line(path, line, why))?;
+    }
+}
+
+fn csv_of(path: &Path) -> Result<csv::Reader<impl Read>> {
+    const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+    let fault = |source| Error::file(path, source);
+    let mut source = input_file::open(path)?;
+    let first = source.fill_buf().map_err(fault)?;
+    let line = first.split(|byte| *byte == b'\n').next().unwrap_or_default();
+    if line.len() > LINE.count() {
+        return Err(Error::line(path, 1, longer("the row", &LINE)));
+    }
+    let separator = SEPARATORS.into_iter().find(|separator| line.contains(separator)).unwrap_or(b',');
+    if first.starts_with(BYTE_ORDER_MARK) {
+        source.consume(BYTE_ORDER_MARK.len());
+    }
+    Ok(csv::ReaderBuilder::new().delimiter(separator).from_reader(source))
+}
+
+fn csv_names(path: &Path, reader: &mut csv::Reader<impl Read>) -> Result<Vec<String>> {
+    let names = reader.headers().map_err(|error| unreadable(path, 1, &error))?;
+    Ok(names.iter().map(|name| name.trim().to_owned()).collect())
+}
+
+fn unreadable(path: &Path, line: u64, error: &csv::Error) -> Error {
+    let line = error.position().map_or(line, csv::Position::line);
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            Error::line(path, line, format!("the row has {len} cells, not {expected_len}"))
+        }
+        csv::ErrorKind::Utf8 { err, .. } => Error::line(path, line, err.to_string()),
+        _ => Error::line(path, line, error.to_string()),
+    }
+}
+
+#[cfg(feature = "parquet")]
+fn parquet_of(path: &Path) -> Result<Option<SerializedFileReader<std::fs::File>>> {
+    let mut file = input_file::file(path)?;
+    let mut first = [0; PARQUET.len()];
+    let is_one = file.read(&mut first).map_err(|source| Error::file(path, source))? == first.len() && first == *PARQUET;
+    if is_one { guarded(path, || SerializedFileReader::new(file)).map(Some) } else { Ok(None) }
+}
+
+#[cfg(feature = "parquet")]
+fn parquet_names(file: &SerializedFileReader<std::fs::File>) -> Vec<String> {
+    let columns = file.metadata().file_metadata().schema_descr().root_schema().get_fields().iter();
+    columns.map(|column| column.name().to_owned()).collect()
+}
+
+#[cfg(feature = "parquet")]
+fn cell(field: &Field) -> std::result::Result<Cell<'_>, String> {
+    Ok(match field {
+        Field::Null => Cell::Missing,
+        Field::Str(text) => Cell::Text(Cow::Borrowed(text)),
+        Field::Byte(number) => Cell::Number(f64::from(*number)),
+        Field::Short(number) => Cell::Number(f64::from(*number)),
+        Field::Int(number) => Cell::Number(f64::from(*number)),
+        Field::Long(number) => Cell::Number(*number as f64),
+        Field::UByte(number) => Cell::Number(f64::from(*number)),
+        Field::UShort(number) => Cell::Number(f64::from(*number)),
+        Field::UInt(number) => Cell::Number(f64::from(*number)),
+        Field::ULong(number) => Cell::Number(*number as f64),
+        Field::Float(number) => Cell::Number(f64::from(*number)),
+        Field::Double(number) => Cell::Number(*number),
+        // Columns that do not matter may hold anything.
+        _ => Cell::Missing,
+    })
+}
