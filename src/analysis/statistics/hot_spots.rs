@@ -33,9 +33,12 @@ pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wante
     spots.truncate(wanted);
     let statistics = |(count, id, spot): (u64, &String, &Spot)| {
         // Runs that differ in their settings have no common rate.
-        let rates = match &set.variants.all[..] {
-            [only] => Rates::of(&spot.counts.of(&only.runs), &set.members(only)),
-            _ => Rates::default(),
+        let (rates, expected_crashes) = match &set.variants.all[..] {
+            [only] => {
+                let rates = Rates::of(&spot.counts.of(&only.runs), &set.members(only));
+                (rates, spot.crashes.interval(set.runs.len()))
+            }
+            _ => (Rates::default(), None),
         };
         let [_, serious, critical] = spot.severities;
         HotSpot {
@@ -43,7 +46,7 @@ pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wante
             count,
             serious,
             critical,
-            expected_crashes: spot.crashes.interval(set.runs.len()),
+            expected_crashes,
             per_hour: rates.per_hour,
             per_1000_vehicles: rates.per_1000_vehicles,
         }
