@@ -41,7 +41,7 @@ impl Day {
         let options = Options::default();
         let net = Arc::new(Net::read(net).unwrap());
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
-        run.set_log(Log::create(log, &options).unwrap());
+        run.set_log(Log::create(log, &options).unwrap(), options.log_clips);
         run.drop_closed_conflicts();
         run.set_fixed_routes(true);
         let profile = run.roster.profile(car).unwrap();

@@ -264,7 +264,7 @@ fn lanes_that_overlap_as_drawn_have_no_lane_change() {
 #[test]
 fn a_lane_change_before_the_other_was_there_is_none() {
     let leader = || Drive { change: Some((1.0, "road_0")), ..drive(&["road_1"], 112.0, |_| 17.0) };
-    for (enters, manoeuvre, cause) in [(0.0, "cut_in", "changed_lane"), (1.5, "following", "too_close appeared")] {
+    for (enters, manoeuvre, cause) in [(0.0, "cut_in", "changed_lane"), (1.5, "following", "appeared")] {
         let follower = Drive { enters, ..drive(&["road_0"], 90.0, |_| 20.0) };
         assert_eq!(logged(&road(), &[follower, leader()], &[], 2.5), [["rear_end", manoeuvre, cause]]);
     }
