@@ -172,7 +172,7 @@ impl Event {
         [(a, b, self.pair[1]), (b, a, self.pair[0])].into_iter().find_map(|(first, second, user)| {
             let second = second.going_on(&ahead(user));
             let Pet { lasts, enters, .. } = pet::post_encroachment_time(&mut halves, first, &second, crossing)?;
-            (enters > time).then(|| PetSoFar::AtLeast(time - (enters - lasts)))
+            (enters > time).then_some(PetSoFar::AtLeast(time - (enters - lasts)))
         })
     }
 

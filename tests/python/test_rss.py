@@ -113,6 +113,7 @@ def test_mu_by_rss_is_the_safe_distance(kind: str) -> None:
             own, other = (speed, foe_speed) if conflict.ego == "ego" else (foe_speed, speed)
             wanted = float(cc.mu(own, other, kind=kind, model="rss"))
             assert conflict.mu == pytest.approx(wanted, rel=1e-12)
+            assert conflict.rss_distance is not None
             assert conflict.mu == pytest.approx(conflict.rss_distance + 0.5, rel=1e-9)
             left = conflict.response_left
             assert (left is not None and left < 1.0) == (conflict.margin < 0.0)

@@ -7,6 +7,7 @@
 //! moved back too, but no overlap is a collision then.
 
 use super::Detector;
+use super::jump::Jump;
 use super::reach::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
@@ -14,6 +15,9 @@ use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, Second};
+
+/// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
+const LEAST_JUMP: Metre = 0.5;
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -59,6 +63,47 @@ impl Detector {
             }
         }
         self.undo_jumps(frame, roster);
+    }
+
+    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back.
+    pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
+        let path = &self.paths[user.0 as usize];
+        if self.behind() == 0.0 || path.track.is_empty() {
+            return;
+        }
+        let of_net = lines_of(self.net.as_deref());
+        let (point, direction) = path.track.ahead_at(path.lines(of_net), state.speed * self.step);
+        let (off, direction) = (state.front() - point, direction.normalize());
+        let along = off.dot(&direction);
+        let aside = off - direction * along;
+        if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
+            let mut path = path.clone();
+            path.move_on(of_net, state.speed * (self.step - self.behind()));
+            self.jumps.push(Jump { row, user, path });
+        }
+    }
+
+    /// Puts those that have jumped back on their former paths, for this step.
+    fn undo_jumps(&mut self, frame: &mut Frame, roster: &Roster) {
+        for Jump { row, user, path } in &mut self.jumps {
+            let lines = path.lines(lines_of(self.net.as_deref()));
+            let (front, axis) = (path.track.point(lines), path.track.chord(lines, roster.profile_of(*user).chord));
+            let state = frame.state_mut(*row);
+            (state.x, state.y, state.heading) = (front.x, front.y, axis.y.atan2(axis.x));
+            self.on_lanes[*row as usize] = true;
+            let next = std::mem::replace(&mut self.paths[user.0 as usize], std::mem::take(path));
+            self.next_paths.push((*user, next));
+        }
+    }
+
+    /// Gives those that had jumped in the last step the paths of their new lanes.
+    pub(super) fn redo_jumps(&mut self) {
+        self.jumps.clear();
+        self.jumped.clear();
+        for (user, path) in self.next_paths.drain(..) {
+            self.paths[user.0 as usize] = path;
+            self.jumped.push(user);
+        }
     }
 
     fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {

@@ -259,15 +259,14 @@ fn each_track(mut rows: Sorted, mut with: impl FnMut(&[Row]) -> std::io::Result<
 /// Derives the headings and speeds that the rows of a track, in the order of time, lack.
 fn complete(track: &mut [Row], derived: &mut [u64; 2]) {
     let places = track.iter().map(|row| (row.time, Point::new(row.values[0], row.values[1]))).collect::<Vec<_>>();
-    let moved = |row: usize| {
-        let (from, to) = (row.saturating_sub(1), (row + 1).min(places.len() - 1));
+    let moved = |number: usize| {
+        let (from, to) = (number.saturating_sub(1), (number + 1).min(places.len() - 1));
         (places[to].0 - places[from].0, places[to].1 - places[from].1)
     };
     let mut heading = f64::NAN;
     let mut waiting = 0;
-    for row in 0..track.len() {
-        let (lasted, way) = moved(row);
-        let values = &mut track[row].values;
+    for (number, Row { values, .. }) in track.iter_mut().enumerate() {
+        let (lasted, way) = moved(number);
         if values[2].is_nan() {
             derived[0] += 1;
             values[2] = if way.norm() >= MOVED { way.y.atan2(way.x) } else { heading };
@@ -278,7 +277,7 @@ fn complete(track: &mut [Row], derived: &mut [u64; 2]) {
         }
         heading = values[2];
         if heading.is_nan() {
-            waiting = row + 1;
+            waiting = number + 1;
         }
     }
     // Those that stood at first head where they went then; one that never moved heads along +x.
