@@ -81,7 +81,7 @@ pub fn show(py: Python, request: &ShowRequest) -> Result<()> {
     shown.map(drop).map_err(failed)
 }
 
-/// Leaves the window as it is until the user presses Enter; at once where nobody can.
+/// Leaves the window as it is until the user presses Enter; at once without a terminal.
 pub fn wait_for_user(py: Python) {
     // What is to be reported is reported by now.
     let _ = py.import("closecall._sumo").and_then(|starter| starter.call_method0("wait_for_user"));

@@ -6,7 +6,7 @@ use crate::geometry::Point;
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Second};
 
-/// The PET of a conflict as far as it is known.
+/// The PET of a conflict, or its lower bound so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PetSoFar {
     /// The second has entered the conflict area this long after the first left it, in s.

@@ -67,7 +67,7 @@ class Opened:
         return str(self.page.inner_text(selector))
 
     def labels(self) -> list[str]:
-        """What a reader who does not see the charts is told of each."""
+        """The text of each chart, for a reader that does not see it."""
         return [str(chart.get_attribute("aria-label")) for chart in self.page.query_selector_all(".chart")]
 
     def colours(self, selector: str) -> int:

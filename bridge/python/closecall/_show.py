@@ -17,13 +17,13 @@ from ._paint import Colour, Painter, Pair, User
 SLOWER = 2.0
 """How many times slower than in reality it plays."""
 HALTS = 3.0
-"""How long it halts at the worst step where nobody can press Enter, in s."""
+"""How long it halts at the worst step where Enter cannot be pressed, in s."""
 HALF_VIEW = 40.0
 """Half the width of what is shown around the conflict, in m."""
 OTHERS: Colour = (215, 219, 224, 255)
 DEGREES_NORTH = 90.0
 OFF_ROAD = 2
-"""`moveToXY` with this puts a road user exactly where it is told, on a road or not."""
+"""`moveToXY` with this puts a road user exactly at the given place, on a road or not."""
 UNKNOWN = "O"
 
 
@@ -44,7 +44,7 @@ class Player:
         apart = [after - before for before, after in zip(times, times[1:])]
         self.step = max(round(min(apart, default=0.1), 3), 0.001)
         words = ["--net-file", scene["net"], "--begin", str(times[0]), "--step-length", str(self.step)]
-        # Nothing may happen but what is told.
+        # Nothing may happen but what the clip holds.
         words += ["--no-warnings", "--no-step-log", "--collision.action", "none", "--time-to-teleport", "-1"]
         self.sumo = _sumo.start(words, gui=True)
         self.painter = Painter(self.sumo, colours, label)

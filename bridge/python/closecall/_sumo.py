@@ -69,7 +69,7 @@ def has_display() -> bool:
 
 
 def wait_for_user() -> None:
-    """Keep the window open until the user presses Enter; where nobody can, return at once."""
+    """Keep the window open until the user presses Enter; without a terminal, return at once."""
     if sys.stdin is not None and sys.stdin.isatty():
         input("the run is over; Enter closes sumo-gui: ")
 

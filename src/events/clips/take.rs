@@ -240,7 +240,7 @@ fn signals_near(net: &Net, at: Point, signals: &Signals, time: Second) -> Vec<(S
     named.collect()
 }
 
-/// A number with so many decimals: short in the file.
+/// A number with this many decimals: short in the file.
 fn rounded(value: f64, decimals: i32) -> f64 {
     let tens = 10_f64.powi(decimals);
     (value * tens).round() / tens

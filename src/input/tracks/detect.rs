@@ -29,7 +29,7 @@ pub(super) fn format_of(path: &Path) -> Result<RecordingFormat> {
     if text.contains("$VEHICLE") {
         return Ok(RecordingFormat::Fzp);
     }
-    // What is no table is no recording; replay says what it lacks.
+    // A file without a table is not a recording; replay names what it lacks.
     let Ok(names) = table::names(path) else { return Ok(RecordingFormat::Fcd) };
     let layout = LAYOUTS.iter().find(|layout| layout.fits(&names));
     Ok(layout.map_or(RecordingFormat::Fcd, |layout| layout.format))

@@ -62,7 +62,7 @@ pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
                             pedestrians and bicycles; others are cars"
                 .to_owned(),
         ]),
-        None => Err(Error::content(path, "it is no .fzp file: no line begins with $VEHICLE:")),
+        None => Err(Error::content(path, "this is not a .fzp file: no line begins with $VEHICLE:")),
     }
 }
 

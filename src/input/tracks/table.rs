@@ -58,7 +58,7 @@ impl Cell<'_> {
 /// The names of the columns of a table.
 ///
 /// # Errors
-/// [`Error::File`] where it cannot be read; [`Error::Line`] where it is no table.
+/// [`Error::File`] where it cannot be read; [`Error::Line`] where it is not a table.
 pub(super) fn names(path: &Path) -> Result<Vec<String>> {
     #[cfg(feature = "parquet")]
     if let Some(file) = parquet_of(path)? {

@@ -133,12 +133,12 @@ impl Reader<'_> {
     /// Reads the first record; whether places have heights.
     fn format(&mut self) -> Result<bool> {
         if self.kind()? != Some(FORMAT) {
-            return Err(Error::content(self.path, "it is no .trj file: its first byte is not 0"));
+            return Err(Error::content(self.path, "this is not a .trj file: its first byte is not 0"));
         }
         self.is_little = match self.byte()? {
             b'L' => true,
             b'B' => false,
-            _ => return Err(self.wrong("it is no .trj file: its second byte is neither L nor B")),
+            _ => return Err(self.wrong("this is not a .trj file: its second byte is neither L nor B")),
         };
         let version = self.float()?;
         if !(1.0..4.0).contains(&version) {
