@@ -96,7 +96,8 @@ def test_a_checkers_log_equals_the_commands(module: str, scenario: Copy, tmp_pat
     done = closecall("stats", own, "--format", "json")
     assert (done.returncode, done.stderr) == (0, "")
     worst = json.loads(done.stdout)["worst"]
-    assert worst and all(conflict["command"] is None for conflict in worst), (
+    commands = [conflict["command"] for conflict in worst]
+    assert commands and all(command is None or command.startswith("closecall show ") for command in commands), (
         "SUMO's options are the script's, unknown to closecall"
     )
     assert closecall("report", own, "-o", tmp_path / "report.html").returncode == 0
@@ -347,7 +348,9 @@ def test_an_unknown_option_is_named() -> None:
 
 
 def test_an_error_names_the_keyword_not_the_long_option() -> None:
-    with pytest.raises(ValueError, match=r'^invalid value \'big\' for "mu"; possible values: minimal, at-rest, paper$'):
+    with pytest.raises(
+        ValueError, match=r'^invalid value \'big\' for "mu"; possible values: minimal, at-rest, paper, rss$'
+    ):
         cc.Checker(mu="big")
     with pytest.raises(ValueError, match=r'^invalid value \'-1\' for "serious_ttc": '):
         cc.Checker(serious_ttc=-1)

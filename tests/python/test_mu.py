@@ -151,7 +151,7 @@ def test_arrays_broadcast_as_in_numpy() -> None:
         ({"angle": [0.0, math.nan]}, "angle is NaN"),
         ({"angle": -1.0}, "angle is -1"),
         ({"kind": "sideways"}, "rear_end, frontal or side"),
-        ({"model": "best"}, "minimal, at_rest or paper"),
+        ({"model": "best"}, "minimal, at_rest, paper or rss"),
     ],
 )
 def test_a_value_out_of_its_range_is_named(changed: dict[str, Any], message: str) -> None:

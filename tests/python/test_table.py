@@ -8,15 +8,16 @@ from typing import Any, Callable
 
 import closecall as api
 import pytest
-from conftest import Once, closecall, python, rows
+from conftest import NETS, Once, closecall, python, rows
 
 Copy = Callable[[str], Path]
 
 
 @pytest.fixture
-def log(once: Once, scenario: Copy) -> Path:
+def log(once: Once) -> Path:
     def fill(folder: Path) -> None:
-        done = closecall("run", scenario("reckless"), "--out", folder / "log", "--end", "60", "--quiet")
+        net = NETS / "reckless" / "reckless.sumocfg"
+        done = closecall("run", net, "--out", folder / "log", "--end", "60", "--log-clips", "none", "--quiet")
         assert done.returncode == 0, done.stderr
 
     return once("table", fill) / "log"
@@ -98,7 +99,9 @@ def test_a_conflict_prints_its_values_with_their_units() -> None:
 
 def test_a_log_in_parquet_reads_as_one_in_csv(log: Path, scenario: Copy, tmp_path: Path) -> None:
     config = scenario("reckless")
-    done = closecall("run", config, "--out", tmp_path / "log", "--end", "60", "--log-format", "parquet")
+    done = closecall(
+        "run", config, "--out", tmp_path / "log", "--end", "60", "--log-format", "parquet", "--log-clips", "none"
+    )
     assert done.returncode == 0, done.stderr
     names = sorted(path.name for path in (tmp_path / "log").iterdir())
     assert names == ["conflicts.parquet", "run.json"]

@@ -15,7 +15,7 @@ Write = Callable[[Path, list[layouts.Sample]], Path]
 
 
 def replayed(recording: Path, out: Path, *words: str | Path) -> list[Row]:
-    done = closecall("replay", recording, "--path", "arc", "--out", out, "--quiet", *words)
+    done = closecall("replay", recording, "--path", "arc", "--align", "never", "--out", out, "--quiet", *words)
     assert done.returncode == 0, done.stderr
     return rows(out / "conflicts.csv")
 
