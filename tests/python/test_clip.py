@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Callable
 
@@ -13,9 +11,7 @@ import pytest
 from conftest import closecall
 from numpy.typing import NDArray
 from PIL import Image
-from playwright import sync_api as playwright
 
-CHROMIUM = shutil.which("chromium")
 Copy = Callable[[str], Path]
 
 SEVERITIES = [(0x6F, 0xA8, 0xDC), (0xFF, 0xAB, 0x40), (0xFF, 0x5C, 0x6C)]
@@ -24,17 +20,6 @@ PANEL = 84
 """The height of what is below the roads, the legend included."""
 LOOP = 8
 """About the length of the loop, in s."""
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Headless Chromium, a package of the system, which .ci/run installs."""
-    if CHROMIUM is None:
-        pytest.skip("Chromium is not installed: apt install chromium")
-    with playwright.sync_playwright() as driver:
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 def drawn(config: Path, folder: Path, *more: str) -> Path:

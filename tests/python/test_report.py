@@ -7,36 +7,20 @@ import json
 import math
 import random
 import re
-import shutil
 import statistics
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, Callable
 
 import axe_playwright_python
 import pytest
 from conftest import NETS, Once, Row, closecall, python, rows
-from playwright import sync_api as playwright
 
-CHROMIUM = shutil.which("chromium")
 ALL = "severity=caution,serious,critical"
 """The address of the view of all conflicts: cautions are left out at first."""
 PALETTE = {"caution": (0x46, 0x7D, 0xB5), "serious": (0xD9, 0x5F, 0x02), "critical": (0x9B, 0x08, 0x14)}
 """The severities' colours on a light page."""
 SIZES = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 Copy = Callable[[str], Path]
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    """Headless Chromium, a package of the system, which .ci/run installs."""
-    if CHROMIUM is None:
-        pytest.skip("Chromium is not installed: apt install chromium")
-    with playwright.sync_playwright() as driver:
-        # Chromium refuses to run as root with its sandbox, which containers do not support either.
-        browser = driver.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
-        yield browser
-        browser.close()
 
 
 class Opened:
