@@ -337,8 +337,14 @@ def simulations(of: psutil.Process) -> list[psutil.Process]:
 def test_a_killed_run_is_done_again(tmp_path: Path) -> None:
     out = tmp_path / "out"
     process = begin("sweep", LEFT_TURN, "--seeds", "1-8", "--out", out, "--workers", "2", "--", "--no-warnings")
-    until(lambda: len(files(out)) >= 2)
-    running = simulations(psutil.Process(process.pid))
+    running: list[psutil.Process] = []
+
+    def one_runs() -> bool:
+        running[:] = simulations(psutil.Process(process.pid))
+        return len(files(out)) >= 2 and len(running) > 0
+
+    # Between two runs there may be none for a moment.
+    until(one_runs)
     assert len(running) in (1, 2)
     running[0].kill()
     stdout, stderr = process.communicate(timeout=120)
