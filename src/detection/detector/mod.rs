@@ -394,7 +394,7 @@ impl Detector {
         self.look.map_or(Cover::UntilTheyStand, Cover::Further)
     }
 
-    /// The poses that the road user of a row will go through within [`HORIZON`] at its speed, and at least [`AHEAD`].
+    /// The poses that the road user of a row will go through within [`HORIZON`] at its speed, and at least 20 m.
     pub fn ahead(&self, frame: &Frame, roster: &Roster, row: u32) -> Vec<Pose> {
         let (sight, scene, mut poses) = (self.sight(frame, roster), self.scene(frame, roster), Vec::new());
         let user = sight.user(row, &sight.see(row), &User::default());

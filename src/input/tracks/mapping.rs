@@ -10,8 +10,8 @@ pub struct TrackOptions {
     #[cfg_attr(feature = "cli", arg(long, value_enum, ignore_case = true))]
     pub format: Option<RecordingFormat>,
     /// Columns of a table (CSV, Parquet): id, time or frame, x, y; if there are any, heading, speed or vx and vy, length, width,
-    /// class, rear_x, rear_y. Units in brackets: time [s], [ms], [us], [ns]; lengths [m], [ft]; heading [rad], [deg], counter-clockwise
-    /// from +x, or [north], degrees clockwise from north; speeds [m/s], [km/h], [mph], [ft/s].
+    /// class, rear_x, rear_y. Units in brackets: time s, ms, us, ns; lengths m, ft; heading rad, deg, counter-clockwise
+    /// from +x, or north, degrees clockwise from north; speeds m/s, km/h, mph, ft/s.
     #[cfg_attr(
         feature = "cli",
         arg(long, value_name = "x=COLUMN[UNIT],…", default_value = "", hide_default_value = true)
