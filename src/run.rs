@@ -327,7 +327,7 @@ impl Run {
         self.tracker.waiting()
     }
 
-    /// The PET of an open or waiting conflict as far as it is known in this step.
+    /// The PET of an open or waiting conflict, or its lower bound in this step.
     pub fn pet_so_far(&self, alarm: &Alarm) -> Option<PetSoFar> {
         let ahead = |user| {
             let row = self.frame.row_of(user);

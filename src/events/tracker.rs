@@ -121,7 +121,7 @@ impl Tracker {
         self.waiting.iter().filter_map(|event| event.alarm)
     }
 
-    /// The PET of an open or waiting conflict as far as it is known; `ahead` has the poses that a road user will go through.
+    /// The PET of an open or waiting conflict, or its lower bound so far; `ahead` has the poses that a road user will go through.
     pub fn pet_so_far(&self, alarm: &Alarm, ahead: impl Fn(UserIndex) -> Vec<Pose>) -> Option<PetSoFar> {
         let pair = [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
         let event = self.events.iter().chain(&self.waiting).find(|event| event.pair() == pair)?;

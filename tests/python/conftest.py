@@ -156,6 +156,20 @@ def browser() -> Iterator[Any]:
         browser.close()
 
 
+@pytest.fixture(scope="module")
+def town(once: Once) -> Path:
+    """A folder with the log of a minute of the town and the report on it."""
+
+    def fill(folder: Path) -> None:
+        config = NETS / "town" / "town.sumocfg"
+        done = closecall("run", config, "--end", "60", "--out", folder / "log", "--", "--no-warnings")
+        assert done.returncode == 0, done.stderr
+        made = closecall("report", folder / "log", "-o", folder / "report.html")
+        assert made.returncode == 0, made.stderr
+
+    return once("town", fill)
+
+
 @pytest.fixture
 def scenario(tmp_path: Path) -> Callable[[str], Path]:
     """Copies a scenario of sumo_nets, which the test may change, and returns the path of its configuration."""

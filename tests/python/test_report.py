@@ -1,137 +1,19 @@
-"""`closecall report` in a real browser, headless Chromium, and the charts of `closecall plot`."""
+"""`closecall report` in a real browser, headless Chromium."""
 
 from __future__ import annotations
 
 import csv
 import json
-import math
-import random
 import re
 import statistics
 from pathlib import Path
 from typing import Any, Callable
 
-import axe_playwright_python
 import pytest
-from conftest import NETS, Once, Row, closecall, python, rows
+from conftest import closecall, python, rows
+from report_page import ALL, PALETTE, Opened, made_up, severe
 
-ALL = "severity=caution,serious,critical"
-"""The address of the view of all conflicts: cautions are left out at first."""
-PALETTE = {"caution": (0x46, 0x7D, 0xB5), "serious": (0xD9, 0x5F, 0x02), "critical": (0x9B, 0x08, 0x14)}
-"""The severities' colours on a light page."""
-SIZES = {"desktop": {"width": 1280, "height": 900}, "phone": {"width": 390, "height": 844}}
 Copy = Callable[[str], Path]
-
-
-class Opened:
-    """A report in the browser, with its complaints and network requests."""
-
-    def __init__(
-        self, browser: Any, path: Path, size: str = "desktop", scheme: str = "light", view: str = "", lax: bool = False
-    ) -> None:
-        context = browser.new_context(viewport=SIZES[size], color_scheme=scheme, bypass_csp=lax)
-        self.page = context.new_page()
-        self.complaints: list[str] = []
-        self.requests: list[str] = []
-        self.page.on("console", lambda message: self.complaints.append(message.text))
-        self.page.on("pageerror", lambda error: self.complaints.append(str(error)))
-        self.page.on("dialog", lambda dialog: self.complaints.append(dialog.message))
-        self.page.on("request", lambda request: self.requests.append(request.url))
-        session = context.new_cdp_session(self.page)
-        session.send("Performance.enable", {"timeDomain": "threadTicks"})
-        self.page.goto(path.as_uri() + (f"#{view}" if view else ""))
-        self.page.wait_for_selector("html[data-ready]", state="attached")
-        self.milliseconds = int(self.page.evaluate("document.documentElement.dataset.ready"))
-        metrics = session.send("Performance.getMetrics")["metrics"]
-        # The processor time of the page's main thread until then, in s.
-        self.busy = float(next(metric["value"] for metric in metrics if metric["name"] == "ThreadTime"))
-
-    def text(self, selector: str) -> str:
-        """The text of an element."""
-        return str(self.page.inner_text(selector))
-
-    def labels(self) -> list[str]:
-        """The text of each chart, for a reader that does not see it."""
-        return [str(chart.get_attribute("aria-label")) for chart in self.page.query_selector_all(".chart")]
-
-    def colours(self, selector: str) -> int:
-        """The number of colours on the canvas in an element; 1 where nothing is drawn."""
-        script = """(element) => {
-            const canvas = element.querySelector("canvas");
-            const pixels = new Uint32Array(canvas.getContext("2d")
-                .getImageData(0, 0, canvas.width, canvas.height).data.buffer);
-            return new Set(pixels).size;
-        }"""
-        return int(self.page.eval_on_selector(selector, script))
-
-
-@pytest.fixture(scope="module")
-def town(once: Once) -> Path:
-    """A folder with the log of a minute of the town and the report on it."""
-
-    def fill(folder: Path) -> None:
-        config = NETS / "town" / "town.sumocfg"
-        done = closecall("run", config, "--end", "60", "--out", folder / "log", "--", "--no-warnings")
-        assert done.returncode == 0, done.stderr
-        made = closecall("report", folder / "log", "-o", folder / "report.html")
-        assert made.returncode == 0, made.stderr
-
-    return once("town", fill)
-
-
-def made_up(folder: Path, count: int, **changes: str) -> Path:
-    """A log of random conflicts, without a simulation."""
-    chance = random.Random(1)
-    names = [
-        "id",
-        "ego",
-        "foe",
-        "kind",
-        "severity",
-        "begin",
-        "end",
-        "time",
-        "gap",
-        "mu",
-        "margin",
-        "clearance",
-        "ttc",
-        "drac",
-        "pet",
-        "delta_v",
-    ]
-    names += ["ego_speed", "foe_speed", "angle", "x", "y", "lane", "collision"]
-    for role in ("ego", "foe"):
-        names += [f"{role}_{what}" for what in ["x", "y", "heading", "length", "width", "path"]]
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
-        table = csv.DictWriter(file, names, lineterminator="\n")
-        table.writeheader()
-        for number in range(count):
-            time, x, y = chance.uniform(0, 3600), chance.uniform(0, 5000), chance.uniform(0, 3000)
-            mu = chance.uniform(5, 50)
-            gap = chance.uniform(0, mu)
-            row: dict[str, Any] = {name: f"{chance.uniform(0, 10):.6f}" for name in names}
-            row |= {"id": number + 1, "ego": f"vehicle_{number % 20000}", "foe": f"vehicle_{number % 19997}"}
-            row |= {"kind": chance.choice(["rear_end", "rear_end", "frontal", "side"]), "collision": "false"}
-            row |= {"severity": chance.choices(["caution", "serious", "critical"], [80, 18, 2])[0]}
-            row |= {"begin": f"{time:.2f}", "time": f"{time + 1:.2f}", "end": f"{time + 2:.2f}"}
-            row |= {
-                "gap": f"{gap:.6f}",
-                "mu": f"{mu:.6f}",
-                "margin": f"{gap - mu:.6f}",
-                "x": f"{x:.6f}",
-                "y": f"{y:.6f}",
-            }
-            row |= {
-                "lane": f"edge{number % 500}_0",
-                "ego_x": f"{x - 9:.6f}",
-                "ego_y": f"{y:.6f}",
-                "ego_path": f"{x + 9:.2f} {y:.2f}",
-            }
-            row |= {"foe_x": f"{x + 9:.6f}", "foe_y": f"{y:.6f}", "foe_path": ""}
-            table.writerow(row | changes)
-    return folder
 
 
 def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: Path) -> None:
@@ -147,29 +29,6 @@ def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: P
     assert opened.page.is_hidden("#notes")
     assert opened.complaints == []
     assert opened.requests == [report.as_uri()]
-
-
-def test_the_filter_applies_to_everything_below_it(browser: Any, town: Path) -> None:
-    opened = Opened(browser, town / "report.html", view=ALL)
-    found = rows(town / "log" / "conflicts.csv")
-    spots, before = opened.text("#spots"), opened.text("#worst")
-    tiles = opened.text("#figures")
-    opened.page.uncheck("input[name='kinds-rear-end']")
-    other = [row for row in found if row["kind"] != "rear_end"]
-    assert 0 < len(other) < len(found)
-    assert opened.text("#shown").startswith(f"{len(other)} of")
-    assert opened.text("#spots") != spots and opened.text("#worst") != before and opened.text("#figures") != tiles
-    assert "rear of" not in opened.text("#worst")
-    opened.page.fill("#to", "30")
-    opened.page.press("#to", "Enter")
-    early = [row for row in other if float(row["time"]) <= 30]
-    opened.page.wait_for_function(f"document.querySelector('#shown').textContent.startsWith('{len(early)} of')")
-    for severity in ("caution", "serious", "critical"):
-        opened.page.uncheck(f"input[name='severities-{severity}']")
-    assert opened.text("#shown").startswith("0 of")
-    opened.page.click("button[type=reset]")
-    opened.page.wait_for_function(f"document.querySelector('#shown').textContent.startsWith('{len(found):,} of')")
-    assert opened.complaints == []
 
 
 def test_hovering_a_conflict_shows_its_values(browser: Any, scenario: Copy, tmp_path: Path) -> None:
@@ -359,64 +218,6 @@ def test_an_old_log_without_places_has_no_drawings(browser: Any, tmp_path: Path)
     assert opened.complaints == []
 
 
-def severe(found: list[Row]) -> list[Row]:
-    """Those that the page shows at first."""
-    return [row for row in found if row["severity"] != "caution"]
-
-
-def test_the_filter_is_in_the_address(browser: Any, town: Path) -> None:
-    found = rows(town / "log" / "conflicts.csv")
-    wanted = [
-        row for row in found if row["kind"] == "side" and row["severity"] == "caution" and float(row["time"]) <= 50
-    ]
-    assert wanted
-    opened = Opened(browser, town / "report.html", view="kind=side&severity=caution&to=50&manoeuvre=unheard&map=globe")
-    assert opened.text("#shown").startswith(f"{len(wanted)} of")
-    assert [opened.page.is_checked(f"input[name='severities-{name}']") for name in PALETTE] == [True, False, False]
-    assert opened.page.input_value("#to") == "50"
-    opened.page.select_option("#manoeuvre", index=1)
-    sent = opened.page.url
-    assert "kind=side" in sent and "manoeuvre=" in sent and "unheard" not in sent
-    again = Opened(browser, town / "report.html", view=sent.split("#")[1])
-    assert again.text("#shown") == opened.text("#shown")
-    opened.page.click("button[type=reset]")
-    assert "#severity=caution,serious,critical" in opened.page.url
-    assert opened.complaints == again.complaints == []
-
-
-@pytest.mark.parametrize(
-    ("words", "is_wanted"),
-    [
-        ("--kind side,frontal", lambda row: row["kind"] in ("side", "frontal")),
-        ("--severity serious", lambda row: row["severity"] == "serious"),
-        ("--manoeuvre following", lambda row: row["manoeuvre"] == "following"),
-        ("--cause leader_braked", lambda row: "leader_braked" in row["cause"].split()),
-        ("--from 20 --to 40", lambda row: 20 <= float(row["time"]) <= 40),
-        ("--where junction:G5", lambda row: row["lane"].startswith(":G5_")),
-        ("--where 500,500,200", lambda row: math.hypot(float(row["x"]) - 500, float(row["y"]) - 500) <= 200),
-        ("--type truck", lambda row: "truck" in (row["ego_type"], row["foe_type"])),
-    ],
-)
-def test_stats_and_report_filter_alike(
-    words: str, is_wanted: Callable[[Row], bool], town: Path, tmp_path: Path
-) -> None:
-    wanted = sum(map(is_wanted, rows(town / "log" / "conflicts.csv")))
-    assert wanted > 0
-    done = closecall("stats", town / "log", "--format", "json", *words.split())
-    assert done.returncode == 0, done.stderr
-    statistics_of = json.loads(done.stdout)
-    assert (statistics_of["groups"][0]["count"], statistics_of["filter"]) == (wanted, words)
-    done = closecall("report", town / "log", "-o", tmp_path / "r.html", *words.split())
-    assert done.stdout.startswith(f"{wanted} conflict"), done.stdout
-
-
-def test_a_period_has_rates_per_hour_only(town: Path) -> None:
-    words = ("stats", town / "log", "--format", "json", "--from", "20", "--to", "49.5")
-    [group, *_] = json.loads(closecall(*words).stdout)["groups"]
-    assert group["per_hour"]["value"] == pytest.approx(group["count"] * 3600 / 30)
-    assert group["per_vehicle_kilometre"] is None
-
-
 def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html")
     crashes: dict[str, float] = {}
@@ -461,23 +262,6 @@ def test_a_conflict_has_its_colour_where_it_is(browser: Any, tmp_path: Path) -> 
     assert all(opened.page.evaluate(script, number) in ([0, 0, 0], ground) for number in critical), (
         "nothing is left over"
     )
-
-
-def test_a_click_on_the_map_filters_by_the_place(browser: Any, town: Path) -> None:
-    opened = Opened(browser, town / "report.html", view="map=points")
-    worst = opened.page.evaluate("worstRows(shownRows(false), 1)[0]")
-    script = "(row) => map.chart.convertToPixel({ gridIndex: 0 }, [column.x[row], column.y[row]])"
-    x, y = opened.page.evaluate(script, worst)
-    opened.page.click("#map", position={"x": x, "y": y})
-    spot = opened.page.evaluate(f"conflicts.spots[spotOf({worst})]")
-    assert opened.text("#there") == spot
-    assert f"where={spot.replace(' ', ':')}" in opened.page.url
-    opened.page.click("#anywhere")
-    assert opened.page.is_hidden("#here")
-    opened.page.check("input[value=density]")
-    opened.page.click("#map", position={"x": x, "y": y})
-    assert "m around" in opened.text("#there")
-    assert opened.complaints == []
 
 
 def test_the_map_follows_the_keyboard(browser: Any, town: Path) -> None:
@@ -553,111 +337,3 @@ def test_a_printed_page_is_white_and_has_no_controls(browser: Any, town: Path) -
     assert opened.page.evaluate("colours.critical") == dark
     assert opened.page.pdf(format="A4").startswith(b"%PDF")
     assert opened.complaints == []
-
-
-@pytest.fixture(scope="module")
-def change(once: Once) -> Path:
-    """A report of the town with less traffic against the town as it is, two seeds each."""
-
-    def fill(folder: Path) -> None:
-        config = NETS / "town" / "town.sumocfg"
-        for name, scale in (("before", "1"), ("after", "0.5")):
-            for seed in ("1", "2"):
-                words = ("--seed", seed, "--end", "40", "--out", folder / name / seed)
-                done = closecall("run", config, *words, "--", "--no-warnings", "--scale", scale)
-                assert done.returncode == 0, done.stderr
-        made = closecall("report", folder / "after", "--against", folder / "before", "-o", folder / "report.html")
-        assert made.returncode == 0, made.stderr
-
-    return once("change", fill)
-
-
-def test_before_and_after_are_a_sentence_and_a_plot(browser: Any, change: Path) -> None:
-    opened = Opened(browser, change / "report.html")
-    counts = [
-        sum(len(severe(rows(change / name / seed / "conflicts.csv"))) for seed in ("1", "2"))
-        for name in ("after", "before")
-    ]
-    assert f"{counts[0]} and {counts[1]} conflicts in 2 runs after, 2 before" in opened.text("#sentence")
-    first = opened.text("#forest tbody tr:first-child").split("\t")
-    assert [int(cell.replace(",", "")) for cell in first[1:3]] == counts
-    low, high = (float(end) for end in first[4].split(" to "))
-    assert low < float(first[3]) < high
-    groups = opened.text("#forest")
-    assert all(f"by {what}" in groups for what in ("severity", "kind", "manoeuvre", "place"))
-    assert opened.page.is_checked("input[value=difference]")
-    assert "fewer" in opened.text("#legend") and "more" in opened.text("#legend")
-    assert opened.colours("#map") > 5
-    assert opened.complaints == []
-
-
-def test_sets_of_several_variants_are_not_compared(change: Path, tmp_path: Path) -> None:
-    done = closecall("report", change / "after", "--against", change, "-o", tmp_path / "r.html")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "the runs differ in" in done.stderr
-
-
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("page", ["report", "change", "stats"])
-def test_pages_break_no_rule_of_accessibility(browser: Any, town: Path, change: Path, page: str, scheme: str) -> None:
-    path = (change if page == "change" else town) / ("stats.html" if page == "stats" else "report.html")
-    if page == "stats":
-        assert closecall("stats", town / "log", "--format", "html", "-o", path).returncode == 0
-        opened = browser.new_context(color_scheme=scheme, bypass_csp=True).new_page()
-        opened.goto(path.as_uri())
-    else:
-        opened = Opened(browser, path, scheme=scheme, lax=True).page
-    opened.evaluate("document.querySelectorAll('details').forEach((part) => { part.open = true; })")
-    opened.evaluate((Path(axe_playwright_python.__file__).parent / "axe.min.js").read_text(encoding="utf-8"))
-    broken = opened.evaluate("axe.run()")["violations"]
-    assert broken == [], [(rule["id"], [node["target"] for node in rule["nodes"]]) for rule in broken]
-
-
-@pytest.mark.parametrize("form", ["png", "svg"])
-def test_plot_draws_every_chart_reproducibly(town: Path, tmp_path: Path, form: str) -> None:
-    for out in ("first", "second"):
-        done = closecall("plot", town / "log", "-o", tmp_path / out, "--format", form)
-        assert done.returncode == 0, done.stderr
-    names = ["delta_v", "drac", "map", "margin", "pet", "time", "ttc"]
-    assert sorted(path.name for path in (tmp_path / "first").iterdir()) == [f"{name}.{form}" for name in names]
-    for name in names:
-        first, second = ((tmp_path / out / f"{name}.{form}").read_bytes() for out in ("first", "second"))
-        assert first == second
-        assert first.startswith(b"\x89PNG" if form == "png" else b"<svg")
-        assert len(first) > 5_000
-
-
-def test_plot_names_what_it_cannot_write(tmp_path: Path) -> None:
-    done = closecall("plot", made_up(tmp_path / "log", 2), "-o", "/proc/plots")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert "/proc/plots: " in done.stderr
-
-
-@pytest.mark.parametrize("form", ["png", "svg"])
-def test_plot_reports_a_full_disk(form: str, tmp_path: Path) -> None:
-    (tmp_path / f"map.{form}").symlink_to("/dev/full")
-    done = closecall("plot", made_up(tmp_path / "log", 2), "-o", tmp_path, "--format", form)
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
-    assert f"map.{form}: " in done.stderr and "No space left" in done.stderr
-
-
-def test_a_picture_for_a_paper_is_as_wide_as_a_column(town: Path, tmp_path: Path) -> None:
-    words = ("plot", town / "log", "-o", tmp_path, "--style", "paper")
-    assert closecall(*words).returncode == 0
-    text = (tmp_path / "ttc.svg").read_text(encoding="utf-8")
-    assert text.startswith('<svg width="85mm"')
-    assert "Time to collision" in text and "#D95F02" in text
-    # 8 pt in pixels of which four are one of CSS's.
-    sizes = {float(size) for size in re.findall(r'font-size="([0-9.]+)"', text)}
-    assert list(sizes) == [pytest.approx(8 / 72 * 96 * 4, rel=0.01)]
-    refused = closecall(*words, "--format", "png")
-    assert (refused.returncode, refused.stderr.count("\n")) == (2, 1)
-    assert "--style paper is for --format svg" in refused.stderr
-
-
-def test_plot_draws_what_passes_the_filter(town: Path, tmp_path: Path) -> None:
-    for name, words in (("all", ()), ("critical", ("--severity", "critical"))):
-        assert closecall("plot", town / "log", "-o", tmp_path / name, *words).returncode == 0
-    texts = {name: (tmp_path / name / "time.svg").read_text(encoding="utf-8") for name in ("all", "critical")}
-    bars = {name: text.count('fill="#467DB5"') for name, text in texts.items()}
-    assert bars["critical"] == 1 < bars["all"], "the legend's patch is left"

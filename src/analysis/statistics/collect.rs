@@ -231,7 +231,7 @@ impl Collection {
         self.tails.take(conflict);
     }
 
-    /// What the filter left, in words; none where there is no filter.
+    /// What the filter left, in words; none without a filter.
     pub fn filtered(&self, filter: &ConflictFilter) -> Vec<String> {
         if filter.is_empty() {
             return Vec::new();

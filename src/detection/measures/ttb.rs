@@ -94,7 +94,7 @@ pub fn to_stay_behind<'a>(
     Some(Evasion::At(limits))
 }
 
-/// Removes each limit that holds where another does: one that is no further at a later time is stricter, because the
+/// Removes each limit that holds where another does: one at most as far at a later time is stricter, because the
 /// ego does not drive back.
 fn keep_binding(limits: &mut Vec<(Second, Metre)>) {
     limits.sort_by(|(one, _), (other, _)| other.total_cmp(one));

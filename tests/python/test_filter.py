@@ -1,0 +1,107 @@
+"""The filter of conflicts: in the report, in real Chromium, and in `closecall stats` alike."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any, Callable
+
+import pytest
+from conftest import Row, closecall, rows
+from report_page import ALL, PALETTE, Opened
+
+Copy = Callable[[str], Path]
+
+
+def test_the_filter_applies_to_everything_below_it(browser: Any, town: Path) -> None:
+    opened = Opened(browser, town / "report.html", view=ALL)
+    found = rows(town / "log" / "conflicts.csv")
+    spots, before = opened.text("#spots"), opened.text("#worst")
+    tiles = opened.text("#figures")
+    opened.page.uncheck("input[name='kinds-rear-end']")
+    other = [row for row in found if row["kind"] != "rear_end"]
+    assert 0 < len(other) < len(found)
+    assert opened.text("#shown").startswith(f"{len(other)} of")
+    assert opened.text("#spots") != spots and opened.text("#worst") != before and opened.text("#figures") != tiles
+    assert "rear of" not in opened.text("#worst")
+    opened.page.fill("#to", "30")
+    opened.page.press("#to", "Enter")
+    early = [row for row in other if float(row["time"]) <= 30]
+    opened.page.wait_for_function(f"document.querySelector('#shown').textContent.startsWith('{len(early)} of')")
+    for severity in ("caution", "serious", "critical"):
+        opened.page.uncheck(f"input[name='severities-{severity}']")
+    assert opened.text("#shown").startswith("0 of")
+    opened.page.click("button[type=reset]")
+    opened.page.wait_for_function(f"document.querySelector('#shown').textContent.startsWith('{len(found):,} of')")
+    assert opened.complaints == []
+
+
+def test_the_filter_is_in_the_address(browser: Any, town: Path) -> None:
+    found = rows(town / "log" / "conflicts.csv")
+    wanted = [
+        row for row in found if row["kind"] == "side" and row["severity"] == "caution" and float(row["time"]) <= 50
+    ]
+    assert wanted
+    opened = Opened(browser, town / "report.html", view="kind=side&severity=caution&to=50&manoeuvre=unheard&map=globe")
+    assert opened.text("#shown").startswith(f"{len(wanted)} of")
+    assert [opened.page.is_checked(f"input[name='severities-{name}']") for name in PALETTE] == [True, False, False]
+    assert opened.page.input_value("#to") == "50"
+    opened.page.select_option("#manoeuvre", index=1)
+    sent = opened.page.url
+    assert "kind=side" in sent and "manoeuvre=" in sent and "unheard" not in sent
+    again = Opened(browser, town / "report.html", view=sent.split("#")[1])
+    assert again.text("#shown") == opened.text("#shown")
+    opened.page.click("button[type=reset]")
+    assert "#severity=caution,serious,critical" in opened.page.url
+    assert opened.complaints == again.complaints == []
+
+
+@pytest.mark.parametrize(
+    ("words", "is_wanted"),
+    [
+        ("--kind side,frontal", lambda row: row["kind"] in ("side", "frontal")),
+        ("--severity serious", lambda row: row["severity"] == "serious"),
+        ("--manoeuvre following", lambda row: row["manoeuvre"] == "following"),
+        ("--cause leader_braked", lambda row: "leader_braked" in row["cause"].split()),
+        ("--from 20 --to 40", lambda row: 20 <= float(row["time"]) <= 40),
+        ("--where junction:G5", lambda row: row["lane"].startswith(":G5_")),
+        ("--where 500,500,200", lambda row: math.hypot(float(row["x"]) - 500, float(row["y"]) - 500) <= 200),
+        ("--type truck", lambda row: "truck" in (row["ego_type"], row["foe_type"])),
+    ],
+)
+def test_stats_and_report_filter_alike(
+    words: str, is_wanted: Callable[[Row], bool], town: Path, tmp_path: Path
+) -> None:
+    wanted = sum(map(is_wanted, rows(town / "log" / "conflicts.csv")))
+    assert wanted > 0
+    done = closecall("stats", town / "log", "--format", "json", *words.split())
+    assert done.returncode == 0, done.stderr
+    statistics_of = json.loads(done.stdout)
+    assert (statistics_of["groups"][0]["count"], statistics_of["filter"]) == (wanted, words)
+    done = closecall("report", town / "log", "-o", tmp_path / "r.html", *words.split())
+    assert done.stdout.startswith(f"{wanted} conflict"), done.stdout
+
+
+def test_a_period_has_rates_per_hour_only(town: Path) -> None:
+    words = ("stats", town / "log", "--format", "json", "--from", "20", "--to", "49.5")
+    [group, *_] = json.loads(closecall(*words).stdout)["groups"]
+    assert group["per_hour"]["value"] == pytest.approx(group["count"] * 3600 / 30)
+    assert group["per_vehicle_kilometre"] is None
+
+
+def test_a_click_on_the_map_filters_by_the_place(browser: Any, town: Path) -> None:
+    opened = Opened(browser, town / "report.html", view="map=points")
+    worst = opened.page.evaluate("worstRows(shownRows(false), 1)[0]")
+    script = "(row) => map.chart.convertToPixel({ gridIndex: 0 }, [column.x[row], column.y[row]])"
+    x, y = opened.page.evaluate(script, worst)
+    opened.page.click("#map", position={"x": x, "y": y})
+    spot = opened.page.evaluate(f"conflicts.spots[spotOf({worst})]")
+    assert opened.text("#there") == spot
+    assert f"where={spot.replace(' ', ':')}" in opened.page.url
+    opened.page.click("#anywhere")
+    assert opened.page.is_hidden("#here")
+    opened.page.check("input[value=density]")
+    opened.page.click("#map", position={"x": x, "y": y})
+    assert "m around" in opened.text("#there")
+    assert opened.complaints == []
