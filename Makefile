@@ -85,9 +85,10 @@ PARTS := target/bench/parts
 
 bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with its measured ratio, as table and chart
 	rm -rf target/bench && mkdir -p $(PARTS) target/bench/scenes
-	cargo bench --no-run --bench detector --bench replay --bench memory
+	cargo bench --no-run --bench detector --bench cores --bench replay --bench memory
 	$(BIN)/python benches/attached.py > $(PARTS)/attached.csv
 	cargo bench --bench detector -- --scenes target/bench/scenes > $(PARTS)/detector.csv
+	cargo bench --bench cores > $(PARTS)/cores.csv
 	$(BIN)/python benches/exclusions.py > $(PARTS)/exclusions.csv
 	-$(BIN)/python benches/commonroad.py target/bench/scenes > $(PARTS)/commonroad.csv
 	cargo bench --bench replay > $(PARTS)/replay.csv

@@ -1,4 +1,4 @@
-//! The detector alone, both phases, on one core and on two, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
+//! The detector alone, both phases, on one core, from 10³ to 10⁶ road users: in a jam, in platoons, uniform; beside it,
 //! on the same road users in the same steps, what one would build without it: parry2d's tree with its intersection test
 //! per pair, and all pairs, by that test and by the cheapest there is. `cargo bench --bench detector`.
 //!
@@ -17,10 +17,10 @@ use std::time::Instant;
 
 use clap::ValueEnum;
 use closecall::internals::study::Chance;
-use closecall::internals::util::Team;
-use closecall::{Detector, Frame, Options, Profile, Roster, Shortcut, State, UserIndex};
+use closecall::{Detector, Options, Profile, Shortcut, State};
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
+use scenes::{Scene, TIMES, detector, wake};
 
 /// With more road users than this, parry2d and all pairs are not measured.
 const LARGE: usize = 100_000;
@@ -29,7 +29,7 @@ const LARGE: usize = 100_000;
 /// turns, and a ratio the median of those within a turn.
 const TURNS: usize = 9;
 
-/// Both cores are kept busy for this long before each turn, in s, because most methods leave the second one idle.
+/// The cores are kept busy for this long before each turn, in s.
 const WAKING: f64 = 0.5;
 
 /// All pairs take long, so they take part in the first turns only.
@@ -80,19 +80,8 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// Keeps two cores busy. A virtual machine gets an idle second core back only little by little: two threads gained a
-/// third of what they gain on busy cores, as beside SUMO.
-fn wake_both_cores(seconds: f64) {
-    let until = Instant::now() + std::time::Duration::from_secs_f64(seconds);
-    let busy = || while black_box(Instant::now()) < until {};
-    std::thread::scope(|scope| {
-        scope.spawn(busy);
-        busy();
-    });
-}
-
 fn main() {
-    wake_both_cores(15.0);
+    wake(2, 15.0);
     let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
     println!("what,scene,method,size,value,unit");
     for (scene, draw) in scenes::SCENES {
@@ -104,47 +93,6 @@ fn main() {
             measure(scene, cars);
         }
     }
-}
-
-/// Times of the steps, to and fro: no road user yields here, so they must not drive on into each other.
-const TIMES: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
-
-/// The road users of a scene, which go to and fro.
-struct Scene {
-    roster: Roster,
-    start: Vec<State>,
-    now: Vec<State>,
-    users: Vec<UserIndex>,
-    frame: Frame,
-}
-
-impl Scene {
-    fn new(start: Vec<State>) -> Self {
-        let mut roster = Roster::default();
-        let profile = roster.profile(scenes::car()).unwrap();
-        let users = (0..start.len()).map(|number| roster.enter(&number.to_string(), profile)).collect();
-        Self { roster, now: start.clone(), start, users, frame: Frame::default() }
-    }
-
-    fn car(&self) -> &Profile {
-        self.roster.profile_of(self.users[0])
-    }
-
-    fn advance(&mut self, time: f64) {
-        self.frame.begin(self.frame.time + 0.1);
-        for ((car, start), user) in self.now.iter_mut().zip(&self.start).zip(&self.users) {
-            car.x = start.x + start.speed * time * start.heading.cos();
-            car.y = start.y + start.speed * time * start.heading.sin();
-            self.frame.push(*user, *car);
-        }
-    }
-}
-
-/// A detector without a net, set up as a run does.
-fn detector(options: &Options) -> Detector {
-    let mut detector = Detector::new(options, None);
-    detector.set_conflicts_only(true);
-    detector
 }
 
 /// A method: the detector or a rival.
@@ -160,10 +108,8 @@ trait Look {
 struct Phases(Detector, [Times; 3]);
 
 impl Phases {
-    fn new(name: &str, options: &Options, threads: usize) -> Self {
-        let mut detector = detector(options);
-        detector.set_threads(threads);
-        Self(detector, [name, "phase 1", "phase 2"].map(Times::of))
+    fn new(name: &str, options: &Options) -> Self {
+        Self(detector(options, 1), [name, "phase 1", "phase 2"].map(Times::of))
     }
 }
 
@@ -180,33 +126,6 @@ impl Look for Phases {
 
     fn times(&mut self) -> &mut [Times] {
         &mut self.1
-    }
-}
-
-/// Two detectors at once, each doing the whole step on its own thread: the most that two threads can gain on this
-/// machine.
-struct AtOnce(Team, [Detector; 2], Times);
-
-impl AtOnce {
-    fn new(options: &Options) -> Self {
-        Self(Team::new(2), [(); 2].map(|()| detector(options)), Times::of("two at once"))
-    }
-}
-
-impl Look for AtOnce {
-    fn look(&mut self, Scene { frame, roster, .. }: &Scene) {
-        let Self(team, detectors, times) = self;
-        times.add(|| {
-            team.each([(), ()], detectors.iter_mut(), |(), detector| {
-                detector.track_paths(frame, roster);
-                detector.broad_phase(frame, roster);
-                black_box(detector.narrow_phase(frame, roster).len());
-            });
-        });
-    }
-
-    fn times(&mut self) -> &mut [Times] {
-        std::slice::from_mut(&mut self.2)
     }
 }
 
@@ -234,13 +153,12 @@ impl<Contacts: FnMut(&[State], &Profile) -> usize> Look for Rival<Contacts> {
 fn measure(name: &str, start: Vec<State>) {
     let (count, options) = (start.len(), Options::default());
     let mut scene = Scene::new(start);
-    let mut one = Phases::new("closecall", &options, 1);
-    let mut others = vec![Phases::new("two threads", &options, 2)];
-    let mut at_once = AtOnce::new(&options);
+    let mut one = Phases::new("closecall", &options);
+    let mut others = Vec::new();
     if count == LARGE {
         others.extend([Shortcut::PathsApart, Shortcut::InLine].map(|kept| {
             let options = Options { keep: vec![kept], ..Options::default() };
-            Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options, 1)
+            Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options)
         }));
     }
     let mut trees = [
@@ -256,8 +174,6 @@ fn measure(name: &str, start: Vec<State>) {
     let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
     let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
     let steps = TIMES.repeat((500_000 / TURNS / count).clamp(1, 16));
-    // A second thread wakes up during the first few steps of a turn.
-    let own_steps = if count > LARGE { steps.clone() } else { TIMES.repeat((500_000 / TURNS / count).clamp(4, 16)) };
     for number in 0..TURNS {
         let mut turn = |look: &mut dyn Look, steps: &[f64]| {
             for time in steps {
@@ -266,11 +182,10 @@ fn measure(name: &str, start: Vec<State>) {
             }
             look.times().iter_mut().for_each(Times::end_turn);
         };
-        wake_both_cores(WAKING);
-        turn(&mut one, &own_steps);
-        others.iter_mut().for_each(|other| turn(other, &own_steps));
+        wake(2, WAKING);
+        turn(&mut one, &steps);
+        others.iter_mut().for_each(|other| turn(other, &steps));
         if count <= LARGE {
-            turn(&mut at_once, &own_steps);
             trees.iter_mut().for_each(|tree| turn(tree, &steps));
         }
         if count <= LARGE && number < TURNS_OF_ALL_PAIRS {
@@ -285,6 +200,6 @@ fn measure(name: &str, start: Vec<State>) {
     others.iter().for_each(|Phases(_, times)| times[0].print_beside(closecall, name, count));
     if count <= LARGE {
         let rivals = trees.iter().map(|tree| &tree.1).chain([&circles.1, &tested.1]);
-        [&at_once.2].into_iter().chain(rivals).for_each(|times| times.print_beside(closecall, name, count));
+        rivals.for_each(|times| times.print_beside(closecall, name, count));
     }
 }

@@ -1,10 +1,12 @@
 //! Traffic without SUMO for the benches, the same on every machine: a jam, platoons, road users at random places.
 
+use std::hint::black_box;
 use std::io::Write;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use closecall::internals::study::Chance;
-use closecall::{Options, Profile, State, SumoType};
+use closecall::{Detector, Frame, Options, Profile, Roster, State, SumoType, UserIndex};
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 
@@ -26,6 +28,56 @@ pub fn write(cars: &[State], path: &Path) -> std::io::Result<()> {
         writeln!(file, "{x},{y},{heading},{},{}", car.length, car.width)?;
     }
     file.flush()
+}
+
+/// Times of the steps, to and fro: no road user yields here, so they must not drive on into each other.
+pub const TIMES: [f64; 6] = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1];
+
+/// The road users of a scene, which go to and fro.
+pub struct Scene {
+    pub roster: Roster,
+    start: Vec<State>,
+    pub now: Vec<State>,
+    users: Vec<UserIndex>,
+    pub frame: Frame,
+}
+
+impl Scene {
+    pub fn new(start: Vec<State>) -> Self {
+        let mut roster = Roster::default();
+        let profile = roster.profile(car()).unwrap();
+        let users = (0..start.len()).map(|number| roster.enter(&number.to_string(), profile)).collect();
+        Self { roster, now: start.clone(), start, users, frame: Frame::default() }
+    }
+
+    pub fn car(&self) -> &Profile {
+        self.roster.profile_of(self.users[0])
+    }
+
+    pub fn advance(&mut self, time: f64) {
+        self.frame.begin(self.frame.time + 0.1);
+        for ((car, start), user) in self.now.iter_mut().zip(&self.start).zip(&self.users) {
+            car.x = start.x + start.speed * time * start.heading.cos();
+            car.y = start.y + start.speed * time * start.heading.sin();
+            self.frame.push(*user, *car);
+        }
+    }
+}
+
+/// A detector without a net, set up as a run does.
+pub fn detector(options: &Options, threads: usize) -> Detector {
+    let mut detector = Detector::new(options, None);
+    detector.set_conflicts_only(true);
+    detector.set_threads(threads);
+    detector
+}
+
+/// Keeps this many cores busy. A virtual machine gets its idle cores back only little by little: two threads gained a
+/// third of what they gain on busy cores, as beside SUMO.
+pub fn wake(cores: usize, seconds: f64) {
+    let until = Instant::now() + Duration::from_secs_f64(seconds);
+    let busy = || while black_box(Instant::now()) < until {};
+    std::thread::scope(|scope| (0..cores).for_each(|_| _ = scope.spawn(busy)));
 }
 
 fn state(x: f64, y: f64, heading: f64, speed: f64) -> State {

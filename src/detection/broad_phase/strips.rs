@@ -103,18 +103,17 @@ impl<S: Slot> Search<S> {
             });
             let all = self.parts.iter().fold(Extent::EMPTY, Extent::join);
             self.moved += all.moved;
-            all.sorted
+            let starts_before = |part: usize| self.places[part].is_before(&self.places[part - 1]);
+            all.sorted.then(|| !(length..count).step_by(length).any(starts_before))
         };
-        let is_sorted = sort(sorted, &|places, moves| {
+        // None where it takes too many moves; otherwise whether the parts are in order, too.
+        let mut in_order = sort(sorted, &|places, moves| {
             places.iter_mut().for_each(|place| place.follow(boxes, per_metre));
             (1..places.len()).all(|place| insert(places, place, moves))
         });
-        if !is_sorted {
-            return false;
-        }
-        // Then pairs of neighbouring parts are joined, then pairs of these, until one is left.
-        while sorted < count {
-            let are_joined = sort(2 * sorted, &|places, moves| {
+        // Pairs of neighbouring parts are joined, then pairs of these.
+        while in_order == Some(false) {
+            in_order = sort(2 * sorted, &|places, moves| {
                 // Both are sorted, so only the first entries of the second may belong into the first.
                 let mut place = sorted;
                 while place < places.len() && places[place].is_before(&places[place - 1]) {
@@ -125,11 +124,8 @@ impl<S: Slot> Search<S> {
                 }
                 true
             });
-            if !are_joined {
-                return false;
-            }
             sorted *= 2;
         }
-        true
+        in_order.is_some()
     }
 }

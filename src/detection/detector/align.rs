@@ -120,7 +120,7 @@ impl Detector {
         let after = path.track.chord(path.lines(of_net), chord);
         (state.x, state.y) = (front.x, front.y);
         // One that has just entered is as SUMO has put it, straight on its lane.
-        if self.speeds.get(user.0 as usize).is_some_and(|last| !last.speed.is_nan()) {
+        if self.speeds.get(user.0 as usize).is_some_and(|last| last.is_known()) {
             state.heading += turn(&before, &after);
         }
     }

@@ -53,7 +53,6 @@ impl Detector {
         if self.paths.len() < roster.len() {
             self.paths.resize_with(roster.len(), LanePath::default);
         }
-        self.forget_absent(frame);
         self.step = (frame.time - self.time).max(0.0);
         self.time = frame.time;
         self.work.rows += frame.len() as u64;
@@ -77,16 +76,6 @@ impl Detector {
             }
         }
         &self.unplaced
-    }
-
-    /// Forgets what is known of road users that were absent in the last step: SUMO's teleports put them elsewhere.
-    fn forget_absent(&mut self, frame: &Frame) {
-        for Row { user, .. } in frame.rows() {
-            let last = self.speeds.get(user.0 as usize);
-            if last.is_some_and(|last| !last.speed.is_nan() && last.time != self.time) {
-                self.forget(user);
-            }
-        }
     }
 
     /// The broad phase: finds the pairs that may meet.
@@ -145,9 +134,31 @@ impl Detector {
         if self.look.is_some() {
             self.users_further.extend(self.search.slots().iter().map(|user| sight.further(user)));
         }
+        self.take_speeds(frame);
+    }
+
+    /// Takes the speeds of the step, and forgets what is known of road users that are absent from it: SUMO's teleports put
+    /// them elsewhere.
+    fn take_speeds(&mut self, frame: &Frame) {
         self.speeds.resize(self.paths.len(), LastSpeed::default());
-        for Row { user, state } in frame.rows() {
-            self.speeds[user.0 as usize].take(state.speed, self.time, self.step);
+        let (count, step) = (self.speeds.len(), self.step);
+        let busy = self.team.busy(count);
+        let share = share(busy, count);
+        let parts = self.speeds.chunks_mut(share).enumerate();
+        self.team.each(self.workers.iter_mut().take(busy), parts, |worker, (part, speeds)| {
+            for (user, last) in (part * share..).zip(speeds) {
+                let user = UserIndex(user as u32);
+                match frame.row_of(user) {
+                    Some(row) => last.take(frame.state(row).speed, step),
+                    None if last.is_known() => worker.absent.push(user),
+                    None => {}
+                }
+            }
+        });
+        for number in 0..busy {
+            while let Some(user) = self.workers[number].absent.pop() {
+                self.forget(user);
+            }
         }
     }
 

@@ -7,24 +7,27 @@ use crate::util::units::{MetrePerSecond, MetrePerSecondSquared, Second};
 pub(super) struct LastSpeed {
     /// Not a number where it is not known.
     pub speed: MetrePerSecond,
-    /// When it had it.
-    pub time: Second,
     /// Since the last step; below 0 where it brakes.
     pub acceleration: MetrePerSecondSquared,
 }
 
 impl Default for LastSpeed {
     fn default() -> Self {
-        Self { speed: f64::NAN, time: f64::NAN, acceleration: 0.0 }
+        Self { speed: f64::NAN, acceleration: 0.0 }
     }
 }
 
 impl LastSpeed {
-    /// The speed of the step at this time, `after` s after the last.
-    pub fn take(&mut self, speed: MetrePerSecond, time: Second, after: Second) {
+    /// The speed of a step `after` s after the last.
+    pub fn take(&mut self, speed: MetrePerSecond, after: Second) {
         let faster = speed - self.speed;
         self.acceleration = if faster != 0.0 && !faster.is_nan() && after > 0.0 { faster / after } else { 0.0 };
-        (self.speed, self.time) = (speed, time);
+        self.speed = speed;
+    }
+
+    /// Whether it was in the last step.
+    pub fn is_known(&self) -> bool {
+        !self.speed.is_nan()
     }
 
     /// How it brakes, 0 or more.

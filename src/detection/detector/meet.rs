@@ -67,7 +67,7 @@ fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work:
 impl StepInputs<'_> {
     /// Finds which of these pairs would meet, `most` of them and those of the same block.
     pub(super) fn meet_all(&self, worker: &mut Worker, pairs: &[(u32, u32)], most: usize) {
-        let Worker { work, occupancy, further: further_occupancy, found } = worker;
+        let Worker { work, occupancy, further: further_occupancy, found, .. } = worker;
         let further = self.further();
         for block in pairs.chunks(BLOCK) {
             if found.encounters.len() > most {

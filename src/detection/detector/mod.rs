@@ -64,6 +64,10 @@ const AHEAD: Metre = 20.0;
 /// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
 const LEVEL: Metre = 2.5;
 
+/// An encounter takes at least as long as so many road users without one, for its sweep and its measures: 2 to 10 µs. Those of
+/// the last step tell how many threads the narrow phase is worth.
+const ENCOUNTER: usize = 50;
+
 pub use left_out::LeftOut;
 pub use work::Work;
 
@@ -290,7 +294,7 @@ impl Detector {
             worker.further.begin(self.users_further.len());
         }
         let scene = self.scene(frame, roster);
-        let busy = self.team.busy(frame.len());
+        let busy = self.team.busy(frame.len() + ENCOUNTER * self.order.len());
         let share = share(busy, self.pairs.iter().map(Vec::len).sum());
         let parts = self.pairs.iter().flat_map(|pairs| pairs.chunks(share));
         let most = FEWEST_ENCOUNTERS.max(frame.len() * ENCOUNTERS.count());

@@ -7,6 +7,7 @@ use crate::detection::measures::MOST_TIMES;
 use crate::detection::narrow_phase::ConflictPoint;
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
+use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Second};
 
 /// One thread's state, and what it finds among its pairs.
@@ -17,6 +18,8 @@ pub(super) struct Worker {
     /// The paths of pairs that are met further ahead than where both stand.
     pub further: OccupancyCache,
     pub found: Findings,
+    /// Road users that are absent from the step.
+    pub absent: Vec<UserIndex>,
 }
 
 /// The pairs that would meet.
