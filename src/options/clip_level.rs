@@ -12,9 +12,9 @@ pub enum ClipLevel {
     /// All conflicts.
     Caution,
     /// Serious and critical ones.
-    #[default]
     Serious,
     /// Critical ones.
+    #[default]
     Critical,
 }
 

@@ -157,7 +157,7 @@ const NO_CLIPS: &str = "none";
 
 /// The mildest severity of which a run kept clips, or [`NO_CLIPS`]; the record leaves out the default.
 fn level(run: &LoggedRun) -> &str {
-    run.options.get("log_clips").and_then(|level| level.as_str()).unwrap_or("serious")
+    run.options.get("log_clips").and_then(|level| level.as_str()).unwrap_or("critical")
 }
 
 fn is_milder(severity: Severity, level: &str) -> bool {
