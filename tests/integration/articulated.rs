@@ -176,7 +176,7 @@ fn turns() -> impl Strategy<Value = Vec<(f64, f64)>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn leaving_out_keeps_every_pair_that_a_carriage_meets(

@@ -88,7 +88,7 @@ prop_compose! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(700))]
 
     #[test]
     fn leaving_out_parts_changes_no_contact(movement in movement(), others in prop::collection::vec(movement(), 1..4), tolerance in tolerance()) {

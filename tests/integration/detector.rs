@@ -300,7 +300,7 @@ fn vehicles_meet_the_same_foes_among_many_as_alone() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(600))]
 
     /// On a small circle the tail of a long vehicle reaches further than its front.
     #[test]

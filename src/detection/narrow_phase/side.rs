@@ -385,7 +385,7 @@ mod tests {
     }
 
     proptest! {
-        #![proptest_config(ProptestConfig::with_cases(5000))]
+        #![proptest_config(ProptestConfig::with_cases(2000))]
 
         #[test]
         fn covers_leave_out_nothing_that_meets(ego in path(), foe in path()) {

@@ -86,10 +86,14 @@ fn has_link(net: &Net, from: EdgeIndex, to: EdgeIndex) -> bool {
 #[cfg(test)]
 mod tests {
     use std::path::Path;
+    use std::sync::LazyLock;
 
     use proptest::prelude::*;
 
     use crate::detection::path::route::*;
+
+    /// Read once for all cases.
+    static TOWN: LazyLock<Net> = LazyLock::new(|| Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap());
 
     /// A drive through a net: at each edge the link of this number is taken.
     fn route(net: &Net, begin: usize, choices: &[usize]) -> Vec<EdgeIndex> {
@@ -110,15 +114,15 @@ mod tests {
             choices in prop::collection::vec(any::<usize>(), 0..60),
             positions in any::<[prop::sample::Index; 2]>(),
         ) {
-            let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
-            let route = Arc::<[EdgeIndex]>::from(route(&net, begin, &choices));
+            let net = &*TOWN;
+            let route = Arc::<[EdgeIndex]>::from(route(net, begin, &choices));
             let mut positions = positions.map(|position| position.index(route.len()));
             positions.sort_unstable();
             let [first, second] = positions;
-            let mut ahead = RouteAhead::new(&net, &route, first);
+            let mut ahead = RouteAhead::new(net, &route, first);
             prop_assert_eq!(ahead.edges(), &route[first..]);
             prop_assert!(ahead.begins_before(second) && (first == 0 || !ahead.begins_before(first - 1)));
-            prop_assert!(ahead.is_same(&net, &route, second));
+            prop_assert!(ahead.is_same(net, &route, second));
             ahead.advance(second);
             prop_assert_eq!(ahead.edges(), &route[second..]);
             ahead.advance(route.len());
@@ -128,10 +132,9 @@ mod tests {
 
     #[test]
     fn a_route_ends_where_no_link_leads_on() {
-        let net = Net::read(Path::new("sumo_nets/town/town.net.xml")).unwrap();
-        let mut route = route(&net, 0, &[0; 5]);
+        let mut route = route(&TOWN, 0, &[0; 5]);
         let linked = route.len();
         route.push(route[linked - 1]);
-        assert_eq!(RouteAhead::new(&net, &Arc::from(route), 0).edges().len(), linked);
+        assert_eq!(RouteAhead::new(&TOWN, &Arc::from(route), 0).edges().len(), linked);
     }
 }
