@@ -250,6 +250,22 @@ fn any_number_of_threads_finds_the_same() {
     }
 }
 
+#[test]
+fn a_pair_that_is_met_further_ahead_counts_once() {
+    let options = Options { log: "ttc < 3 or margin < 0".parse().unwrap(), path: PathModel::Arc, ..options() };
+    let (mut detector, mut roster, mut frame) = (Detector::new(&options, None), Roster::default(), Frame::default());
+    let profile = roster.profile(car(&options)).unwrap();
+    frame.begin(0.0);
+    for (number, x) in [0.0, 30.0, 60.0, 90.0].into_iter().enumerate() {
+        let state = State { x, y: 4.0 * number as f64, z: 0.0, heading: 0.0, speed: 20.0 };
+        frame.push(roster.enter(&number.to_string(), profile), state);
+    }
+    detector.step(&frame, &roster).count();
+    let work = detector.work();
+    assert!(work.in_line + work.paths_apart > 0);
+    assert!(work.in_line + work.paths_apart <= work.pairs, "{work:?}");
+}
+
 /// Encounters among some of the cars, given as (x, y, heading, speed), after one step of turning; by their numbers.
 fn encounters_of(cars: &[(f64, f64, f64, f64)], numbers: &[usize], roster: &Roster) -> Vec<Encounter> {
     let mut detector = Detector::new(&Options { path: PathModel::Arc, ..options() }, None);

@@ -83,8 +83,11 @@ impl StepInputs<'_> {
                 match self.options.mode {
                     Mode::Closecall => {
                         found.meets = false;
+                        let before = *work;
                         self.meet(occupancy, work, slots, found);
                         if let (Some(further), false) = (&further, found.meets) {
+                            // A pair counts once.
+                            *work = before;
                             further.meet(further_occupancy, work, slots, found);
                         }
                     }
