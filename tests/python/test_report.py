@@ -348,7 +348,10 @@ def test_a_printed_page_is_white_and_has_no_controls(browser: Any, town: Path) -
     opened.page.emulate_media(media="print")
     assert opened.page.evaluate("getComputedStyle(document.body).color") == "rgb(28, 33, 40)"
     assert (
-        opened.page.is_hidden("#filter") and opened.page.is_hidden(".play") and opened.page.is_hidden(".controls") and opened.page.is_visible("#printed")
+        opened.page.is_hidden("#filter")
+        and opened.page.is_hidden(".play")
+        and opened.page.is_hidden(".controls")
+        and opened.page.is_visible("#printed")
     )
     opened.page.emulate_media(media="screen")
     opened.page.evaluate("dispatchEvent(new Event('afterprint'))")
