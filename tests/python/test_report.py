@@ -27,6 +27,18 @@ def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: P
         assert opened.colours(selector) > 5, selector
     assert len(opened.page.query_selector_all("#distributions .chart")) == 6
     assert opened.page.is_hidden("#notes")
+    card = opened.page.locator("#worst li").first
+    assert card.locator("output").inner_text() == "worst step"
+    assert f"closecall show {town / 'log'} " in str(card.text_content())
+    assert "a driver needs 1.05 s" in str(card.locator("svg.curves").text_content())
+    still = card.locator("canvas").screenshot()
+    card.locator("input").press("ArrowLeft")
+    assert card.locator("output").inner_text().startswith("−") and card.locator("canvas").screenshot() != still
+    states = []
+    for _ in range(2):
+        card.locator("input").press(" ")
+        states.append(opened.page.evaluate("Player.playing !== null"))
+    assert states == [True, False], "the space bar plays and halts"
     assert opened.complaints == []
     assert opened.requests == [report.as_uri()]
 
@@ -75,7 +87,7 @@ def test_the_worst_conflicts_are_described_in_words(browser: Any, scenario: Copy
     assert closecall("run", config, "--out", tmp_path / "log").returncode == 0
     assert closecall("report", tmp_path / "log", "-o", tmp_path / "r.html").returncode == 0
     [row] = rows(tmp_path / "log" / "conflicts.csv")
-    text = Opened(browser, tmp_path / "r.html").text("#worst")
+    text = Opened(browser, tmp_path / "r.html").page.text_content("#worst")
     assert f"{row['ego']} ({row['ego_type']}) at {float(row['ego_speed']):.1f} m/s" in text
     assert f"run into the rear of {row['foe']}" in text
     assert f"μ = {float(row['mu']):.2f} m" in text
@@ -236,6 +248,12 @@ def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, tow
     names = [line.split("\t")[1] for line in opened.text("#spots tbody").split("\n")]
     assert names == sorted(names)
     assert opened.page.get_attribute("#spots th:nth-child(2)", "aria-sort") == "ascending"
+    opened.page.locator(".unfold").first.click()
+    assert opened.page.get_attribute(".unfold", "aria-expanded") == "true"
+    label = str(opened.page.get_attribute("svg.movements", "aria-label"))
+    assert label.startswith("Movements at junction") and "1: " in label and "expected crashes" in label
+    assert opened.page.locator(".diagram tbody tr").count() == opened.page.locator("svg.movements .dot").count() > 0
+    assert "from the" in opened.text(".diagram")
 
 
 def test_a_conflict_has_its_colour_where_it_is(browser: Any, tmp_path: Path) -> None:
@@ -330,7 +348,10 @@ def test_a_printed_page_is_white_and_has_no_controls(browser: Any, town: Path) -
     opened.page.emulate_media(media="print")
     assert opened.page.evaluate("getComputedStyle(document.body).color") == "rgb(28, 33, 40)"
     assert (
-        opened.page.is_hidden("#filter") and opened.page.is_hidden(".controls") and opened.page.is_visible("#printed")
+        opened.page.is_hidden("#filter")
+        and opened.page.is_hidden(".play")
+        and opened.page.is_hidden(".controls")
+        and opened.page.is_visible("#printed")
     )
     opened.page.emulate_media(media="screen")
     opened.page.evaluate("dispatchEvent(new Event('afterprint'))")

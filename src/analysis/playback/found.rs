@@ -4,6 +4,7 @@ use std::cmp::Reverse;
 use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
+use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::analysis::dataset::nets;
@@ -75,7 +76,7 @@ impl Playback {
         let conflict = conflicts.find(|conflict| conflict.as_ref().map_or(true, |conflict| conflict.id == id));
         let conflict = conflict.transpose()?;
         let conflict = conflict.ok_or_else(|| Error::Value(format!("{} has no conflict {id}", folder.display())))?;
-        let clip = clip(folder, id)?.ok_or_else(|| no_clip(folder, &conflict))?;
+        let clip = clips(folder, &[id])?.remove(&id).ok_or_else(|| no_clip(folder, &conflict))?;
         let (path, text) = record(folder)?;
         let record = serde_json::from_str::<serde_json::Value>(&text)
             .map_err(|error| Error::content(&path, error.to_string()))?;
@@ -121,29 +122,34 @@ fn worst(folder: &Path, place: usize) -> Result<u64> {
     Ok(*id)
 }
 
-/// The clip of a conflict, if it has one.
-fn clip(folder: &Path, id: u64) -> Result<Option<Clip>> {
+/// The clips of those conflicts of a log that have one, by the conflicts' `id`.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::Line`] where the file of the clips is not as a run writes it.
+pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
     let path = folder.join(CLIPS);
+    let mut found = FxHashMap::default();
     if !path.is_file() {
-        return Ok(None);
+        return Ok(found);
     }
     let mut file = input_file::open(&path)?;
-    let begin = format!("{{\"conflict\":{id},");
     let mut line = String::new();
     for number in 1.. {
         line.clear();
         let read = file.by_ref().take(TEXT.count() as u64).read_line(&mut line);
-        if read.map_err(|source| Error::file(&path, source))? == 0 {
+        if found.len() == ids.len() || read.map_err(|source| Error::file(&path, source))? == 0 {
             break;
         }
-        if line.starts_with(&begin) {
+        let begin = line.strip_prefix("{\"conflict\":").and_then(|rest| rest.split_once(','));
+        if begin.is_some_and(|(id, _)| id.parse().is_ok_and(|id| ids.contains(&id))) {
             let clip = serde_json::from_str::<Clip>(&line).map_err(|error| error.to_string());
             let checked =
                 clip.and_then(|clip| if clip.is_whole() { Ok(clip) } else { Err("no whole clip".to_owned()) });
-            return checked.map(Some).map_err(|why| Error::line(&path, number, why));
+            let clip = checked.map_err(|why| Error::line(&path, number, why))?;
+            found.insert(clip.conflict, clip);
         }
     }
-    Ok(None)
+    Ok(found)
 }
 
 /// Whether a conflict of this severity has a clip, as far as is known without reading them.

@@ -79,24 +79,30 @@ fn beside(lane: &Lane, left: Metre) -> Vec<Point> {
 pub fn signals(net: &Net, shown: &[ClipSignal], view: &View, time: &Loop) -> String {
     let mut text = String::new();
     for (place, signal) in shown.iter().enumerate() {
-        let Some(lane) = net.lane(&signal.lane).map(|lane| &net.lanes[lane.0 as usize]) else { continue };
-        let [.., before, end] = &lane.shape[..] else { continue };
-        let Some(along) = (end - before).try_normalize(0.0) else { continue };
-        let of_lane = shown.iter().filter(|other| other.lane == signal.lane).count();
-        let number = shown[..place].iter().filter(|other| other.lane == signal.lane).count();
-        let width = lane.width / of_lane as f64;
-        let across = left_of(&along);
-        let low = end - across * (lane.width / 2.0 - width * number as f64) - along * STOP_LINE;
-        let corners = [low, low + across * width, low + across * width + along * STOP_LINE, low + along * STOP_LINE];
-        let colour = |place: usize| colour_of(signal.states.as_bytes()[place]).to_owned();
+        let Some(corners) = signal_bar(net, shown, place) else { continue };
+        let colour = |place: usize| signal_colour(signal.states.as_bytes()[place]).to_owned();
         let (points, first, change) = (view.points(&corners), colour(0), time.jumps("fill", colour));
         let _ = writeln!(text, "<polygon points=\"{points}\" fill=\"{first}\">{change}</polygon>");
     }
     text
 }
 
+/// The corners of the bar of one of the signals that are shown; none where the net has no such lane.
+pub fn signal_bar(net: &Net, shown: &[ClipSignal], place: usize) -> Option<[Point; 4]> {
+    let name = &shown[place].lane;
+    let lane = &net.lanes[net.lane(name)?.0 as usize];
+    let [.., before, end] = &lane.shape[..] else { return None };
+    let along = (end - before).try_normalize(0.0)?;
+    let of_lane = shown.iter().filter(|other| other.lane == *name).count();
+    let number = shown[..place].iter().filter(|other| other.lane == *name).count();
+    let width = lane.width / of_lane as f64;
+    let across = left_of(&along);
+    let low = end - across * (lane.width / 2.0 - width * number as f64) - along * STOP_LINE;
+    Some([low, low + across * width, low + across * width + along * STOP_LINE, low + along * STOP_LINE])
+}
+
 /// The colour of a signal's letter.
-fn colour_of(letter: u8) -> &'static str {
+pub fn signal_colour(letter: u8) -> &'static str {
     match letter {
         b'r' | b's' => "#e5383b",
         b'y' | b'Y' | b'u' => "#ffd60a",

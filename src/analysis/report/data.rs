@@ -6,7 +6,8 @@ use rustc_hash::{FxHashMap, FxHashSet};
 use serde_json::{Map, Value, json};
 
 use super::contact::parts;
-use super::roads;
+use super::movements::Movements;
+use super::{clips, roads};
 use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
 use crate::analysis::statistics::Effects;
@@ -22,22 +23,28 @@ const NOT_SHOWN: &str = "clearance";
 
 /// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
 pub fn json(found: Conflicts, before: Option<Value>) -> String {
-    let Conflicts { logs, records, variants, ground, mut conflicts, seen, filter, .. } = found;
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, filter, .. } = found;
+    let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes);
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
     let drawn = (0..).zip(&conflicts).filter(|(_, one)| drawn.contains(&key(one))).filter_map(drawing);
     let drawn = drawn.collect::<Vec<_>>();
+    let net = ground.net.as_ref();
+    let clip =
+        |(row, one): (usize, &RunConflict)| Some(json!([row, clips::json(clips.get(&key(one))?, &one.conflict, net)]));
+    let played = (0..).zip(&conflicts).filter_map(clip).collect::<Vec<_>>();
     let data = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "seen": seen,
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
-        "conflicts": columns(&conflicts, drawn, ground.net.as_ref()),
+        "conflicts": columns(&conflicts, drawn, net),
+        "clips": played,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
-        "net": ground.net.as_ref().map(roads::json),
+        "net": net.map(roads::json),
         "notes": ground.notes,
         "before": before,
         "filter": filter,
@@ -109,6 +116,11 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     for (place, name) in ["ego_part", "foe_part"].into_iter().enumerate() {
         add(name, touching.iter().map(|parts| parts.map(|parts| parts[place] as u8)).collect());
     }
+    let mut movements = Movements::of(net);
+    let moves = conflicts().map(|conflict| movements.of_both(conflict)).collect::<Vec<_>>();
+    for (place, name) in ["ego_movement", "foe_movement"].into_iter().enumerate() {
+        add(name, moves.iter().map(|both| both.map(|both| both[place])).collect());
+    }
     let is_there = |column: &&Column| {
         column.presence != Presence::Chosen || conflicts().any(|conflict| (column.get)(conflict) != Cell::Missing)
     };
@@ -133,6 +145,7 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
         "spots": places.list,
         "spot_of_lane": spot_of_lane,
         "drawn": drawn,
+        "movements": movements.json(),
     })
 }
 

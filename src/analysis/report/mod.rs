@@ -3,8 +3,10 @@
 //! The page is a template (`page.html`) with its style, the chart library, the data as JSON columns, and the scripts
 //! that draw them. All of them are in one file, which works offline and sends nothing anywhere.
 
+mod clips;
 mod contact;
 mod data;
+mod movements;
 mod roads;
 
 use std::path::{Path, PathBuf};
@@ -25,7 +27,7 @@ const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
 /// The page's own scripts, each after those that it needs.
-const OWN_SCRIPTS: [&str; 14] = [
+const OWN_SCRIPTS: [&str; 18] = [
     include_str!("script/data.js"),
     include_str!("script/filter.js"),
     include_str!("script/colours.js"),
@@ -35,7 +37,11 @@ const OWN_SCRIPTS: [&str; 14] = [
     include_str!("script/signs.js"),
     include_str!("script/map.js"),
     include_str!("script/charts.js"),
+    include_str!("script/movements.js"),
     include_str!("script/spots.js"),
+    include_str!("script/clip.js"),
+    include_str!("script/curves.js"),
+    include_str!("script/player.js"),
     include_str!("script/tables.js"),
     include_str!("script/against.js"),
     include_str!("script/export.js"),

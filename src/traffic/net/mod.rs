@@ -14,7 +14,7 @@ pub mod projection;
 mod quality;
 mod reader;
 
-pub use elements::{Direction, EdgeFunction, EdgeIndex, Lane, LaneIndex, Link, Passage, Signal};
+pub use elements::{Direction, EdgeFunction, EdgeIndex, JunctionIndex, Lane, LaneIndex, Link, Passage, Signal};
 pub use network::Net;
 pub use overlaps::{Overlap, Overlaps};
 

@@ -7,14 +7,6 @@ const PLOT = { width: 260, height: 22 };
 
 const ratioText = (ratio) => number(ratio, ratio < 9.95 ? 2 : 0);
 
-/** An SVG element with attributes. */
-function drawing(name, attributes, ...children) {
-  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
-  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
-  element.append(...children);
-  return element;
-}
-
 /** Where a ratio is in the plot, in its pixels. */
 function ratioPlace(ratio) {
   const [low, high] = RATIOS.map(Math.log);

@@ -82,6 +82,14 @@ function make(name, properties = {}, ...children) {
   return element;
 }
 
+/** An SVG element with attributes. */
+function drawing(name, attributes, ...children) {
+  const element = document.createElementNS("http://www.w3.org/2000/svg", name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  element.append(...children);
+  return element;
+}
+
 /** A name of the log in words. */
 const inWords = (name) => name.replaceAll("_", " ");
 

@@ -2,7 +2,7 @@
 // most dangerous places are numbered as in the table. A click filters by the place.
 
 /** From more conflicts than this on, the map shows the density at first. */
-const FEW = 500;
+const FEW = 200;
 /** This many of the most dangerous places have a number on the map. */
 const MOST_BADGES = 3;
 const MODE_WORDS = { density: "expected crashes", points: "each conflict", difference: "after − before" };
@@ -74,7 +74,7 @@ const map = {
     document.querySelectorAll("input[name=mode]").forEach((button) => { button.checked = button.value === this.mode; });
     this.point(null);
     this.showLegend();
-    const most = spotRows(rows).slice(0, MOST_BADGES).map(spotSentence);
+    const most = spotRows(rows).slice(0, MOST_BADGES).map((spot) => spotName(spot) + spotWords(spot));
     describeChart(this.element, `Map of ${number(rows.length)} conflicts. ${most.join(" ")} The table of hot spots has the same as numbers.`);
   },
 

@@ -29,8 +29,8 @@ function showFigures(rows) {
   const all = risk.reduce((sum, of_row) => sum + of_row, 0);
   const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
   const kilometres = runs.reduce((sum, run) => sum + (run.summary?.exposure.vehicle_kilometres || 0), 0);
-  const of_all = all > crashes + 0.005 ? `of ${number(all, 2)} in all; ` : "";
-  const figures = hasRisk ? [["expected crashes", number(crashes, 2), `${of_all}an index, not a forecast`]] : [];
+  const of_all = all > crashes + 0.005 ? `of ${number(all, 1)}; ` : "";
+  const figures = hasRisk ? [["expected crashes", number(crashes, crashes < 10 ? 2 : 1), `${of_all}an index, no forecast`]] : [];
   [2, 1, 0].forEach((severity) => {
     if (filter.severities[severity]) figures.push([SEVERITIES[severity], number(counts[severity]), "", SEVERITIES[severity]]);
   });
@@ -51,7 +51,7 @@ function showFigures(rows) {
     make("div", { className: look || "" }, make("dt", { textContent: name }), make("dd", { textContent: value }), ...(note ? [make("dd", { className: "note", textContent: note })] : []))));
 }
 
-/** Where and why it is dangerous, in a sentence or two. */
+/** Where and why it is dangerous: the worst places, with the numbers that they have on the map. */
 function showVerdict(rows) {
   const spots = spotRows(rows).filter((spot) => spot.risk > 0);
   const element = byId("verdict");
@@ -61,20 +61,18 @@ function showVerdict(rows) {
     return;
   }
   const all = rows.reduce((sum, row) => sum + risk[row], 0);
-  const [first, ...others] = spots.slice(0, 3);
-  const manoeuvre = inWords(usual(first.rows, manoeuvreOf));
-  const cause = inWords(usual(first.rows, strongestCause));
-  const share = Math.round((100 * first.risk) / all);
-  element.replaceChildren(make("strong", { textContent: `Most dangerous: ${spotName(first)}` }),
-    `, with ${share} % of the ${number(all, 2)} expected crashes`
-    + `${manoeuvre ? `, mostly ${manoeuvre}` : ""}${cause ? ` (${cause})` : ""}. `
-    + (others.length ? `Then ${others.map((spot) => `${spotName(spot)} (${Math.round((100 * spot.risk) / all)} %)`).join(" and ")}.` : ""));
+  const most = spots.slice(0, MOST_BADGES);
+  const share = Math.round((100 * most.reduce((sum, spot) => sum + spot.risk, 0)) / all);
+  const places = most.length === 1 ? "one place" : `these ${most.length} places`;
+  element.replaceChildren(`Most dangerous: ${share} % of the expected crashes are at ${places}, numbered on the map.`,
+    make("ol", {}, ...most.map((spot, rank) => make("li", {}, make("b", { textContent: rank + 1 }),
+      make("span", {}, make("strong", { textContent: spotName(spot) }), spotWords(spot))))));
 }
 
 /** One conflict of this log, read aloud. */
 function showExample() {
   const [row] = worstRows(Array.from({ length: count }, (_, place) => place), 1);
-  byId("example").textContent = row === undefined ? "" : `For example, the worst conflict here, no. ${column.id[row]}: ${describe(row)}`;
+  byId("example").textContent = row === undefined ? "" : `For example, the worst conflict here, no. ${column.id[row]}: ${storyOf(row)} ${figuresOf(row)}`;
 }
 
 /** Draws the parts that follow the filter. */

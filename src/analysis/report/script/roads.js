@@ -40,29 +40,64 @@ const net = data.net && {
   stops: data.net.stops.map(({ rule, lines }) => ({ rule, lines: readLines(lines) })),
 };
 
-/** All lines of a group as one shape, so that thousands of lanes take a few strokes. */
+/** Traces the lines of a group that are in view: thousands of lanes take a few strokes. */
+function trace(context, { lines, view, closed }) {
+  const { points, starts, boxes } = lines;
+  const { x, y, width, height, scale, left, bottom } = view;
+  const right = left + width / scale;
+  const top = bottom + height / scale;
+  for (let line = 0; line < boxes.length; line++) {
+    const box = boxes[line];
+    if (box[0] > right || box[2] < left || box[1] > top || box[3] < bottom) continue;
+    for (let at = starts[line]; at < starts[line + 1]; at += 2) {
+      const to_x = x + (points[at] - left) * scale;
+      const to_y = y + height - (points[at + 1] - bottom) * scale;
+      if (at === starts[line]) context.moveTo(to_x, to_y);
+      else context.lineTo(to_x, to_y);
+    }
+    if (closed) context.closePath();
+  }
+}
+
 const Roads = echarts.graphic.extendShape({
   shape: { lines: null, view: null, closed: false },
-  buildPath(context, { lines, view, closed }) {
-    if (!lines) return;
-    const { points, starts, boxes } = lines;
-    const { x, y, width, height, scale, left, bottom } = view;
-    const right = left + width / scale;
-    const top = bottom + height / scale;
-    for (let line = 0; line < boxes.length; line++) {
-      const box = boxes[line];
-      if (box[0] > right || box[2] < left || box[1] > top || box[3] < bottom) continue;
-      for (let at = starts[line]; at < starts[line + 1]; at += 2) {
-        const to_x = x + (points[at] - left) * scale;
-        const to_y = y + height - (points[at + 1] - bottom) * scale;
-        if (at === starts[line]) context.moveTo(to_x, to_y);
-        else context.lineTo(to_x, to_y);
-      }
-      if (closed) context.closePath();
-    }
+  buildPath(context, shape) {
+    if (shape.lines) trace(context, shape);
   },
 });
 echarts.graphic.registerShape("roads", Roads);
+
+/** The net from the ground up: groups of lines, each with its style at this many pixels per metre. */
+function roadLayers(scale) {
+  const layers = [{ lines: net.junctions, closed: true, style: { fill: colours.junction, stroke: null } }];
+  const draw = (lines, stroke, lineWidth, more) => layers.push({ lines, closed: false,
+    style: { fill: null, stroke, lineWidth, lineCap: "butt", lineJoin: "round", ...more } });
+  const isClose = scale >= CLOSE;
+  for (const { look, width: lane, lines } of net.lanes) {
+    if (look === "within" && isClose) draw(lines, colours.within, 1, { lineDash: [4, 4] });
+    // Drawn slightly narrower than it is, so that adjacent lanes remain distinct.
+    if (look === "road") draw(lines, colours.road, Math.max((lane - 0.25) * scale, THINNEST));
+    if (look === "foot" && isClose) draw(lines, colours.foot, Math.max((lane - 0.25) * scale, THINNEST));
+    if (look === "crossing" && isClose) draw(lines, colours.crossing, lane * scale, { lineDash: [STRIPE * scale, STRIPE * scale], opacity: 0.9 });
+  }
+  if (isClose) for (const { rule, lines } of net.stops) draw(lines, colours[rule], STOP * scale);
+  return layers;
+}
+
+/** Paints the net on a canvas. */
+function paintRoads(context, view) {
+  for (const { lines, closed, style } of net ? roadLayers(view.scale) : []) {
+    const { fill, stroke, lineWidth, lineJoin, lineDash = [], opacity = 1 } = style;
+    context.beginPath();
+    trace(context, { lines, view, closed });
+    Object.assign(context, { globalAlpha: opacity, fillStyle: fill, strokeStyle: stroke, lineWidth: lineWidth || 1, lineJoin: lineJoin || "miter" });
+    context.setLineDash(lineDash);
+    if (fill) context.fill();
+    if (stroke) context.stroke();
+  }
+  context.globalAlpha = 1;
+  context.setLineDash([]);
+}
 
 /** The chart's position on the screen, its pixels per metre, and the coordinates of its lower left corner. */
 function viewOf(params, api) {
@@ -79,21 +114,7 @@ function roadsSeries() {
     tooltip: { show: false },
     renderItem(params, api) {
       const view = viewOf(params, api);
-      const { scale } = view;
-      const children = [{ type: "roads", shape: { lines: net.junctions, view, closed: true },
-        style: { fill: colours.junction, stroke: null } }];
-      const draw = (lines, stroke, lineWidth, more) => children.push({ type: "roads", shape: { lines, view, closed: false },
-        style: { fill: null, stroke, lineWidth, lineCap: "butt", lineJoin: "round", ...more } });
-      const isClose = scale >= CLOSE;
-      for (const { look, width: lane, lines } of net.lanes) {
-        if (look === "within" && isClose) draw(lines, colours.within, 1, { lineDash: [4, 4] });
-        // Drawn slightly narrower than it is, so that adjacent lanes remain distinct.
-        if (look === "road") draw(lines, colours.road, Math.max((lane - 0.25) * scale, THINNEST));
-        if (look === "foot" && isClose) draw(lines, colours.foot, Math.max((lane - 0.25) * scale, THINNEST));
-        if (look === "crossing" && isClose) draw(lines, colours.crossing, lane * scale, { lineDash: [STRIPE * scale, STRIPE * scale], opacity: 0.9 });
-      }
-      if (isClose) for (const { rule, lines } of net.stops) draw(lines, colours[rule], STOP * scale);
-      return { type: "group", children };
+      return { type: "group", children: roadLayers(view.scale).map(({ lines, closed, style }) => ({ type: "roads", shape: { lines, view, closed }, style })) };
     },
   };
 }

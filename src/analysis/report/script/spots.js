@@ -89,13 +89,13 @@ function spotRows(rows) {
 
 const spotName = (spot) => conflicts.spots[spot.place] || "no lane";
 
-/** A spot in a sentence: how dangerous it is, what happens there, and why. */
-function spotSentence(spot) {
+/** What is said of a spot behind its name: how dangerous it is, what happens there, and why. */
+function spotWords(spot) {
   const manoeuvre = usual(spot.rows, manoeuvreOf);
   const cause = usual(spot.rows, strongestCause);
-  const why = [manoeuvre && `mostly ${inWords(manoeuvre)}`, cause && inWords(cause)].filter(Boolean).join(", ");
+  const why = [manoeuvre && `mostly ${OFTEN[manoeuvre] || inWords(manoeuvre)}`, cause && (WHY[cause] || inWords(cause))].filter(Boolean).join("; ");
   const counts = [[2, "critical"], [1, "serious"]].filter(([severity]) => spot.counts[severity]).map(([severity, name]) => `${number(spot.counts[severity])} ${name}`);
-  return `${spotName(spot)}: ${number(spot.risk, 2)} expected crashes${counts.length ? ` (${counts.join(", ")})` : ""}${why ? `; ${why}` : ""}.`;
+  return `: ${number(spot.risk, 1)} expected crashes${counts.length ? ` (${counts.join(", ")})` : ""}${why ? `, ${why}` : ""}.`;
 }
 
 /** A bar as long as the expected crashes, in the shares of the severities. */
@@ -113,10 +113,10 @@ function shareBar(group, most) {
   return cell;
 }
 
-/** A table whose headings sort it. Columns: heading, the value to sort by, what the cell shows. */
+/** A table whose headings sort it. Columns: heading, the value to sort by, what the cell shows. Rows may unfold. */
 class SortedTable {
-  constructor(element, columns, by) {
-    Object.assign(this, { element, columns, by, down: true });
+  constructor(element, columns, by, unfolded) {
+    Object.assign(this, { element, columns, by, unfolded, down: true, open: new Set() });
   }
 
   show(groups) {
@@ -151,7 +151,10 @@ class SortedTable {
     // What is not known comes last, whatever is sorted by.
     const sorted = [...this.groups].sort((a, b) => (a.name === "") - (b.name === "") || (down ? less(b, a) : less(a, b)) || a.rank - b.rank).slice(0, MOST_SPOTS);
     const most = this.groups.reduce((all, group) => Math.max(all, group.risk), 0) || 1;
-    const lines = sorted.map((group) => make("tr", {}, ...columns.map((column_of) => column_of.cell(group, most))));
+    const lines = sorted.flatMap((group) => {
+      const line = make("tr", {}, ...columns.map((column_of) => column_of.cell(group, most)));
+      return this.open.has(group.place) ? [line, make("tr", {}, make("td", { colSpan: columns.length }, this.unfolded(group)))] : [line];
+    });
     if (!lines.length) lines.push(make("tr", {}, make("td", { textContent: "none", colSpan: columns.length })));
     this.element.replaceChildren(make("thead", {}, head), make("tbody", {}, ...lines));
   }
@@ -181,7 +184,7 @@ function nameColumn(heading, name, press, isPressed) {
 }
 
 const hotSpots = new SortedTable(byId("spots"), [
-  { heading: "", text: true, cell: (group) => make("td", { className: "rank", textContent: group.rank }) },
+  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, ...unfoldButton(group), String(group.rank)) },
   nameColumn("Place", spotName, (group) => {
     choosePlace(filter.spot === group.place ? null : group.place, null);
     map.go(group.x, group.y, 120);
@@ -190,7 +193,24 @@ const hotSpots = new SortedTable(byId("spots"), [
   { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || "–") },
   { heading: "Why", text: true, value: (group) => usual(group.rows, strongestCause), cell: (group) => textCell(inWords(usual(group.rows, strongestCause)) || "–") },
   BAR,
-], 2);
+], 2, movementDiagram);
+
+/** The button that shows the movement diagram of a place, where there is one. */
+function unfoldButton(spot) {
+  if (!approachesOf(spot.place)) return [];
+  const { open } = hotSpots;
+  const isOpen = open.has(spot.place);
+  const button = make("button", { type: "button", className: "unfold", textContent: isOpen ? "▾" : "▸" });
+  button.setAttribute("aria-label", `Movements at ${spotName(spot)}`);
+  button.setAttribute("aria-expanded", isOpen);
+  button.onclick = () => {
+    if (isOpen) open.delete(spot.place);
+    else open.add(spot.place);
+    hotSpots.draw();
+    hotSpots.element.querySelector(`button[aria-label=${CSS.escape(button.getAttribute("aria-label"))}]`).focus();
+  };
+  return [button];
+}
 
 const NOT_KNOWN = "not known";
 const choiceTable = (id, heading, name, names) => new SortedTable(byId(id), [

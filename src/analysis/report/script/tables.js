@@ -21,11 +21,14 @@ const worst = {
   draw() {
     for (const chart of this.charts) chart.dispose();
     this.charts = [];
+    this.players = [];
     const shown = this.rows.slice(0, this.many);
     byId("worst").replaceChildren(...shown.map((row) => this.card(row)));
     byId("more").hidden = this.many >= this.rows.length;
+    this.charts.push(...this.players);
+    this.players.forEach((player) => player.start());
     for (const row of shown) {
-      if (drawn.has(row)) this.charts.push(drawScene(byId(`scene-${row}`), row));
+      if (drawn.has(row) && !clipOf(row)) this.charts.push(drawScene(byId(`scene-${row}`), row));
     }
   },
 
@@ -34,14 +37,24 @@ const worst = {
     const run = data.runs.length > 1 ? `, run ${column.run[row] + 1}` : "";
     const heading = make("h3", {}, sign(column.kind[row], severityColour(severity)),
       `${SEVERITIES[severity]}, ${KINDS[column.kind[row]]}, no. ${column.id[row]}${run}`);
-    const picture = drawn.has(row) ? [make("div", { className: "chart", id: `scene-${row}` })] : [];
-    picture.forEach((element) => {
-      element.setAttribute("role", "img");
-      element.setAttribute("aria-label", "Both road users at the worst step");
-    });
+    const player = clipOf(row) && new Player(row);
     const go = make("button", { type: "button", textContent: "Show on the map" });
     go.onclick = () => map.go(column.x[row], column.y[row], 80);
-    return make("li", {}, ...picture, make("div", { className: "text" }, heading, make("p", { textContent: describe(row) })));
+    const figures = make("details", {}, make("summary", { textContent: player ? "Figures; in sumo-gui" : "Figures" }), make("p", { textContent: figuresOf(row) }));
+    // Paper unfolds nothing.
+    figures.open = "print" in document.documentElement.dataset;
+    const text = make("div", { className: "text" }, heading, make("p", { textContent: storyOf(row) }), figures, go);
+    if (player) {
+      this.players.push(player);
+      const words = ["closecall", "show", data.runs[column.run[row]].folder, String(column.id[row])];
+      figures.append(make("p", {}, "Play it in sumo-gui: ", make("code", { textContent: words.map(quoted).join(" ") })));
+      return make("li", {}, player.element, text);
+    }
+    if (!drawn.has(row)) return make("li", {}, text);
+    const picture = make("div", { className: "chart", id: `scene-${row}` });
+    picture.setAttribute("role", "img");
+    picture.setAttribute("aria-label", "Both road users at the worst step");
+    return make("li", {}, picture, text);
   },
 };
 

@@ -49,31 +49,71 @@ function whyWords(row) {
   return parts.filter(Boolean).map((part) => `${inWords(part)}.`).join(" ");
 }
 
-function spotWords(row) {
+function placeWords(row) {
   const spot = conflicts.spots[spotOf(row)];
   return spot ? `on ${spot} (lane ${laneId(row)})` : `at x ${number(column.x[row], 1)}, y ${number(column.y[row], 1)}`;
 }
 
-/** The log's row of a conflict as sentences. */
-function describe(row) {
+/** What the two did, by the log's name of it; a name that is not here stands as it is. */
+const MANOEUVRES = {
+  following: "One followed the other.", cut_in: "The foe moved into the ego’s lane.", lane_change: "The ego moved into the foe’s lane.",
+  side_by_side: "They drove side by side.", merge: "Their lanes became one.", crossing: "Their ways crossed.",
+  left_turn_across: "One turned left across the other’s way.", right_turn_across: "One turned right across the other’s way.",
+  turn_into: "One turned into the road that the other took.", overtaking_oncoming: "One drove against its lane, towards the other.",
+  head_on: "They drove towards each other, each on its own way.", person_crossing: "A person crossed the vehicle’s way.",
+  person_along: "A person walked along the vehicle’s way.", person_standing: "A person stood in the vehicle’s way.", object: "An obstacle was in the way.",
+};
+/** What happens often at a place, in the same way. */
+const OFTEN = {
+  following: "one behind the other", cut_in: "vehicles that cut in", lane_change: "vehicles that change lanes", side_by_side: "vehicles side by side",
+  merge: "lanes that become one", crossing: "ways that cross", left_turn_across: "left turns across the way of others",
+  right_turn_across: "right turns across the way of others", turn_into: "turns into the road of others", overtaking_oncoming: "overtaking against oncoming traffic",
+  head_on: "oncoming traffic", person_crossing: "persons who cross in front of vehicles", person_along: "persons along the way of vehicles",
+  person_standing: "persons in the way of vehicles", object: "obstacles in the way",
+};
+/** Why it came about, in the same way. */
+const WHY = {
+  ran_red: "one of them ran a red light", late_amber: "one of them passed its stop line late on amber",
+  did_not_yield: "one of them had to yield and did not", changed_lane: "one of them changed lanes", overtook: "one of them overtook against the oncoming traffic",
+  outside_crossing: "the person walked where no crossing is", stood: "the obstacle stood there", leader_braked: "the one in front braked hard",
+  too_close: "the ego followed too closely", too_fast: "one of them drove faster than the limit", appeared: "one of them had only just entered the simulation",
+};
+
+/** The log's row of a conflict as sentences: what happened, why, and how much time was left. */
+function storyOf(row) {
   const value = (name) => column[name][row];
   const ego = typed(egoId(row), column.ego_type[row]);
   const foe = typed(foeId(row), column.foe_type[row]);
   const angle = Math.round((value("angle") * 180) / Math.PI);
   const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
-  const sentences = [`At ${number(value("time"), 1)} s ${spotWords(row)}, ${deed(row, ego, foe)}${across}.`];
-  if (whyWords(row)) sentences.push(whyWords(row));
-  sentences.push(`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
-    + `${number(value("margin"), 2)} m.`);
+  const sentences = [`At ${number(value("time"), 1)} s ${placeWords(row)}, ${deed(row, ego, foe)}${across}.`];
+  const manoeuvre = manoeuvreOf(row);
+  if (manoeuvre) sentences.push(MANOEUVRES[manoeuvre] || `Manoeuvre: ${inWords(manoeuvre)}.`);
+  const causes = causeNames(row);
+  if (causes.length) {
+    const order = conflicts.causes[column.cause[row]].split(" ");
+    sentences.push(`Why: ${order.map((cause) => WHY[cause] || inWords(cause)).join("; ")}.`);
+  }
+  const left = column.response_left && value("response_left");
   if (value("collision")) {
     sentences.push("Their rectangles overlapped: a collision.");
-  } else if (value("ttc") !== null) {
+  } else if (typeof left === "number") {
+    sentences.push(`The ego had ${number(left, 1)} s left to respond, and a driver needs ${number(responseOf(row), 2)} s.`);
+  }
+  return sentences.join(" ");
+}
+
+/** The measures of a conflict as sentences. */
+function figuresOf(row) {
+  const value = (name) => column[name][row];
+  const sentences = [`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
+    + `${number(value("margin"), 2)} m.`];
+  if (!value("collision") && value("ttc") === null) sentences.push("At constant speed they would not have touched.");
+  else if (!value("collision")) {
     let braking = "";
     if (value("unavoidable")) braking = ", and no braking would have avoided it";
     else if (value("drac") !== null) braking = `, and braking at ${number(value("drac"), 1)} m/s² would just have avoided it (DRAC)`;
     sentences.push(`At the worst moment they would have touched after ${number(value("ttc"), 2)} s (TTC)${braking}.`);
-  } else {
-    sentences.push("At constant speed they would not have touched.");
   }
   if (!value("collision") && value("ttb") !== null) {
     const wait = value("ttb") > 0 ? `Full braking had to begin within ${number(value("ttb"), 2)} s` : "Even full braking at once was too late";
