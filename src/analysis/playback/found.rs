@@ -1,7 +1,6 @@
 //! A conflict to be played: its row of the log, its clip and the net around it.
 
 use std::cmp::Reverse;
-use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
@@ -17,7 +16,7 @@ use crate::output::clips::CLIPS;
 use crate::output::log::RUN;
 use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
-use crate::util::input_file;
+use crate::util::input_file::{self, next_line};
 use crate::util::limits::TEXT;
 use crate::util::units::{Metre, Second, counted};
 use crate::{Error, Result};
@@ -129,13 +128,9 @@ fn clip(folder: &Path, id: u64) -> Result<Option<Clip>> {
     }
     let mut file = input_file::open(&path)?;
     let begin = format!("{{\"conflict\":{id},");
-    let mut line = String::new();
     for number in 1.. {
-        line.clear();
-        let read = file.by_ref().take(TEXT.count() as u64).read_line(&mut line);
-        if read.map_err(|source| Error::file(&path, source))? == 0 {
-            break;
-        }
+        let line = next_line(&mut file, &TEXT).map_err(|error| Error::line(&path, number, error.to_string()))?;
+        let Some(line) = line else { break };
         if line.starts_with(&begin) {
             let clip = serde_json::from_str::<Clip>(&line).map_err(|error| error.to_string());
             let checked =
