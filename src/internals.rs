@@ -4,8 +4,10 @@
 
 #[cfg(feature = "cli")]
 pub mod analysis {
-    pub use crate::analysis::filter::ConflictFilter;
+    pub use crate::analysis::export;
+    pub use crate::analysis::filter::{ConflictFilter, Place};
     pub use crate::analysis::logged::{ConflictReader, LoggedRun};
+    pub use crate::analysis::playback::{Playback, Which, svg};
     #[cfg(feature = "plot")]
     pub use crate::analysis::plot;
     pub use crate::analysis::report;
@@ -53,7 +55,10 @@ pub mod input {
     pub use crate::input::replay::rows::RecordedStep;
     pub use crate::input::sumo_files::{check_xml, fault, net_of};
     #[cfg(feature = "cli")]
-    pub use crate::input::tracks::{RecordingFormat, TrackOptions, TrackOrigin, open as open_tracks};
+    pub use crate::input::tracks::{
+        Opened as OpenedTracks, RecordingFormat, TrackOptions, TrackOrigin, inspect as inspect_tracks,
+        open as open_tracks,
+    };
 }
 
 pub mod options {
@@ -63,6 +68,8 @@ pub mod options {
 }
 
 pub mod output {
+    #[cfg(feature = "cli")]
+    pub use crate::output::formats::ExportFormat;
     pub use crate::output::input_hash::Input;
     pub use crate::output::log::Log;
     pub use crate::output::record::Versions;

@@ -28,8 +28,9 @@ use crate::output::formats::Outputs;
 use crate::output::log::Log;
 use crate::output::summary::{Skipped, Summary};
 use crate::traffic::frame::{Frame, Row, State};
-use crate::traffic::net::Net;
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::filter::Filter;
+use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
@@ -304,6 +305,19 @@ impl Run {
     pub fn set_placement(&mut self, row: u32, placement: &Placement) {
         self.detector.set_placement(&self.frame, &self.roster, row, placement);
         self.writing.outputs.place(row, placement);
+    }
+
+    /// By how many lanes the road user of a row has changed in the step under way, positive towards lanes of a higher index;
+    /// none if it has not. Its placement is set.
+    pub fn changed_lanes(&self, row: u32) -> Option<i32> {
+        let change = self.detector.lane_change(self.frame.user(row)).filter(|change| change.time == self.frame.time)?;
+        let index = |lane: LaneIndex| Some(self.net.as_ref()?.lanes[lane.0 as usize].index as i32);
+        Some(index(change.to)? - index(change.from)?)
+    }
+
+    /// States why the road user of a row has changed lanes in this step: SUMO's `vehicle.getLaneChangeState`.
+    pub fn set_lane_change_state(&mut self, row: u32, state: i32) {
+        self.detector.set_lane_change_reason(self.frame.user(row), LaneChangeReason::of(state));
     }
 
     /// The pairs that met the log's condition in the last step, or will with the PET of their events.

@@ -2,6 +2,7 @@
 
 use smallvec::SmallVec;
 
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
@@ -25,6 +26,15 @@ pub struct LaneChange {
     pub from: LaneIndex,
     /// The lane after.
     pub to: LaneIndex,
+    /// Why; none where that is not known.
+    pub reason: Option<LaneChangeReason>,
+}
+
+impl LaneChange {
+    /// Whether two changed at once between the same lanes.
+    pub fn is_with(&self, other: &Self) -> bool {
+        (self.time, self.from, self.to) == (other.time, other.from, other.to)
+    }
 }
 
 /// The lanes of a road user from behind its rear to beyond where it can stop, and how it drives along them.

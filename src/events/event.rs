@@ -12,6 +12,7 @@ use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::Pet;
 use crate::options::measures::{AddedMeasure, AddedValues};
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
@@ -103,6 +104,8 @@ pub struct Conflict {
     pub manoeuvre: Option<Manoeuvre>,
     /// Why it came about, where that is known.
     pub causes: Causes,
+    /// Why the one that changed lanes did so, where that is a cause and SUMO told it.
+    pub lane_change_reason: Option<LaneChangeReason>,
     /// Where the ego was and would go.
     #[serde(skip)]
     pub ego_snapshot: Snapshot,
@@ -142,7 +145,7 @@ impl Conflict {
             ref found,
             ref worst,
             ref added,
-            why: Why { manoeuvre, causes, lanes, .. },
+            why: Why { manoeuvre, causes, lane_change_reason, lanes },
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);
@@ -192,6 +195,7 @@ impl Conflict {
             collision_sumo,
             manoeuvre,
             causes,
+            lane_change_reason,
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],

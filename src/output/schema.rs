@@ -14,6 +14,7 @@ use crate::detection::measures::headway::headway;
 use crate::events::{Conflict, Manoeuvre, Snapshot};
 use crate::geometry::Point;
 use crate::options::measures::{AddedMeasure, Measures};
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::decimal;
@@ -195,6 +196,10 @@ columns! { |conflict, context|
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`
     /// ([rules](causes.md)); empty where none of them is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
+    /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
+    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where nobody told, as in a replay
+    [Optional] lane_change_reason: OptionalText =
+        conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
     /// the lane of the ego's front bumper; the nearest where its way is not known
     [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
     /// how far along that lane it is, in SUMO's metres of the lane

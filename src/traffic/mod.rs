@@ -2,6 +2,7 @@
 
 pub mod driver;
 pub mod frame;
+pub mod lane_change;
 pub mod net;
 pub mod placement;
 pub mod profile;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use flate2::bufread::MultiGzDecoder;
 
-use super::limits::{ELEMENT, INFLATION, Limit, TEXT};
+use super::limits::{ELEMENT, INFLATION, LINE, Limit, TEXT};
 use crate::{Error, Result};
 
 /// Bytes that are read at once.
@@ -67,6 +67,57 @@ pub fn xml_message(error: &quick_xml::Error) -> String {
 /// That something is longer than its limit allows.
 pub fn longer(what: &str, limit: &Limit) -> String {
     format!("{what} is longer than {} {}", limit.count(), limit.unit)
+}
+
+/// The next line with its end; none after the last.
+///
+/// # Errors
+/// Those of reading; where it is not UTF-8, or longer than the limit.
+pub fn next_line(source: &mut dyn BufRead, limit: &Limit) -> std::io::Result<Option<String>> {
+    let mut line = String::new();
+    let most = limit.count();
+    let read = source.take(most as u64 + 1).read_line(&mut line)?;
+    if read > most {
+        return Err(IoError::new(ErrorKind::InvalidData, longer("the line", limit)));
+    }
+    Ok(Some(line).filter(|_| read > 0))
+}
+
+/// The rows of a table, each of which has to end: a quotation mark that is not closed makes one row of all that follow.
+#[derive(Debug)]
+pub struct ShortRows<R> {
+    source: R,
+    /// Bytes read since the row began.
+    row: usize,
+}
+
+impl<R: Read> ShortRows<R> {
+    /// The rows of this source.
+    pub fn new(source: R) -> Self {
+        Self { source, row: 0 }
+    }
+
+    /// A row ends, the next one begins.
+    pub fn begin_row(&mut self) {
+        self.row = 0;
+    }
+
+    /// The source.
+    pub fn source(&self) -> &R {
+        &self.source
+    }
+}
+
+impl<R: Read> Read for ShortRows<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        if self.row > LINE.count() {
+            let why = longer("the row", &LINE) + ": a quotation mark that is not closed?";
+            return Err(IoError::new(ErrorKind::InvalidData, why));
+        }
+        let read = self.source.read(buffer)?;
+        self.row += read;
+        Ok(read)
+    }
 }
 
 /// An XML file whose elements stay in memory: it counts lines, and fails where the file unpacks to far more than a net or

@@ -6,16 +6,21 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::analysis::{ConflictFilter, ConflictReader, LoggedRun, Request, Statistics, plot, report};
-use closecall::internals::input::{RecordedStep, Recording, check_xml, demand, fault};
+use closecall::internals::analysis::{
+    ConflictFilter, ConflictReader, LoggedRun, Place, Playback, Request, Statistics, Which, export, plot, report, svg,
+};
+use closecall::internals::input::{
+    OpenedTracks, RecordedStep, Recording, TrackOptions, check_xml, demand, fault, inspect_tracks, open_tracks,
+};
 use closecall::internals::options::OptionsFile;
+use closecall::internals::output::ExportFormat;
 use closecall::internals::traffic::Filter;
 use closecall::{Net, Options, Replay, Run};
 
 /// A door: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
 pub type Door = (&'static str, fn(&[u8]));
 
-pub const ALL: [Door; 10] = [
+pub const ALL: [Door; 16] = [
     ("fcd", fcd),
     ("net", net),
     ("config", config),
@@ -26,6 +31,12 @@ pub const ALL: [Door; 10] = [
     ("log", log),
     ("packed", packed),
     ("replay", replay),
+    ("tracks", tracks),
+    ("tracks_meta", tracks_meta),
+    ("columns", columns),
+    ("clips", clips),
+    ("exported", exported),
+    ("place", place),
 ];
 
 const NET: &str = r#"<net>
@@ -144,6 +155,89 @@ fn of_log(files: &[(&str, &[u8])]) {
     let plots = folder.path().join("plots");
     let (format, style) = (plot::PictureFormat::Svg, plot::PictureStyle::Screen);
     let _ = plot::write(&folders, None, &filter, (&plots, format, style), &mut |_, _| ());
+}
+
+/// Any bytes as a recording of another tool, in the format that they show, give steps or an error.
+pub fn tracks(bytes: &[u8]) {
+    let beside: [(&str, &[u8]); 2] = [
+        ("00_tracksMeta.csv", b"trackId,class\n1,car\n2,pedestrian\n"),
+        ("00_recordingMeta.csv", b"recordingId,frameRate\n0,25\n"),
+    ];
+    of_tracks(&[("00_tracks.csv", bytes), beside[0], beside[1]], &TrackOptions::default());
+}
+
+/// Any bytes as the classes of the road users of a recording, after a NUL as its frame rate.
+pub fn tracks_meta(bytes: &[u8]) {
+    let (classes, rate) = bytes.split_at(bytes.iter().position(|byte| *byte == 0).unwrap_or(bytes.len()));
+    let tracks = include_bytes!("../fuzz/tracks/inD.csv");
+    let rate = rate.strip_prefix(&[0]).unwrap_or(rate);
+    let files: [(&str, &[u8]); 3] =
+        [("00_tracks.csv", tracks), ("00_tracksMeta.csv", classes), ("00_recordingMeta.csv", rate)];
+    of_tracks(&files, &TrackOptions::default());
+}
+
+/// Any first line as `--columns`, and what follows as the table.
+pub fn columns(bytes: &[u8]) {
+    let (columns, table) = bytes.split_at(bytes.iter().position(|byte| *byte == b'\n').unwrap_or(bytes.len()));
+    let options = TrackOptions { columns: text(columns), frame_rate: Some(10.0), ..TrackOptions::default() };
+    of_tracks(&[("00_tracks.csv", table.strip_prefix(b"\n").unwrap_or(table))], &options);
+}
+
+/// What is turned into SUMO's fcd-output is read as such: faults are found before, where their place is known.
+fn of_tracks(files: &[(&str, &[u8])], options: &TrackOptions) {
+    let folder = folder();
+    files.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
+    let path = folder.path().join(files[0].0);
+    let _ = inspect_tracks(&path);
+    for net in [None, Some(&a_net())] {
+        let Ok(opened @ OpenedTracks::Converted(_)) = open_tracks(&path, options, net) else { return };
+        let mut recording = Recording::open(opened.recording()).unwrap();
+        let mut step = RecordedStep::default();
+        while recording.next_step(&mut step).unwrap() {}
+        demand::parse(Path::new("types"), fs::read(opened.types().unwrap()).unwrap(), &a_net()).unwrap();
+    }
+}
+
+/// Any bytes as the clips of a log, gzipped or not, give a picture and a scene or an error.
+pub fn clips(bytes: &[u8]) {
+    let folder = folder();
+    let log: [(&str, &[u8]); 3] = [
+        ("conflicts.csv", include_bytes!("../fuzz/log/conflicts.csv")),
+        ("run.json", include_bytes!("../fuzz/run_json/run.json")),
+        ("clips.jsonl.gz", bytes),
+    ];
+    log.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
+    let net = folder.path().join("net.xml");
+    fs::write(&net, NET).unwrap();
+    if let Ok(playback) = Playback::find(folder.path(), Which::Worst(1), Some(&net)) {
+        assert!(!svg(&playback).contains("NaN"));
+        serde_json::to_string(&playback.show()).unwrap();
+    }
+}
+
+/// Any bytes as `conflicts.csv` give a file in each format of export, or an error.
+pub fn exported(bytes: &[u8]) {
+    let folder = folder();
+    let log = folder.path().join("log");
+    fs::create_dir(&log).unwrap();
+    fs::write(log.join("conflicts.csv"), bytes).unwrap();
+    fs::write(log.join("run.json"), include_bytes!("../fuzz/run_json/run.json")).unwrap();
+    for format in [
+        ExportFormat::GeoJson,
+        ExportFormat::GeoParquet,
+        ExportFormat::GeoPackage,
+        ExportFormat::Poi,
+        ExportFormat::Ssm,
+    ] {
+        let _ = export::write(&log, format, &folder.path().join("exported"), &mut |_, _| ());
+    }
+}
+
+/// Any text as a place of `--where` is one, which is written as it is read, or not.
+pub fn place(bytes: &[u8]) {
+    if let Ok(place) = text(bytes).parse::<Place>() {
+        assert_eq!(place.to_string().parse(), Ok(place));
+    }
 }
 
 /// Any bytes as a recording, after a NUL those of a demand, give conflicts or an error.

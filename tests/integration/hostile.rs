@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use closecall::internals::analysis::ConflictReader;
-use closecall::internals::input::{RecordedStep, Recording, demand};
+use closecall::internals::input::{RecordedStep, Recording, TrackOptions, demand, open_tracks};
 use closecall::{Options, Profile, Run, State, SumoType};
 
 use crate::street::street;
@@ -52,6 +52,31 @@ fn a_row_or_tag_without_an_end_is_refused_by_its_line() {
     assert_eq!(said, "fcd, line 2: a tag or comment is longer than 1048576 bytes");
     let said = refused(&format!("{HEADER}0;{};1;2;90;5\n", "a".repeat(2000)));
     assert!(said.starts_with("fcd, line 2: ") && said.ends_with("is longer than 1024 bytes"), "{said}");
+}
+
+/// The error that ends a recording of another tool, from the line on; a table if there are columns.
+fn refused_tracks(columns: &str, text: &str) -> String {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    fs::write(file.path(), text).unwrap();
+    let options = TrackOptions { columns: columns.to_owned(), ..TrackOptions::default() };
+    let error = open_tracks(file.path(), &options, None).unwrap_err().to_string();
+    error.trim_start_matches(&file.path().display().to_string()).trim_start_matches(", ").to_owned()
+}
+
+#[test]
+fn tracks_that_replay_cannot_read_are_refused_with_their_own_line() {
+    let table = |rows: &str| refused_tracks("id=id,time=t,x=x,y=y,heading=h,speed=v", &format!("id,t,x,y,h,v\n{rows}"));
+    let open = format!("a,0,1,2,0,5\n\"b,0,1,2,0,5\n{}", "a,1,1,2,0,5\n".repeat(20_000));
+    assert_eq!(table(&open), "line 3: the row is longer than 65536 bytes: a quotation mark that is not closed?");
+    assert_eq!(table("a,0,1,2,1e9,5\n"), ": \"a\" at 0 s: heading is 1e9, it must be -1000000 to 1000000 rad or °");
+    let twice = "a,0,1,2,0,5\n".repeat(2);
+    assert_eq!(table(&twice), ": \"a\" at 0 s: it is there twice");
+    let fzp = |rows: &str| refused_tracks("", &format!("$VEHICLE:SIMSEC;NO;COORDFRONT;COORDREAR;SPEED\n{rows}"));
+    assert_eq!(fzp(&"1;".repeat(40_000)), "line 2: the line is longer than 65536 bytes");
+    assert_eq!(fzp(&"0;7;5 0 0;1 0 0;9\n".repeat(2)), "line 3: it is there twice");
+    assert_eq!(fzp("0;;5 0 0;1 0 0;9\n"), "line 2: it has no id");
+    let name = "n".repeat(2000);
+    assert_eq!(fzp(&format!("0;{name};5 0 0;1 0 0;9\n")), "line 2: its id is longer than 1024 bytes");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::internals::study::car;
-use closecall::{Category, Net, Options, Placement, Profile, Run, State};
+use closecall::{Category, Conflict, Net, Options, Placement, Profile, Run, State};
 
 /// The time between two steps, in s.
 const STEP: f64 = 0.1;
@@ -29,6 +29,15 @@ fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
 
 /// What a run of some seconds logs of these cars: kind, manoeuvre and causes.
 fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<[String; 3]> {
+    let name =
+        |conflict: &Conflict| conflict.manoeuvre.map(|manoeuvre| manoeuvre.name()).unwrap_or_default().to_owned();
+    let row = |conflict: &Conflict| [conflict.kind.name().to_owned(), name(conflict), conflict.causes.to_string()];
+    conflicts(net, drives, signals, lasts).iter().map(row).collect()
+}
+
+/// The conflicts of a run of some seconds. SUMO is taken to move cars to lane 1 for the sake of their route, and back to keep
+/// right.
+fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<Conflict> {
     let net = Arc::new(net.clone());
     let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
     let mut enter = |(drive, number): (&Drive, u32)| {
@@ -74,18 +83,18 @@ fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> V
             });
         }
         let stepped: closecall::Result<()> = run.step(|run, rows| {
-            rows.iter().for_each(|row| run.set_placement(*row, &placements[*row as usize]));
+            for row in rows {
+                run.set_placement(*row, &placements[*row as usize]);
+                if let Some(lanes) = run.changed_lanes(*row) {
+                    run.set_lane_change_state(*row, if lanes > 0 { 1 << 1 | 1 << 3 } else { 1 << 2 | 1 << 6 });
+                }
+            }
             Ok::<_, closecall::Error>(())
         });
         stepped.unwrap();
     }
     run.finish().unwrap();
-    let name =
-        |conflict: &closecall::Conflict| conflict.manoeuvre.map(|manoeuvre| manoeuvre.name()).unwrap_or_default();
-    let row = |conflict: &closecall::Conflict| {
-        [conflict.kind.name().to_owned(), name(conflict).to_owned(), conflict.causes.to_string()]
-    };
-    run.conflicts().iter().map(row).collect()
+    run.conflicts()
 }
 
 /// The place and heading at a position on a lane.
@@ -236,6 +245,20 @@ fn one_that_moves_in_front_cuts_in() {
     let behind = Drive { change: Some((1.0, "road_1")), ..follower() };
     let found = logged(&road(), &[behind, leader(None)], &[], 2.5);
     assert_eq!(found, [["rear_end", "lane_change", "changed_lane"]]);
+}
+
+#[test]
+fn a_change_of_lanes_has_the_reason_that_sumo_told() {
+    let reason = |cars: &[Drive]| {
+        let found = conflicts(&road(), cars, &[], 2.5);
+        found.last().and_then(|conflict| conflict.lane_change_reason).map_or("", |reason| reason.name())
+    };
+    let follower = || drive(&["road_0"], 100.0, |_| 20.0);
+    let leader = || drive(&["road_1"], 112.0, |_| 17.0);
+    let to = |drive: Drive, lane, time| Drive { change: Some((time, lane)), ..drive };
+    assert_eq!(reason(&[follower(), to(leader(), "road_0", 1.0)]), "keep_right");
+    assert_eq!(reason(&[to(follower(), "road_1", 1.0), leader()]), "strategic");
+    assert_eq!(reason(&[follower(), drive(&["road_0"], 112.0, |_| 17.0)]), "", "none has changed lanes");
 }
 
 #[test]

@@ -18,13 +18,13 @@ CONFLICT_COLUMNS = (
     "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,collision_sumo,ego_type,foe_type,"
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
     "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v,"
-    "manoeuvre,cause,ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
+    "manoeuvre,cause,lane_change_reason,ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
 )
 SERIES_COLUMNS = (
     "conflict,ego,foe,kind,severity,time,gap,mu,margin,clearance,ttc,drac,unavoidable,ego_delta_v,foe_delta_v,ego_speed,foe_speed,"
     "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap,response_left,ttb,"
     "crash_probability,crash_probability_braking,injury_probability,extended_delta_v,manoeuvre,cause,"
-    "ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
+    "lane_change_reason,ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
 )
 
 Copy = Callable[[str], Path]

@@ -185,7 +185,7 @@ def test_bad_input_names_row_column_and_what_was_expected(tmp_path: Path) -> Non
     refused("--columns: time or frame is missing", ind, "--columns", "id=trackId,x=xCenter,y=yCenter")
     refused("it has no column east", ind, "--columns", "id=trackId,frame=frame,x=east,y=yCenter", "--frame-rate", "10")
     broken.write_text("\n".join([*lines, lines[-1]]))
-    refused('"6" is there twice at 7.9 s', broken, "--format", "inD", "--frame-rate", "10")
+    refused('"6" at 7.9 s: it is there twice', broken, "--format", "inD", "--frame-rate", "10")
     trj = layouts.trj(tmp_path, layouts.scene(), 1.04)
     trj.write_bytes(trj.read_bytes()[:-3])
     refused("it is cut short within a record", trj)

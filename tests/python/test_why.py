@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 from pathlib import Path
+from xml.etree import ElementTree
 
 import closecall as cc
 import pytest
@@ -45,6 +46,23 @@ def test_the_runner_of_a_red_light_is_is_named(tmp_path: Path) -> None:
     crossing = [row for row in logged("signals", tmp_path / "out") if row["kind"] == "side"]
     assert crossing
     assert {(row["manoeuvre"], row["cause"]) for row in crossing} == {("crossing", "ran_red")}
+
+
+def test_a_change_of_lanes_has_the_reason_in_sumos_own_output(tmp_path: Path) -> None:
+    config, told = NETS / "signals" / "signals.sumocfg", tmp_path / "changes.xml"
+    words = ("--out", tmp_path / "out", "--quiet", "--", "--no-warnings", "--lanechange-output", told)
+    done = closecall("run", config, "--end", "150", *words)
+    assert done.returncode == 0, done.stderr
+    reasons: dict[str, set[str]] = {}
+    for change in ElementTree.parse(told).iter("change"):
+        snake = change.attrib["reason"].replace("speedGain", "speed_gain").replace("keepRight", "keep_right")
+        reasons.setdefault(change.attrib["id"], set()).update(snake.split("|"))
+    found = rows(tmp_path / "out" / "conflicts.csv")
+    changed = [row for row in found if "changed_lane" in row["cause"].split()]
+    assert changed and all(row["lane_change_reason"] for row in changed)
+    for row in changed:
+        assert row["lane_change_reason"] in reasons.get(row["ego"], set()) | reasons.get(row["foe"], set())
+    assert not any(row["lane_change_reason"] for row in found if row not in changed)
 
 
 def test_left_turns_are_across_oncoming_traffic(tmp_path: Path) -> None:

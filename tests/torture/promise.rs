@@ -13,7 +13,9 @@ use crate::{Fault, NO_FAULT};
 /// Files that grow: rows that are there are right.
 const ROWS: [&str; 2] = ["log/conflicts.csv", "log/series.csv"];
 /// Files that are written whole or not at all.
-const WHOLE: [&str; 4] = ["report.html", "stats.json", "ssm.xml", "all.trj"];
+const WHOLE: [&str; 6] = ["report.html", "stats.json", "ssm.xml", "all.trj", "clip.svg", "exported"];
+/// What replaces the first of [`ROWS`] in a log in Parquet, whole: `run.json` is in it.
+const PACKED: &str = "log/conflicts.parquet";
 /// A file of the log that is written whole; a run that fails may have moved that of before aside.
 const CLIPS: &str = "log/clips.jsonl.gz";
 /// Where a second run keeps the log that it finds.
@@ -31,13 +33,16 @@ const LOST: i32 = 3;
 pub struct Content {
     files: BTreeMap<&'static str, Vec<u8>>,
     printed: Vec<u8>,
+    /// The conflicts in the log.
+    conflicts: usize,
 }
 
 impl Content {
     pub fn of(folder: &Path) -> Self {
         let names = ROWS.into_iter().chain(WHOLE).chain([CLIPS, EARLIER]);
         let files = names.filter_map(|name| Some((name, fs::read(folder.join(name)).ok()?)));
-        Self { files: files.collect(), printed: Vec::new() }
+        let conflicts = ConflictReader::open(&folder.join("log")).map_or(0, Iterator::count);
+        Self { files: files.collect(), printed: Vec::new(), conflicts }
     }
 
     pub fn with_printed(self, printed: Vec<u8>) -> Self {
@@ -96,7 +101,7 @@ impl Disturbed<'_> {
             let is_right = found == wanted
                 || !self.done.status.success()
                     && (found == before
-                        || ROWS.contains(&name) && found.is_none_or(is_prefix)
+                        || ROWS.contains(&name) && (wanted.is_none() || found.is_none_or(is_prefix))
                         || name == CLIPS && found.is_none());
             if !is_right {
                 let length = |content: Option<&Vec<u8>>| content.map(Vec::len);
@@ -115,10 +120,14 @@ impl Disturbed<'_> {
 
     /// All rows of the log can be read, and its statistics count them, unless they say that the run has no result.
     fn check_log(&self, after: &Content) -> Result<(), String> {
-        let Some(text) = after.files.get(ROWS[0]) else { return Ok(()) };
+        let is_packed = self.folder.join(PACKED).exists();
+        let rows = match after.files.get(ROWS[0]) {
+            _ if is_packed => self.reference.conflicts,
+            Some(text) => text.iter().filter(|sign| **sign == b'\n').count().saturating_sub(1),
+            None => return Ok(()),
+        };
         let log = self.folder.join("log");
-        let rows = text.iter().filter(|sign| **sign == b'\n').count().saturating_sub(1);
-        let has_record = log.join("run.json").exists();
+        let has_record = is_packed || log.join("run.json").exists();
         let run = has_record.then(|| LoggedRun::read(&log)).transpose().map_err(|error| error.to_string())?;
         let is_complete = run.is_some_and(|run| run.complete);
         if rows > 0 {

@@ -13,9 +13,9 @@ pub struct Subject {
     before: Vec<String>,
 }
 
-/// What closecall writes: a log, one beside or in place of another, its series and other formats, a report, statistics; and
-/// what it reads.
-pub fn subjects() -> [Subject; 7] {
+/// What closecall writes: a log, one beside or in place of another, its series and other formats, a report, statistics, a
+/// picture, exports; and what it reads.
+pub fn subjects() -> [Subject; 14] {
     let of = |name, words: &str, before: &[&str]| {
         let before = before.iter().map(|words| (*words).to_owned()).collect();
         Subject { name, words: words.to_owned(), before }
@@ -25,6 +25,7 @@ pub fn subjects() -> [Subject; 7] {
     let report = "report log --quiet";
     let all = format!("{log} --log-series --ssm-output ssm.xml --trj-output all.trj");
     let stats = "stats log --format json";
+    let export = |format: &str| format!("export log --quiet --format {format} --out exported");
     [
         of("a log", log, &[]),
         of("a log after another", log, &[another]),
@@ -33,11 +34,19 @@ pub fn subjects() -> [Subject; 7] {
         of("a report in place of another", report, &[another, report, log]),
         of("statistics in a file", &format!("{stats} --out stats.json"), &[log]),
         of("statistics", stats, &[log]),
+        of("a log in Parquet", &format!("{log} --log-format parquet"), &[]),
+        of("a picture of a clip", "clip log --worst 1 --quiet --out clip.svg", &[log]),
+        of("a GeoJSON", &export("geojson"), &[log]),
+        of("a GeoParquet", &export("geoparquet"), &[log]),
+        of("a GeoPackage", &export("gpkg"), &[log]),
+        of("points of interest", &export("poi"), &[log]),
+        of("an export for the SSM device", &export("ssm"), &[log]),
     ]
 }
 
-const NET: &str =
-    r#"<net><edge id="e" from="a" to="b"><lane id="e_0" index="0" length="90" shape="0,-50 0,40"/></edge></net>"#;
+/// With a projection, as GeoJSON needs degrees.
+const NET: &str = r#"<net><location netOffset="-500000,-5400000" projParameter="+proj=utm +zone=32 +datum=WGS84 +units=m +no_defs"/>
+<edge id="e" from="a" to="b"><lane id="e_0" index="0" length="90" shape="0,-50 0,40"/></edge></net>"#;
 
 impl Subject {
     /// Fills the folder that the command finds.

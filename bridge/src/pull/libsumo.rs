@@ -40,6 +40,7 @@ struct PlacementGetters {
     route: Py<PyAny>,
     parameter: Py<PyAny>,
     departure: Py<PyAny>,
+    lane_change: Py<PyAny>,
 }
 
 /// Whether the vehicles of each list in [`Libsumo::parking`] park from now on.
@@ -71,6 +72,7 @@ impl Libsumo {
                 route: function("vehicle_getRoute")?,
                 parameter: function("vehicle_getParameter")?,
                 departure: function("vehicle_getDeparture")?,
+                lane_change: function("vehicle_getLaneChangeState")?,
             },
         })
     }
@@ -217,6 +219,11 @@ impl Libsumo {
                 lateral_speed: ask(&self.get.lateral_speed)?.extract()?,
             };
             run.set_placement(row, &placement);
+            if let Some(lanes) = run.changed_lanes(row) {
+                let id: &str = run.roster.id(user);
+                let states = self.get.lane_change.bind(py).call1((id, lanes.signum()))?;
+                run.set_lane_change_state(row, sumo::lane_change_state(&states)?);
+            }
         }
         Ok(())
     }

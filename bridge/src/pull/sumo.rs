@@ -51,6 +51,11 @@ pub fn add_obstacles(source: &Bound<PyAny>, run: &mut Run, types: &[String]) -> 
     Ok(())
 }
 
+/// The state of a lane change from what `getLaneChangeState` returns: without what scripts asked for, and with it.
+pub fn lane_change_state(states: &Bound<PyAny>) -> PyResult<i32> {
+    states.get_item(1)?.extract()
+}
+
 /// The profiles of SUMO's types; each type is asked for once.
 pub struct TypeProfiles {
     domain: Py<PyAny>,

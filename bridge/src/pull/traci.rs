@@ -168,6 +168,10 @@ impl Traci {
                 lateral_speed: value(self.variable.lateral_speed)?.extract()?,
             };
             run.set_placement(row, &placement);
+            if let Some(lanes) = run.changed_lanes(row) {
+                let states = domain.call_method1(intern!(py, "getLaneChangeState"), (id, lanes.signum()))?;
+                run.set_lane_change_state(row, sumo::lane_change_state(&states)?);
+            }
         }
         Ok(())
     }

@@ -8,15 +8,14 @@ use super::possible::PossibleRows;
 use crate::output::input_hash::Hasher;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use crate::util::csv_safe::plain;
-use crate::util::input_file::{self, longer};
-use crate::util::limits::LINE;
+use crate::util::input_file::{self, ShortRows};
 use crate::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
 #[derive(Debug)]
 pub struct CsvLog {
     path: PathBuf,
-    reader: csv::Reader<ShortRows>,
+    reader: csv::Reader<ShortRows<Hashed>>,
     header: csv::StringRecord,
     row: csv::StringRecord,
     /// Where in a row each of the [`COLUMNS`] is; none where the file lacks it or it is not to be read.
@@ -41,8 +40,8 @@ impl CsvLog {
             return Err(Error::content(path, "its last row is cut short"));
         }
         file.seek(SeekFrom::Start(0)).map_err(fault)?;
-        let mut reader =
-            csv::Reader::from_reader(ShortRows { file: file.take(whole), row: 0, hasher: Hasher::default() });
+        let hashed = Hashed { file: file.take(whole), hasher: Hasher::default() };
+        let mut reader = csv::Reader::from_reader(ShortRows::new(hashed));
         let header = reader.headers().map_err(|error| unreadable(path, 1, &error))?.clone();
         let mut log = Self {
             path: path.to_owned(),
@@ -84,7 +83,7 @@ impl CsvLog {
 
     /// The SHA-256 of what was read: once no row is left, that of the file.
     pub fn digest(&self) -> String {
-        self.reader.get_ref().hasher.clone().digits()
+        self.reader.get_ref().source().hasher.clone().digits()
     }
 
     /// The columns of the file.
@@ -100,7 +99,7 @@ impl CsvLog {
     /// The next conflict; none after the last.
     pub fn read(&mut self) -> Result<Option<LoggedConflict>> {
         let line = self.reader.position().line();
-        self.reader.get_mut().row = 0;
+        self.reader.get_mut().begin_row();
         let more = self.reader.read_record(&mut self.row).map_err(|error| unreadable(&self.path, line, &error))?;
         if !more {
             return Ok(None);
@@ -115,23 +114,16 @@ impl CsvLog {
     }
 }
 
-/// The rows of a file, each of which has to end: a quotation mark that is not closed makes one row of all that follow.
+/// A file whose bytes are hashed as they are read.
 #[derive(Debug)]
-struct ShortRows {
+struct Hashed {
     file: Take<File>,
-    /// Bytes read since the row began.
-    row: usize,
     hasher: Hasher,
 }
 
-impl Read for ShortRows {
+impl Read for Hashed {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        if self.row > LINE.count() {
-            let why = longer("the row", &LINE) + ": a quotation mark that is not closed?";
-            return Err(std::io::Error::new(std::io::ErrorKind::InvalidData, why));
-        }
         let read = self.file.read(buffer)?;
-        self.row += read;
         self.hasher.add(&buffer[..read]);
         Ok(read)
     }

@@ -1,7 +1,6 @@
 //! A conflict to be played: its row of the log, its clip and the net around it.
 
 use std::cmp::Reverse;
-use std::io::{BufRead, Read};
 use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
@@ -18,7 +17,7 @@ use crate::output::clips::CLIPS;
 use crate::output::log::RUN;
 use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
-use crate::util::input_file;
+use crate::util::input_file::{self, next_line};
 use crate::util::limits::TEXT;
 use crate::util::units::{Metre, Second, counted};
 use crate::{Error, Result};
@@ -133,13 +132,12 @@ pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
         return Ok(found);
     }
     let mut file = input_file::open(&path)?;
-    let mut line = String::new();
     for number in 1.. {
-        line.clear();
-        let read = file.by_ref().take(TEXT.count() as u64).read_line(&mut line);
-        if found.len() == ids.len() || read.map_err(|source| Error::file(&path, source))? == 0 {
+        if found.len() == ids.len() {
             break;
         }
+        let line = next_line(&mut file, &TEXT).map_err(|error| Error::line(&path, number, error.to_string()))?;
+        let Some(line) = line else { break };
         let begin = line.strip_prefix("{\"conflict\":").and_then(|rest| rest.split_once(','));
         if begin.is_some_and(|(id, _)| id.parse().is_ok_and(|id| ids.contains(&id))) {
             let clip = serde_json::from_str::<Clip>(&line).map_err(|error| error.to_string());

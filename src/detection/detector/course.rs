@@ -4,6 +4,7 @@ use super::Detector;
 use crate::detection::course::{Course, LaneChange, Stretch};
 use crate::detection::path::lanes::KEPT_BEHIND;
 use crate::traffic::frame::Frame;
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::{EdgeFunction, LaneIndex};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::Metre;
@@ -36,13 +37,24 @@ impl Detector {
             course.is_against = path.is_against();
             course.lateral_speed = path.lateral_speed();
             // One that jumps at the end of this step is still on its former lane.
-            let change = self.lane_changes.get(user.0 as usize).copied().flatten();
-            course.change = change.filter(|change| !is_before_jump || change.time < self.time);
+            course.change = self.lane_change(user).filter(|change| !is_before_jump || change.time < self.time);
         } else if let (false, Some(lane)) = (state.moves(), net.lane_at(state.front())) {
             // One that has not moved since it entered the scene has no path.
             course.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });
         }
         course
+    }
+
+    /// The last change of lanes of a road user.
+    pub fn lane_change(&self, user: UserIndex) -> Option<LaneChange> {
+        self.lane_changes.get(user.0 as usize).copied().flatten()
+    }
+
+    /// States why a road user changed lanes last.
+    pub fn set_lane_change_reason(&mut self, user: UserIndex, reason: Option<LaneChangeReason>) {
+        if let Some(Some(change)) = self.lane_changes.get_mut(user.0 as usize) {
+            change.reason = reason;
+        }
     }
 
     /// Notes that a road user has changed lanes, if the one that it was on is of the same edge as that on which it is now; in a
@@ -56,6 +68,6 @@ impl Detector {
         if self.lane_changes.len() <= user.0 as usize {
             self.lane_changes.resize(user.0 as usize + 1, None);
         }
-        self.lane_changes[user.0 as usize] = Some(LaneChange { time: self.time, from, to });
+        self.lane_changes[user.0 as usize] = Some(LaneChange { time: self.time, from, to, reason: None });
     }
 }

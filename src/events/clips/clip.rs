@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::detection::kind::Severity;
+use crate::util::limits::{ANGLE, LENGTH, Limit, POSITION, SPEED, TIME, WIDTH};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// A clip begins this long before the conflict's worst moment, in s.
@@ -11,6 +12,9 @@ pub const BEFORE: Second = 5.0;
 pub const AFTER: Second = 3.0;
 /// It shows the road users within this distance of the two or of the conflict, in m.
 pub const AROUND: Metre = 50.0;
+
+/// A clip has at most this many times: those of its seconds, ten a second, are fewer.
+const MOST_TIMES: usize = 1000;
 
 /// The seconds around a conflict's worst moment: lists of equal length, one value per time.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -36,16 +40,24 @@ impl Clip {
         self.severity[place].and_then(|_| self.severity[..=place].iter().flatten().max().copied())
     }
 
-    /// Whether it is as a run writes it: values at each time, ascending, and the two of the conflict.
+    /// Whether it is as a run writes it: values at each time, ascending, within their limits, and the two of the conflict.
     pub fn is_whole(&self) -> bool {
         let count = self.times.len();
         let is_full = |user: &ClipUser| {
             let lists = [&user.x, &user.y, &user.heading, &user.speed];
-            lists.iter().all(|list| list.len() == count && list.iter().flatten().all(|value| value.is_finite()))
+            let limits = [POSITION, POSITION, ANGLE, SPEED];
+            let is_possible = |(list, limit): (&Vec<Option<f64>>, Limit)| {
+                list.len() == count && list.iter().flatten().all(|value| limit.holds(*value))
+            };
+            lists.into_iter().zip(limits).all(is_possible)
+                && user.length <= LENGTH.most
+                && user.width <= WIDTH.most
+                && user.outlines.iter().flatten().flatten().all(|it| POSITION.holds(*it))
         };
-        count > 0
+        (1..=MOST_TIMES).contains(&count)
             && [self.severity.len(), self.time_left.len()] == [count; 2]
             && self.times.is_sorted_by(|a, b| a < b)
+            && self.times.iter().all(|time| TIME.holds(*time))
             && self.users.len() >= 2
             && self.users.iter().all(is_full)
             && self.signals.iter().all(|signal| signal.states.is_ascii() && signal.states.len() == count)

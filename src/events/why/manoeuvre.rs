@@ -186,7 +186,7 @@ pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Se
     let was_there = |time| pair.past.of(other.user, pair.time).next().is_some_and(|(first, ..)| first <= time);
     let changed = course.change.filter(|change| {
         pair.time - change.time <= LANE_CHANGE
-            && other.course.change != course.change
+            && !other.course.change.is_some_and(|other| other.is_with(change))
             && is_into(change.to)
             && was_there(change.time)
     });

@@ -15,8 +15,10 @@ pub use pair::Surroundings;
 use super::past::Past;
 use crate::detection::encounter::Encounter;
 use crate::traffic::frame::Frame;
+use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::Roster;
+use manoeuvre::changed_into;
 use pair::Pair;
 
 /// What the two of a conflict were doing, and why it came about.
@@ -25,6 +27,8 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
+    /// Why the one that changed lanes did so, where that is a cause and known.
+    pub lane_change_reason: Option<LaneChangeReason>,
     /// The lanes that the ego and the foe are on.
     pub lanes: [Option<LaneIndex>; 2],
 }
@@ -35,7 +39,9 @@ impl Why {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
         let lanes = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0));
-        Self { manoeuvre, causes: Causes::of(&pair, manoeuvre), lanes }
+        let causes = Causes::of(&pair, manoeuvre);
+        let lane_change_reason = if causes.has(Cause::ChangedLane) { lane_change_reason(&pair) } else { None };
+        Self { manoeuvre, causes, lane_change_reason, lanes }
     }
 
     /// The same with a later step that is worse.
@@ -43,8 +49,17 @@ impl Why {
         let manoeuvre = later.manoeuvre.or(self.manoeuvre);
         let mut causes = self.causes;
         causes.add(later.causes);
-        Self { manoeuvre, causes: causes.that_fit(manoeuvre), ..later }
+        let causes = causes.that_fit(manoeuvre);
+        let known = later.lane_change_reason.or(self.lane_change_reason);
+        Self { manoeuvre, causes, lane_change_reason: known.filter(|_| causes.has(Cause::ChangedLane)), ..later }
     }
+}
+
+/// Why the one changed lanes that did so last.
+fn lane_change_reason(pair: &Pair) -> Option<LaneChangeReason> {
+    let changed = pair.both().into_iter().filter_map(|(one, other)| Some((changed_into(pair, one, other)?, one)));
+    let (time, one) = changed.max_by(|one, other| one.0.total_cmp(&other.0))?;
+    one.course.change.filter(|change| change.time == time)?.reason
 }
 
 #[cfg(test)]

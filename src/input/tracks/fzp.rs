@@ -1,12 +1,12 @@
 //! Vissim's vehicle record (.fzp): lines of a table after `$VEHICLE:` and the names of its columns; units stand in the
 //! comments before it.
 
-use std::io::BufRead;
 use std::path::Path;
 
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
 use crate::geometry::{Point, Vector};
-use crate::util::input_file;
+use crate::util::input_file::{self, next_line};
+use crate::util::limits::LINE;
 use crate::util::units::{Metre, MetrePerSecond};
 use crate::{Error, Result};
 
@@ -33,9 +33,11 @@ pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
     let mut columns = None;
     let [mut speed_unit, mut place_unit] = [1.0 / 3.6, 1.0];
     let mut last = f64::NEG_INFINITY;
-    for (number, line) in (1..).zip(input_file::open(path)?.lines()) {
-        let line = line.map_err(|source| Error::file(path, source))?;
+    let mut source = input_file::open(path)?;
+    for number in 1.. {
         let wrong = |message: String| Error::line(path, number, message);
+        let line = next_line(&mut source, &LINE).map_err(|error| wrong(error.to_string()))?;
+        let Some(line) = line else { break };
         if let Some(names) = line.trim_start_matches('\u{feff}').strip_prefix(HEADER) {
             columns = Some(Columns::of(names, speed_unit, place_unit).map_err(wrong)?);
         } else if let Some(columns) = &columns {

@@ -15,7 +15,7 @@ use super::table::{self, Cell};
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::traffic::sumo_type::SumoType;
-use crate::util::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, MetrePerSecond};
 use crate::{Error, Result};
 
 /// A road user that moves less than this between the steps before and after keeps its heading, in m: noise would turn it.
@@ -65,6 +65,7 @@ struct Users {
     classes: Vec<&'static str>,
     /// By id, from the file beside the table.
     class_of: FxHashMap<String, String>,
+    /// The first [`NAMED`] unknown names of classes.
     unknown: Vec<String>,
 }
 
@@ -82,7 +83,8 @@ impl Users {
     fn class(&mut self, name: &str, mapping: &Mapping) -> u32 {
         let lower = name.to_lowercase();
         let known = mapping.classes.iter().chain(&CLASSES).find(|(known, _)| *known == lower);
-        if known.is_none() && !name.is_empty() && !self.unknown.iter().any(|unknown| unknown == name) {
+        let is_new = || !name.is_empty() && !self.unknown.iter().any(|unknown| unknown == name);
+        if known.is_none() && self.unknown.len() < NAMED && is_new() {
             self.unknown.push(name.to_owned());
         }
         let class = known.map_or("passenger", |(_, class)| class);
@@ -106,14 +108,10 @@ pub(super) fn convert(path: &Path, mapping: &Mapping, out: &mut FcdWriter) -> Re
     let mut steps = Sorter::new(Order::Steps);
     let derived = each_track(by_user, |track| track.iter().try_for_each(|row| steps.push(*row))).map_err(fault)?;
     let mut steps = steps.sorted().map_err(fault)?;
-    let mut last: Option<(Second, u32)> = None;
     while let Some(Row { user, class, time, values: [x, y, heading, speed, length, width] }) =
         steps.next().map_err(fault)?
     {
         let id = users.ids.get(user as usize).map_or("", String::as_str);
-        if last.replace((time, user)) == Some((time, user)) {
-            return Err(Error::content(path, format!("\"{id}\" is there twice at {time} s")));
-        }
         let class = users.classes.get(class as usize).copied().unwrap_or("passenger");
         let length = if length > 0.0 { length } else { SumoType::of_class("", class).length };
         let place = Point::new(x, y);
@@ -134,7 +132,7 @@ fn remarks(users: &Users, [headings, speeds]: [u64; 2]) -> Vec<String> {
         remarks.push(format!("speeds: {speeds} rows have none, so they follow from how far the road user moved"));
     }
     if !users.unknown.is_empty() {
-        let named = users.unknown.iter().take(NAMED).map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
+        let named = users.unknown.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
         remarks.push(format!("classes: {named} are unknown, so they are cars"));
     }
     remarks

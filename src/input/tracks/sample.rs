@@ -3,14 +3,15 @@
 use std::io::{BufWriter, Error as IoError, Write};
 
 use quick_xml::escape::escape;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use tempfile::{NamedTempFile, TempPath};
 
 use super::matching::LaneFinder;
 use crate::geometry::Point;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::sumo_type::SumoType;
-use crate::util::limits::{HEIGHT, LENGTH, POSITION, SPEED, TIME, WIDTH};
+use crate::util::input_file::longer;
+use crate::util::limits::{ANGLE, HEIGHT, LENGTH, NAME, POSITION, SPEED, TIME, WIDTH};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// One road user in one step.
@@ -40,6 +41,9 @@ pub(super) struct FcdWriter<'a> {
     /// By name: the vehicle class, length and width.
     types: FxHashMap<String, (&'static str, Metre, Metre)>,
     row: String,
+    /// The step that is written, and the ids in it: those of vehicles and those of persons.
+    time: Second,
+    written: [FxHashSet<String>; 2],
 }
 
 /// The class of persons.
@@ -56,7 +60,7 @@ impl<'a> FcdWriter<'a> {
             Ok(fcd)
         };
         let fcd = draft().map_err(|source: IoError| crate::Error::file(&std::env::temp_dir(), source))?;
-        Ok(Self { fcd, lanes, types: FxHashMap::default(), row: String::new() })
+        Ok(Self { fcd, lanes, types: FxHashMap::default(), row: String::new(), time: 0.0, written: Default::default() })
     }
 
     /// Appends a road user; those of a step follow each other.
@@ -70,8 +74,18 @@ impl<'a> FcdWriter<'a> {
         POSITION.check("y", front.y)?;
         HEIGHT.check("z", height)?;
         SPEED.check("speed", speed)?;
-        if !heading.is_finite() {
-            return Err(format!("the heading of \"{id}\" is {heading}"));
+        ANGLE.check("heading", heading)?;
+        match id.len() {
+            0 => return Err("it has no id".to_owned()),
+            length if length > NAME.count() => return Err(longer("its id", &NAME)),
+            _ => {}
+        }
+        if time != self.time {
+            self.time = time;
+            self.written.iter_mut().for_each(FxHashSet::clear);
+        }
+        if !self.written[usize::from(class == PEDESTRIAN)].insert(id.to_owned()) {
+            return Err("it is there twice".to_owned());
         }
         let kind = self.kind(sample)?;
         let place = if class == PEDESTRIAN {

@@ -9,7 +9,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 #[cfg(feature = "parquet")]
 use parquet::record::Field;
 
-use crate::util::input_file::{self, longer};
+use crate::util::input_file::{self, ShortRows, longer};
 use crate::util::limits::LINE;
 #[cfg(feature = "parquet")]
 use crate::util::parquet_column::guarded;
@@ -94,6 +94,7 @@ pub(super) fn read(
     let mut record = csv::StringRecord::new();
     loop {
         let line = reader.position().line();
+        reader.get_mut().begin_row();
         if !reader.read_record(&mut record).map_err(|error| unreadable(path, line, &error))? {
             return Ok(());
         }
@@ -102,7 +103,7 @@ pub(super) fn read(
     }
 }
 
-fn csv_of(path: &Path) -> Result<csv::Reader<impl Read>> {
+fn csv_of(path: &Path) -> Result<csv::Reader<ShortRows<impl Read>>> {
     const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
     let fault = |source| Error::file(path, source);
     let mut source = input_file::open(path)?;
@@ -115,10 +116,10 @@ fn csv_of(path: &Path) -> Result<csv::Reader<impl Read>> {
     if first.starts_with(BYTE_ORDER_MARK) {
         source.consume(BYTE_ORDER_MARK.len());
     }
-    Ok(csv::ReaderBuilder::new().delimiter(separator).from_reader(source))
+    Ok(csv::ReaderBuilder::new().delimiter(separator).from_reader(ShortRows::new(source)))
 }
 
-fn csv_names(path: &Path, reader: &mut csv::Reader<impl Read>) -> Result<Vec<String>> {
+fn csv_names(path: &Path, reader: &mut csv::Reader<ShortRows<impl Read>>) -> Result<Vec<String>> {
     let names = reader.headers().map_err(|error| unreadable(path, 1, &error))?;
     Ok(names.iter().map(|name| name.trim().to_owned()).collect())
 }
@@ -129,6 +130,7 @@ fn unreadable(path: &Path, line: u64, error: &csv::Error) -> Error {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
             Error::line(path, line, format!("the row has {len} cells, not {expected_len}"))
         }
+        csv::ErrorKind::Io(source) => Error::line(path, line, source.to_string()),
         csv::ErrorKind::Utf8 { err, .. } => Error::line(path, line, err.to_string()),
         _ => Error::line(path, line, error.to_string()),
     }
