@@ -6,5 +6,5 @@ mod picture;
 mod roads;
 mod view;
 
-pub use found::{Playback, Which, may_have_clip};
+pub use found::{Playback, may_have_clip};
 pub use picture::svg;
