@@ -349,6 +349,21 @@ mod tests {
     }
 
     #[test]
+    fn a_folder_that_is_not_empty_is_left_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        check_is_new(folder.path()).unwrap();
+        check_is_new(&folder.path().join("new")).unwrap();
+        fs::write(folder.path().join("a"), "").unwrap();
+        assert!(
+            check_is_new(folder.path())
+                .unwrap_err()
+                .to_string()
+                .ends_with("it is not empty; a cut-out needs a folder of its own")
+        );
+        assert!(matches!(check_is_new(&folder.path().join("a")), Err(Error::File { .. })));
+    }
+
+    #[test]
     fn what_cannot_be_run_again_is_told() {
         let folder = tempfile::tempdir().unwrap();
         let scenario = folder.path().join("a.sumocfg");
