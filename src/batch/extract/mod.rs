@@ -1,7 +1,7 @@
 //! `closecall extract`: one conflict of a run as a scenario of its own, in which it happens again.
 //!
 //! The shortest way there is a state that SUMO saves some seconds before: with all digits and the states of the random
-//! numbers it goes on exactly, if no route files are read beside it, for which SUMO would draw random numbers again. A state
+//! numbers it mostly goes on exactly, if no route files are read beside it, for which SUMO would draw random numbers again. A state
 //! does not hold everything, though. So the conflict is looked for in a run from the state, and where it is another one
 //! there, the scenario begins where the run did. The net stays whole: SUMO draws the random numbers of drivers by the places
 //! of lanes in the net, so that a part of it would have other drivers.
