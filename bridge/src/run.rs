@@ -27,6 +27,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let interrupts = Interrupts::new(py)?;
     let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
     let mut show = |request: &ShowRequest| start::show(py, request);
+    let mut save_configuration = |words: &[String], to: &Path| start::save_configuration(py, words, to);
     let mut interrupted = || interrupts.had_any();
     let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd| {
         interrupts.report();
@@ -35,6 +36,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let sumo = Sumo {
         simulate: &mut simulate,
         show: &mut show,
+        save_configuration: &mut save_configuration,
         distribute: &mut distribute,
         closecall: closecall(py)?,
         interrupted: &mut interrupted,

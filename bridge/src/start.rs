@@ -39,19 +39,34 @@ impl NetAhead {
 
 /// Starts SUMO with the scenario, ready for its first step.
 pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, PyAny>> {
-    let refused = |error: PyErr| {
-        if error.is_instance_of::<PyImportError>(py) {
-            Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, &error)))
-        } else {
-            let refusal = Error::Refused { path: request.scenario.clone(), message: message(py, &error) };
-            sumo_files::fault(&request.scenario).unwrap_or(refusal)
-        }
-    };
+    let refused = |error| refused(py, &request.scenario, &error);
     let starter = py.import("closecall._sumo").map_err(refused)?;
     if request.gui.is_some() {
         check_display(&starter)?;
     }
     starter.call_method1("start", (request.sumo_words.clone(), request.gui.is_some())).map_err(refused)
+}
+
+/// The error where SUMO does not start.
+fn refused(py: Python, scenario: &Path, error: &PyErr) -> Error {
+    if error.is_instance_of::<PyImportError>(py) {
+        Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, error)))
+    } else {
+        let refusal = Error::Refused { path: scenario.to_owned(), message: message(py, error) };
+        sumo_files::fault(scenario).unwrap_or(refusal)
+    }
+}
+
+/// Saves the options that SUMO has with these words; nothing is simulated.
+pub fn save_configuration(py: Python, words: &[String], to: &Path) -> Result<()> {
+    let configuration = words.iter().position(|word| word == "-c").and_then(|place| words.get(place + 1));
+    let scenario = PathBuf::from(configuration.unwrap_or(&String::new()));
+    let refused = |error| refused(py, &scenario, &error);
+    let starter = py.import("closecall._sumo").map_err(refused)?;
+    let words = [words, &["--save-configuration".to_owned(), to.display().to_string()]].concat();
+    let started = starter.call_method1("start", (words, false)).map_err(refused);
+    close(py, false);
+    started.map(drop)
 }
 
 /// Checks that sumo-gui can be shown: without a display it ends the whole process without a message.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use super::filter::ConflictFilter;
 use super::logged::{ConflictReader, LostRows, Progress, Reading, check_keeps_logs, log_folders};
 use crate::output::formats::{ExportFormat, Exported};
 use crate::{Error, Result};
@@ -9,18 +10,27 @@ use crate::{Error, Result};
 /// What was written.
 #[derive(Debug)]
 pub struct Made {
-    /// The number of conflicts.
+    /// The number of conflicts that passed the filter.
     pub conflicts: u64,
+    /// The number of conflicts in the log.
+    pub all: u64,
     /// What the log lacks.
     pub lost: Option<LostRows>,
 }
 
-/// Writes the log in a folder, or in one below it, to `out`, whole or not at all.
+/// Writes the conflicts of the log in a folder, or in one below it, that pass the filter to `out`, whole or not at all.
 ///
 /// # Errors
-/// Those of reading the log; [`Error::Content`] where the folder holds several; [`Error::Value`] where the format cannot
+/// That of [`ConflictFilter::check`]; those of reading the log; [`Error::Content`] where the folder holds several; [`Error::Value`] where the format cannot
 /// hold it or it would be written over the log; those of writing `out`.
-pub fn write(folder: &Path, format: ExportFormat, out: &Path, progress: &mut Progress) -> Result<Made> {
+pub fn write(
+    folder: &Path,
+    format: ExportFormat,
+    filter: &ConflictFilter,
+    out: &Path,
+    progress: &mut Progress,
+) -> Result<Made> {
+    filter.check()?;
     let named = [PathBuf::from(folder)];
     check_keeps_logs(out, &named, None)?;
     let logs = log_folders(&named)?;
@@ -33,14 +43,19 @@ pub fn write(folder: &Path, format: ExportFormat, out: &Path, progress: &mut Pro
     };
     let mut conflicts = ConflictReader::open(log)?.with_snapshots();
     let mut reading = Reading::new(0, progress);
+    // The log's first, whether it passes or not: it tells in what its places are.
     let first = conflicts.next().transpose()?;
     let mut file = Exported::create(out, format, conflicts.columns_of_schema(), first.as_ref())?;
-    let mut written = 0;
+    let (mut written, mut all) = (0, 0);
     for conflict in first.map(Ok).into_iter().chain(conflicts.by_ref()) {
-        file.write(conflict?)?;
-        written += 1;
+        let conflict = conflict?;
+        all += 1;
+        if filter.passes(&conflict) {
+            file.write(conflict)?;
+            written += 1;
+        }
         reading.count();
     }
     file.finish()?;
-    Ok(Made { conflicts: written, lost: conflicts.lost() })
+    Ok(Made { conflicts: written, all, lost: conflicts.lost() })
 }

@@ -8,6 +8,7 @@ use super::progress::CountBar;
 use super::say::say;
 use crate::Result;
 use crate::analysis::export;
+use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::check_none_lost;
 use crate::output::formats::ExportFormat;
 use crate::util::units::counted;
@@ -28,17 +29,20 @@ pub struct ExportArgs {
     /// Print only errors.
     #[arg(short, long)]
     quiet: bool,
+    #[command(flatten)]
+    filter: ConflictFilter,
 }
 
 /// Writes the file and prints its name.
 pub fn run(arguments: ExportArgs) -> Result<()> {
-    let ExportArgs { folder, format, out, quiet } = arguments;
+    let ExportArgs { folder, format, out, quiet, filter } = arguments;
     let out = out.unwrap_or_else(|| folder.join(format!("conflicts.{}", format.ending())));
     let mut bar = CountBar::new("conflicts", !quiet);
-    let made = export::write(&folder, format, &out, &mut |read, all| bar.show(read, all))?;
+    let made = export::write(&folder, format, &filter, &out, &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if !quiet {
-        say(format_args!("{} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
+        let of = if filter.is_empty() { String::new() } else { format!(" of {}", made.all) };
+        say(format_args!("{}{of} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
     }
     check_none_lost(made.lost.as_slice())
 }

@@ -6,6 +6,7 @@
 mod check_args;
 mod ending;
 mod export;
+mod extract;
 mod files;
 mod inspect;
 mod mu;
@@ -30,6 +31,7 @@ mod study_scenario;
 mod sumo;
 #[cfg(feature = "parquet")]
 mod sweep;
+mod which;
 #[cfg(feature = "parquet")]
 mod workers;
 
@@ -43,7 +45,7 @@ use crate::{Error, Result};
 use parse::{Command, ParseError, command, parse};
 
 pub use crate::util::panics::keep_quiet as keep_panics_quiet;
-pub use sumo::{GuiRequest, RunRequest, ShowRequest, Simulate, Sumo};
+pub use sumo::{GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
 #[cfg(feature = "parquet")]
 pub use workers::{Distribute, ReportEnd, Workers};
 
@@ -72,6 +74,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         Command::Clip(arguments) => playback::clip(&arguments).map(|()| 0),
         Command::Show(arguments) => playback::show(&arguments, sumo).map(|()| 0),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| 0),
+        Command::Extract(arguments) => extract::run(&arguments, &settings::known(&command()), sumo).map(|()| 0),
         Command::Export(arguments) => export::run(arguments).map(|()| 0),
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         #[cfg(feature = "plot")]

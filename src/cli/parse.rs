@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use super::say::value;
-use super::{export, inspect, mu, playback, regress, replay, report, run, settings, stats};
+use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
 use crate::{Error, Result};
 
 #[cfg(feature = "plot")]
@@ -57,6 +57,9 @@ pub(super) enum Command {
     /// Show the seconds around a conflict in sumo-gui
     #[command(args_override_self = true)]
     Show(playback::ShowArgs),
+    /// Cut a conflict out of a run: a folder with a scenario in which it happens again, and a test
+    #[command(args_override_self = true)]
+    Extract(extract::ExtractArgs),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
     #[command(args_override_self = true)]
     Export(export::ExportArgs),

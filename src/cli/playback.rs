@@ -6,23 +6,17 @@ use clap::Args;
 
 use super::say::{say, value};
 use super::sumo::{ShowRequest, Sumo, no_sumo};
+use super::which::WhichArgs;
 use crate::Result;
 use crate::analysis::logged::check_keeps_logs;
-use crate::analysis::playback::{Playback, Which, svg};
+use crate::analysis::playback::{Playback, svg};
 use crate::util::output_file;
 
-/// Which conflict.
+/// Which conflict, and on what to draw it.
 #[derive(Args)]
 struct Choice {
-    /// Log folder.
-    #[arg(value_name = "LOG")]
-    folder: PathBuf,
-    /// The conflict's id in the log.
-    #[arg(value_name = "ID", required_unless_present = "worst")]
-    id: Option<u64>,
-    /// The worst conflict (1), the second worst (2), and so on, instead of an id.
-    #[arg(long, value_name = "N", conflicts_with = "id")]
-    worst: Option<usize>,
+    #[command(flatten)]
+    conflict: WhichArgs,
     /// Net [default: the net file named in the log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
@@ -30,8 +24,7 @@ struct Choice {
 
 impl Choice {
     fn find(&self) -> Result<Playback> {
-        let which = self.id.map_or(Which::Worst(self.worst.unwrap_or(1)), Which::Id);
-        Playback::find(&self.folder, which, self.net.as_deref())
+        Playback::find(&self.conflict.folder, self.conflict.which(), self.net.as_deref())
     }
 }
 
@@ -65,7 +58,7 @@ pub struct ShowArgs {
 pub fn clip(arguments: &ClipArgs) -> Result<()> {
     let ClipArgs { choice, out, quiet } = arguments;
     check_is_svg(out)?;
-    check_keeps_logs(out, std::slice::from_ref(&choice.folder), choice.net.as_deref())?;
+    check_keeps_logs(out, std::slice::from_ref(&choice.conflict.folder), choice.net.as_deref())?;
     let playback = choice.find()?;
     if !quiet {
         playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));

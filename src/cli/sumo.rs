@@ -13,12 +13,16 @@ use crate::output::summary::Summary;
 #[cfg(feature = "parquet")]
 use super::workers::Distribute;
 
+pub use crate::batch::extract::SaveConfiguration;
+
 /// What the bridge offers the commands that run SUMO.
 pub struct Sumo<'a> {
     /// Runs a simulation in this process.
     pub simulate: &'a mut Simulate<'a>,
     /// Shows a clip in sumo-gui.
     pub show: &'a mut dyn FnMut(&ShowRequest) -> Result<()>,
+    /// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
+    pub save_configuration: &'a mut SaveConfiguration<'a>,
     /// Distributes the runs of a sweep to workers.
     #[cfg(feature = "parquet")]
     pub distribute: &'a mut Distribute<'a>,

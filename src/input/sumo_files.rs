@@ -71,7 +71,7 @@ pub fn net_of(configuration: &Path) -> Option<PathBuf> {
 
 /// The value of an option in a SUMO configuration, if it is set there.
 pub fn value_of(configuration: &Path, option: &str) -> Option<String> {
-    options_of(configuration).ok()?.into_iter().find(|(name, _)| name == option).map(|(_, value)| value)
+    options_of(configuration).ok()?.into_iter().find(|set| set.name == option).map(|set| set.value)
 }
 
 /// The files that a configuration names, each with the option that names it.
@@ -86,7 +86,7 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
     ];
     let folder = configuration.parent().unwrap_or(Path::new(""));
     let mut files = Vec::new();
-    for (name, value) in options_of(configuration)? {
+    for SumoOption { name, value, .. } in options_of(configuration)? {
         if let Some((_, option)) = OPTIONS.iter().find(|(known, _)| *known == name) {
             let names = value.split(',').map(str::trim).filter(|name| !name.is_empty());
             files.extend(names.map(|name| (*option, folder.join(name))));
@@ -95,11 +95,26 @@ fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
     Ok(files)
 }
 
-/// The options that a configuration sets, each with its value.
-fn options_of(configuration: &Path) -> Result<Vec<(String, String)>> {
+/// An option that a configuration sets.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SumoOption {
+    /// The element that it is in, by which SUMO groups options; it has no meaning for SUMO.
+    pub section: String,
+    /// Its name.
+    pub name: String,
+    /// Its value, with XML's escapes.
+    pub value: String,
+}
+
+/// The options that a configuration sets, in its order.
+///
+/// # Errors
+/// [`Error::File`] or [`Error::Line`] where it cannot be read.
+pub fn options_of(configuration: &Path) -> Result<Vec<SumoOption>> {
     let mut reader = Reader::from_reader(ElementSource::open(configuration)?);
     let mut buffer = Vec::new();
     let mut options = Vec::new();
+    let mut section = String::new();
     loop {
         buffer.clear();
         let line = reader.get_mut().begin_element();
@@ -110,8 +125,12 @@ fn options_of(configuration: &Path) -> Result<Vec<(String, String)>> {
             Event::Eof => return Ok(options),
             _ => continue,
         };
-        if let Ok(Some(value)) = tag.try_get_attribute("value") {
-            options.push((tag.name().as_ref().to_owned(), value.value.into_owned()));
+        let name = tag.name().as_ref().to_owned();
+        match tag.try_get_attribute("value") {
+            Ok(Some(value)) => {
+                options.push(SumoOption { section: section.clone(), name, value: value.value.into_owned() });
+            }
+            _ => section = name,
         }
     }
 }

@@ -125,6 +125,23 @@ def test_equal_logs_give_equal_bytes(log: Path, tmp_path: Path) -> None:
         assert first == second, layout
 
 
+def test_the_filter_of_stats_chooses_what_is_exported(log: Path, tmp_path: Path) -> None:
+    words = ("--kind", "side", "--to", "40")
+    expected = [row["id"] for row in rows(log / "conflicts.csv") if row["kind"] == "side" and float(row["time"]) <= 40]
+    out = tmp_path / "side.geojson"
+    done = closecall("export", log, "--format", "geojson", "--out", out, *words)
+    assert (
+        done.stdout.startswith(f"{len(expected)} conflict")
+        and f" of {len(rows(log / 'conflicts.csv'))} in" in done.stdout
+    )
+    assert [str(feature["id"]) for feature in json.loads(out.read_text())["features"]] == expected != []
+    # A log whose first conflict does not pass still has degrees, and a log of which none passes gives an empty file.
+    assert closecall("export", log, "--format", "geojson", "--out", out, "--type", "tram").returncode == 0
+    assert json.loads(out.read_text())["features"] == []
+    refused = closecall("export", log, "--format", "poi", "--from", "9", "--to", "8")
+    assert refused.returncode == 2 and "--from 9 is after --to 8" in refused.stderr and is_one_message(refused.stderr)
+
+
 LOAD_POIS = """
 import sys
 import libsumo

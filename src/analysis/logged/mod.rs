@@ -16,6 +16,7 @@ mod possible;
 mod reader;
 mod reading;
 mod run;
+mod which;
 
 pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
@@ -25,5 +26,6 @@ pub use parquet::{Packed, RunTime};
 pub use reader::{ConflictReader, LostRows, check_none_lost};
 pub use reading::{Progress, Reading};
 pub use run::{LoggedRun, record};
+pub use which::Which;
 
 pub use crate::output::schema::LoggedConflict;

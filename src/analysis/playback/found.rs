@@ -1,35 +1,24 @@
 //! A conflict to be played: its row of the log, its clip and the net around it.
 
-use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::analysis::dataset::nets;
-use crate::analysis::logged::{ConflictReader, LoggedRun, record};
+use crate::analysis::logged::{LoggedRun, Which, record};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::{Clip, MOST};
 use crate::geometry::Point;
 use crate::options::RESPONSE;
-use crate::output::badness::Badness;
 use crate::output::clips::CLIPS;
 use crate::output::log::RUN;
 use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
 use crate::util::input_file::{self, next_line};
 use crate::util::limits::TEXT;
-use crate::util::units::{Metre, Second, counted};
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
-
-/// Which conflict of a log.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
-    /// That with this `id`.
-    Id(u64),
-    /// The worst, the second worst, …: 1, 2, …
-    Worst(usize),
-}
 
 /// A conflict with its clip.
 #[derive(Debug)]
@@ -67,15 +56,8 @@ impl Playback {
     /// # Errors
     /// [`Error::Value`] where the log has no such conflict, or the conflict no clip; the errors of reading the log.
     pub fn find(folder: &Path, which: Which, net: Option<&Path>) -> Result<Self> {
-        let id = match which {
-            Which::Id(id) => id,
-            Which::Worst(place) => worst(folder, place)?,
-        };
-        let mut conflicts = ConflictReader::open(folder)?.with_snapshots();
-        let conflict = conflicts.find(|conflict| conflict.as_ref().map_or(true, |conflict| conflict.id == id));
-        let conflict = conflict.transpose()?;
-        let conflict = conflict.ok_or_else(|| Error::Value(format!("{} has no conflict {id}", folder.display())))?;
-        let clip = clips(folder, &[id])?.remove(&id).ok_or_else(|| no_clip(folder, &conflict))?;
+        let conflict = which.find(folder)?;
+        let clip = clips(folder, &[conflict.id])?.remove(&conflict.id).ok_or_else(|| no_clip(folder, &conflict))?;
         let (path, text) = record(folder)?;
         let record = serde_json::from_str::<serde_json::Value>(&text)
             .map_err(|error| Error::content(&path, error.to_string()))?;
@@ -103,22 +85,6 @@ impl Playback {
             front.into_iter().chain(points).collect()
         })
     }
-}
-
-/// The `id` of the worst conflict of a log, the second worst, …
-fn worst(folder: &Path, place: usize) -> Result<u64> {
-    let mut found = Vec::new();
-    for conflict in ConflictReader::open(folder)? {
-        let conflict = conflict?;
-        found.push((Badness::from(&conflict), Reverse(conflict.id)));
-    }
-    found.sort_unstable_by(|a, b| b.cmp(a));
-    let count = found.len();
-    let Some((_, Reverse(id))) = place.checked_sub(1).and_then(|place| found.get(place)) else {
-        let count = counted(count as u64, "conflict");
-        return Err(Error::Value(format!("--worst {place}: {} has {count}", folder.display())));
-    };
-    Ok(*id)
 }
 
 /// The clips of those conflicts of a log that have one, by the conflicts' `id`.

@@ -6,6 +6,6 @@ mod picture;
 mod roads;
 mod view;
 
-pub use found::{Playback, Which, clips, may_have_clip};
+pub use found::{Playback, clips, may_have_clip};
 pub use picture::svg;
 pub use roads::{signal_bar, signal_colour};

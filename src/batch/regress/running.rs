@@ -30,13 +30,13 @@ pub struct Runner<'a> {
 
 /// One run.
 #[derive(Clone, Debug)]
-pub(super) struct Job<'a> {
-    pub(super) scenario: &'a Scenario,
+pub(in crate::batch) struct Job<'a> {
+    pub(in crate::batch) scenario: &'a Scenario,
     /// Which of the scenarios it belongs to.
-    pub(super) number: usize,
-    pub(super) seed: u32,
+    pub(in crate::batch) number: usize,
+    pub(in crate::batch) seed: u32,
     /// The folder of its log.
-    pub(super) log: PathBuf,
+    pub(in crate::batch) log: PathBuf,
 }
 
 /// The result of a run, with its own error message.
@@ -44,7 +44,7 @@ type JobResult = std::result::Result<(), String>;
 
 impl Runner<'_> {
     /// Runs all jobs and returns their results, in the order of the jobs.
-    pub(super) fn run(&mut self, jobs: &[Job]) -> Result<Vec<JobResult>> {
+    pub(in crate::batch) fn run(&mut self, jobs: &[Job]) -> Result<Vec<JobResult>> {
         let next = AtomicUsize::new(0);
         let stop = AtomicBool::new(false);
         let ended = Mutex::new(vec![None; jobs.len()]);
