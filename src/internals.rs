@@ -6,8 +6,8 @@
 pub mod analysis {
     pub use crate::analysis::export;
     pub use crate::analysis::filter::{ConflictFilter, Place};
-    pub use crate::analysis::logged::{ConflictReader, LoggedRun};
-    pub use crate::analysis::playback::{Playback, Which, svg};
+    pub use crate::analysis::logged::{ConflictReader, LoggedRun, Which};
+    pub use crate::analysis::playback::{Playback, svg};
     #[cfg(feature = "plot")]
     pub use crate::analysis::plot;
     pub use crate::analysis::report;

@@ -229,7 +229,8 @@ pub fn exported(bytes: &[u8]) {
         ExportFormat::Poi,
         ExportFormat::Ssm,
     ] {
-        let _ = export::write(&log, format, &folder.path().join("exported"), &mut |_, _| ());
+        let _ =
+            export::write(&log, format, &ConflictFilter::default(), &folder.path().join("exported"), &mut |_, _| ());
     }
 }
 
