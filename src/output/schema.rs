@@ -197,7 +197,7 @@ columns! { |conflict, context|
     /// ([rules](causes.md)); empty where none of them is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
     /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
-    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where nobody told, as in a replay
+    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where it is not known, as in a replay
     [Optional] lane_change_reason: OptionalText =
         conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
     /// the lane of the ego's front bumper; the nearest where its way is not known

@@ -39,7 +39,7 @@ struct Approach {
     role: Role,
 }
 
-/// A way through a junction, as far as it is known: places among the junction's approaches.
+/// What is known of a way through a junction: places among the junction's approaches.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 struct Movement {
     from: Option<usize>,

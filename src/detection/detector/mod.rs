@@ -64,7 +64,7 @@ const AHEAD: Metre = 20.0;
 /// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
 const LEVEL: Metre = 2.5;
 
-/// An encounter takes at least as long as so many road users without one, for its sweep and its measures: 2 to 10 µs. Those of
+/// An encounter takes at least as long as this many road users without one, for its sweep and its measures: 2 to 10 µs. Those of
 /// the last step tell how many threads the narrow phase is worth.
 const ENCOUNTER: usize = 50;
 

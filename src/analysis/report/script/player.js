@@ -95,7 +95,7 @@ class Player {
     Player.playing = this;
     this.isPlaying = true;
     this.play.textContent = "Pause";
-    // The still is the worst step: one who starts there has not seen how it came.
+    // The still is the worst step: playing from there would not show how it came about.
     if (this.time === this.worst || this.time >= times[times.length - 1]) this.time = times[0];
     let [last, wait] = [performance.now(), 0];
     const still = matchMedia("(prefers-reduced-motion: reduce)").matches ? STILL : 0;
