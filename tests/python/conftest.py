@@ -162,7 +162,8 @@ def town(once: Once) -> Path:
 
     def fill(folder: Path) -> None:
         config = NETS / "town" / "town.sumocfg"
-        done = closecall("run", config, "--end", "60", "--out", folder / "log", "--", "--no-warnings")
+        words = ("--end", "60", "--log-clips", "serious")
+        done = closecall("run", config, *words, "--out", folder / "log", "--", "--no-warnings")
         assert done.returncode == 0, done.stderr
         made = closecall("report", folder / "log", "-o", folder / "report.html")
         assert made.returncode == 0, made.stderr

@@ -42,7 +42,7 @@ def plans(once: Once) -> Path:
             for seed in seeds:
                 half = "first" if seed <= 8 else "second"
                 out = folder / plan / half / f"seed={seed}"
-                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed))
+                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed), "--log-clips", "serious")
 
     return once("plans", fill)
 

@@ -359,7 +359,9 @@ def test_a_killed_worker_loses_no_run(cluster: Cluster, tmp_path: Path) -> None:
     words = ("--seeds", "1-8", "--out", out, "--scheduler", cluster.address, "--", "--no-warnings")
     process = begin("sweep", LEFT_TURN, *words)
     until(lambda: len(files(out)) >= 2)
-    workers = [worker for worker, words in children(cluster.pid).items() if "spawn_main" in words]
+    spawned = [process for process, words in children(cluster.pid).items() if "spawn_main" in words]
+    # One that a worker has just forked to start a simulation still has the worker's command line.
+    workers = [process for process in spawned if process.parent() not in spawned]
     assert len(workers) == 2
     running = simulations(workers[0])
     workers[0].kill()
