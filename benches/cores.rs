@@ -4,7 +4,7 @@
 //! Beside it as many detectors at once, each with all road users on a thread of its own: the most that so many threads
 //! can gain on this machine, as they share its memory and its clock.
 
-#![allow(missing_docs, reason = "a benchmark may")]
+#![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
 #![allow(dead_code, reason = "this bench does not use all of scenes")]
 
 mod scenes;
