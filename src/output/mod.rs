@@ -14,6 +14,8 @@ pub mod parquet_columns;
 mod parquet_file;
 mod place;
 pub mod record;
+#[cfg(test)]
+pub mod sample;
 pub mod schema;
 mod series;
 pub mod summary;

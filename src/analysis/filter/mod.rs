@@ -128,8 +128,7 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-    use crate::output::schema::COLUMNS;
-    use crate::output::schema::Value;
+    use crate::output::sample::sample;
 
     #[derive(Parser)]
     struct Words {
@@ -143,24 +142,17 @@ mod tests {
 
     /// A critical side conflict of a car with a bus at 30 s, in the junction B1 at (10, 20).
     fn conflict() -> LoggedConflict {
-        let cell = |column: usize| match COLUMNS[column].name {
-            "manoeuvre" => Ok(Value::Text("crossing")),
-            "cause" => Ok(Value::Text("ran_red too_fast")),
-            "ego_type" => Ok(Value::Text("car@a.1")),
-            "foe_type" => Ok(Value::Text("bus")),
-            "lane" => Ok(Value::Text(":B1_4_0")),
-            name => COLUMNS[column].column_type.parse(match name {
-                "kind" => "side",
-                "severity" => "critical",
-                "collision" => "false",
-                "unavoidable" | "collision_sumo" => "",
-                "time" => "30",
-                "x" => "10",
-                "y" => "20",
-                _ => "1",
-            }),
-        };
-        LoggedConflict::from_cells(cell).unwrap()
+        sample(&[
+            ("severity", "critical"),
+            ("manoeuvre", "crossing"),
+            ("cause", "ran_red too_fast"),
+            ("ego_type", "car@a.1"),
+            ("foe_type", "bus"),
+            ("lane", ":B1_4_0"),
+            ("time", "30"),
+            ("x", "10"),
+            ("y", "20"),
+        ])
     }
 
     #[test]

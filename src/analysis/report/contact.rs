@@ -86,34 +86,16 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::schema::{COLUMNS, Value};
+    use crate::output::sample::sample;
 
     /// The parts of two cars: x, y, heading, speed.
     fn parts_of(ego: [f64; 4], foe: [f64; 4], foe_path: &str) -> Option<[Part; 2]> {
-        let cell = |column: usize| {
-            let name = COLUMNS[column].name;
-            let of = if name.starts_with("foe") { foe } else { ego };
-            let number = match name.split_once('_').map_or("", |(_, what)| what) {
-                "x" => of[0],
-                "y" => of[1],
-                "heading" => of[2],
-                "speed" => of[3],
-                "length" => 5.0,
-                "width" => 2.0,
-                "path" => return Ok(Value::Text(if name == "foe_path" { foe_path } else { "" })),
-                _ => {
-                    return COLUMNS[column].column_type.parse(match name {
-                        "kind" => "side",
-                        "severity" => "caution",
-                        "collision" => "false",
-                        "unavoidable" | "collision_sumo" => "",
-                        _ => "1",
-                    });
-                }
-            };
-            Ok(Value::Number(number))
-        };
-        parts(&LoggedConflict::from_cells(cell).unwrap())
+        let [ego, foe] = [ego, foe].map(|values| values.map(|value| value.to_string()));
+        let mut values = vec![("ego_path", ""), ("foe_path", foe_path)];
+        values.extend(["ego_x", "ego_y", "ego_heading", "ego_speed"].into_iter().zip(ego.iter().map(|text| &**text)));
+        values.extend(["foe_x", "foe_y", "foe_heading", "foe_speed"].into_iter().zip(foe.iter().map(|text| &**text)));
+        values.extend([("ego_length", "5"), ("foe_length", "5"), ("ego_width", "2"), ("foe_width", "2")]);
+        parts(&sample(&values))
     }
 
     const NORTH: f64 = std::f64::consts::FRAC_PI_2;

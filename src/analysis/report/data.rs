@@ -213,6 +213,7 @@ fn rounded(value: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use crate::analysis::report::data::*;
+    use crate::output::sample::sample;
 
     #[test]
     fn without_a_net_a_lane_is_where_its_id_says() {
@@ -223,17 +224,7 @@ mod tests {
 
     #[test]
     fn a_script_in_an_id_cannot_end_the_data() {
-        let cell = |column: usize| match COLUMNS[column].name {
-            "ego" => Ok(Cell::Text("</script><script>")),
-            name => COLUMNS[column].column_type.parse(match name {
-                "kind" => "side",
-                "severity" => "caution",
-                "collision" => "false",
-                "unavoidable" | "collision_sumo" => "",
-                _ => "1",
-            }),
-        };
-        let conflict = LoggedConflict::from_cells(cell).unwrap();
+        let conflict = sample(&[("ego", "</script><script>")]);
         let conflicts = vec![RunConflict { run: 0, conflict }];
         let text = json(
             Conflicts {

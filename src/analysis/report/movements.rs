@@ -298,25 +298,18 @@ fn turn(direction: Direction) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::schema::COLUMNS;
+    use crate::output::sample::sample;
 
     /// A conflict at a lane, with the ego on one and the foe on another, about to drive along a path.
     fn conflict(lane: &str, ego_lane: &str, foe_lane: &str, foe_path: &str) -> LoggedConflict {
-        let cell = |column: usize| {
-            let text = match COLUMNS[column].name {
-                "lane" => lane,
-                "ego_lane" => ego_lane,
-                "foe_lane" => foe_lane,
-                "foe_path" => foe_path,
-                "ego_path" | "foe_x" | "foe_y" | "unavoidable" | "collision_sumo" => "",
-                "kind" => "side",
-                "severity" => "caution",
-                "collision" => "false",
-                _ => "1",
-            };
-            COLUMNS[column].column_type.parse(text)
-        };
-        LoggedConflict::from_cells(cell).unwrap()
+        sample(&[
+            ("lane", lane),
+            ("ego_lane", ego_lane),
+            ("foe_lane", foe_lane),
+            ("ego_path", ""),
+            ("foe_x", ""),
+            ("foe_path", foe_path),
+        ])
     }
 
     #[test]

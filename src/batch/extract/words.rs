@@ -66,24 +66,11 @@ impl Words<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::schema::{COLUMNS, Value as Cell};
+    use crate::output::sample::sample;
 
     /// A critical side conflict of a with b at 30 s.
     fn conflict() -> LoggedConflict {
-        let cell = |column: usize| match COLUMNS[column].name {
-            "ego" => Ok(Cell::Text("a\"\\")),
-            "foe" => Ok(Cell::Text("b")),
-            name => COLUMNS[column].column_type.parse(match name {
-                "kind" => "side",
-                "severity" => "critical",
-                "collision" => "false",
-                "unavoidable" | "collision_sumo" => "",
-                "time" => "30",
-                "margin" => "-2.5",
-                _ => "1",
-            }),
-        };
-        LoggedConflict::from_cells(cell).unwrap()
+        sample(&[("ego", "a\"\\"), ("foe", "b"), ("severity", "critical"), ("time", "30"), ("margin", "-2.5")])
     }
 
     #[test]

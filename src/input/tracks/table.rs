@@ -29,7 +29,7 @@ pub(super) enum Cell<'a> {
 }
 
 impl Cell<'_> {
-    /// Its number; none where there is no value.
+    /// Its number; none if the value is missing.
     pub fn number(&self) -> std::result::Result<Option<f64>, String> {
         let number = match self {
             Self::Missing => return Ok(None),
@@ -45,7 +45,7 @@ impl Cell<'_> {
             .ok_or_else(|| format!("\"{}\" is not a number", self.text()))
     }
 
-    /// Its text; empty where there is no value.
+    /// Its text; empty if the value is missing.
     pub fn text(&self) -> Cow<'_, str> {
         match self {
             Self::Missing => Cow::Borrowed(""),
