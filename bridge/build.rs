@@ -1,10 +1,10 @@
-//! Compiles `src/pull/compiled.cpp` where it can be of use: on Linux with GNU's C library and C++ library, as libsumo's
+//! Compiles `src/sumo/compiled.cpp` where it can be of use: on Linux with GNU's C library and C++ library, as libsumo's
 //! wheels have them. Without it, or without a C++ compiler, the bridge asks libsumo's Python getters.
 
 use std::env;
 
 fn main() {
-    let source = "src/pull/compiled.cpp";
+    let source = "src/sumo/compiled.cpp";
     println!("cargo:rerun-if-changed={source}");
     println!("cargo:rustc-check-cfg=cfg(compiled_getters)");
     let target = |what: &str| env::var(format!("CARGO_CFG_TARGET_{what}")).unwrap_or_default();

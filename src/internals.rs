@@ -40,11 +40,11 @@ pub mod geometry {
     pub use crate::geometry::bisection::Bisection;
     pub use crate::geometry::contact::{distance, plainly_touches, touches};
     pub use crate::geometry::convex::ConvexOutline;
+    pub use crate::geometry::movement::{Movement, TOLERANCE};
     pub use crate::geometry::polygon::Polygon;
     pub use crate::geometry::polylines::Lines;
     pub use crate::geometry::rectangle::{Rectangle, direction};
     pub use crate::geometry::separating_axes::{Contact, slide, translation};
-    pub use crate::geometry::sweep::{Movement, TOLERANCE};
     pub use crate::geometry::{Bounds, Vector};
 }
 

@@ -5,8 +5,10 @@
 //! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
 
 mod obstacles;
-mod own_making;
+mod ordinary_driving;
 pub mod recorded;
+mod results;
+mod settings;
 pub mod step;
 mod warm_up;
 mod writing;
@@ -14,19 +16,14 @@ mod writing;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-use own_making::OwnMaking;
+use ordinary_driving::OrdinaryDriving;
 use rustc_hash::FxHashSet;
 
 use crate::detection::detector::Detector;
-use crate::detection::detector::shortcuts::Shortcuts;
-use crate::detection::encounter::Encounter;
-use crate::events::{Alarm, Clips, Conflict, PetSoFar, Tracker};
+use crate::events::{Clips, Conflict, Tracker};
 use crate::geometry::Point;
-use crate::options::measures::Measures;
-use crate::options::{ClipLevel, Options};
-use crate::output::formats::Outputs;
-use crate::output::log::Log;
-use crate::output::summary::{Skipped, Summary};
+use crate::options::Options;
+use crate::output::summary::Summary;
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::filter::Filter;
@@ -39,10 +36,6 @@ use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 use warm_up::WarmUp;
 use writing::Writing;
-
-/// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by up to 32 %, at 0.1 s
-/// by 0 to 13 % (docs/step_length.md). The fourth digit is room for rounding in the times of recordings.
-const LONG_STEP: Second = 0.1001;
 
 /// One run.
 pub struct Run {
@@ -79,7 +72,7 @@ pub struct Run {
     /// How long a step lasts: as the source says, or else the time between the first two steps.
     step_length: Option<Second>,
     summary: Summary,
-    own_making: OwnMaking,
+    ordinary_driving: OrdinaryDriving,
 }
 
 impl Run {
@@ -118,105 +111,8 @@ impl Run {
             type_settings: type_settings(options),
             step_length: None,
             summary: Summary::default(),
-            own_making: OwnMaking::default(),
+            ordinary_driving: OrdinaryDriving::default(),
         })
-    }
-
-    /// What the user should know before the run: how the net is drawn, and whether steps of this length are too long.
-    pub fn opening_remarks(&self, step_length: Option<Second>) -> Vec<String> {
-        let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps(), self.contact_tolerance));
-        let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
-            format!(
-                "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
-                 step length; 0.1 s is better (SUMO's --step-length), and closecall study SCENARIO measures by how much"
-            )
-        });
-        net.chain(steps).collect()
-    }
-
-    /// Writes the conflicts to a log too, with clips from this severity on.
-    pub fn set_log(&mut self, log: Log, clips: ClipLevel) {
-        self.writing.log = Some(log);
-        self.clips = Clips::new(clips);
-    }
-
-    /// Counts closed conflicts, but does not keep them in memory for [`Run::conflicts`].
-    pub fn drop_closed_conflicts(&mut self) {
-        self.keep_closed_conflicts(0);
-    }
-
-    /// Keeps at most this many closed conflicts in memory for [`Run::conflicts`], the latest.
-    pub fn keep_closed_conflicts(&mut self, most: usize) {
-        self.most_conflicts = most;
-    }
-
-    /// Why the log and the other files are no longer written, if that is so.
-    pub fn log_error(&self) -> Option<&str> {
-        self.writing.error.as_deref()
-    }
-
-    /// Writes other files besides the log.
-    fn set_outputs(&mut self, outputs: Outputs) {
-        if outputs.want_lanes() {
-            self.detector.keep_asking_for_lanes();
-        }
-        self.writing.outputs = outputs;
-    }
-
-    /// States how long a step lasts; by default as long as the time between the first two.
-    pub fn set_step_length(&mut self, length: Second) {
-        self.step_length = Some(length);
-    }
-
-    /// How long a step lasts, if it is known.
-    pub fn step_length(&self) -> Option<Second> {
-        self.step_length
-    }
-
-    /// The shortcuts that the run takes.
-    pub fn shortcuts(&self) -> Shortcuts {
-        self.detector.shortcuts()
-    }
-
-    /// Checks each step with this many threads, at least one. The number does not change the results.
-    pub fn set_threads(&mut self, threads: usize) {
-        self.detector.set_threads(threads);
-    }
-
-    /// States whether every road user keeps its route while it is in the scene; by default routes may change.
-    pub fn set_fixed_routes(&mut self, fixed: bool) {
-        self.detector.set_fixed_routes(fixed);
-    }
-
-    /// States whether road users move sideways without changing lanes (SUMO's sublane model).
-    pub fn set_sublane(&mut self, sublane: bool) {
-        self.detector.set_sublane(sublane);
-    }
-
-    /// Whether road users move sideways without changing lanes.
-    pub fn sublane(&self) -> bool {
-        self.detector.sublane()
-    }
-
-    /// The measures that are computed besides those that every run has.
-    pub fn measures(&self) -> Measures {
-        self.detector.measures()
-    }
-
-    /// Whether no road user's route changes while it is in the scene.
-    pub fn has_fixed_routes(&self) -> bool {
-        self.detector.has_fixed_routes()
-    }
-
-    /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
-    /// ballistic one and for measured speeds.
-    pub fn set_averaged_over(&mut self, share: f64) {
-        self.detector.set_averaged_over(share);
-    }
-
-    /// Whether road users are moved back by half a step, to the moment to which their speeds belong.
-    pub fn aligns(&self) -> bool {
-        self.detector.aligns()
     }
 
     /// A vehicle or person enters the scene; the roster has its profile.
@@ -319,91 +215,6 @@ impl Run {
     pub fn set_lane_change_state(&mut self, row: u32, state: i32) {
         self.detector.set_lane_change_reason(self.frame.user(row), LaneChangeReason::of(state));
     }
-
-    /// The pairs that met the log's condition in the last step, or will with the PET of their events.
-    pub fn in_conflict(&self) -> impl ExactSizeIterator<Item = &Encounter> {
-        self.detector.encounters()
-    }
-
-    /// The expected path of a road user's front bumper, from where it is; empty where it is absent in this step.
-    pub fn path(&self, user: UserIndex) -> Vec<Point> {
-        let row = self.frame.row_of(user);
-        row.map_or_else(Vec::new, |row| self.detector.path(&self.frame, &self.roster, row))
-    }
-
-    /// The conflicts that are still open in this step.
-    pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
-        self.tracker.alarms()
-    }
-
-    /// The conflicts that are over and wait for their PET, as in their last step.
-    pub fn waiting(&self) -> impl Iterator<Item = Alarm> {
-        self.tracker.waiting()
-    }
-
-    /// The PET of an open or waiting conflict, or its lower bound in this step.
-    pub fn pet_so_far(&self, alarm: &Alarm) -> Option<PetSoFar> {
-        let ahead = |user| {
-            let row = self.frame.row_of(user);
-            row.map(|row| self.detector.ahead(&self.frame, &self.roster, row)).unwrap_or_default()
-        };
-        self.tracker.pet_so_far(alarm, ahead)
-    }
-
-    /// The number of the first of [`Run::conflicts`], as in the log: closed conflicts before it are no longer in memory.
-    pub fn first_number(&self) -> u64 {
-        self.closed_conflicts() + 1 - self.conflicts.len() as u64
-    }
-
-    /// The closed conflicts that are kept in memory, in the order in which they closed.
-    pub fn closed(&self) -> impl Iterator<Item = &Conflict> {
-        self.conflicts.iter()
-    }
-
-    /// The closed conflicts that are kept in memory, then the open ones as they are now.
-    pub fn conflicts(&self) -> Vec<Conflict> {
-        self.conflicts.iter().cloned().chain(self.tracker.open(&self.roster)).collect()
-    }
-
-    /// The net, if there is one.
-    pub fn net(&self) -> Option<&Net> {
-        self.net.as_deref()
-    }
-
-    /// What was found so far, open conflicts included.
-    pub fn summary(&self) -> Summary {
-        let mut summary = self.summary.clone();
-        for conflict in self.tracker.open(&self.roster) {
-            summary.add(&conflict);
-        }
-        summary
-    }
-
-    /// The number of conflicts that have closed so far.
-    pub fn closed_conflicts(&self) -> u64 {
-        self.summary.count(None, None)
-    }
-
-    /// Closes the open conflicts and writes them; returns the summary.
-    ///
-    /// # Errors
-    /// [`Error::File`] that names what cannot be written; the run is over then too, and counted.
-    pub fn finish(&mut self) -> Result<Summary> {
-        self.count_exposure(self.step_length.unwrap_or_default());
-        let first = self.closed_conflicts() + 1;
-        let closed = self.tracker.finish(&self.roster);
-        let clips = self.clips.as_mut().map_or_else(Vec::new, |clips| clips.finish(closed, first));
-        let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
-        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.own_making.count(conflict, &self.roster, self.net.as_deref()));
-        self.summary.left_out = self.detector.left_out();
-        self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
-        let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));
-        let remarks = unmet.map(|(setting, _)| format!("{setting}: no road user of this type was in the scene"));
-        let own_making = self.own_making.remarks(&self.roster);
-        self.summary.remarks = remarks.chain(self.warm_up.remark()).chain(own_making).collect();
-        written.map(|()| self.summary.clone())
-    }
 }
 
 /// The settings of single types in order, each with the profile name of road users of that type.
@@ -413,14 +224,4 @@ fn type_settings(options: &Options) -> Vec<(String, String)> {
     let mut settings = types.chain(obstacles).collect::<Vec<_>>();
     settings.sort_unstable();
     settings
-}
-
-/// Counts closed conflicts, and keeps the latest `most` of them.
-fn count(closed: &[Conflict], summary: &mut Summary, kept: &mut VecDeque<Conflict>, most: usize) {
-    for conflict in closed {
-        summary.add(conflict);
-    }
-    let new = &closed[closed.len().saturating_sub(most)..];
-    kept.drain(..(kept.len() + new.len()).saturating_sub(most).min(kept.len()));
-    kept.extend(new.iter().cloned());
 }

@@ -60,7 +60,7 @@ def numbers(version: str) -> tuple[int, ...]:
 
 def verified() -> dict[str, str]:
     """What compiled.rs says that each version is read through."""
-    text = (ROOT / "bridge/src/pull/compiled.rs").read_text(encoding="utf-8")
+    text = (ROOT / "bridge/src/sumo/compiled.rs").read_text(encoding="utf-8")
     found = re.findall(r'\("SUMO (\S+)", Verified::(\w+)\)', text)
     return {version: THROUGH[depth] for version, depth in found}
 

@@ -15,8 +15,8 @@ use crate::error::exception;
 use crate::exclusive::Exclusive;
 use crate::frames::Frames;
 use crate::paint::Painter;
-use crate::pull::{self, Identity, Source};
 use crate::rows::Rows;
+use crate::sumo::{self, Identity, Source};
 use crate::table::Table;
 use crate::{provenance, say};
 
@@ -99,14 +99,14 @@ impl Checker {
         let given = net.clone();
         let net = match (net, source) {
             (Some(path), _) => Some(std::sync::Arc::new(Net::read(&path).map_err(exception)?)),
-            (None, Some(source)) => pull::net_of(source)?,
+            (None, Some(source)) => sumo::net_of(source)?,
             (None, None) => None,
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
         run.keep_closed_conflicts(keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX }));
         let feed = match source {
             Some(source) => {
-                pull::add_obstacles(source, &mut run, &options.obstacles)?;
+                sumo::add_obstacles(source, &mut run, &options.obstacles)?;
                 let identity = Box::new(Identity::of(source)?);
                 let mut source = Box::new(Source::new(source, &mut run, &options)?);
                 if let Some(remark) = source.take_remark() {
@@ -389,5 +389,5 @@ pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
 
 /// Whether libsumo runs sumo-gui. traci is not asked, because a plain SUMO would print an error.
 fn has_gui(source: &Bound<PyAny>) -> bool {
-    pull::is_libsumo(source) && source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
+    sumo::is_libsumo(source) && source.call_method0("hasGUI").is_ok_and(|has| has.is_truthy().unwrap_or(false))
 }

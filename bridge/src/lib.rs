@@ -1,6 +1,6 @@
 //! The Python module `closecall._closecall` and the list of what it exports.
 //!
-//! The bridge moves data and decides nothing: [`pull`] reads road users from libsumo or traci, the crate `closecall` finds
+//! The bridge moves data and decides nothing: [`sumo`] reads road users from libsumo or traci, the crate `closecall` finds
 //! the conflicts, [`paint`] shows them in sumo-gui.
 
 mod alarm;
@@ -14,7 +14,6 @@ mod interrupts;
 mod numbers;
 mod paint;
 mod provenance;
-mod pull;
 mod replay;
 mod rows;
 mod run;
@@ -22,6 +21,7 @@ mod say;
 mod session;
 mod start;
 mod step_times;
+mod sumo;
 mod sweep;
 mod table;
 

@@ -7,7 +7,7 @@ use closecall::{Options, Run, RunRecord};
 use pyo3::prelude::*;
 
 use crate::error::exception;
-use crate::pull::option;
+use crate::sumo::option;
 
 /// The input files that SUMO reports.
 pub struct SumoFiles {

@@ -15,10 +15,10 @@ use pyo3::prelude::*;
 
 use crate::error::{exception, message};
 use crate::interrupts::Interrupts;
-use crate::pull::{self, Source};
 use crate::session::Session;
 use crate::start::{self, NetAhead};
 use crate::step_times::StepTimes;
+use crate::sumo::{self, Source};
 use crate::{provenance, sweep};
 
 /// The command `closecall`; returns its exit status.
@@ -110,7 +110,7 @@ fn attach(
 fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult<Source> {
     run.set_threads(usize::from(request.threads).saturating_sub(1));
     run.drop_closed_conflicts();
-    pull::add_obstacles(sumo, run, &request.options.obstacles)?;
+    sumo::add_obstacles(sumo, run, &request.options.obstacles)?;
     // In sumo-gui the user may do anything, even add a rerouter.
     if request.gui.is_none() && has_no_rerouters(sumo)? {
         run.set_fixed_routes(true);

@@ -11,8 +11,8 @@ use pyo3::prelude::*;
 
 use crate::error::message;
 use crate::paint::Painter;
-use crate::pull::Source;
 use crate::step_times::{StepTimes, TimedPart};
+use crate::sumo::Source;
 
 /// The least time for which sumo-gui shows a step: libsumo's own does not wait.
 const SHOWN: Duration = Duration::from_millis(50);

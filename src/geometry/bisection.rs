@@ -1,6 +1,6 @@
 //! Where moving rectangles touch: movements are halved until each part hardly turns.
 //!
-//! The last parts of the one movement are treated as translations, those of the other as hulls ([`super::sweep`]). A
+//! The last parts of the one movement are treated as translations, those of the other as hulls ([`super::movement`]). A
 //! hull that is not touched leaves out all its parts. Parts, boxes and hulls are kept, so that a later query (another
 //! movement, the other direction, the last contact after the first) finds them computed.
 //!
@@ -9,10 +9,10 @@
 
 use super::Bounds;
 use super::convex::ConvexOutline;
+use super::movement::{Movement, TOLERANCE};
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, outlines_touch};
-use super::sweep::{Movement, TOLERANCE};
 use super::swept_part::SweptPart;
 use crate::util::units::Metre;
 

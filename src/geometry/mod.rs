@@ -7,12 +7,12 @@ pub mod bisection;
 pub mod contact;
 pub mod convex;
 pub mod exact;
+pub mod movement;
 pub(crate) mod parry;
 pub mod polygon;
 pub mod polylines;
 pub mod rectangle;
 pub mod separating_axes;
-pub mod sweep;
 mod swept_part;
 
 use nalgebra::{Point2, Vector2};

@@ -1,10 +1,10 @@
 //! A movement or a part of one, with what bisection needs of it, computed once.
 
 use super::convex::ConvexOutline;
+use super::movement::Movement;
 use super::polygon::Polygon;
 use super::rectangle::Rectangle;
 use super::separating_axes::{Contact, ContactInterval, translation};
-use super::sweep::Movement;
 use super::{Bounds, Vector};
 use crate::util::units::Metre;
 

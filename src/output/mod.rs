@@ -1,7 +1,7 @@
 //! What a run writes: its log, its record, and files for other tools.
 
-pub mod badness;
 pub mod clips;
+mod csv_file;
 pub mod earlier_log;
 pub mod folder;
 pub mod formats;
@@ -13,6 +13,7 @@ pub mod parquet_columns;
 #[cfg(feature = "parquet")]
 mod parquet_file;
 mod place;
+pub mod rank;
 pub mod record;
 #[cfg(test)]
 pub mod sample;

@@ -5,7 +5,7 @@ use std::fmt;
 use ecow::EcoString;
 use serde::{Deserialize, Serialize};
 
-use super::badness::Badness;
+use super::rank::Rank;
 use crate::detection::detector::{LeftOut, Work};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;
@@ -100,7 +100,7 @@ pub struct WorstConflict {
     pub collision: bool,
     /// The step with the smallest margin, in s.
     pub time: Second,
-    badness: Badness,
+    rank: Rank,
 }
 
 impl WorstConflict {
@@ -113,7 +113,7 @@ impl WorstConflict {
             severity: conflict.severity,
             collision: conflict.collision,
             time: conflict.time,
-            badness: conflict.into(),
+            rank: conflict.into(),
         }
     }
 }
@@ -190,7 +190,7 @@ impl Summary {
                 self.conflicts.sort_by_key(|count| (count.kind, count.severity));
             }
         }
-        if self.worst.as_ref().is_none_or(|worst| worst.badness < conflict.into()) {
+        if self.worst.as_ref().is_none_or(|worst| worst.rank < conflict.into()) {
             self.worst = Some(WorstConflict::of(conflict, self.count(None, None)));
         }
     }

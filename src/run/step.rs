@@ -1,6 +1,7 @@
 //! One step of a run, in the order of the flow: paths, placements, broad phase, narrow phase, events, log.
 
-use super::{Run, count};
+use super::Run;
+use super::results::count;
 use crate::detection::encounter::Encounter;
 use crate::events::{Scene, Surroundings};
 use crate::geometry::Point;
@@ -117,7 +118,7 @@ impl Run {
         let around = Surroundings { net, signals: &self.signals, course: &course, added: &added, tadv: &tadv };
         let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.own_making.count(conflict, roster, self.net.as_deref()));
+        closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster, self.net.as_deref()));
     }
 
     /// Writes the log and the other files, and ends the step.

@@ -13,8 +13,8 @@ use crate::detection::narrow_phase::{Participant, SweptBounds, side};
 use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
+use crate::geometry::movement::{FINE, POSES};
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::sweep::{FINE, POSES};
 use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, Radian};
 

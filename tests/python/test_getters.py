@@ -155,7 +155,7 @@ def test_an_unverified_sumo_is_read_through_python_and_announced_once(tmp_path: 
 
 @needs_compiled
 def test_a_known_sumo_exports_the_functions_called_directly() -> None:
-    sources = Path(__file__).parents[2] / "bridge/src/pull"
+    sources = Path(__file__).parents[2] / "bridge/src/sumo"
     known = re.findall(r'\("(SUMO .*)", Verified::Behind\)', (sources / "compiled.rs").read_text())
     names = re.findall(r'find\(direct\.\w+, "(\w+)"\)', (sources / "compiled.cpp").read_text())
     ask = "from libsumo import _libsumo; print(_libsumo.__file__); print(_libsumo.simulation_getVersion()[1])"

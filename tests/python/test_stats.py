@@ -139,14 +139,14 @@ def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
     every = [row for log in sorted(plans.glob("left_turn/*/*/conflicts.csv")) for row in rows(log)]
     order = ["caution", "serious", "critical"]
 
-    def badness(row: dict[str, str]) -> tuple[bool, int, float, float, float, float]:
+    def rank(row: dict[str, str]) -> tuple[bool, int, float, float, float, float]:
         ttc = float(row["ttc"]) if row["ttc"] else math.inf
         collides = row["collision"] == "true"
         delta_v = max(float(row["ego_delta_v"]), float(row["foe_delta_v"])) if collides else 0.0
         probability = float(row["crash_probability"])
         return not collides, -order.index(row["severity"]), -delta_v, -probability, ttc, float(row["margin"])
 
-    wanted = sorted(every, key=badness)[:500]
+    wanted = sorted(every, key=rank)[:500]
     assert [(one["ego"], one["foe"], one["time"]) for one in found] == [
         (row["ego"], row["foe"], float(row["time"])) for row in wanted
     ]

@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use crate::output::badness::Badness;
+use crate::output::rank::Rank;
 use crate::output::schema::LoggedConflict;
 
 /// The most conflicts that are kept.
@@ -19,8 +19,8 @@ pub struct RunConflict {
 
 /// Worst first; equal ones in the order of the logs.
 fn worst_first(a: &RunConflict, b: &RunConflict) -> Ordering {
-    let badness = |kept: &RunConflict| Badness::from(&kept.conflict);
-    badness(b).cmp(&badness(a)).then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
+    let rank = |kept: &RunConflict| Rank::from(&kept.conflict);
+    rank(b).cmp(&rank(a)).then_with(|| (a.run, a.conflict.id).cmp(&(b.run, b.conflict.id)))
 }
 
 /// The [`MOST`] worst conflicts: memory stays bounded however many there are.

@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::path::Path;
 
 use super::reader::ConflictReader;
-use crate::output::badness::Badness;
+use crate::output::rank::Rank;
 use crate::output::schema::LoggedConflict;
 use crate::util::units::counted;
 use crate::{Error, Result};
@@ -39,7 +39,7 @@ fn worst(folder: &Path, place: usize) -> Result<u64> {
     let mut found = Vec::new();
     for conflict in ConflictReader::open(folder)? {
         let conflict = conflict?;
-        found.push((Badness::from(&conflict), Reverse(conflict.id)));
+        found.push((Rank::from(&conflict), Reverse(conflict.id)));
     }
     found.sort_unstable_by(|a, b| b.cmp(a));
     let count = found.len();

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::analysis::logged::{LoggedConflict, LoggedRun};
 use crate::analysis::playback::may_have_clip;
 use crate::analysis::variants::Variants;
-use crate::output::badness::Badness;
+use crate::output::rank::Rank;
 use crate::util::units::{Metre, Second};
 
 /// sumo-gui halts this long before a conflict, and the run ends this long after it, in s.
@@ -42,10 +42,8 @@ pub struct RankedConflict {
 impl RankedConflict {
     /// Mildest first; of equal ones, the last logged first.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
-        let badness = |ranked: &Self| Badness::from(&ranked.conflict);
-        badness(self)
-            .cmp(&badness(other))
-            .then_with(|| (other.run, other.conflict.id).cmp(&(self.run, self.conflict.id)))
+        let rank = |ranked: &Self| Rank::from(&ranked.conflict);
+        rank(self).cmp(&rank(other)).then_with(|| (other.run, other.conflict.id).cmp(&(self.run, self.conflict.id)))
     }
 }
 
@@ -106,8 +104,8 @@ impl WorstOf {
     /// Whether this conflict is certainly not among the worst. True for nearly all, which are then not copied.
     fn is_milder(&self, run: usize, conflict: &LoggedConflict) -> bool {
         let Some(MildestFirst(mildest)) = self.kept.peek() else { return false };
-        let (badness, least) = (Badness::from(conflict), Badness::from(&mildest.conflict));
-        badness < least || (badness == least && run >= mildest.run)
+        let (rank, least) = (Rank::from(conflict), Rank::from(&mildest.conflict));
+        rank < least || (rank == least && run >= mildest.run)
     }
 
     /// The worst first.

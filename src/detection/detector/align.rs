@@ -8,7 +8,7 @@
 
 use super::Detector;
 use super::jump::Jump;
-use super::reach::lines_of;
+use super::paths::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
 use crate::options::Align;

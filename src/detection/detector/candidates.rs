@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::Detector;
 use super::last_speed::LastSpeed;
-use super::reach::{PathSource, Paths, Reach, StepView, lines_of};
+use super::paths::{PathSource, Paths, lines_of};
+use super::reach::{Reach, StepView};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
 use crate::geometry::Point;

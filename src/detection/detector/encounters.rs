@@ -9,7 +9,7 @@ use crate::braking::MuModel;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Kind;
 use crate::detection::narrow_phase::{self, ConflictPoint, Ego, Participant};
-use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::movement::TOLERANCE;
 use crate::options::Mode;
 use crate::util::units::{Metre, Radian};
 

@@ -14,7 +14,7 @@ use super::work::Work;
 use super::worker::{Findings, Worker};
 use crate::braking::{self, Braking, MuModel};
 use crate::detection::narrow_phase::{self, Approach, ConflictPoint, Ego, Participant, side};
-use crate::geometry::sweep::{FINE, TOLERANCE};
+use crate::geometry::movement::{FINE, TOLERANCE};
 use crate::geometry::{contact, cross};
 use crate::options::Mode;
 use crate::traffic::frame::State;

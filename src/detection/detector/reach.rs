@@ -2,19 +2,16 @@
 
 use super::cover::{Cover, reach};
 use super::last_speed::LastSpeed;
+use super::paths::{PathSource, Paths};
 use super::shortcuts::Shortcuts;
 use crate::braking::stopping_distance_paper;
 use crate::detection::broad_phase::{Area, Circle, Slot};
-use crate::detection::path::Pose;
-use crate::detection::path::lanes::LanePath;
 use crate::detection::path::track::Track;
-use crate::geometry::polylines::Lines;
+use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Vector};
 use crate::options::{Mode, Options, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
-use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
 use crate::util::units::{Metre, Radian};
@@ -49,78 +46,6 @@ pub(super) struct User {
     pub on_lanes: bool,
     /// Whether it is seen as its carriages, because they do not stand and stay in one line.
     pub bends: bool,
-}
-
-/// Where paths come from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum PathSource {
-    Straight,
-    Arcs,
-    Lanes,
-}
-
-/// All paths, and the lines of the net's lanes, which most of them follow.
-#[derive(Clone, Copy)]
-pub(super) struct Paths<'a> {
-    paths: &'a [LanePath],
-    of_net: &'a Lines,
-}
-
-impl<'a> Paths<'a> {
-    pub(super) fn new(paths: &'a [LanePath], net: Option<&'a Net>) -> Self {
-        Self { paths, of_net: lines_of(net) }
-    }
-
-    /// The lines of the net's lanes.
-    pub(super) fn of_net(&self) -> &'a Lines {
-        self.of_net
-    }
-
-    /// A road user's path, if it ever had one.
-    pub(super) fn of(&self, user: UserIndex) -> Option<&'a LanePath> {
-        self.paths.get(user.0 as usize)
-    }
-
-    /// A road user's track, and the lines that it is on.
-    pub(super) fn track(&self, user: UserIndex) -> (&'a Track, &'a Lines) {
-        let path = &self.paths[user.0 as usize];
-        (&path.track, path.lines(self.of_net))
-    }
-
-    /// Whether distances along these poses, if they lie on a straight line, are those of the plane.
-    pub(super) fn is_to_scale(&self, poses: &[Pose]) -> bool {
-        match poses {
-            [first, .., last] if self.of_net.is_stretched() => {
-                ((last.front - first.front).norm() - last.distance).abs() <= TOLERANCE
-            }
-            _ => true,
-        }
-    }
-
-    /// Metres of the plane per metre of the lane that a road user is on.
-    pub(super) fn scale(&self, user: UserIndex) -> f64 {
-        match self.of(user) {
-            Some(path) if self.of_net.is_stretched() => path.track.scale(path.lines(self.of_net)),
-            _ => 1.0,
-        }
-    }
-
-    /// How long a road user of this length is as SUMO draws the lanes that it is on.
-    pub(super) fn drawn_length(&self, user: UserIndex, length: Metre) -> Metre {
-        match self.of(user) {
-            Some(path) if self.of_net.is_stretched() => path.track.drawn_length(path.lines(self.of_net), length),
-            _ => length,
-        }
-    }
-
-    /// The lane at a distance ahead of a road user.
-    pub(super) fn lane_at(&self, user: UserIndex, way: Metre) -> Option<LaneIndex> {
-        self.paths[user.0 as usize].lane_at(self.of_net, way)
-    }
-}
-
-pub(super) fn lines_of(net: Option<&Net>) -> &Lines {
-    net.map_or(Lines::NONE, |net| &net.lines)
 }
 
 /// The current step, as both phases read it.

@@ -2,7 +2,8 @@
 
 use super::cover::Cover;
 use super::last_speed::LastSpeed;
-use super::reach::{Paths, Reach, User};
+use super::paths::Paths;
+use super::reach::{Reach, User};
 use super::shortcuts::Shortcuts;
 use crate::detection::path::turning::Turning;
 use crate::options::Options;

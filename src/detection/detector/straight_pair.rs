@@ -9,7 +9,7 @@ use crate::detection::narrow_phase::Participant;
 use crate::detection::path::{Pose, straight};
 use crate::geometry::Point;
 use crate::geometry::contact::plainly_touches;
-use crate::geometry::sweep::TOLERANCE;
+use crate::geometry::movement::TOLERANCE;
 use crate::traffic::profile::Category;
 use crate::util::units::Metre;
 

@@ -2,9 +2,9 @@
 
 use super::ttc::{HORIZON, SteadyMotion};
 use crate::geometry::bisection::Bisection;
+use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::Contact;
-use crate::geometry::sweep::TOLERANCE;
 use crate::util::golden_section::golden_section;
 use crate::util::units::{Metre, Second};
 

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use smallvec::SmallVec;
 
 use crate::detection::path::Pose;
+use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point};
 use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, Radian, Second};

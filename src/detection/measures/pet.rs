@@ -13,8 +13,8 @@ use smallvec::SmallVec;
 
 use super::driven_path::{Course, DrivenPath, bounds};
 use crate::geometry::bisection::{Bisection, Part};
+use crate::geometry::movement::TOLERANCE;
 use crate::geometry::separating_axes::Contact;
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Vector, angle_between};
 use crate::options::condition::LONGEST_PET;
 use crate::util::units::{Radian, Second};

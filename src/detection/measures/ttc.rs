@@ -2,10 +2,10 @@
 
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
+use crate::geometry::movement::{Movement, TOLERANCE};
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::{Contact, slide};
-use crate::geometry::sweep::{Movement, TOLERANCE};
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 

@@ -22,7 +22,7 @@ use std::slice::from_ref;
 
 use crate::braking::{self, MuModel};
 use crate::geometry::bisection::Bisection;
-use crate::geometry::sweep::FINE;
+use crate::geometry::movement::FINE;
 use crate::geometry::{Vector, cross};
 use crate::util::units::{Metre, Radian};
 

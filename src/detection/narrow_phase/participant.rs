@@ -3,9 +3,9 @@
 use super::SweptBounds;
 use crate::braking::{Brakes, Braking};
 use crate::detection::path::Pose;
+use crate::geometry::movement::Movement;
 use crate::geometry::polygon::Polygon;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::Movement;
 use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, MetrePerSecond};
 

@@ -7,9 +7,9 @@ use super::swept_bounds::SweptBounds;
 use crate::detection::path::Pose;
 use crate::geometry::bisection::Bisection;
 use crate::geometry::convex::ConvexOutline;
+use crate::geometry::movement::{FINE, Movement, TOLERANCE};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::separating_axes::{Contact, translation};
-use crate::geometry::sweep::{FINE, Movement, TOLERANCE};
 use crate::geometry::{Vector, contact, exact, polygon};
 use crate::util::units::Metre;
 

@@ -2,8 +2,8 @@
 
 use crate::detection::path::Pose;
 use crate::geometry::contact::plainly_touches;
+use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::sweep::TOLERANCE;
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
 

@@ -5,6 +5,7 @@
 //! it; `poses` has the poses along a track.
 
 pub mod arc;
+mod cursor;
 mod foot;
 pub mod lanes;
 mod lateral_offset;
@@ -18,7 +19,7 @@ pub mod turning;
 
 pub use foot::Foot;
 
-use crate::geometry::sweep::{Movement, POSES};
+use crate::geometry::movement::{Movement, POSES};
 use crate::geometry::{Point, Vector};
 use crate::util::units::{Metre, Radian};
 

@@ -1,6 +1,7 @@
 //! The poses of a road user whose front and rear bumpers are both on a polyline.
 
-use super::track::{Cursor, SAME_DIRECTION, Track};
+use super::cursor::Cursor;
+use super::track::{SAME_DIRECTION, Track};
 use super::{Pose, chord, largest_turn, rotated, turn};
 use crate::geometry::polylines::{Lines, ON_THE_LINE};
 use crate::geometry::{Vector, cross};

@@ -6,7 +6,8 @@
 use smallvec::SmallVec;
 
 use super::chord;
-use crate::geometry::polylines::{Lines, ON_THE_LINE, Segment};
+use super::cursor::Cursor;
+use crate::geometry::polylines::{Lines, ON_THE_LINE};
 use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::Metre;
 
@@ -103,7 +104,8 @@ impl Track {
         let searched = (LONGEST_DETOUR * moved).min(driven) * stretch;
         let furthest = self.front + searched + ON_THE_LINE;
         let beyond = driven * stretch - searched;
-        let mut cursor = Cursor { distance: furthest, ..self.cursor(lines) };
+        let mut cursor = self.cursor(lines);
+        cursor.distance = furthest;
         while cursor.room() <= 0.0 {
             cursor.enter_next();
             let within = |distance: &Metre| *distance <= cursor.distance + beyond;
@@ -262,101 +264,7 @@ impl Track {
     /// A cursor at the front bumper.
     #[inline]
     pub(super) fn cursor<'a>(&'a self, lines: &'a Lines) -> Cursor<'a> {
-        let under = lines.segment(self.vertex);
-        let mut cursor = Cursor {
-            lines,
-            chain: &self.lines,
-            at: self.at,
-            range: lines.range(self.lines[self.at]),
-            vertex: self.vertex,
-            under,
-            next: under.ends_at,
-            distance: self.front,
-        };
-        cursor.look_ahead();
-        cursor
-    }
-}
-
-/// A moving place on a track.
-#[derive(Clone, Copy)]
-pub(super) struct Cursor<'a> {
-    lines: &'a Lines,
-    chain: &'a [u32],
-    /// Index of the line that it is on.
-    at: usize,
-    /// The vertices of that line.
-    range: (u32, u32),
-    /// The last vertex before it.
-    pub vertex: u32,
-    /// The segment that it is on.
-    pub under: Segment,
-    /// Distance of the next vertex; infinite on the last segment of the track.
-    next: Metre,
-    /// Distance along the line that it is on.
-    pub distance: Metre,
-}
-
-impl Cursor<'_> {
-    /// Its place in the plane; beyond either end of the track, straight on.
-    pub fn point(&self) -> Point {
-        self.under.at(self.distance)
-    }
-
-    /// Distance to the next vertex; negative beyond it.
-    #[inline]
-    pub fn room(&self) -> Metre {
-        self.next - self.distance
-    }
-
-    /// Finds the next vertex.
-    #[inline]
-    fn look_ahead(&mut self) {
-        let is_last = self.vertex + 2 == self.range.1 && self.at + 1 == self.chain.len();
-        self.next = if is_last { f64::INFINITY } else { self.under.ends_at };
-    }
-
-    /// Enters the next segment of the track, if there is one; the place does not change.
-    pub fn enter_next(&mut self) {
-        if self.vertex + 2 < self.range.1 {
-            self.vertex += 1;
-        } else if let Some(line) = self.chain.get(self.at + 1) {
-            self.distance -= self.under.ends_at;
-            self.at += 1;
-            self.range = self.lines.range(*line);
-            self.vertex = self.range.0;
-        }
-        self.enter();
-    }
-
-    #[inline]
-    fn enter(&mut self) {
-        self.under = self.lines.segment(self.vertex);
-        self.look_ahead();
-    }
-
-    /// Moves back by a distance; before the beginning of the track it stays on the first segment.
-    pub fn back(mut self, distance: Metre) -> Self {
-        self.distance -= distance;
-        while self.distance < self.under.begins_at && self.enter_previous() {}
-        self
-    }
-
-    /// Enters the previous segment of the track; `false` if there is none. The place does not change.
-    fn enter_previous(&mut self) -> bool {
-        if self.vertex > self.range.0 {
-            self.vertex -= 1;
-            self.enter();
-        } else if self.at > 0 {
-            self.at -= 1;
-            self.range = self.lines.range(self.chain[self.at]);
-            self.vertex = self.range.1 - 2;
-            self.enter();
-            self.distance += self.under.ends_at;
-        } else {
-            return false;
-        }
-        true
+        Cursor::new(lines, &self.lines, self.at, self.vertex, self.front)
     }
 }
 

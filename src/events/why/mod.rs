@@ -5,6 +5,7 @@
 //! how one entered a junction in any step.
 
 mod cause;
+mod evidence;
 mod manoeuvre;
 mod pair;
 
@@ -18,6 +19,7 @@ use crate::traffic::frame::Frame;
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::Roster;
+use evidence::causes_of;
 use manoeuvre::changed_into;
 use pair::Pair;
 
@@ -39,7 +41,7 @@ impl Why {
         let pair = Pair::of(step, around, past);
         let manoeuvre = Manoeuvre::of(&pair);
         let lanes = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0));
-        let causes = Causes::of(&pair, manoeuvre);
+        let causes = causes_of(&pair, manoeuvre);
         let lane_change_reason = if causes.has(Cause::ChangedLane) { lane_change_reason(&pair) } else { None };
         Self { manoeuvre, causes, lane_change_reason, lanes }
     }

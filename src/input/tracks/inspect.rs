@@ -7,7 +7,7 @@ use super::detect::format_of;
 use super::format::RecordingFormat;
 use super::layouts::Layout;
 use super::mapping::{Mapping, has};
-use super::rows::beside;
+use super::meta::beside;
 use super::table;
 use crate::Result;
 use crate::input::replay::recording::Recording;

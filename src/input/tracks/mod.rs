@@ -10,6 +10,7 @@ mod inspect;
 mod layouts;
 mod mapping;
 mod matching;
+mod meta;
 mod rows;
 mod sample;
 mod spill;

@@ -3,12 +3,13 @@
 
 use std::borrow::Cow;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
 use super::layouts::hint;
 use super::mapping::{Field, Mapping, Origin};
+use super::meta::read_meta;
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
@@ -101,7 +102,9 @@ pub(super) fn convert(path: &Path, mapping: &Mapping, out: &mut FcdWriter) -> Re
     let mut users = Users::default();
     let mut frame_rate = mapping.frame_rate;
     if mapping.has_meta {
-        frame_rate = frame_rate.or(read_meta(path, &mut users)?);
+        let meta = read_meta(path)?;
+        frame_rate = frame_rate.or(meta.frame_rate);
+        users.class_of = meta.class_of;
     }
     let by_user = read(path, mapping, frame_rate, &mut users)?;
     let fault = |source| Error::file(path, source);
@@ -281,43 +284,4 @@ fn complete(track: &mut [Row], derived: &mut [u64; 2]) {
     // Those that stood at first head where they went then; one that never moved heads along +x.
     let first = track.get(waiting).map_or(0.0, |row| row.values[2]);
     track[..waiting].iter_mut().for_each(|row| row.values[2] = first);
-}
-
-/// Reads the classes of the road users, and the frames per second, from the files beside `00_tracks.csv`.
-fn read_meta(path: &Path, users: &mut Users) -> Result<Option<f64>> {
-    let mut rate = None;
-    if let Some(file) = beside(path, "recordingMeta") {
-        let place = std::cell::Cell::new(0);
-        let begin = |names: &[String]| column(names, &["frameRate"]).map(|found| place.set(found));
-        table::read(&file, begin, |cells| {
-            let found = cells.get(place.get()).map(Cell::number).transpose()?.flatten();
-            rate = Some(found.filter(|rate| *rate > 0.0).ok_or("column frameRate: a number above 0 is needed")?);
-            Ok(())
-        })?;
-    }
-    if let Some(file) = beside(path, "tracksMeta") {
-        let places = std::cell::Cell::new([0, 0]);
-        let begin = |names: &[String]| {
-            places.set([column(names, &["trackId", "id"])?, column(names, &["class"])?]);
-            Ok(())
-        };
-        table::read(&file, begin, |cells| {
-            let text = |place: usize| cells.get(place).map(|cell| cell.text().into_owned()).unwrap_or_default();
-            users.class_of.insert(text(places.get()[0]), text(places.get()[1]));
-            Ok(())
-        })?;
-    }
-    Ok(rate)
-}
-
-fn column(names: &[String], wanted: &[&str]) -> std::result::Result<usize, String> {
-    let place = names.iter().position(|name| wanted.iter().any(|wanted| name.eq_ignore_ascii_case(wanted)));
-    place.ok_or_else(|| format!("it has no column {}", wanted.join(" or ")))
-}
-
-/// A file of the same recording, if it is there.
-pub(super) fn beside(path: &Path, what: &str) -> Option<PathBuf> {
-    let name = path.file_name()?.to_str()?;
-    let (before, after) = name.split_once("tracks")?;
-    Some(path.with_file_name(format!("{before}{what}{after}"))).filter(|file| file.is_file())
 }

@@ -173,9 +173,17 @@ function roundUp(value) {
   return [1, 1.5, 2, 3, 4, 5, 6, 8, 10].find((digit) => digit * power >= value * 0.999) * power;
 }
 
+/** The known values of a column in these rows, in ascending order. */
+function ascending(values, rows, size = (value) => value) {
+  const known = new Float64Array(rows.length);
+  let many = 0;
+  for (const row of rows) if (values[row] !== null) known[many++] = size(values[row]);
+  return known.subarray(0, many).sort();
+}
+
 /** Both ends of a measure's axis and the width of a bar, the same under every filter; a threshold lies between two bars. */
 function range(measure) {
-  const sizes = Float64Array.from(column[measure.name].filter((value) => value !== null), Math.abs).sort();
+  const sizes = ascending(column[measure.name], everyRow, Math.abs);
   const reach = sizes.length ? quantile(sizes, COVERED) : 1;
   const furthest = roundUp(Math.max(reach, measure.threshold ? measure.threshold.at * 1.3 : 0));
   const wanted = furthest / DISTRIBUTION_BINS;
@@ -210,7 +218,7 @@ const distributions = {
   showMeasure({ note, element, title, chart, measure, range: [low, high, width] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
-    const sorted = Float64Array.from(known, (row) => values[row]).sort();
+    const sorted = ascending(values, known);
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "no conflict has one";

@@ -9,6 +9,8 @@ const column = Object.fromEntries(Object.entries(conflicts.columns).map(([name, 
   [name, Array.isArray(values) ? values : new Array(count).fill(values)]));
 /** ΔV of the one whose speed changes most; a log of an earlier version has the ego's only. */
 column.delta_v = column.ego_delta_v.map((ego, row) => Math.max(ego, column.foe_delta_v[row]));
+/** The numbers of all rows. */
+const everyRow = Array.from({ length: count }, (_, row) => row);
 const KINDS = ["rear-end", "frontal", "side"];
 const SEVERITIES = ["caution", "serious", "critical"];
 const options = (data.runs.find((run) => run.options) || {}).options || data.defaults;
@@ -42,7 +44,7 @@ const strongestCause = (row) => conflicts.causes[column.cause[row]].split(" ")[0
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
 
 /** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin. */
-function byBadness(a, b) {
+function worstFirst(a, b) {
   const { severity, collision, delta_v, crash_probability, ttc, margin } = column;
   const or = (value) => (value === null ? Infinity : value);
   const less = (x, y) => (x < y ? -1 : x > y ? 1 : 0);
@@ -55,9 +57,9 @@ function byBadness(a, b) {
 function worstRows(rows, most) {
   const worst = [];
   for (const row of rows) {
-    if (worst.length === most && byBadness(row, worst[most - 1]) >= 0) continue;
+    if (worst.length === most && worstFirst(row, worst[most - 1]) >= 0) continue;
     let place = worst.length;
-    while (place > 0 && byBadness(row, worst[place - 1]) < 0) place--;
+    while (place > 0 && worstFirst(row, worst[place - 1]) < 0) place--;
     worst.splice(place, 0, row);
     if (worst.length > most) worst.pop();
   }
@@ -69,11 +71,12 @@ const foeId = (row) => conflicts.ids[column.foe[row]];
 const laneId = (row) => conflicts.lanes[column.lane[row]];
 const spotOf = (row) => conflicts.spot_of_lane[column.lane[row]];
 
+/** Number formats by decimals: making one takes as long as using it a hundred times. */
+const formats = [0, 1, 2, 3, 4].map((decimals) =>
+  new Intl.NumberFormat("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals }));
+
 /** A number with this many decimals, separated thousands and a true minus sign. */
-function number(value, decimals = 0) {
-  const text = value.toLocaleString("en-GB", { minimumFractionDigits: decimals, maximumFractionDigits: decimals });
-  return text.replace("-", "−");
-}
+const number = (value, decimals = 0) => formats[decimals].format(value).replace("-", "−");
 
 /** An element with properties and children; text is never read as markup. */
 function make(name, properties = {}, ...children) {

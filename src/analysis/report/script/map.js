@@ -104,7 +104,7 @@ const map = {
       const aside = x + (column.x[row] - left) * scale - pixel_x;
       const above = y + height - (column.y[row] - bottom) * scale - pixel_y;
       const distance = aside * aside + above * above;
-      if (distance < least || (distance === least && nearest !== null && byBadness(row, nearest) < 0)) {
+      if (distance < least || (distance === least && nearest !== null && worstFirst(row, nearest) < 0)) {
         least = distance;
         nearest = row;
       }

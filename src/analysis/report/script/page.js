@@ -71,7 +71,7 @@ function showVerdict(rows) {
 
 /** One conflict of this log, read aloud. */
 function showExample() {
-  const [row] = worstRows(Array.from({ length: count }, (_, place) => place), 1);
+  const [row] = worstRows(everyRow, 1);
   byId("example").textContent = row === undefined ? "" : `For example, the worst conflict here, no. ${column.id[row]}: ${storyOf(row)} ${figuresOf(row)}`;
 }
 

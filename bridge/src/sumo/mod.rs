@@ -10,7 +10,7 @@ mod identity;
 mod libsumo;
 mod libsumo_domain;
 mod reading;
-mod sumo;
+mod simulation;
 mod traci;
 
 use closecall::internals::util::Second;
@@ -23,7 +23,7 @@ use self::libsumo::Libsumo;
 use self::traci::Traci;
 
 pub use identity::Identity;
-pub use sumo::{add_obstacles, net_of, option};
+pub use simulation::{add_obstacles, net_of, option};
 
 /// A simulation that is being read.
 pub enum Source {

@@ -6,6 +6,7 @@ use super::occupancy::Carriages;
 use super::overlap::shrinks;
 use super::reach::User;
 use super::step::StepInputs;
+use super::timely::Timely;
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader, MuModel, rss};
 use crate::detection::encounter::{Encounter, Nearness};
@@ -21,7 +22,6 @@ use crate::detection::path::Pose;
 use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
-use crate::traffic::driver::Driver;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 impl StepInputs<'_> {
@@ -275,48 +275,6 @@ fn steady<'a>(of: &Participant, poses: &'a [Pose], deceleration: MetrePerSecondS
 /// Moves the fronts of a course back.
 fn set_back(course: &mut [Pose], by: Metre) {
     course.iter_mut().for_each(|pose| pose.front -= pose.axis * by);
-}
-
-/// The measures of a pair that follow from the courses of both.
-#[derive(Clone, Copy)]
-struct Timely {
-    ttc: Option<Second>,
-    /// Infinite where no deceleration avoids contact.
-    drac: Option<MetrePerSecondSquared>,
-    ttb: Option<Second>,
-    crash_probability: f64,
-}
-
-impl Timely {
-    /// Of a pair that would never touch.
-    const APART: Self = Self { ttc: None, drac: None, ttb: None, crash_probability: 0.0 };
-    /// Of one that collides now.
-    const COLLISION: Self = Self { ttc: Some(0.0), drac: None, ttb: Some(0.0), crash_probability: 1.0 };
-
-    /// The worst of each value.
-    fn worse(self, other: Self) -> Self {
-        let one_of = |a: Option<f64>, b: Option<f64>, worst: fn(f64, f64) -> f64| match (a, b) {
-            (Some(a), Some(b)) => Some(worst(a, b)),
-            (one, other) => one.or(other),
-        };
-        Self {
-            ttc: one_of(self.ttc, other.ttc, f64::min),
-            drac: one_of(self.drac, other.drac, f64::max),
-            ttb: one_of(self.ttb, other.ttb, f64::min),
-            crash_probability: self.crash_probability.max(other.crash_probability),
-        }
-    }
-
-    /// With what follows from the evasion that is left, of the one of both that has to brake.
-    fn with(self, evasion: &Evasion, braking: &LateBraking, driver: &Driver) -> Self {
-        let wait = evasion.longest_wait(braking);
-        let ttb = Some(wait.max(0.0)).filter(|wait| wait.is_finite());
-        let crash_probability = ttb.map_or(0.0, |_| {
-            let wait_with = |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking });
-            crash_probability(driver, braking.present >= BRAKES, wait_with)
-        });
-        Self { ttb, crash_probability, ..self }
-    }
 }
 
 /// Each carriage of the one with each of the other.

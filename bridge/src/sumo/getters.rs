@@ -10,7 +10,7 @@ use pyo3::types::{PyString, PyTuple};
 
 use super::compiled::{Compiled, KeptAddress};
 use super::reading::{Domain, Reading};
-use super::sumo;
+use super::simulation;
 
 /// What road users are read through: the fastest last.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -10,7 +10,7 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 /// How bad a conflict is; the larger, the worse. A collision is worst; of two, the one with the larger ΔV. Of others the
 /// severity decides, then the crash probability, then the TTC, then the margin.
 #[derive(Clone, Copy, Debug)]
-pub struct Badness {
+pub struct Rank {
     collision: bool,
     severity: Severity,
     /// The larger of both in a collision, otherwise 0.
@@ -22,7 +22,7 @@ pub struct Badness {
     margin: Metre,
 }
 
-impl Badness {
+impl Rank {
     fn new(
         (collision, severity): (bool, Severity),
         delta_v: MetrePerSecond,
@@ -35,7 +35,7 @@ impl Badness {
     }
 }
 
-impl Ord for Badness {
+impl Ord for Rank {
     fn cmp(&self, other: &Self) -> Ordering {
         (self.collision, self.severity)
             .cmp(&(other.collision, other.severity))
@@ -46,28 +46,28 @@ impl Ord for Badness {
     }
 }
 
-impl PartialOrd for Badness {
+impl PartialOrd for Rank {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl PartialEq for Badness {
+impl PartialEq for Rank {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
     }
 }
 
-impl Eq for Badness {}
+impl Eq for Rank {}
 
-impl From<&Conflict> for Badness {
+impl From<&Conflict> for Rank {
     fn from(conflict: &Conflict) -> Self {
         let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, crash_probability, .. } = *conflict;
         Self::new((collision, severity), ego_delta_v.max(foe_delta_v), crash_probability, ttc, margin)
     }
 }
 
-impl From<&LoggedConflict> for Badness {
+impl From<&LoggedConflict> for Rank {
     fn from(conflict: &LoggedConflict) -> Self {
         let LoggedConflict { collision, severity, ttc, margin, crash_probability, .. } = *conflict;
         Self::new((collision, severity), conflict.delta_v(), crash_probability.unwrap_or_default(), ttc, margin)
@@ -83,14 +83,14 @@ mod tests {
         let [caution, serious, critical] = Severity::ALL.map(|severity| (false, severity));
         let collision = (true, Severity::Critical);
         let milder_first = [
-            Badness::new(caution, 9.0, 0.0, None, -9.0),
-            Badness::new(serious, 9.0, 0.2, Some(1.0), -1.0),
-            Badness::new(serious, 1.0, 0.2, Some(0.5), -1.0),
-            Badness::new(serious, 0.0, 0.2, Some(0.5), -2.0),
-            Badness::new(serious, 0.0, 0.3, Some(2.0), 0.0),
-            Badness::new(critical, 0.0, 0.1, Some(2.0), 0.0),
-            Badness::new(collision, 1.0, 1.0, Some(0.0), -9.0),
-            Badness::new(collision, 8.0, 1.0, Some(0.0), 0.0),
+            Rank::new(caution, 9.0, 0.0, None, -9.0),
+            Rank::new(serious, 9.0, 0.2, Some(1.0), -1.0),
+            Rank::new(serious, 1.0, 0.2, Some(0.5), -1.0),
+            Rank::new(serious, 0.0, 0.2, Some(0.5), -2.0),
+            Rank::new(serious, 0.0, 0.3, Some(2.0), 0.0),
+            Rank::new(critical, 0.0, 0.1, Some(2.0), 0.0),
+            Rank::new(collision, 1.0, 1.0, Some(0.0), -9.0),
+            Rank::new(collision, 8.0, 1.0, Some(0.0), 0.0),
         ];
         assert!(milder_first.is_sorted_by(|a, b| a < b));
     }

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};
 use rustc_hash::FxHashMap;
 
-use super::sumo::{self, TypeProfiles};
+use super::simulation::{self, TypeProfiles};
 
 /// A traci connection and the road users in the scene.
 pub struct Traci {

@@ -11,7 +11,7 @@ use pyo3::types::PyString;
 use super::getters::Through;
 use super::libsumo_domain::LibsumoDomain;
 use super::reading::Domain;
-use super::sumo::{self, TypeProfiles};
+use super::simulation::{self, TypeProfiles};
 
 /// libsumo's functions and the road users in the scene.
 pub struct Libsumo {

@@ -16,7 +16,7 @@ const NAMED: usize = 5;
 
 /// Conflicts by the type that they come from, in the order of the roster's profiles.
 #[derive(Default)]
-pub(super) struct OwnMaking {
+pub(super) struct OrdinaryDriving {
     conflicts: u64,
     following: Vec<u64>,
     braking: Vec<u64>,
@@ -25,7 +25,7 @@ pub(super) struct OwnMaking {
     unseen: u64,
 }
 
-impl OwnMaking {
+impl OrdinaryDriving {
     /// Counts a conflict: the ego follows as usual, or the foe brakes harder than any car, or one of the two is a person on or
     /// beside a walking area.
     pub fn count(&mut self, conflict: &Conflict, roster: &Roster, net: Option<&Net>) {
