@@ -94,7 +94,7 @@ impl Libsumo {
     }
 
     pub fn time(&self, py: Python) -> PyResult<Second> {
-        Ok(sumo::time_of_states(self.time.bind(py).call0()?.extract()?, self.step_length))
+        Ok(simulation::time_of_states(self.time.bind(py).call0()?.extract()?, self.step_length))
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
@@ -102,7 +102,7 @@ impl Libsumo {
         let last = run.time();
         let jumped = last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin_step(time);
-        run.set_collisions_of_sumo(sumo::collisions(&self.collisions.bind(py).call0()?)?);
+        run.set_collisions_of_sumo(simulation::collisions(&self.collisions.bind(py).call0()?)?);
         self.read_lights(py, run)?;
         if let (true, Some(last)) = (jumped, last) {
             self.remove_replaced(py, run, last)?;
@@ -130,7 +130,7 @@ impl Libsumo {
         let lights = match &mut self.known_lights {
             Some(known) => known,
             unknown => {
-                let known = sumo::lights(run, &ids.bind(py).call0()?)?;
+                let known = simulation::lights(run, &ids.bind(py).call0()?)?;
                 unknown.insert(known)
             }
         };
@@ -204,7 +204,7 @@ impl Libsumo {
             let Some(lane) = net.lane(ask(&self.get.lane)?.extract::<&str>()?) else { continue };
             let position = usize::try_from(ask(&self.get.route_index)?.extract::<i64>()?).unwrap_or(0);
             let route = if has_changed || !run.knows_route(user, position) {
-                Some(sumo::route(net, &ask(&self.get.route)?)?)
+                Some(simulation::route(net, &ask(&self.get.route)?)?)
             } else {
                 None
             };
@@ -222,7 +222,7 @@ impl Libsumo {
             if let Some(lanes) = run.changed_lanes(row) {
                 let id: &str = run.roster.id(user);
                 let states = self.get.lane_change.bind(py).call1((id, lanes.signum()))?;
-                run.set_lane_change_state(row, sumo::lane_change_state(&states)?);
+                run.set_lane_change_state(row, simulation::lane_change_state(&states)?);
             }
         }
         Ok(())

@@ -101,13 +101,13 @@ impl Traci {
     pub fn time(&self, py: Python) -> PyResult<Second> {
         let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
         let time = simulation.call_method0(intern!(py, "getTime"))?.extract()?;
-        Ok(sumo::time_of_states(time, self.step_length))
+        Ok(simulation::time_of_states(time, self.step_length))
     }
 
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         run.begin_step(time);
         let simulation = self.source.bind(py).getattr(intern!(py, "simulation"))?;
-        run.set_collisions_of_sumo(sumo::collisions(&simulation.call_method0(intern!(py, "getCollisions"))?)?);
+        run.set_collisions_of_sumo(simulation::collisions(&simulation.call_method0(intern!(py, "getCollisions"))?)?);
         self.read_lights(py, run)?;
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
@@ -122,7 +122,7 @@ impl Traci {
         let known = match &mut self.known_lights {
             Some(known) => known,
             unknown => {
-                let known = sumo::lights(run, &lights.call_method0("getIDList")?)?;
+                let known = simulation::lights(run, &lights.call_method0("getIDList")?)?;
                 for (_, id) in &known {
                     lights.call_method1("subscribe", (id, vec![light]))?;
                 }
@@ -155,7 +155,7 @@ impl Traci {
             let position = usize::try_from(value(self.variable.route_index)?.extract::<i64>()?).unwrap_or(0);
             let has_changed = live.route.as_ref() != Some(&route_id);
             let route = if has_changed || !run.knows_route(live.user, position) {
-                Some(sumo::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?)
+                Some(simulation::route(net, &domain.call_method1(intern!(py, "getRoute"), (id,))?)?)
             } else {
                 None
             };
@@ -170,7 +170,7 @@ impl Traci {
             run.set_placement(row, &placement);
             if let Some(lanes) = run.changed_lanes(row) {
                 let states = domain.call_method1(intern!(py, "getLaneChangeState"), (id, lanes.signum()))?;
-                run.set_lane_change_state(row, sumo::lane_change_state(&states)?);
+                run.set_lane_change_state(row, simulation::lane_change_state(&states)?);
             }
         }
         Ok(())
@@ -238,7 +238,7 @@ impl TraciDomain {
                 x: point.get_item(0)?.extract()?,
                 y: point.get_item(1)?.extract()?,
                 z: point.get_item(2)?.extract()?,
-                heading: sumo::heading(value(variable.angle)?.extract()?),
+                heading: simulation::heading(value(variable.angle)?.extract()?),
                 speed: value(variable.speed)?.extract()?,
             };
             if run.frame.push(live.user, state) {
