@@ -117,7 +117,7 @@ target/tools/audit:
 
 $(VENV)/made:
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/pip install --quiet --disable-pip-version-check "maturin>=1.9,<2"
+	$(BIN)/pip install --quiet --disable-pip-version-check "maturin>=1.16,<2"
 	touch $@
 
 # --no-compile: most of the installed modules are never imported, and those that are get their bytecode then.

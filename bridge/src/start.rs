@@ -8,7 +8,7 @@ use std::time::Duration;
 use closecall::cli::{RunRequest, ShowRequest};
 use closecall::internals::input as sumo_files;
 use closecall::{Error, Net, Result};
-use pyo3::exceptions::PyImportError;
+use pyo3::exceptions::{PyImportError, PyModuleNotFoundError};
 use pyo3::prelude::*;
 
 use crate::error::message;
@@ -50,11 +50,25 @@ pub fn start<'py>(py: Python<'py>, request: &RunRequest) -> Result<Bound<'py, Py
 /// The error where SUMO does not start.
 fn refused(py: Python, scenario: &Path, error: &PyErr) -> Error {
     if error.is_instance_of::<PyImportError>(py) {
-        Error::Value(format!("libsumo is not installed ({}): pip install libsumo", message(py, error)))
+        not_loaded(py, error, "libsumo")
     } else {
         let refusal = Error::Refused { path: scenario.to_owned(), message: message(py, error) };
         sumo_files::fault(scenario).unwrap_or(refusal)
     }
+}
+
+/// The error where libsumo cannot be imported: these packages are missing, or libraries of the system that it needs, even
+/// without a window.
+fn not_loaded(py: Python, error: &PyErr, packages: &str) -> Error {
+    let message = message(py, error);
+    Error::Value(if error.is_instance_of::<PyModuleNotFoundError>(py) {
+        format!("libsumo is not installed ({message}): pip install {packages}")
+    } else {
+        format!(
+            "libsumo cannot be loaded ({message}): it needs libraries of the system; on Debian and Ubuntu: apt install \
+             libgl1 libxext6 libxrender1 libatomic1"
+        )
+    })
 }
 
 /// Saves the options that SUMO has with these words; nothing is simulated.
@@ -82,11 +96,10 @@ pub fn check_display(starter: &Bound<PyModule>) -> Result<()> {
 /// Shows a clip in sumo-gui until the user has seen enough of it.
 pub fn show(py: Python, request: &ShowRequest) -> Result<()> {
     let failed = |error: PyErr| {
-        let message = message(py, &error);
         if error.is_instance_of::<PyImportError>(py) {
-            return Error::Value(format!("libsumo is not installed ({message}): pip install libsumo eclipse-sumo"));
+            return not_loaded(py, &error, "libsumo eclipse-sumo");
         }
-        Error::Value(format!("sumo-gui: {message}"))
+        Error::Value(format!("sumo-gui: {}", message(py, &error)))
     };
     check_display(&py.import("closecall._sumo").map_err(failed)?)?;
     let ShowRequest { scene, label, quit_on_end } = request;

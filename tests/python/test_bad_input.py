@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 import resource
 import subprocess
@@ -158,6 +159,18 @@ sys.exit(main())
     done = python(script, scenario("rear_end"))
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert "pip install libsumo" in done.stderr
+
+
+def test_a_libsumo_that_cannot_be_loaded_is_not_called_missing(scenario: Copy, tmp_path: Path) -> None:
+    package = tmp_path / "libsumo"
+    package.mkdir()
+    (package / "__init__.py").write_text("from . import _libsumo\n")
+    # The loader refuses it as it refuses one whose libraries the system lacks.
+    (package / "_libsumo.so").write_bytes(b"")
+    done = closecall("run", scenario("rear_end"), env={**os.environ, "PYTHONPATH": str(tmp_path)})
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
+    assert "libsumo cannot be loaded (" in done.stderr
+    assert "apt install libgl1" in done.stderr
 
 
 def test_a_failure_of_sumo_during_a_run_keeps_the_log(scenario: Copy, tmp_path: Path) -> None:

@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import json
 from importlib import metadata
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
+
+
+def test_the_wheel_lists_its_crates_in_a_bill_of_materials() -> None:
+    [bill] = [file for file in metadata.files("closecall") or [] if file.name.endswith(".cyclonedx.json")]
+    parts = {part["name"] for part in json.loads(Path(bill.locate()).read_text(encoding="utf-8"))["components"]}
+    assert {"closecall", "parry2d-f64", "parquet", "pyo3"} <= parts
 
 
 def test_the_wheel_ships_the_licences_of_what_it_embeds() -> None:

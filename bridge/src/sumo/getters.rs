@@ -101,7 +101,9 @@ impl Getters {
         };
         Ok(match reading {
             Reading::Inside => None,
-            Reading::At { x, y, z, angle, speed } => Some(State { x, y, z, heading: simulation::heading(angle), speed }),
+            Reading::At { x, y, z, angle, speed } => {
+                Some(State { x, y, z, heading: simulation::heading(angle), speed })
+            }
         })
     }
 
