@@ -11,8 +11,9 @@ SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc')
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
 
-# Tests are compiled once and run: what an incremental build writes would not be read.
-RUST_TESTS := CARGO_INCREMENTAL=0 cargo test --workspace --exclude closecall-bridge
+# Tests are compiled once and run: what an incremental build writes would not be read, nor most of what a debugger needs. Few
+# units of code: the compiler copies inlined functions into each.
+RUST_TESTS := CARGO_INCREMENTAL=0 CARGO_PROFILE_DEV_DEBUG=0 CARGO_PROFILE_DEV_CODEGEN_UNITS=4 cargo test --workspace --exclude closecall-bridge
 
 # pip mostly unpacks on one core, meanwhile cargo compiles on the others.
 test: $(VENV)/wheel ## set everything up and run all tests, Rust and Python
