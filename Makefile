@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy bench docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy bench quick docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -97,6 +97,9 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	$(BIN)/python benches/memory.py > $(PARTS)/attached_memory.csv
 	cargo bench --bench memory > $(PARTS)/day.csv
 	$(BIN)/python benches/table.py target/bench $(BENCH)
+
+quick: $(VENV)/wheel $(VENV)/tests ## instructions of a replay against those of the last state that landed: a tenth more fails
+	$(BIN)/python benches/instructions.py
 
 docs: $(VENV)/wheel $(VENV)/docs ## the crate's documentation, and the site in target/site, without a broken link
 	RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --workspace --exclude closecall-bridge
