@@ -2,9 +2,10 @@
 
     python benches/instructions.py [--bless]
 
-Times differ by a tenth and more from one minute to the next; instructions do not. valgrind counts those of two replays of
-one recording, of which one goes on for longer: the difference is what the additional steps take, without Python's start
-and the net. Exits with 1 if a scene takes more than a tenth more than benches/instructions.csv says; `--bless` writes it.
+Times differ by a tenth and more from one minute to the next; instructions do not. valgrind counts those of two replays
+of one recording, of which one goes on for longer: the difference is what the additional steps take, without Python's
+start and the net. Exits with 1 if a scene takes over a tenth more than benches/instructions.csv says; `--bless` writes
+that file.
 """
 
 from __future__ import annotations
