@@ -10,9 +10,9 @@
 
 mod brakes;
 mod late;
-mod left;
 mod narrowest;
 mod needed;
+mod response_left;
 pub mod rss;
 
 use crate::util::double_double::{DoubleDouble, Number};
@@ -21,7 +21,7 @@ use needed::Needed;
 
 pub use brakes::{Brakes, Braking, MuModel};
 pub use late::{LateBraking, Leader};
-pub use left::{leader, response_left};
+pub use response_left::{leader, response_left};
 
 /// The stopping distance in m, exactly, with V₃ = V − a·t3/2:
 ///
