@@ -50,6 +50,7 @@ pub mod geometry {
 
 pub mod input {
     pub use crate::input::replay::demand::{self, PlannedRoutes};
+    pub use crate::input::replay::lights::RecordedLights;
     pub use crate::input::replay::recording::Recording;
     pub use crate::input::replay::routes::Routes;
     pub use crate::input::replay::rows::RecordedStep;

@@ -34,6 +34,10 @@ pub struct ReplayArgs {
     /// ones.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
+    /// What the traffic lights showed: SUMO's output of a timedEvent SaveTLSStates or SaveTLSSwitchStates; also gzipped. It needs
+    /// a net. Without it the causes ran_red and late_amber are not found.
+    #[arg(long, value_name = "FILE", requires = "net")]
+    signals: Option<PathBuf>,
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
@@ -54,6 +58,9 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let opened = tracks::open(&arguments.recording, &arguments.tracks, net.as_deref())?;
     let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options)?;
+    if let (Some(signals), Some(net)) = (&arguments.signals, &net) {
+        replay.set_lights(signals, net)?;
+    }
     let mut run = Run::new(&options, net)?;
     run.set_threads(arguments.threads.into());
     run.set_fixed_routes(true);
@@ -83,7 +90,11 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
 
 /// The record of a replay that begins.
 fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
-    let files = [&arguments.recording].into_iter().chain(&arguments.net).chain(&arguments.route_files);
+    let files = [&arguments.recording]
+        .into_iter()
+        .chain(&arguments.net)
+        .chain(&arguments.route_files)
+        .chain(&arguments.signals);
     Ok(RunRecord {
         sublane: arguments.sublane,
         inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,

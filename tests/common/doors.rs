@@ -10,7 +10,8 @@ use closecall::internals::analysis::{
     ConflictFilter, ConflictReader, LoggedRun, Place, Playback, Request, Statistics, Which, export, plot, report, svg,
 };
 use closecall::internals::input::{
-    OpenedTracks, RecordedStep, Recording, TrackOptions, check_xml, demand, fault, inspect_tracks, open_tracks,
+    OpenedTracks, RecordedLights, RecordedStep, Recording, TrackOptions, check_xml, demand, fault, inspect_tracks,
+    open_tracks,
 };
 use closecall::internals::options::OptionsFile;
 use closecall::internals::output::ExportFormat;
@@ -20,11 +21,12 @@ use closecall::{Net, Options, Replay, Run};
 /// A door: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
 pub type Door = (&'static str, fn(&[u8]));
 
-pub const ALL: [Door; 16] = [
+pub const ALL: [Door; 17] = [
     ("fcd", fcd),
     ("net", net),
     ("config", config),
     ("demand", demand_files),
+    ("signals", signals),
     ("xml", xml),
     ("filter", filter),
     ("run_json", run_json),
@@ -44,7 +46,7 @@ const NET: &str = r#"<net>
 <edge id="f" from="j" to="b"><lane id="f_0" length="90" shape="100,10 100,100"/></edge>
 <edge id=":j_0" function="internal"><lane id=":j_0_0" length="15" shape="90,0 97,3 100,10"/></edge>
 <junction id="j" intLanes=":j_0_0" shape="90,-2 102,-2 102,10 98,10"/>
-<connection from="e" to="f" fromLane="0" toLane="0" via=":j_0_0"/>
+<connection from="e" to="f" fromLane="0" toLane="0" via=":j_0_0" tl="a" linkIndex="0"/>
 <connection from=":j_0" to="f" fromLane="0" toLane="0"/></net>"#;
 
 fn a_net() -> Net {
@@ -96,6 +98,19 @@ pub fn config(bytes: &[u8]) {
 /// Any bytes as route and additional files give types and routes or an error.
 pub fn demand_files(bytes: &[u8]) {
     let _ = demand::parse(Path::new("demand"), bytes, &a_net());
+}
+
+/// Any bytes as SUMO's record of the traffic lights give their states or an error.
+pub fn signals(bytes: &[u8]) {
+    let folder = folder();
+    let path = folder.path().join("signals.xml");
+    fs::write(&path, bytes).unwrap();
+    let net = Arc::new(a_net());
+    let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
+    run.begin_step(0.0);
+    if let Ok(mut lights) = RecordedLights::open(&path, &net) {
+        let _ = lights.show(&mut run, 1e9);
+    }
 }
 
 /// Any bytes as a file of SUMO's are well-formed or not, and a configuration names files or not.

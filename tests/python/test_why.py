@@ -9,7 +9,8 @@ from xml.etree import ElementTree
 
 import closecall as cc
 import pytest
-from conftest import NETS, Row, closecall, python, rows
+from conftest import NETS, Copy, Row, closecall, python, rows
+from recordings import record, replay, same
 
 
 def logged(scene: str, out: Path, *words: str | Path) -> list[Row]:
@@ -42,10 +43,27 @@ def test_who_overtakes_against_oncoming_traffic_is_named(tmp_path: Path) -> None
     assert {(row["manoeuvre"], row["cause"].split()[0]) for row in found} == {("overtaking_oncoming", "overtook")}
 
 
-def test_the_runner_of_a_red_light_is_is_named(tmp_path: Path) -> None:
+def test_the_runner_of_a_red_light_is_named(tmp_path: Path) -> None:
     crossing = [row for row in logged("signals", tmp_path / "out") if row["kind"] == "side"]
     assert crossing
     assert {(row["manoeuvre"], row["cause"]) for row in crossing} == {("crossing", "ran_red")}
+
+
+@pytest.mark.parametrize("event", ["SaveTLSStates", "SaveTLSSwitchStates"])
+def test_a_replay_with_recorded_signals_finds_who_ran_a_red_light(event: str, scenario: Copy, tmp_path: Path) -> None:
+    config, states = scenario("signals"), tmp_path / "states.xml"
+    told = tmp_path / "told.add.xml"
+    told.write_text(f'<additional><timedEvent type="{event}" source="a" dest="{states}"/></additional>')
+    recording = record(config, "fcd.xml", "--end", "150", sumo=("--additional-files", str(told)))
+    live = rows(config.parent / "live" / "conflicts.csv")
+    assert any("ran_red" in row["cause"] for row in live)
+    for words, knows in ((("--signals", str(states)), True), ((), False)):
+        status, said = replay(config, recording, tmp_path / "again", "--force", *words)
+        assert status == 0, said
+        found = rows(tmp_path / "again" / "conflicts.csv")
+        same(live, found)
+        assert any("ran_red" in row["cause"] for row in found) == knows
+        assert not knows or [row["cause"] for row in found] == [row["cause"] for row in live]
 
 
 def test_a_change_of_lanes_has_the_reason_in_sumos_own_output(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ pub mod demand;
 mod drive;
 mod fit;
 mod lanes;
+pub mod lights;
 mod lists;
 mod names;
 mod number;
@@ -47,6 +48,7 @@ use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
 use lanes::{Lanes, heading};
+use lights::RecordedLights;
 use recording::Recording;
 use routes::Routes;
 use rows::{RecordedRow, RecordedStep};
@@ -71,6 +73,8 @@ pub struct Replay {
     lanes: Lanes,
     /// None where paths do not follow lanes.
     routes: Option<Routes>,
+    /// None where it is not known what the traffic lights showed.
+    lights: Option<RecordedLights>,
     options: Options,
     step_length: Second,
     averaged_over: f64,
@@ -123,6 +127,7 @@ impl Replay {
             undefined: BTreeSet::new(),
             lanes: Lanes::default(),
             routes,
+            lights: None,
             options: options.clone(),
             step_length,
             averaged_over: update::averaged_over(path)?,
@@ -134,6 +139,15 @@ impl Replay {
             rows: Vec::new(),
             gone: Vec::new(),
         })
+    }
+
+    /// States in each step what the traffic lights of the net showed, as this file of SUMO's says.
+    ///
+    /// # Errors
+    /// Those of [`RecordedLights::open`].
+    pub fn set_lights(&mut self, path: &Path, net: &Net) -> Result<()> {
+        self.lights = Some(RecordedLights::open(path, net)?);
+        Ok(())
     }
 
     /// Checks the next step; returns its time, or none where the recording has ended.
@@ -151,6 +165,9 @@ impl Replay {
             return Ok(None);
         }
         run.begin_step(self.step.time);
+        if let Some(lights) = &mut self.lights {
+            lights.show(run, self.step.time)?;
+        }
         self.fill(run)?;
         run.step(|run, rows| rows.iter().try_for_each(|row| self.place(run, *row)))?;
         Ok(Some(self.step.time))
