@@ -106,12 +106,13 @@ impl LateBraking {
         longest
     }
 
-    /// Whether it has gone no further than a distance at a time after this wait, as far as that needs no root and no division.
+    /// Whether it surely keeps to a distance at a time after this wait, found without a root or a division.
     fn surely_keeps(&self, wait: Second, time: Second, distance: Metre) -> bool {
         let (t3, more) = (self.build_up, self.deceleration - self.present);
         let braked_for = time - wait - t3 / 2.0;
         let still_moves = self.speed - self.present * time >= more * braked_for;
-        let way = (self.speed - self.present * time / 2.0) * time - more * (braked_for * braked_for / 2.0 + t3 * t3 / 24.0);
+        let way =
+            (self.speed - self.present * time / 2.0) * time - more * (braked_for * braked_for / 2.0 + t3 * t3 / 24.0);
         braked_for >= t3 / 2.0 && still_moves && way <= distance
     }
 

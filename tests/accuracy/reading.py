@@ -3,9 +3,9 @@
 python tests/accuracy/reading.py LOG [--each 25] [--seed 2] [--key]
 
 LOG needs clips (`closecall run --log-clips serious`, or `caution`). A line has the number of the conflict, the kind,
-the manoeuvre and both types, and then, every 0.5 s from 1 s before to 2 s after the worst step (*): the distance between
-the two rectangles in m (! where they overlap), the foe's place ahead and to the left of the ego's front in m, and the
-speeds of both in m/s. `--key` prints severity, crash probability, time to brake and collision instead.
+the manoeuvre and both types, and then, every 0.5 s from 1 s before to 2 s after the worst step (*): the distance
+between the two rectangles in m (! where they overlap), the foe's place ahead and to the left of the ego's front in m,
+and the speeds of both in m/s. `--key` prints severity, crash probability, time to brake and collision instead.
 """
 
 from __future__ import annotations

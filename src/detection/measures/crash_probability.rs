@@ -15,7 +15,7 @@
 use crate::traffic::driver::{Driver, Weighted};
 use crate::util::units::{MetrePerSecondSquared, Probability, Second};
 
-/// From one node to the next, P(T > w(a)) may fall by so much: the error is then below 1e-3 for an attentive driver and 5e-3 for
+/// From one node to the next, P(T > w(a)) may fall by so much: the error is then below 1e-3 for an attentive driver and 1e-2 for
 /// any (docs/study.md).
 const STEEP: Probability = 0.4;
 /// A part of the range of decelerations that is not divided further.

@@ -15,7 +15,7 @@ use crate::traffic::driver::Driver;
 const LATE: Property = Property::within("response later than a time", 1e-13, Unit::Absolute);
 /// 16 nodes for the deceleration, and more where a response time that hardly varies makes nearly a step.
 const CRASH: Property = Property::within("crash probability", 1e-3, Unit::Absolute);
-const CRASH_OF_ANY: Property = Property::within("crash probability", 5e-3, Unit::Absolute);
+const CRASH_OF_ANY: Property = Property::within("crash probability", 1e-2, Unit::Absolute);
 /// The weakest sufficient deceleration is found to a hundred-thousandth of its range.
 const BRAKES: Property = Property::within("crash probability of one that brakes", 1e-5, Unit::Absolute);
 const INJURY: Property = Property::within("injury probability", 1e-13, Unit::Relative);
