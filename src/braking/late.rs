@@ -89,6 +89,33 @@ impl LateBraking {
         time - braked_for
     }
 
+    /// The longest wait, in s, with which it has gone no further than each of these distances at each of these times. It is
+    /// quickest if the first of them is the one that decides.
+    pub fn longest_wait_at_all(&self, limits: &[(Second, Metre)]) -> Second {
+        let own = self.relative(0.0, 0.0);
+        let (mut longest, mut way) = (f64::INFINITY, f64::INFINITY);
+        for (time, distance) in limits {
+            if way <= *distance || self.surely_keeps(longest, *time, *distance) {
+                continue;
+            }
+            let wait = self.longest_wait_at(*time, *distance);
+            if wait < longest {
+                (longest, way) = (wait, own.way(wait.max(0.0)));
+            }
+        }
+        longest
+    }
+
+    /// Whether it surely keeps to a distance at a time after this wait, found without a root or a division.
+    fn surely_keeps(&self, wait: Second, time: Second, distance: Metre) -> bool {
+        let (t3, more) = (self.build_up, self.deceleration - self.present);
+        let braked_for = time - wait - t3 / 2.0;
+        let still_moves = self.speed - self.present * time >= more * braked_for;
+        let way =
+            (self.speed - self.present * time / 2.0) * time - more * (braked_for * braked_for / 2.0 + t3 * t3 / 24.0);
+        braked_for >= t3 / 2.0 && still_moves && way <= distance
+    }
+
     /// The longest wait, in s, with which it and one that comes towards it stop within some room, if both wait as long.
     /// `share` is the part of the other's way that counts.
     pub fn longest_wait_towards(&self, other: &Self, share: f64, room: Metre) -> Second {
@@ -330,6 +357,16 @@ mod tests {
             } else {
                 prop_assert!(at(time) < distance + DOUBT);
             }
+        }
+
+        #[test]
+        fn the_wait_for_many_limits_is_the_least_of_each(
+            braking in braking(), limits in prop::collection::vec((0.1..10.0, 0.0..1.2), 1..40)
+        ) {
+            let limits = limits.into_iter().map(|(time, part)| (time, part * braking.speed * time)).collect::<Vec<_>>();
+            let each = limits.iter().map(|(time, distance)| braking.longest_wait_at(*time, *distance));
+            let [least, found] = [each.fold(f64::INFINITY, f64::min), braking.longest_wait_at_all(&limits)];
+            prop_assert!(found == least || (found - least).abs() < 1e-12 * (1.0 + least.abs()), "{found}, not {least}");
         }
 
         #[test]

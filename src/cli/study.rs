@@ -97,6 +97,8 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         "all",
         "--precision",
         "9",
+        "--collision-output",
+        &recording.with_extension("collisions.xml").display().to_string(),
         "--no-warnings",
     ];
     RunRequest {

@@ -9,8 +9,8 @@ use crate::output::formats::Outputs;
 use crate::output::log::Log;
 use crate::util::units::Second;
 
-/// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by up to 32 %, at 0.1 s
-/// by 0 to 13 % (docs/step_length.md). The fourth digit is room for rounding in the times of recordings.
+/// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by 2 to 24 %, at 0.1 s
+/// by 0 to 10 % (docs/step_length.md). The fourth digit is room for rounding in the times of recordings.
 const LONG_STEP: Second = 0.1001;
 
 impl Run {

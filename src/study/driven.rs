@@ -52,7 +52,11 @@ pub(super) type IdPair = (EcoString, EcoString);
 
 /// The pair of two road users.
 pub(super) fn pair(roster: &Roster, a: UserIndex, b: UserIndex) -> IdPair {
-    let (a, b) = (roster.id(a).clone(), roster.id(b).clone());
+    ordered(roster.id(a).clone(), roster.id(b).clone())
+}
+
+/// Both ids, the smaller one first.
+pub(super) fn ordered(a: EcoString, b: EcoString) -> IdPair {
     if a <= b { (a, b) } else { (b, a) }
 }
 

@@ -33,11 +33,15 @@ pub enum Axis {
     Curvature,
     /// The decimals and the period of a recording.
     Recording,
+    /// How deep an overlap is a collision.
+    Tolerance,
+    /// The measures that are logged only if they are chosen.
+    Measures,
 }
 
 impl Axis {
     /// All axes, in the order of tables and charts.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Volume,
         Self::Candidates,
         Self::Time,
@@ -49,11 +53,13 @@ impl Axis {
         Self::Curvature,
         Self::Path,
         Self::Recording,
+        Self::Tolerance,
+        Self::Measures,
     ];
 
     /// Whether its items are recordings of SUMO runs.
     pub fn needs_sumo(self) -> bool {
-        matches!(self, Self::Path | Self::Recording)
+        matches!(self, Self::Path | Self::Recording | Self::Tolerance | Self::Measures)
     }
 
     /// The name in files and tables.
@@ -70,6 +76,8 @@ impl Axis {
             Self::Curvature => "curvature",
             Self::Path => "path",
             Self::Recording => "recording",
+            Self::Tolerance => "tolerance",
+            Self::Measures => "measures",
         }
     }
 }

@@ -3,6 +3,7 @@
 //! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
 //! reference that is independent of all of them: [`reference`], or the paths that the vehicles really drove.
 
+mod added;
 mod braking;
 mod candidates;
 mod chart;
@@ -24,6 +25,7 @@ pub mod reference;
 pub mod scenario;
 pub mod stress;
 mod time;
+mod tolerance;
 mod turning;
 mod volume;
 
@@ -50,9 +52,14 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
         Axis::Numbers => numbers::measure(plan),
         Axis::Turning => turning::measure(plan),
         Axis::Curvature => curvature::measure(plan),
-        Axis::Path | Axis::Recording => {
+        Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => {
             let record = record.ok_or_else(|| Error::Value(format!("the {} axis needs SUMO", axis.name())))?;
-            let measure = if axis == Axis::Path { path::measure } else { recording::measure };
+            let measure = match axis {
+                Axis::Path => path::measure,
+                Axis::Recording => recording::measure,
+                Axis::Tolerance => tolerance::measure,
+                _ => added::measure,
+            };
             measure(plan, record)?
         }
     };

@@ -19,6 +19,8 @@ fn question(axis: Axis) -> [&'static str; 2] {
         Axis::Turning => ["How exactly is a turn swept?", "both ways halved until nothing between can hide a contact"],
         Axis::Curvature => ["How long a past tells the curvature?", "the way that was driven"],
         Axis::Recording => ["What must be recorded?", "a recording of every 0.1 s with nine decimals"],
+        Axis::Tolerance => ["How deep an overlap is a collision?", "the pairs that SUMO reports as colliding"],
+        Axis::Measures => ["What do the added measures cost?", "a recording with nine decimals"],
         Axis::Path => ["Where will a road user go?", "where the recorded vehicles really drove"],
     }
 }

@@ -21,7 +21,8 @@ const DRAWS: [u32; 2] = [1_000, 10_000];
 /// The attentive driver: mean and standard deviation of its response time, and of its deceleration, with its range.
 const RESPONSE: [Second; 2] = [0.92, 0.28];
 const BRAKING: [MetrePerSecondSquared; 4] = [8.45, 1.42, 4.23, 12.68];
-/// Moments at which a foe is examined that crosses or turns: about as many as the detector needs.
+/// Moments at which a foe is examined that crosses or turns: about as many as the detector needs where each may decide,
+/// because the foe also drives on along the ego's way.
 const MOMENTS: u32 = 35;
 
 /// A driver that approaches another road user.
@@ -41,8 +42,10 @@ impl Approach {
         let leader = Leader { room: speed * meets, speed: 0.0, deceleration: 0.0 };
         let leaves = meets + chance.between(0.2, 2.0);
         let moment = |number: u32| meets + (leaves - meets) * f64::from(number) / f64::from(MOMENTS - 1);
+        let along = chance.between(0.1, 0.5) * speed;
         let limits = if scene == SCENES[0] { 0..0 } else { 0..MOMENTS };
-        Self { braking, leader, limits: limits.map(|number| (moment(number), leader.room)).collect() }
+        let limit = |number| (moment(number), leader.room + along * (moment(number) - meets));
+        Self { braking, leader, limits: limits.map(limit).collect() }
     }
 
     /// The longest wait of a driver that brakes with this.

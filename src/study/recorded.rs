@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::driven::{IdPair, pair};
 use super::measurement::{Plan, Recorder};
 use crate::Result;
+use crate::events::Conflict;
 use crate::input::replay::Replay;
 use crate::options::Options;
 use crate::run::Run;
@@ -17,6 +18,9 @@ use crate::util::units::{Metre, Second};
 
 /// Gaps that differ by less are equal: a recording has nine digits.
 pub(super) const ROUNDING: Metre = 1e-6;
+
+/// The attributes of fcd-output that closecall reads as numbers.
+const NUMBERS: [&str; 9] = ["x", "y", "z", "angle", "speed", "pos", "acceleration", "posLat", "speedLat"];
 
 /// The gap of every pair in conflict, by step.
 pub(super) type GapsByStep = Vec<FxHashMap<IdPair, Metre>>;
@@ -29,10 +33,11 @@ pub(super) struct RecordedScenario {
     net: Arc<Net>,
 }
 
-/// How long a replay took, and how many rows it had.
+/// How long a replay took, how many rows it had, and its conflicts.
 pub(super) struct Replayed {
     pub lasts: Second,
     pub rows: usize,
+    pub conflicts: Vec<Conflict>,
 }
 
 impl RecordedScenario {
@@ -59,11 +64,48 @@ impl RecordedScenario {
             after(&run);
             aside += paused.elapsed().as_secs_f64();
         }
-        Ok(Replayed { lasts: started.elapsed().as_secs_f64() - aside, rows })
+        let lasts = started.elapsed().as_secs_f64() - aside;
+        Ok(Replayed { lasts, rows, conflicts: run.conflicts() })
     }
 }
 
 /// The gap of every pair in conflict.
 pub(super) fn conflicts(run: &Run) -> FxHashMap<IdPair, Metre> {
     run.in_conflict().map(|found| (pair(&run.roster, found.ego, found.foe), found.gap)).collect()
+}
+
+/// Where SUMO's collisions are that belong to a recording.
+pub(super) fn collisions_file(recording: &Path) -> PathBuf {
+    recording.with_extension("collisions.xml")
+}
+
+/// The share of these pairs that are not among the others.
+pub(super) fn share_without(pairs: &FxHashSet<IdPair>, others: &FxHashSet<IdPair>) -> f64 {
+    pairs.difference(others).count() as f64 / pairs.len().max(1) as f64
+}
+
+/// A recording with this number of decimals.
+pub(super) fn with_decimals(text: &str, count: usize) -> String {
+    with_numbers(text, &|value| format!("{value:.count$}"))
+}
+
+/// A recording in which every number is written in another way.
+pub(super) fn with_numbers(text: &str, write: &dyn Fn(f64) -> String) -> String {
+    let mut changed = String::with_capacity(text.len());
+    let mut name = "";
+    // Names and values take turns; the first piece is before any value.
+    for (index, piece) in text.split('"').enumerate() {
+        if index > 0 {
+            changed.push('"');
+        }
+        let is_value = index % 2 == 1;
+        match piece.parse() {
+            Ok(value) if is_value && NUMBERS.contains(&name) => changed += &write(value),
+            _ => changed += piece,
+        }
+        if !is_value {
+            name = piece.trim_end_matches('=').rsplit(' ').next().unwrap_or_default();
+        }
+    }
+    changed
 }

@@ -6,9 +6,8 @@ use std::path::Path;
 use rustc_hash::FxHashSet;
 
 use super::clock::median;
-use super::driven::IdPair;
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts};
+use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts, share_without, with_decimals, with_numbers};
 use crate::options::Options;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
@@ -19,8 +18,6 @@ const NETS: [&str; 3] = ["left_turn", "roundabout", "signals"];
 const PERIOD: Second = 0.1;
 /// Gaps are compared at these times only, which all recordings have.
 const COMPARED: Second = 1.0;
-/// The attributes of fcd-output that closecall reads as numbers.
-const NUMBERS: [&str; 9] = ["x", "y", "z", "angle", "speed", "pos", "acceleration", "posLat", "speedLat"];
 /// What docs/replay.md asks for.
 const DEFAULT: Kept = Kept::Decimals(6);
 const METHODS: [Kept; 11] = [
@@ -51,7 +48,7 @@ impl Kept {
     fn of(self, text: &str) -> String {
         match self {
             Self::All => text.to_owned(),
-            Self::Decimals(count) => with_numbers(text, &|value| format!("{value:.count$}")),
+            Self::Decimals(count) => with_decimals(text, count),
             Self::F32 => with_numbers(text, &|value| (value as f32).to_string()),
             Self::Period(period) => every(text, period),
         }
@@ -78,27 +75,6 @@ impl Kept {
     fn period(self) -> Second {
         if let Self::Period(period) = self { period } else { PERIOD }
     }
-}
-
-/// A recording in which every number is written in another way.
-fn with_numbers(text: &str, write: &dyn Fn(f64) -> String) -> String {
-    let mut changed = String::with_capacity(text.len());
-    let mut name = "";
-    // Names and values take turns; the first piece is before any value.
-    for (index, piece) in text.split('"').enumerate() {
-        if index > 0 {
-            changed.push('"');
-        }
-        let is_value = index % 2 == 1;
-        match piece.parse() {
-            Ok(value) if is_value && NUMBERS.contains(&name) => changed += &write(value),
-            _ => changed += piece,
-        }
-        if !is_value {
-            name = piece.trim_end_matches('=').rsplit(' ').next().unwrap_or_default();
-        }
-    }
-    changed
 }
 
 /// A recording with this period, in s.
@@ -188,11 +164,6 @@ fn measure_net(scenario: &RecordedScenario, scratch: &Path, rounds: usize) -> Re
         }));
     }
     Ok(rows)
-}
-
-/// The share of these pairs that are not among the others.
-fn share_without(pairs: &FxHashSet<IdPair>, others: &FxHashSet<IdPair>) -> f64 {
-    pairs.difference(others).count() as f64 / pairs.len().max(1) as f64
 }
 
 /// The median difference of the gaps of pairs that are in conflict in both.

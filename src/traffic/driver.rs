@@ -1,14 +1,16 @@
 //! The driver of a type of road users: how its response time and the deceleration that it reaches are distributed.
 
-use std::f64::consts::SQRT_2;
+use std::f64::consts::{SQRT_2, TAU};
 use std::sync::Arc;
 
 use crate::options::{DriverModel, DriverOptions};
 use crate::util::units::{MetrePerSecondSquared, Second};
 
-/// Half of the nodes in −1 to 1 and weights of the Gauss–Legendre quadrature with 16 nodes (Abramowitz and Stegun 1964,
-/// table 25.4); the others are their negatives.
-const NODES: [(f64, f64); 8] = [
+/// Nodes of the quadrature on a range.
+const COUNT: usize = 16;
+/// The upper half of the nodes in −1 to 1 and weights of the Gauss–Legendre quadrature with 16 nodes (Abramowitz and Stegun
+/// 1964, table 25.4), ascending; the lower ones are their negatives.
+const NODES: [(f64, f64); COUNT / 2] = [
     (0.095_012_509_837_637_44, 0.189_450_610_455_068_5),
     (0.281_603_550_779_258_9, 0.182_603_415_044_923_6),
     (0.458_016_777_657_227_4, 0.169_156_519_395_002_5),
@@ -19,15 +21,25 @@ const NODES: [(f64, f64); 8] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_1),
 ];
 
+/// Response times with a logarithm further from its mean, in standard deviations, are left out: 3e-12 of all.
+const FAR_RESPONSE: f64 = 5.0;
+/// Decelerations further from their mean, in standard deviations, are left out: 6e-7 of all.
+const FAR_DECELERATION: f64 = 5.0;
+
+/// A deceleration and its weight.
+pub type Weighted = (MetrePerSecondSquared, f64);
+
 /// The distributions of a driver's response time (lognormal) and of its largest deceleration (normal, truncated).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Driver {
     /// Mean and standard deviation of the response time's logarithm.
     response: [f64; 2],
+    /// The times before and after which it hardly ever responds.
+    responses: [Second; 2],
     /// Mean and standard deviation of the largest deceleration before it is cut, and the least and the largest value.
     braking: [MetrePerSecondSquared; 4],
-    /// Decelerations and their weights, whose sum is 1.
-    decelerations: Arc<[(MetrePerSecondSquared, f64)]>,
+    /// Decelerations and their weights, whose sum is 1, ascending.
+    decelerations: Arc<[Weighted]>,
 }
 
 impl Driver {
@@ -49,16 +61,30 @@ impl Driver {
             braking(|of| of.deceleration_min),
             braking(|of| of.deceleration_max),
         ];
-        Self { response: [mean.ln() - spread / 2.0, spread.sqrt()], braking, decelerations: decelerations(braking) }
+        Self::of([mean.ln() - spread / 2.0, spread.sqrt()], braking)
     }
 
     /// One that stops within a known time at a known deceleration: a person on foot.
     pub fn certain(response: Second, deceleration: MetrePerSecondSquared) -> Self {
-        Self {
-            response: [response.ln(), 0.0],
-            braking: [deceleration, 0.0, deceleration, deceleration],
-            decelerations: Arc::new([(deceleration, 1.0)]),
+        Self::of([response.ln(), 0.0], [deceleration, 0.0, deceleration, deceleration])
+    }
+
+    fn of(response: [f64; 2], [mean, deviation, least, most]: [MetrePerSecondSquared; 4]) -> Self {
+        let [centre, spread] = response;
+        let responses = [-FAR_RESPONSE, FAR_RESPONSE].map(|deviations| (centre + deviations * spread).exp());
+        let far = FAR_DECELERATION * deviation;
+        let [low, high] = [least.max(mean - far), most.min(mean + far)];
+        if low >= high {
+            // Always the same, or so far in a tail of the distribution that its end says all.
+            let only = if least < most { mean.clamp(least, most) } else { mean };
+            let decelerations = Arc::new([(only, 1.0)]);
+            return Self { response, responses, braking: [only, 0.0, only, only], decelerations };
         }
+        let braking = [mean, deviation, low, high];
+        let values = weighted(mean, deviation, [low, high]);
+        let sum = values.iter().map(|(_, weight)| weight).sum::<f64>();
+        let decelerations = values.iter().map(|(value, weight)| (*value, weight / sum)).collect();
+        Self { response, responses, braking, decelerations }
     }
 
     /// The probability that it responds later than this.
@@ -75,10 +101,7 @@ impl Driver {
     pub fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
         /// The deceleration is then right to a millionth of the range.
         const HALVINGS: u32 = 20;
-        let [mean, deviation, least, most] = self.braking;
-        if deviation <= 0.0 || most <= least {
-            return f64::from(is_too_weak(mean));
-        }
+        let [least, most] = self.reach();
         if !is_too_weak(least) {
             return 0.0;
         }
@@ -90,26 +113,64 @@ impl Driver {
             let middle = (weak + strong) / 2.0;
             *(if is_too_weak(middle) { &mut weak } else { &mut strong }) = middle;
         }
-        let below = |value: f64| libm::erfc((mean - value) / (deviation * SQRT_2));
-        (below((weak + strong) / 2.0) - below(least)) / (below(most) - below(least))
+        self.reaches([least, (weak + strong) / 2.0])
     }
 
-    /// The decelerations that stand for the distribution, with their weights.
-    pub fn decelerations(&self) -> impl Iterator<Item = (MetrePerSecondSquared, f64)> {
-        self.decelerations.iter().copied()
+    /// Whether it always responds after the same time.
+    pub fn is_punctual(&self) -> bool {
+        self.response[1] <= 0.0
+    }
+
+    /// The times before and after which it hardly ever responds.
+    pub fn responses(&self) -> [Second; 2] {
+        self.responses
+    }
+
+    /// The least and the largest deceleration that its vehicle may reach.
+    pub fn reach(&self) -> [MetrePerSecondSquared; 2] {
+        [self.braking[2], self.braking[3]]
+    }
+
+    /// The decelerations that stand for the distribution, ascending, with their weights.
+    pub fn decelerations(&self) -> &[Weighted] {
+        &self.decelerations
+    }
+
+    /// Decelerations that stand for a part of the distribution, ascending; the sum of their weights is the part's share.
+    pub fn decelerations_between(&self, part: [MetrePerSecondSquared; 2]) -> [Weighted; COUNT] {
+        let [mean, deviation, ..] = self.braking;
+        let scale = (deviation * TAU.sqrt() * self.within_reach()).recip();
+        weighted(mean, deviation, part).map(|(value, weight)| (value, scale * weight))
+    }
+
+    /// The probability that its vehicle reaches a deceleration in a range.
+    pub fn reaches(&self, [low, high]: [MetrePerSecondSquared; 2]) -> f64 {
+        (self.below(high) - self.below(low)) / self.within_reach()
+    }
+
+    /// The share of the distribution that is not cut off.
+    fn within_reach(&self) -> f64 {
+        self.below(self.braking[3]) - self.below(self.braking[2])
+    }
+
+    /// The normal distribution of the deceleration before it is cut.
+    fn below(&self, value: MetrePerSecondSquared) -> f64 {
+        let [mean, deviation, ..] = self.braking;
+        libm::erfc((mean - value) / (deviation * SQRT_2)) / 2.0
     }
 }
 
-fn decelerations([mean, deviation, low, high]: [MetrePerSecondSquared; 4]) -> Arc<[(MetrePerSecondSquared, f64)]> {
-    if deviation <= 0.0 || high <= low {
-        return Arc::new([(mean, 1.0)]);
-    }
-    let density = |value: f64| (-((value - mean) / deviation).powi(2) / 2.0).exp();
-    let nodes = NODES.iter().flat_map(|(node, weight)| [(-node, *weight), (*node, *weight)]);
-    let values = nodes.map(|(node, weight)| (low + (high - low) * (1.0 + node) / 2.0, weight));
-    let weighted = values.map(|(value, weight)| (value, weight * density(value))).collect::<Vec<_>>();
-    let sum = weighted.iter().map(|(_, weight)| weight).sum::<f64>();
-    weighted.into_iter().map(|(value, weight)| (value, weight / sum)).collect()
+/// Gauss–Legendre nodes on a range, ascending, weighted with exp(−((a − mean) / deviation)² / 2).
+fn weighted(mean: f64, deviation: f64, [low, high]: [MetrePerSecondSquared; 2]) -> [Weighted; COUNT] {
+    std::array::from_fn(|index| {
+        let (node, weight) = match index.checked_sub(COUNT / 2) {
+            Some(upper) => NODES[upper],
+            None => (-NODES[COUNT / 2 - 1 - index].0, NODES[COUNT / 2 - 1 - index].1),
+        };
+        let half = (high - low) / 2.0;
+        let value = low + half * (1.0 + node);
+        (value, half * weight * (-((value - mean) / deviation).powi(2) / 2.0).exp())
+    })
 }
 
 #[cfg(test)]
@@ -130,12 +191,12 @@ mod tests {
     fn a_fixed_response_is_late_or_not() {
         let driver = Driver::new(DriverModel::Competent, &DriverOptions::default(), &DriverOptions::default(), 1.0);
         assert_eq!([1.14, 1.16].map(|time| driver.responds_later_than(time)), [1.0, 0.0]);
-        assert_eq!(driver.decelerations().collect::<Vec<_>>(), [(0.774 * 9.806_65, 1.0)]);
+        assert_eq!(driver.decelerations(), [(0.774 * 9.806_65, 1.0)]);
     }
 
     #[test]
     fn weaker_brakes_scale_what_is_not_set_for_the_type() {
-        let mean = |driver: &Driver| driver.decelerations().map(|(value, weight)| value * weight).sum::<f64>();
+        let mean = |driver: &Driver| driver.decelerations().iter().map(|(value, weight)| value * weight).sum::<f64>();
         let none = DriverOptions::default();
         let truck = Driver::new(DriverModel::Attentive, &none, &none, 7.0 / 9.0);
         assert!((mean(&truck) - 8.45 * 7.0 / 9.0).abs() < 1e-2, "{}", mean(&truck));

@@ -17,7 +17,7 @@ use crate::util::units::{Metre, Second};
 pub enum Evasion<'a> {
     /// Stay behind a leader in line.
     Behind(Leader),
-    /// Be no further than each of these distances at each of these times.
+    /// Be no further than each of these distances at each of these times; the first decides if the ego brakes fully.
     At(&'a [(Second, Metre)]),
     /// Stop before an oncoming foe, which brakes after the same wait.
     Towards {
@@ -38,10 +38,7 @@ impl Evasion<'_> {
     /// The longest wait before it brakes like this, in s. Infinite if it need not brake harder than now; below 0 if even
     /// braking at once is too late.
     pub fn longest_wait(&self, braking: &LateBraking) -> Second {
-        let at = |limits: &[(Second, Metre)]| {
-            let waits = limits.iter().map(|(time, distance)| braking.longest_wait_at(*time, *distance));
-            waits.fold(f64::INFINITY, f64::min)
-        };
+        let at = |limits| braking.longest_wait_at_all(limits);
         match self {
             Self::Behind(leader) => braking.longest_wait_behind(leader),
             Self::At(limits) => at(limits),
@@ -91,6 +88,11 @@ pub fn to_stay_behind<'a>(
         return None;
     }
     keep_binding(limits);
+    let wait = |(time, distance): &(Second, Metre)| braking.longest_wait_at(*time, *distance);
+    let binding = (0..limits.len()).min_by(|one, other| wait(&limits[*one]).total_cmp(&wait(&limits[*other])));
+    if let Some(binding) = binding {
+        limits.swap(0, binding);
+    }
     Some(Evasion::At(limits))
 }
 
