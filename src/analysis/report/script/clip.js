@@ -9,6 +9,28 @@ function readDifferences(list, scale) {
 const clipData = new Map(data.clips);
 const clipsRead = new Map();
 
+/** The first time in a conflict at which the clip's two rectangles overlap; null where its clip shows none. */
+function contactOf(row) {
+  const clip = clipOf(row);
+  if (!clip || clip.users.slice(0, 2).some((user) => user.outlines)) return null;
+  const corners = ({ x, y, heading, length, width }, place) => figure([x[place], y[place], heading[place], length, width]).corners;
+  const touches = (time, place) => time >= column.begin[row] && time <= column.end[row]
+    && clip.users.slice(0, 2).every(({ x }) => x[place] !== null)
+    && overlap(...clip.users.slice(0, 2).map((user) => corners(user, place)));
+  const place = clip.times.findIndex(touches);
+  return place < 0 ? null : clip.times[place];
+}
+
+/** Whether two convex outlines overlap: no side of either has the other one wholly beyond it. */
+function overlap(one, other) {
+  const apart = (sides) => sides.some(([x, y], side) => {
+    const [to_x, to_y] = sides[(side + 1) % sides.length];
+    const spans = [one, other].map((points) => points.map(([at_x, at_y]) => at_x * (to_y - y) - at_y * (to_x - x)));
+    return Math.max(...spans[0]) < Math.min(...spans[1]) || Math.max(...spans[1]) < Math.min(...spans[0]);
+  });
+  return !apart(one) && !apart(other);
+}
+
 /** The clip of a conflict; nothing where the page has none. */
 function clipOf(row) {
   if (!clipsRead.has(row) && clipData.has(row)) clipsRead.set(row, readClip(row, clipData.get(row)));
