@@ -77,7 +77,7 @@ function decades({ isLogarithmic, axis: { max } }) {
 
 /** The axis of the bars' heights. */
 const counted = (more) => axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false }, name: "conflicts", nameGap: 9,
-  nameTextStyle: { color: colours.faint, align: "left", padding: [0, 0, 0, -28] }, ...more });
+  nameTextStyle: { color: colours.faint, align: "left", padding: [0, 0, 0, -12] }, ...more });
 
 /** The tooltip of a bar: a heading, then a count per severity. */
 function barTip(heading, counts, bin) {
@@ -125,7 +125,7 @@ const times = {
         formatter: ([item]) => (item ? this.tip(item, counts, label) : "") },
       // As wide as the slider; paper has none.
       grid: { left: SIDES, right: SIDES, top: 26, bottom: isPrinted() ? 24 : 62 },
-      xAxis: axis({ type: "value", min: this.first, max: this.end, ...interval, splitLine: { show: false },
+      xAxis: axis({ type: "value", min: this.first, max: this.end, containShape: false, ...interval, splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, formatter: label } }),
       yAxis: counted(),
       dataZoom: [{ id: "period", type: "slider", show: !isPrinted(), xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: SIDES, right: SIDES,
@@ -169,9 +169,10 @@ const MEASURES = [
   { name: "margin", title: "Margin: gap − μ", unit: "m", high: 0 },
   { name: "delta_v", title: "Largest speed change (ΔV)", unit: "m/s", low: 0 },
 ];
-/** The number of bars, and that of a measure with few values. */
-const DISTRIBUTION_BINS = [30, 10];
-const FEW_VALUES = 50;
+const DISTRIBUTION_BINS = 30;
+/** Fewer values than this get bars that are this many times as wide. */
+const FEW_VALUES = 30;
+const WIDER = 3;
 /** The share of the values that the axis covers; values beyond it count in a labelled bar of their own. */
 const COVERED = 0.99;
 
@@ -201,7 +202,7 @@ function range(measure) {
   const sizes = ascending(column[measure.name], everyRow, Math.abs);
   const reach = sizes.length ? quantile(sizes, COVERED) : 1;
   const furthest = roundUp(Math.max(reach, measure.threshold ? measure.threshold.at * 1.3 : 0));
-  const wanted = furthest / DISTRIBUTION_BINS[sizes.length < FEW_VALUES ? 1 : 0];
+  const wanted = furthest / DISTRIBUTION_BINS;
   const width = measure.threshold ? measure.threshold.at / Math.max(1, Math.round(measure.threshold.at / wanted)) : wanted;
   const length = Math.ceil(furthest / width - 1e-9) * width;
   if (measure.high !== 0) return [0, length, width];
@@ -230,13 +231,14 @@ const distributions = {
     this.showKinds(rows);
   },
 
-  showMeasure({ note, element, title, chart, measure, range: [low, high, width] }, rows) {
+  showMeasure({ note, element, title, chart, measure, range: [low, high, narrow] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
     const sorted = ascending(values, known);
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "no conflict has one";
+    const width = sorted.length < FEW_VALUES && !measure.threshold ? narrow * WIDER : narrow;
     const bins = Math.round((high - low) / width);
     // The bars within the axis, then those of the values below and above it, which stand apart.
     const place = (row) => {

@@ -245,6 +245,6 @@ const map = {
     if (net && this.view?.scale >= CLOSE) {
       entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
     }
-    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "key", textContent: `Circled numbers: the first places of the table, whole junctions and edges${this.mode === "density" ? ", each at its hexagon with the most" : ""}` }));
+    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "said", textContent: `Circled numbers: the first places of the table, whole junctions and edges${this.mode === "density" ? ", each at its hexagon with the most" : ""}` }));
   },
 };

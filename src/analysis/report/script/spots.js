@@ -135,14 +135,14 @@ class SortedTable {
     // A severity that the filter leaves out has no column.
     const columns = this.columns.filter(({ severity }) => severity === undefined || filter.severities[severity]);
     const head = make("tr", {}, ...columns.map((column_of, place) => {
-      const cell = make("th", { className: column_of.text ? "" : "number", scope: "col" });
+      const cell = make("th", { className: column_of === BAR ? "share" : column_of.text ? "" : "number", scope: "col" });
       cell.setAttribute("aria-sort", column_of === this.columns[by] ? (down ? "descending" : "ascending") : "none");
       if (!column_of.value) {
         cell.append(column_of.heading);
         if (!column_of.heading || column_of === BAR) cell.setAttribute("aria-hidden", "true");
         return cell;
       }
-      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? " ▾" : " ▴") : ""}` });
+      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
       button.onclick = () => {
         this.down = column_of === this.columns[by] ? !down : !column_of.text;
         this.by = this.columns.indexOf(column_of);

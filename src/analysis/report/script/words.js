@@ -8,8 +8,12 @@ const PARTS = ["front", "rear", "left side", "right side"];
 const MOVES = 0.05;
 /** Two road users touch up to this gap, in m: the page's numbers are rounded to 0.01 m. */
 const TOUCHING = 0.005;
-/** Whether the two touch at the worst step: that of the smallest margin, which need not be the one with the smallest gap. */
-const touchAtWorst = (row) => Boolean(column.collision[row]) && column.gap[row] <= TOUCHING;
+/** Whether the two have collided by the worst step: that of the smallest margin, which may be before the contact. */
+function collidedByWorst(row) {
+  if (!column.collision[row]) return false;
+  const contact = contactOf(row);
+  return column.gap[row] <= TOUCHING || (contact !== null && contact <= column.time[row]);
+}
 
 /** What the two did, or were about to do, by the parts that touch first and by who moves. */
 function deed(row, ego, foe) {
@@ -24,7 +28,7 @@ function deed(row, ego, foe) {
     const near = value("kind") === 0 ? "the rear of " : "";
     return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
   }
-  const did = (past, would) => (touchAtWorst(row) ? past : `was about to ${would}`);
+  const did = (past, would) => (collidedByWorst(row) ? past : `was about to ${would}`);
   // The one that drives its front into the other; otherwise one that moves.
   const fronts = [0, 1].filter((who) => parts[who] === 0 && moves[who]);
   const by = fronts.length ? fronts[0] : moves[0] ? 0 : 1;
@@ -100,9 +104,9 @@ function storyOf(row) {
   }
   const left = column.response_left && value("response_left");
   if (value("collision")) {
-    const at = touchAtWorst(row) ? null : contactOf(row);
-    sentences.push(touchAtWorst(row) ? "Their rectangles overlapped: a collision."
-      : at === null ? "At another step of this conflict their rectangles overlapped: a collision."
+    const at = collidedByWorst(row) ? null : contactOf(row);
+    sentences.push(collidedByWorst(row) ? "Their rectangles overlapped: a collision."
+      : at === null ? "At another moment of this conflict their rectangles overlapped: a collision."
         : `At ${number(at, 1)} s their rectangles overlapped: a collision.`);
   } else if (typeof left === "number") {
     sentences.push(`The ego had ${number(left, 1)} s left to respond, and a driver needs ${number(responseOf(row), 2)} s.`);
@@ -113,7 +117,7 @@ function storyOf(row) {
 /** The measures of a conflict as sentences. */
 function figuresOf(row) {
   const value = (name) => column[name][row];
-  const sentences = [`At the worst step the gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m was needed: a margin of `
+  const sentences = [`At the worst step the gap, the room that was left on their ways, was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m was needed: a margin of `
     + `${number(value("margin"), 2)} m.`];
   if (!value("collision") && value("ttc") === null) sentences.push("At constant speed they would not have touched.");
   else if (!value("collision")) {
