@@ -94,9 +94,9 @@ const map = {
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
         const over = [...badgesOf(this.view, rows, this.mode), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
-          return { type: "group", children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
+          return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
-        return { type: "group", children: [{ type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } }, ...over] };
+        return { type: "group", $mergeChildren: false, children: [{ type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } }, ...over] };
       },
     };
   },
