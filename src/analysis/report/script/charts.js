@@ -34,13 +34,17 @@ function clock(seconds) {
   return [hours, minutes, ...(rest ? [rest] : [])].map((part) => String(part).padStart(2, "0")).join(":");
 }
 
-/** Stacked bars, one series per severity; `height` turns the count of a bar into its height. */
-function bars(counts, centres, more, height = (many) => many) {
+/** The look of a bar of values beyond its axis. */
+const BEYOND = { opacity: 0.5, borderColor: "#888", borderType: "dashed", borderWidth: 1 };
+
+/** Stacked bars, one series per severity; `height` turns the count of a bar into its height. From `beyond` on they are pale. */
+function bars(counts, centres, more, height = (many) => many, beyond = Infinity) {
   const totals = centres.map((_, bin) => counts.reduce((all, of_bin) => all + of_bin[bin], 0));
   return counts.map((of_bin, severity) => ({
     id: SEVERITIES[severity], name: SEVERITIES[severity], type: "bar", stack: "all", barCategoryGap: "8%", silent: false,
     itemStyle: { color: severityColour(severity) }, clip: true,
-    data: of_bin.map((many, bin) => [centres[bin], many ? (height(totals[bin]) * many) / totals[bin] : 0]),
+    data: of_bin.map((many, bin) => ({ value: [centres[bin], many ? (height(totals[bin]) * many) / totals[bin] : 0],
+      ...(bin >= beyond && { itemStyle: BEYOND }) })),
     ...(more && more[severity]),
   }));
 }
@@ -71,12 +75,20 @@ function decades({ isLogarithmic, axis: { max } }) {
     lineStyle: { color: colours.rule, type: "solid", width: 1 } }));
 }
 
+/** The axis of the bars' heights. */
+const counted = (more) => axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false }, name: "conflicts", nameGap: 9,
+  nameTextStyle: { color: colours.faint, align: "left", padding: [0, 0, 0, -12] }, ...more });
+
 /** The tooltip of a bar: a heading, then a count per severity. */
 function barTip(heading, counts, bin) {
   const tip = make("div", { className: "tip" }, make("b", { textContent: heading }));
   SEVERITIES.forEach((name, severity) => tip.append(make("div", { textContent: `${name} ${number(counts[severity][bin])}` })));
   return tip;
 }
+
+/** Room beside the chart of times, in pixels. */
+const SIDES = 44;
+const isPrinted = () => "print" in document.documentElement.dataset;
 
 const times = {
   element: byId("times"),
@@ -92,7 +104,7 @@ const times = {
     const width = this.bin % 60 ? `${this.bin} s` : this.bin === 60 ? "minute" : `${this.bin / 60} minutes`;
     const runs = data.runs.length > 1 ? `, all ${data.runs.length} runs together` : "";
     this.width = width;
-    byId("bins").textContent = `Conflicts per ${width} by severity${runs}. The slider sets the period for the whole page.`;
+    byId("bins").textContent = `Conflicts per ${width} by severity${runs}.`;
     this.chart = chartIn(this.element);
     this.chart.on("datazoom", () => {
       const { startValue, endValue } = this.chart.getOption().dataZoom[0];
@@ -111,11 +123,12 @@ const times = {
       ...basics(),
       tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
         formatter: ([item]) => (item ? this.tip(item, counts, label) : "") },
-      grid: { left: 8, right: 16, top: 14, bottom: 48, containLabel: true },
-      xAxis: axis({ type: "value", min: this.first, max: this.end, ...interval, splitLine: { show: false },
+      // As wide as the slider; paper has none.
+      grid: { left: SIDES, right: SIDES, top: 26, bottom: isPrinted() ? 24 : 62 },
+      xAxis: axis({ type: "value", min: this.first, max: this.end, containShape: false, ...interval, splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, formatter: label } }),
-      yAxis: axis({ type: "value", minInterval: 1, axisLine: { show: false }, axisTick: { show: false } }),
-      dataZoom: [{ id: "period", type: "slider", xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: 40, right: 40,
+      yAxis: counted(),
+      dataZoom: [{ id: "period", type: "slider", show: !isPrinted(), xAxisIndex: 0, filterMode: "none", height: 22, bottom: 8, left: SIDES, right: SIDES,
         showDetail: false, brushSelect: false, borderColor: colours.rule, fillerColor: `${colours.accent}33`,
         handleStyle: { color: colours.card, borderColor: colours.accent }, moveHandleStyle: { color: colours.accent },
         dataBackground: { lineStyle: { color: colours.faint }, areaStyle: { color: colours.rule } },
@@ -154,9 +167,12 @@ const MEASURES = [
     threshold: threshold([options.serious_drac, 3], (at) => `serious above ${at} m/s²`) },
   { name: "pet", title: "Post-encroachment time (PET)", unit: "s", low: 0 },
   { name: "margin", title: "Margin: gap − μ", unit: "m", high: 0 },
-  { name: "delta_v", title: "Largest speed change in a collision (ΔV)", unit: "m/s", low: 0 },
+  { name: "delta_v", title: "Largest speed change (ΔV)", unit: "m/s", low: 0 },
 ];
 const DISTRIBUTION_BINS = 30;
+/** Fewer values than this get bars that are this many times as wide. */
+const FEW_VALUES = 30;
+const WIDER = 3;
 /** The share of the values that the axis covers; values beyond it count in a labelled bar of their own. */
 const COVERED = 0.99;
 
@@ -215,13 +231,14 @@ const distributions = {
     this.showKinds(rows);
   },
 
-  showMeasure({ note, element, title, chart, measure, range: [low, high, width] }, rows) {
+  showMeasure({ note, element, title, chart, measure, range: [low, high, narrow] }, rows) {
     const values = column[measure.name];
     const known = rows.filter((row) => values[row] !== null);
     const sorted = ascending(values, known);
     note.textContent = sorted.length
       ? `${number(sorted.length)} of ${number(rows.length)} have one, median ${number(quantile(sorted, 0.5), 2)} ${measure.unit}`
       : "no conflict has one";
+    const width = sorted.length < FEW_VALUES && !measure.threshold ? narrow * WIDER : narrow;
     const bins = Math.round((high - low) / width);
     // The bars within the axis, then those of the values below and above it, which stand apart.
     const place = (row) => {
@@ -254,13 +271,12 @@ const distributions = {
       ...basics(),
       tooltip: { ...basics().tooltip, trigger: "axis", axisPointer: { type: "none" },
         formatter: ([item]) => (item ? barTip(says(item.dataIndex), counts, item.dataIndex) : "") },
-      grid: { left: 4 + (scale.isLogarithmic ? 28 : 0), right: 14, top: 24, bottom: 4, containLabel: true },
+      grid: { left: 4 + (scale.isLogarithmic ? 28 : 0), right: 14, top: 28, bottom: 4, containLabel: true },
       xAxis: axis({ type: "value", min: low - (beyond[0] ? 3 * width : 0), max: high + (beyond[1] ? 3 * width : 0), splitLine: { show: false },
         axisLabel: { color: colours.faint, hideOverlap: true, showMaxLabel: beyond[1] ? false : high === roundUp(high), showMinLabel: !beyond[0],
           formatter: (value) => (value < low || value > high ? "" : number(value, value % 1 ? 1 : 0)) } }),
-      yAxis: axis({ type: "value", minInterval: 1, splitNumber: 4, axisLine: { show: false }, axisTick: { show: false },
-        ...scale.axis, splitLine: { show: !scale.isLogarithmic, lineStyle: { color: colours.rule } } }),
-      series: bars(counts, centres, more, scale.height),
+      yAxis: counted({ splitNumber: 4, ...scale.axis, splitLine: { show: !scale.isLogarithmic, lineStyle: { color: colours.rule } } }),
+      series: bars(counts, centres, more, scale.height, bins),
     }, { replaceMerge: ["series"] });
     const outside = beyond[1] ? ` ${number(beyond[1])} are above ${edge(high)}.` : beyond[0] ? ` ${number(beyond[0])} are below ${edge(low)}.` : "";
     const beyond_threshold = measure.threshold ? ` The threshold: ${measure.threshold.text}.` : "";
@@ -270,7 +286,7 @@ const distributions = {
   showKinds(rows) {
     const counts = SEVERITIES.map(() => KINDS.map(() => 0));
     for (const row of rows) counts[column.severity[row]][column.kind[row]]++;
-    this.kinds.note.textContent = "by severity";
+    this.kinds.note.textContent = "conflicts by kind and severity";
     describeChart(this.kinds.element, `Kinds: ${KINDS.map((name, kind) => `${name} ${SEVERITIES.map((severity, place) => `${number(counts[place][kind])} ${severity}`).join(", ")}`).join("; ")}.`);
     this.kinds.chart.setOption({
       ...basics(),

@@ -9,6 +9,28 @@ function readDifferences(list, scale) {
 const clipData = new Map(data.clips);
 const clipsRead = new Map();
 
+/** The first time in a conflict at which its two rectangles overlap by more than the contact tolerance; null where its clip shows none. */
+function contactOf(row) {
+  const clip = clipOf(row);
+  if (!clip || clip.users.slice(0, 2).some((user) => user.outlines)) return null;
+  const corners = ({ x, y, heading, length, width }, place) => figure([x[place], y[place], heading[place], length, width]).corners;
+  const touches = (time, place) => time >= column.begin[row] && time <= column.end[row]
+    && clip.users.slice(0, 2).every(({ x }) => x[place] !== null)
+    && depth(...clip.users.slice(0, 2).map((user) => corners(user, place))) > (options.contact_tolerance || 0);
+  const place = clip.times.findIndex(touches);
+  return place < 0 ? null : clip.times[place];
+}
+
+/** How deep two convex outlines overlap, in m: the shortest move across a side of either that parts them; negative if they are apart. */
+function depth(one, other) {
+  const across = (sides) => sides.map(([x, y], side) => {
+    const [to_x, to_y] = sides[(side + 1) % sides.length];
+    const [a, b] = [one, other].map((points) => points.map(([at_x, at_y]) => at_x * (to_y - y) - at_y * (to_x - x)));
+    return Math.min(Math.max(...a) - Math.min(...b), Math.max(...b) - Math.min(...a)) / Math.hypot(to_x - x, to_y - y);
+  });
+  return Math.min(...across(one), ...across(other));
+}
+
 /** The clip of a conflict; nothing where the page has none. */
 function clipOf(row) {
   if (!clipsRead.has(row) && clipData.has(row)) clipsRead.set(row, readClip(row, clipData.get(row)));

@@ -1,9 +1,13 @@
 // The curves below a playback: the speeds of both, and the time that the ego has left to respond.
 
 /** In the drawing's own units. */
-const CURVES = { width: 360, height: 172, left: 26, right: 8, speed: [18, 74], time: [98, 154] };
+const CURVES = { width: 360, height: 190, left: 26, right: 8, speed: [18, 74], time: [102, 158] };
 /** The top of the axis of the time left, in s. */
 const MOST_LEFT = 3;
+
+/** The top of the axis of the speeds, in m/s: the same in all cards. */
+const fastestOfClips = () => (fastestOfClips.known ||= [...clipData.keys()].reduce((most, row) => clipOf(row).users.slice(0, 2)
+  .flatMap((user) => user.speed || []).reduce((a, b) => Math.max(a, Math.ceil(b / 5) * 5), most), 5));
 
 /** The curves of a clip, with a line that `cursor` moves to a time. */
 function drawCurves(row, clip) {
@@ -12,7 +16,7 @@ function drawCurves(row, clip) {
   const x = (at) => left + ((at - first) / Math.max(last - first, 1e-3)) * (width - left - right);
   const pair = clip.users.slice(0, 2);
   const speeds = pair.map((user) => (user.speed || []).filter((value) => value !== null));
-  const fastest = Math.max(5, Math.ceil(Math.max(0, ...speeds.flat()) / 5) * 5);
+  const fastest = fastestOfClips();
   const y_of = ([top, bottom], most) => (value) => bottom - (Math.min(value, most) / most) * (bottom - top);
   const [y_speed, y_left] = [y_of(speed, fastest), y_of(time, MOST_LEFT)];
   const needed = responseOf(row);
@@ -24,7 +28,7 @@ function drawCurves(row, clip) {
   const seconds = [];
   for (let second = Math.ceil(first - worst); second <= last - worst + 1e-6; second++) seconds.push(second);
   const ticks = seconds.flatMap((second) => [rule(x(worst + second), x(worst + second), time[1], time[1] + 3, "axis"),
-    text(second ? signed(second) : "worst", x(worst + second), height - 4, { "text-anchor": "middle" })]);
+    text(second ? signed(second) : "worst", x(worst + second), time[1] + 14, { "text-anchor": "middle" })]);
   const line = (list, y, className) => {
     let path = "";
     list.forEach((value, place) => {
@@ -43,11 +47,11 @@ function drawCurves(row, clip) {
     text("Speed in m/s", left, 10), rule(left + 88, left + 106, 7, 7, "ego"), text("ego", left + 110, 10), rule(left + 142, left + 160, 7, 7, "foe"),
     text("foe", left + 164, 10),
     ...axisOf(speed, fastest, y_speed), line(pair[1].speed || [], y_speed, "foe"), line(pair[0].speed || [], y_speed, "ego"),
-    text("Time left to respond, in s, by severity", left, 90),
+    text("Time left to respond, in s, by severity", left, 93),
     ...axisOf(time, MOST_LEFT, y_left), ...bars,
     rule(left, width - right, y_left(needed), y_left(needed), "needed"),
     text(`a driver needs ${number(needed, 2)} s`, left + 4, y_left(needed) - 3),
-    ...ticks, rule(x(worst), x(worst), speed[0] - 4, time[1], "worst"), cursor);
+    ...ticks, text("s before and after the worst step", (left + width - right) / 2, height - 4, { "text-anchor": "middle" }), rule(x(worst), x(worst), speed[0] - 4, time[1], "worst"), cursor);
   const range = (list) => (list.length ? `${number(list[0], 1)} to ${number(list[list.length - 1], 1)} m/s, at most ${number(Math.max(...list), 1)}` : "not known");
   const lefts = clip.left.filter((value) => value !== null);
   describeChart(svg, `Speed of the ego: ${range(speeds[0])}. Speed of the foe: ${range(speeds[1])}. `

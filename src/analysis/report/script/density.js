@@ -1,8 +1,10 @@
 // Where crashes are to be expected: hexagons on the map, coloured by the sum of the crash probabilities in each; with runs
 // to compare with, by the difference per unit of traffic.
 
-/** The wanted radius of a hexagon on the screen, in pixels; in metres it is a power of 2, so that it stays while one pans. */
-const HEXAGON = 12;
+/** The wanted radius of a hexagon on a wide map and on a narrow one, in pixels; in metres it is a power of 2, so that it stays while one pans. */
+const HEXAGON = [12, 8];
+/** A map is wide from this width on, in pixels. */
+const WIDE = 600;
 const HEATS = 5;
 
 /** Sums of a value over the hexagons of this radius, in m: hexagon → [x, y, sum]. */
@@ -33,10 +35,13 @@ function hexagons(radius, points) {
   return found;
 }
 
-/** The upper ends of the colours' classes: round shares of the greatest value. */
+/** The upper ends of the colours' classes: the round numbers 1, 2, 5, 10, 20, … up to the first above the greatest value. */
 function classes(values) {
-  const most = roundUp(values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1e-3);
-  return [0.05, 0.15, 0.35, 0.6, 1].map((share) => share * most);
+  const most = values.reduce((a, b) => Math.max(a, Math.abs(b)), 0) || 1e-3;
+  const round = (place) => [1, 2, 5][((place % 3) + 3) % 3] * 10 ** Math.floor(place / 3);
+  let last = Math.floor(3 * Math.log10(most)) - 1;
+  while (round(last) < most * 0.9999) last++;
+  return Array.from({ length: HEATS }, (_, heat) => round(last - HEATS + 1 + heat));
 }
 
 /** The colour of a value among the classes: a heat, or for a difference more or fewer. */
@@ -66,7 +71,7 @@ echarts.graphic.registerShape("hexagons", Hexagons);
 
 const density = {
   /** The radius in m at this scale, in pixels per m. */
-  radius: (scale) => 2 ** Math.round(Math.log2(HEXAGON / scale)),
+  radius: (scale) => 2 ** Math.round(Math.log2(HEXAGON[map.chart.getWidth() < WIDE ? 1 : 0] / scale)),
 
   /** What is summed: the shown conflicts; for a difference those of the shown severities, after and before, per traffic. */
   points(rows, isDifference) {
@@ -102,12 +107,23 @@ const density = {
       of_class.get(colour).push(cell);
     }
     return [...of_class].map(([fill, cells]) => ({ type: "hexagons", shape: { cells, view, radius },
-      style: { fill, opacity: 0.88, stroke: null } }));
+      style: { fill, opacity: 0.92, stroke: colours.faint, lineWidth: 0.5 } }));
   },
 
   colour(heat, value, isDifference) {
     if (!isDifference) return colours[`heat-${heat + 1}`];
     return colours[`${value < 0 ? "fewer" : "more"}-${heat < 2 ? 1 : heat < 4 ? 2 : 3}`];
+  },
+
+  /** The centre of the hexagon with the most expected crashes of a spot. */
+  heaviest(spot, scale) {
+    const radius = this.radius(scale);
+    if (spot.heaviest?.radius !== radius) {
+      const cells = [...hexagons(radius, [{ rows: spot.rows, x: column.x, y: column.y, value: (row) => risk[row] }]).values()];
+      const [x, y] = cells.reduce((most, cell) => (cell[2] > most[2] ? cell : most));
+      spot.heaviest = { radius, x, y };
+    }
+    return spot.heaviest;
   },
 
   /** The hexagon at a place. */

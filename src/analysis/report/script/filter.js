@@ -12,12 +12,12 @@ const FIRST_FILTER = { ...NO_FILTER, severities: [!hasSevere, true, true] };
 const resetFilter = (to) => Object.assign(filter, to, { kinds: [...to.kinds], severities: [...to.severities] });
 resetFilter(FIRST_FILTER);
 
-/** The rows that pass the filter; with `always`, those of all times. */
-function shownRows(always) {
+/** The rows that pass the filter; with a part of it left out: "period", "kinds" or "severities". */
+function shownRows(without) {
   const rows = [];
-  const { kinds, severities, manoeuvre, cause, type, variant, run, spot, circle } = filter;
-  const from = always ? -Infinity : filter.from;
-  const to = always ? Infinity : filter.to;
+  const { manoeuvre, cause, type, variant, run, spot, circle } = filter;
+  const [kinds, severities] = ["kinds", "severities"].map((part) => (without === part ? NO_FILTER : filter)[part]);
+  const { from, to } = without === "period" ? NO_FILTER : filter;
   for (let row = 0; row < count; row++) {
     if (kinds[column.kind[row]] && severities[column.severity[row]]
       && column.time[row] >= from && column.time[row] <= to
@@ -94,8 +94,7 @@ function makeFilter(changed) {
       filter[chosen][place] = box.checked;
       changed();
     };
-    const many = column[id === "kinds" ? "kind" : "severity"].reduce((all, of_row) => all + (of_row === place), 0);
-    byId(id).append(make("label", {}, box, picture(place), `${name} `, make("small", { textContent: number(many) })));
+    byId(id).append(make("label", {}, box, picture(place), `${name} `, make("small")));
   });
   boxes("kinds", KINDS, "kinds", (kind) => sign(kind, "var(--ink)"));
   boxes("severities", SEVERITIES, "severities", (severity) => sign(0, `var(--${SEVERITIES[severity]})`));
@@ -114,6 +113,7 @@ function makeFilter(changed) {
       changed();
     };
   }
+  byId("unfold").onclick = () => byId("unfold").setAttribute("aria-expanded", byId("filter").classList.toggle("open"));
   byId("anywhere").onclick = () => choosePlace(null, null);
   byId("filter").onsubmit = (event) => event.preventDefault();
   byId("filter").onreset = (event) => {
@@ -126,8 +126,15 @@ function makeFilter(changed) {
 
 /** Puts the fields where the filter is. */
 function showFilter() {
-  for (const [id, field, names] of [["kinds", "kinds", KINDS], ["severities", "severities", SEVERITIES]]) {
-    names.forEach((name, place) => { document.querySelector(`input[name="${id}-${name}"]`).checked = filter[field][place]; });
+  for (const [id, names, values] of [["kinds", KINDS, column.kind], ["severities", SEVERITIES, column.severity]]) {
+    // How many there are with the rest of the filter.
+    const counts = names.map(() => 0);
+    for (const row of shownRows(id)) counts[values[row]]++;
+    names.forEach((name, place) => {
+      const box = document.querySelector(`input[name="${id}-${name}"]`);
+      box.checked = filter[id][place];
+      box.parentElement.querySelector("small").textContent = number(counts[place]);
+    });
   }
   for (const name of Object.keys(CHOICES)) byId(name).value = filter[name] === null ? "" : String(filter[name]);
   const rounded = (time) => (Number.isFinite(time) ? Math.round(time * 10) / 10 : "");

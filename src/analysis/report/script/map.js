@@ -7,15 +7,19 @@ const FEW = 200;
 const MOST_BADGES = 3;
 const MODE_WORDS = { density: "expected crashes", points: "each conflict", difference: "after − before" };
 
-/** The numbers of the most dangerous places, each where its conflicts are. */
-function badgesOf(view, rows) {
+/** The numbers of the most dangerous places, each above its heaviest hexagon or in the middle of its conflicts. */
+function badgesOf(view, rows, mode) {
   const most = spotRows(rows).slice(0, MOST_BADGES).filter((spot) => spot.risk > 0);
   const taken = [];
   return most.flatMap((spot, rank) => {
-    let [cx, cy] = [view.x + (spot.x - view.left) * view.scale, view.y + view.height - (spot.y - view.bottom) * view.scale - 18];
-    while (taken.some(([x, y]) => Math.hypot(cx - x, cy - y) < 20)) cx += 21;
+    const place = mode === "density" ? density.heaviest(spot, view.scale) : spot;
+    const [x, y] = [view.x + (place.x - view.left) * view.scale, view.y + view.height - (place.y - view.bottom) * view.scale];
+    let [cx, cy] = [x, y - 28];
+    while (taken.some(([other_x, other_y]) => Math.hypot(cx - other_x, cy - other_y) < 20)) cx += 21;
     taken.push([cx, cy]);
-    return [{ type: "circle", z2: 20, shape: { cx, cy, r: 10 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1.5 } },
+    return [{ type: "line", z2: 19, shape: { x1: x, y1: y, x2: cx, y2: cy }, style: { stroke: colours.ink, lineWidth: 1.5 } },
+      { type: "circle", z2: 19, shape: { cx: x, cy: y, r: 2.5 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1 } },
+      { type: "circle", z2: 20, shape: { cx, cy, r: 10 }, style: { fill: colours.card, stroke: colours.ink, lineWidth: 1.5 } },
       { type: "text", z2: 21, x: cx, y: cy, style: { text: String(rank + 1), fill: colours.ink, font: `700 12px ${FONT}`, align: "center", verticalAlign: "middle" } }];
   });
 }
@@ -32,7 +36,7 @@ const map = {
 
   /** What it shows at first: each conflict, as long as they do not cover each other. */
   first() {
-    this.at_first ||= !hasRisk ? "points" : data.before ? "difference" : shownRows(false).length > FEW ? "density" : "points";
+    this.at_first ||= !hasRisk ? "points" : data.before ? "difference" : shownRows().length > FEW ? "density" : "points";
     return this.at_first;
   },
 
@@ -60,7 +64,7 @@ const map = {
   show(rows) {
     this.rows = rows;
     const [width, height] = [this.chart.getWidth(), this.chart.getHeight()];
-    this.axes = equalAxes(extent, width, height, 1.06);
+    this.axes = equalAxes(extent, width, height, 1.1);
     const zoom = { type: "inside", filterMode: "none", minSpan: 0.01, zoomOnMouseWheel: true, moveOnMouseMove: true };
     this.chart.setOption({
       ...basics(),
@@ -85,12 +89,14 @@ const map = {
     return {
       id: "signs", type: "custom", coordinateSystem: "cartesian2d", data: [[0, 0]], silent: true, z: 3, clip: false,
       renderItem: (params, api) => {
+        const wasClose = this.view?.scale >= CLOSE;
         this.view = viewOf(params, api);
-        const over = [...badgesOf(this.view, rows), ...scaleBar(1 / this.view.scale, this.view.height)];
+        if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
+        const over = [...badgesOf(this.view, rows, this.mode), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
-          return { type: "group", children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
+          return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
-        return { type: "group", children: [{ type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } }, ...over] };
+        return { type: "group", $mergeChildren: false, children: [{ type: "signs", shape: { rows: ordered, stamps: of_look, view: this.view }, style: { fill: colours.ink } }, ...over] };
       },
     };
   },
@@ -224,22 +230,21 @@ const map = {
       KINDS.forEach((name, kind) => entries.push(entry(sign(kind, "var(--ink)"), name)));
       SEVERITIES.forEach((name, severity) => filter.severities[severity] && entries.push(entry(patch(`var(--${name})`), name)));
     } else if (density.ends) {
-      const digits = density.ends[0] < 0.01 ? 3 : density.ends[0] < 0.1 ? 2 : 1;
-      const upTo = (end) => number(density.ends[end], digits);
+      const upTo = (end) => number(density.ends[end], Math.min(Math.max(Math.ceil(-Math.log10(density.ends[end]) - 1e-9), 0), 4));
       if (this.mode === "difference") {
         [[3, "fewer"], [2, "fewer"], [1, "fewer"], [1, "more"], [2, "more"], [3, "more"]].forEach(([step, what]) => {
           const text = { 1: `up to ${upTo(1)} ${what}`, 2: `to ${upTo(3)} ${what}`, 3: `above ${upTo(3)} ${what}` }[step];
           entries.push(entry(patch(`var(--${what}-${step})`), text));
         });
       } else {
-        density.ends.forEach((end, heat) => entries.push(entry(patch(`var(--heat-${heat + 1})`), `to ${upTo(heat)}`)));
+        density.ends.forEach((end, heat) => entries.push(entry(patch(`var(--heat-${heat + 1})`), heat ? `${upTo(heat - 1)} to ${upTo(heat)}` : `below ${upTo(0)}`)));
       }
     }
-    const words = { points: "", density: `Expected crashes in a hexagon of ${number(2 * density.radius(this.view?.scale || 1), 0)} m:`,
+    const words = { points: "", density: `Expected crashes in each hexagon, ${number(2 * density.radius(this.view?.scale || 1), 0)} m across:`,
       difference: "Expected crashes after minus before, for as much traffic as after; only the choice of severities applies:" };
-    if (net) {
+    if (net && this.view?.scale >= CLOSE) {
       entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
     }
-    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "key", textContent: "Circled numbers: ranks of hot spots" }));
+    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "said", textContent: `Circled numbers: the first places of the table, whole junctions and edges${this.mode === "density" ? ", each at its hexagon with the most" : ""}` }));
   },
 };

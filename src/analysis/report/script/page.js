@@ -10,7 +10,9 @@ function showHeader() {
   const runs = data.runs.length === 1 ? "one run" : `${number(data.runs.length)} runs`;
   const more = scenarios.length > 3 ? ` and ${scenarios.length - 3} more` : "";
   const sum = (pick) => records.reduce((all, run) => all + pick(run.summary), 0);
-  const traffic = records.length ? `, ${number(sum((summary) => summary.exposure.vehicles))} vehicles, `
+  const simulated = sum(({ begin, end }) => end - begin);
+  const duration = simulated < 3600 ? `${number(simulated)} s` : `${number(simulated / 3600, 1)} h`;
+  const traffic = records.length ? `, ${duration} simulated, ${number(sum((summary) => summary.exposure.vehicles))} vehicles, `
     + `${number(sum((summary) => summary.exposure.vehicle_kilometres))} vehicle-km` : "";
   const title = scenarios.length > 1 ? `${scenarioName} and others` : scenarioName;
   document.title = `${title} – conflicts`;
@@ -29,12 +31,12 @@ function showFigures(rows) {
   const all = risk.reduce((sum, of_row) => sum + of_row, 0);
   const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
   const kilometres = runs.reduce((sum, run) => sum + (run.summary?.exposure.vehicle_kilometres || 0), 0);
-  const of_all = all > crashes + 0.005 ? `of ${number(all, 1)}; ` : "";
-  const figures = hasRisk ? [["expected crashes", number(crashes, crashes < 10 ? 2 : 1), `${of_all}an index, no forecast`]] : [];
+  const of_all = all > crashes + 0.005 ? `of ${number(all, 1)} in all; ` : "";
+  const figures = hasRisk ? [["expected crashes", number(crashes, crashes < 10 ? 2 : 1), `${of_all}an index, no forecast: the sum of the probabilities that a driver brakes too late`]] : [];
   [2, 1, 0].forEach((severity) => {
     if (filter.severities[severity]) figures.push([SEVERITIES[severity], number(counts[severity]), "", SEVERITIES[severity]]);
   });
-  figures.push(["collisions", number(rows.reduce((sum, row) => sum + column.collision[row], 0))]);
+  figures.push(["collisions", number(rows.reduce((sum, row) => sum + column.collision[row], 0)), "counted: rectangles that overlapped in the simulation"]);
   // A run that was killed has conflicts but no record of its traffic; a period's traffic is not known.
   const isKnown = runs.every((run) => run.summary?.steps > 0) && !Number.isFinite(filter.from) && !Number.isFinite(filter.to);
   if (isKnown && kilometres > 0 && data.variants.length < 2) {
@@ -64,9 +66,11 @@ function showVerdict(rows) {
   const most = spots.slice(0, MOST_BADGES);
   const share = Math.round((100 * most.reduce((sum, spot) => sum + spot.risk, 0)) / all);
   const places = most.length === 1 ? "one place" : `these ${most.length} places`;
+  const doubt = most.some((spot, rank) => rank && mayOutrank(spot, most[rank - 1])) ? " They overlap, so the order of these places may be chance." : "";
   element.replaceChildren(`Most dangerous: ${share} % of the expected crashes are at ${places}, numbered on the map.`,
     make("ol", {}, ...most.map((spot, rank) => make("li", {}, make("b", { textContent: rank + 1 }),
-      make("span", {}, make("strong", { textContent: spotName(spot) }), spotWords(spot))))));
+      make("span", {}, make("strong", { textContent: spotName(spot) }), spotWords(spot))))),
+    make("p", { className: "note", textContent: `In brackets: 95 % intervals.${doubt}` }));
 }
 
 /** One conflict of this log, read aloud. */
@@ -77,7 +81,7 @@ function showExample() {
 
 /** Draws the parts that follow the filter. */
 function show() {
-  const rows = shownRows(false);
+  const rows = shownRows();
   byId("shown").textContent = `${number(rows.length)} of ${number(count)} conflicts`;
   const words = filterWords().map(([name, value]) => `${name} ${inWords(value)}`);
   byId("printed").textContent = words.length || !filter.severities[0] ? `Shown: ${[!filter.severities[0] && "serious and critical conflicts", ...words].filter(Boolean).join("; ")}.` : "";
@@ -85,7 +89,7 @@ function show() {
   showFigures(rows);
   showVerdict(rows);
   map.show(rows);
-  times.show(shownRows(true));
+  times.show(shownRows("period"));
   distributions.show(rows);
   showSpots(rows);
   worst.show(rows);
@@ -150,12 +154,17 @@ function startPage() {
     document.querySelectorAll(".chart").forEach((element) => echarts.getInstanceByDom(element)?.getZr().flush());
   };
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+  let wasOpen = false;
   window.addEventListener("beforeprint", () => {
     document.documentElement.dataset.print = "";
+    [wasOpen, byId("reading").open] = [byId("reading").open, true];
     redraw();
+    // What is drawn keeps its shape on paper, which is narrower.
+    document.querySelectorAll(".chart").forEach((element) => element.style.setProperty("--ratio", element.clientWidth / element.clientHeight || 1));
   });
   window.addEventListener("afterprint", () => {
     delete document.documentElement.dataset.print;
+    byId("reading").open = wasOpen;
     redraw();
   });
 }

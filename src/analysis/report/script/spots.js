@@ -70,6 +70,11 @@ function crashInterval(rows) {
   return [low, (more_squares / (2 * more)) * chiSquared((2 * more ** 2) / more_squares, Z)];
 }
 
+/** The interval of a group, computed once. */
+const intervalOf = (group) => (group.interval ||= crashInterval(group.rows));
+/** Whether chance may have put a spot behind another: their intervals overlap. */
+const mayOutrank = (spot, other) => intervalOf(spot)[1] >= intervalOf(other)[0];
+
 /** The spots of some rows, the most expected crashes first; kept until the rows change. */
 function spotRows(rows) {
   if (spotRows.rows !== rows) {
@@ -95,7 +100,8 @@ function spotWords(spot) {
   const cause = usual(spot.rows, strongestCause);
   const why = [manoeuvre && `mostly ${OFTEN[manoeuvre] || inWords(manoeuvre)}`, cause && (WHY[cause] || inWords(cause))].filter(Boolean).join("; ");
   const counts = [[2, "critical"], [1, "serious"]].filter(([severity]) => spot.counts[severity]).map(([severity, name]) => `${number(spot.counts[severity])} ${name}`);
-  return `: ${number(spot.risk, 1)} expected crashes${counts.length ? ` (${counts.join(", ")})` : ""}${why ? `, ${why}` : ""}.`;
+  const [low, high] = intervalOf(spot).map((end) => number(end, 1));
+  return `: ${number(spot.risk, 1)} (${low} to ${high}) expected crashes${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
 }
 
 /** A bar as long as the expected crashes, in the shares of the severities. */
@@ -129,14 +135,14 @@ class SortedTable {
     // A severity that the filter leaves out has no column.
     const columns = this.columns.filter(({ severity }) => severity === undefined || filter.severities[severity]);
     const head = make("tr", {}, ...columns.map((column_of, place) => {
-      const cell = make("th", { className: column_of.text ? "" : "number", scope: "col" });
+      const cell = make("th", { className: column_of === BAR ? "share" : column_of.text ? "" : "number", scope: "col" });
       cell.setAttribute("aria-sort", column_of === this.columns[by] ? (down ? "descending" : "ascending") : "none");
       if (!column_of.value) {
         cell.append(column_of.heading);
-        if (!column_of.heading) cell.setAttribute("aria-hidden", "true");
+        if (!column_of.heading || column_of === BAR) cell.setAttribute("aria-hidden", "true");
         return cell;
       }
-      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? " ▾" : " ▴") : ""}` });
+      const button = make("button", { type: "button", textContent: `${column_of.heading}${column_of === this.columns[by] ? (down ? "\u00a0▾" : "\u00a0▴") : ""}` });
       button.onclick = () => {
         this.down = column_of === this.columns[by] ? !down : !column_of.text;
         this.by = this.columns.indexOf(column_of);
@@ -166,11 +172,11 @@ const numberCell = (text) => make("td", { className: "number", textContent: text
 /** The columns that all tables have: expected crashes with their interval, counts, and a bar. */
 const COMMON = [
   { heading: "Expected crashes", value: (group) => group.risk, cell: (group) => numberCell(number(group.risk, 2)) },
-  { heading: "95 % interval", cell: (group) => numberCell(crashInterval(group.rows).map((end) => number(end, 2)).join(" to ")) },
+  { heading: "95 % interval", cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
   ...[2, 1, 0].map((severity) => ({ heading: SEVERITIES[severity], severity, value: (group) => group.counts[severity],
     cell: (group) => numberCell(number(group.counts[severity])) })),
 ];
-const BAR = { heading: "", cell: shareBar };
+const BAR = { heading: "by severity", cell: shareBar };
 
 /** A first column whose names are buttons. */
 function nameColumn(heading, name, press, isPressed) {
@@ -184,14 +190,14 @@ function nameColumn(heading, name, press, isPressed) {
 }
 
 const hotSpots = new SortedTable(byId("spots"), [
-  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, ...unfoldButton(group), String(group.rank)) },
+  { heading: "", text: true, cell: (group) => make("td", { className: "rank" }, make("span", { textContent: group.rank }), ...unfoldButton(group)) },
   nameColumn("Place", spotName, (group) => {
     choosePlace(filter.spot === group.place ? null : group.place, null);
     map.go(group.x, group.y, 120);
   }, (group) => filter.spot === group.place),
   ...COMMON,
-  { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || "–") },
-  { heading: "Why", text: true, value: (group) => usual(group.rows, strongestCause), cell: (group) => textCell(inWords(usual(group.rows, strongestCause)) || "–") },
+  { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || NOT_KNOWN) },
+  { heading: "Why", text: true, value: (group) => usual(group.rows, strongestCause), cell: (group) => textCell(inWords(usual(group.rows, strongestCause)) || NOT_KNOWN) },
   BAR,
 ], 2, movementDiagram);
 
@@ -223,7 +229,11 @@ const byCause = choiceTable("causes", "Cause", "cause", CAUSES);
 
 /** Shows the tables of the rows that pass the filter. */
 function showSpots(rows) {
-  hotSpots.show(spotRows(rows));
+  const spots = spotRows(rows);
+  hotSpots.show(spots);
+  const listed = spots.slice(0, MOST_SPOTS);
+  const others = listed.slice(1).filter((spot) => mayOutrank(spot, listed[0])).length;
+  byId("doubt").textContent = others ? `The intervals of ${number(others)} of the ${number(listed.length - 1)} places after the first overlap its own: their ranks may be chance.` : "";
   const ranked = (groupsOf) => [...grouped(rows, groupsOf)].map(([name, of_name]) => ({ name, ...sums(of_name) }))
     .sort((a, b) => (a.name === "") - (b.name === "") || b.risk - a.risk || b.rows.length - a.rows.length).map((group, place) => ({ ...group, rank: place + 1 }));
   byManoeuvre.show(ranked((row) => [manoeuvreOf(row)]));

@@ -24,7 +24,9 @@ const worst = {
     this.players = [];
     const shown = this.rows.slice(0, this.many);
     byId("worst").replaceChildren(...shown.map((row) => this.card(row)));
-    byId("more").hidden = this.many >= this.rows.length;
+    const rest = this.rows.length - shown.length;
+    byId("more").hidden = rest <= 0;
+    byId("more").textContent = `Show ${Math.min(FIRST_WORST, rest)} more of the ${this.rows.length} worst`;
     this.charts.push(...this.players);
     this.players.forEach((player) => player.start());
     for (const row of shown) {
@@ -40,14 +42,14 @@ const worst = {
     const player = clipOf(row) && new Player(row);
     const go = make("button", { type: "button", textContent: "Show on the map" });
     go.onclick = () => map.go(column.x[row], column.y[row], 80);
-    const figures = make("details", {}, make("summary", { textContent: player ? "Figures; in sumo-gui" : "Figures" }), make("p", { textContent: figuresOf(row) }));
+    const figures = make("details", {}, make("summary", { textContent: player ? "Figures, and the command for sumo-gui" : "Figures" }), make("p", { textContent: figuresOf(row) }));
     // Paper unfolds nothing.
     figures.open = "print" in document.documentElement.dataset;
     const text = make("div", { className: "text" }, heading, make("p", { textContent: storyOf(row) }), figures, go);
     if (player) {
       this.players.push(player);
       const words = ["closecall", "show", data.runs[column.run[row]].folder, String(column.id[row])];
-      figures.append(make("p", {}, "Play it in sumo-gui: ", make("code", { textContent: words.map(quoted).join(" ") })));
+      figures.append(make("p", { className: "screen" }, "Play it in sumo-gui: ", make("code", { textContent: words.map(quoted).join(" ") })));
       return make("li", {}, player.element, text);
     }
     if (!drawn.has(row)) return make("li", {}, text);

@@ -4,23 +4,31 @@ const kmh = (speed) => `${number(speed, 1)} m/s (${number(speed * 3.6)} km/h)`;
 
 /** The parts of a road user; the first is its front. */
 const PARTS = ["front", "rear", "left side", "right side"];
-/** A road user is said to drive from this speed on, in m/s. */
-const DRIVES = 0.05;
+/** A road user is said to move from this speed on, in m/s. */
+const MOVES = 0.05;
+/** Two road users touch up to this gap, in m: the page's numbers are rounded to 0.01 m. */
+const TOUCHING = 0.005;
+/** Whether the two have collided by the worst step: that of the smallest margin, which may be before the contact. */
+function collidedByWorst(row) {
+  if (!column.collision[row]) return false;
+  const contact = contactOf(row);
+  return column.gap[row] <= TOUCHING || (contact !== null && contact <= column.time[row]);
+}
 
 /** What the two did, or were about to do, by the parts that touch first and by who moves. */
 function deed(row, ego, foe) {
   const value = (name) => column[name][row];
   const moving = (who, speed) => `${who} at ${kmh(speed)}`;
-  const other = (who, speed) => `${who}, ${speed > DRIVES ? `driving ${kmh(speed)}` : "standing"}`;
+  const other = (who, speed) => `${who}, ${speed > MOVES ? `moving at ${kmh(speed)}` : "standing at that moment"}`;
   const names = [ego, foe];
   const parts = ["ego_part", "foe_part"].map(value);
   const speeds = ["ego_speed", "foe_speed"].map(value);
-  const moves = speeds.map((speed) => speed > DRIVES);
+  const moves = speeds.map((speed) => speed > MOVES);
   if (parts[0] === null) {
     const near = value("kind") === 0 ? "the rear of " : "";
     return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
   }
-  const did = (past, would) => (value("collision") ? past : `was about to ${would}`);
+  const did = (past, would) => (collidedByWorst(row) ? past : `was about to ${would}`);
   // The one that drives its front into the other; otherwise one that moves.
   const fronts = [0, 1].filter((who) => parts[who] === 0 && moves[who]);
   const by = fronts.length ? fronts[0] : moves[0] ? 0 : 1;
@@ -60,7 +68,7 @@ const MANOEUVRES = {
   side_by_side: "They drove side by side.", merge: "Their lanes became one.", crossing: "Their ways crossed.",
   left_turn_across: "One turned left across the other’s way.", right_turn_across: "One turned right across the other’s way.",
   turn_into: "One turned into the road that the other took.", overtaking_oncoming: "One drove against its lane, towards the other.",
-  head_on: "They drove towards each other, each on its own way.", person_crossing: "A person crossed the vehicle’s way.",
+  head_on: "They drove towards each other, each on its own way.", person_crossing: "A person was crossing the vehicle’s way.",
   person_along: "A person walked along the vehicle’s way.", person_standing: "A person stood in the vehicle’s way.", object: "An obstacle was in the way.",
 };
 /** What happens often at a place, in the same way. */
@@ -84,9 +92,9 @@ function storyOf(row) {
   const value = (name) => column[name][row];
   const ego = typed(egoId(row), column.ego_type[row]);
   const foe = typed(foeId(row), column.foe_type[row]);
-  const angle = Math.round((value("angle") * 180) / Math.PI);
-  const across = value("kind") === 2 ? `, at an angle of ${angle}°` : "";
-  const sentences = [`At ${number(value("time"), 1)} s ${placeWords(row)}, ${deed(row, ego, foe)}${across}.`];
+  const sentences = [`At ${number(value("time"), 1)} s ${placeWords(row)}, ${deed(row, ego, foe)}.`];
+  // The kind is that of the angle, whichever parts touch.
+  if (value("kind") > 0) sentences.push(`Their ways met at ${Math.round((value("angle") * 180) / Math.PI)}°: a ${KINDS[value("kind")]} conflict.`);
   const manoeuvre = manoeuvreOf(row);
   if (manoeuvre) sentences.push(MANOEUVRES[manoeuvre] || `Manoeuvre: ${inWords(manoeuvre)}.`);
   const causes = causeNames(row);
@@ -96,7 +104,10 @@ function storyOf(row) {
   }
   const left = column.response_left && value("response_left");
   if (value("collision")) {
-    sentences.push("Their rectangles overlapped: a collision.");
+    const at = collidedByWorst(row) ? null : contactOf(row);
+    sentences.push(collidedByWorst(row) ? "Their rectangles overlapped: a collision."
+      : at === null ? "At another moment of this conflict their rectangles overlapped: a collision."
+        : `At ${number(at, 1)} s their rectangles overlapped: a collision.`);
   } else if (typeof left === "number") {
     sentences.push(`The ego had ${number(left, 1)} s left to respond, and a driver needs ${number(responseOf(row), 2)} s.`);
   }
@@ -106,7 +117,7 @@ function storyOf(row) {
 /** The measures of a conflict as sentences. */
 function figuresOf(row) {
   const value = (name) => column[name][row];
-  const sentences = [`The gap was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m were needed: a margin of `
+  const sentences = [`At the worst step the gap, the room that was left on their ways, was ${number(value("gap"), 2)} m, and μ = ${number(value("mu"), 2)} m was needed: a margin of `
     + `${number(value("margin"), 2)} m.`];
   if (!value("collision") && value("ttc") === null) sentences.push("At constant speed they would not have touched.");
   else if (!value("collision")) {
