@@ -21,7 +21,7 @@ const NODES: [(f64, f64); COUNT / 2] = [
     (0.989_400_934_991_649_9, 0.027_152_459_411_754_1),
 ];
 
-/// Response times with a logarithm further from its mean, in standard deviations, are left out: 3e-12 of all.
+/// Response times with a logarithm further from its mean, in standard deviations, are left out: 6e-7 of all.
 const FAR_RESPONSE: f64 = 5.0;
 /// Decelerations further from their mean, in standard deviations, are left out: 6e-7 of all.
 const FAR_DECELERATION: f64 = 5.0;
