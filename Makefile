@@ -72,7 +72,7 @@ regress: $(VENV)/wheel ## run the scenarios in sumo_nets/ and compare with what 
 
 NETS := reckless priority left_turn roundabout signals curves overtaking crowd
 
-accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths really driven; ranks of crash probabilities
+accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths really driven; critical ones; ranks of probabilities
 	rm -rf target/game && cp -r $(VENV)/lib/python*/site-packages/sumo/tools/game target/game
 	$(BIN)/python tests/accuracy/accuracy.py --at-least 98 --end 300 \
 		$(foreach net,$(NETS),sumo_nets/$(net)/$(net).sumocfg) target/game/cross.sumocfg
@@ -81,6 +81,7 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 	PATH=$(CURDIR)/$(BIN):$$PATH $(BIN)/python tests/accuracy/sublane.py target/sublane
 	$(BIN)/python tests/accuracy/accuracy.py --at-least 90 --end 150 \
 		target/sublane/left_hand.sumocfg target/sublane/right_hand.sumocfg
+	$(BIN)/python tests/accuracy/criticals.py --end 200 sumo_nets/town/town.sumocfg sumo_nets/reckless/reckless.sumocfg
 	$(BIN)/python tests/accuracy/ranks.py --at-least 0.6 sumo_nets/*/expected/conflicts.csv
 
 PARTS := target/bench/parts

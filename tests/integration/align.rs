@@ -101,6 +101,30 @@ fn a_change_of_lanes_comes_after_the_step() {
 }
 
 #[test]
+fn one_that_stands_changes_lanes_after_the_step() {
+    let (way, car) = (Way::bend(), car());
+    for front in (48..200).map(f64::from) {
+        let expected = State { speed: 0.0, ..way.vehicle(&car, front, 8.0) };
+        let along = way.at(front + 0.1) - way.at(front - 0.1);
+        let aside = Vector::new(along.y, -along.x).normalize() * 3.2;
+        let to = State { x: expected.x + aside.x, y: expected.y + aside.y, ..expected };
+        let steps: [&[State]; 2] = [&[way.vehicle(&car, front, 8.0)], &[to]];
+        let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, front)), steps);
+        assert!((found[0].front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
+    }
+}
+
+#[test]
+fn one_that_is_put_elsewhere_has_not_changed_lanes() {
+    let (way, car) = (Way::bend(), car());
+    let before = way.vehicle(&car, 60.0, 8.0);
+    let to = State { x: before.x + 30.0, y: before.y + 30.0, speed: 2.0, ..before };
+    let steps: [&[State]; 2] = [&[before], &[to]];
+    let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, 60.0)), steps);
+    assert!((found[0].front() - to.front()).norm() < 1.0 + 1e-9, "{found:?} {to:?}");
+}
+
+#[test]
 fn what_enters_after_the_moment_collides_with_nothing() {
     let [behind, ahead] = [20.0, 28.0].map(|x| State { x, speed: x, ..State::default() });
     let encounters = |first: [State; 2]| {

@@ -72,8 +72,8 @@ def test_a_replay_knows_the_routes_on_any_net(recording: str, step: str, net: tu
     drawn(tmp_path, *net)
     config = tmp_path / "drawn.sumocfg"
     # The vehicles still drive when the recording ends.
-    fcd = record(config, recording, "--align", "never", "--step-length", step, "--end", "100")
-    assert replay(config, fcd, tmp_path / "out", "--align", "never") == (0, "")
+    fcd = record(config, recording, "--step-length", step, "--end", "100")
+    assert replay(config, fcd, tmp_path / "out") == (0, "")
     live = rows(tmp_path / "live" / "conflicts.csv")
     assert len(live) > 100 and any(row["kind"] == "frontal" for row in live)
     same(live, rows(tmp_path / "out" / "conflicts.csv"))

@@ -18,6 +18,8 @@ use crate::util::units::{Metre, Second};
 
 /// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
 const LEAST_JUMP: Metre = 0.5;
+/// One that is further beside it was put elsewhere (SUMO's teleports, scripts), in m; no lane of a street is wider.
+const MOST_JUMP: Metre = 10.0;
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -76,7 +78,7 @@ impl Detector {
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);
         let aside = off - direction * along;
-        if aside.norm() > LEAST_JUMP && along.abs() < aside.norm() {
+        if (LEAST_JUMP..MOST_JUMP).contains(&aside.norm()) && along.abs() < aside.norm() {
             let mut path = path.clone();
             path.move_on(of_net, state.speed * (self.step - self.behind()));
             self.jumps.push(Jump { row, user, path });
@@ -87,10 +89,11 @@ impl Detector {
     fn undo_jumps(&mut self, frame: &mut Frame, roster: &Roster) {
         for Jump { row, user, path } in &mut self.jumps {
             let lines = path.lines(lines_of(self.net.as_deref()));
-            let (front, axis) = (path.track.point(lines), path.track.chord(lines, roster.profile_of(*user).chord));
+            let profile = roster.profile_of(*user);
+            let (front, axis) = (path.track.point(lines), path.track.chord(lines, profile.chord));
             let state = frame.state_mut(*row);
             (state.x, state.y, state.heading) = (front.x, front.y, axis.y.atan2(axis.x));
-            self.on_lanes[*row as usize] = true;
+            self.on_lanes[*row as usize] = state.moves() || profile.carriages > 1;
             let next = std::mem::replace(&mut self.paths[user.0 as usize], std::mem::take(path));
             self.next_paths.push((*user, next));
         }

@@ -8,7 +8,6 @@ use super::paths::{PathSource, Paths, lines_of};
 use super::reach::{Reach, StepView};
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
-use crate::geometry::Point;
 use crate::options::{Mode, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::profile::Category;
@@ -70,7 +69,7 @@ impl Detector {
                 if state.moves() {
                     self.keep_on_path(row, user, &state);
                 } else {
-                    self.stop_on_path(row, user, state.front());
+                    self.stop_on_path(row, user, &state);
                     // It still bends along the path on which it came.
                     self.on_lanes[row] = profile.carriages > 1 && !self.paths[user.0 as usize].track.is_empty();
                 }
@@ -231,14 +230,19 @@ impl Detector {
 
     /// Follows the path of a vehicle that has stopped, and removes it if the vehicle stopped elsewhere. Where lanes are
     /// longer or shorter than drawn, the lane of a vehicle without a path is needed, as its drawn length depends on it.
-    fn stop_on_path(&mut self, row: usize, user: UserIndex, front: Point) {
+    fn stop_on_path(&mut self, row: usize, user: UserIndex, state: &State) {
         let of_net = lines_of(self.net.as_deref());
         let driven = self.driven_at_most(user, 0.0);
         let path = &mut self.paths[user.0 as usize];
-        if !path.track.is_empty() && !path.track.is_at(path.lines(of_net), front) && !path.follow(of_net, front, driven)
+        if !path.track.is_empty()
+            && !path.track.is_at(path.lines(of_net), state.front())
+            && !path.follow(of_net, state.front(), driven)
         {
-            path.clear();
+            self.take_jump(row as u32, user, state);
+            self.paths[user.0 as usize].clear();
         }
+        let of_net = lines_of(self.net.as_deref());
+        let path = &self.paths[user.0 as usize];
         if path.track.is_empty() && of_net.is_stretched() {
             self.unplaced.push(row as u32);
         }

@@ -11,6 +11,10 @@ use crate::util::units::{Metre, Radian};
 /// A junction has fewer parts of a lane one behind the other.
 const MOST_PARTS: usize = 10;
 
+/// Cosine of the angle between a lane and the heading of a road user that goes straight along it in the other direction: within
+/// 1.1°, by which places and angles may be rounded and lanes may bend.
+const OPPOSITE: f64 = -0.9998;
+
 /// The net's lane for each of the recording's lanes; each is looked up once.
 #[derive(Debug, Default)]
 pub(super) struct Lanes {
@@ -48,6 +52,12 @@ pub(super) fn edges_of(net: &Net, lane: LaneIndex) -> Option<(EdgeIndex, Option<
 /// Whether a road user's heading is against its lane.
 pub(super) fn is_against(row: &RecordedRow, net: &Net, lane: LaneIndex) -> bool {
     foot(row, net, lane).direction.dot(&direction(heading(row))) < 0.0
+}
+
+/// Whether a road user goes straight along its lane in the other direction, as when it overtakes on the opposite lane. In a
+/// sharp turn its heading is turned by more.
+pub(super) fn is_opposite(row: &RecordedRow, net: &Net, lane: LaneIndex) -> bool {
+    foot(row, net, lane).direction.normalize().dot(&direction(heading(row))) < OPPOSITE
 }
 
 /// The distance of a road user from its lane's centre line.

@@ -47,7 +47,7 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
-use lanes::{Lanes, heading};
+use lanes::{Lanes, heading, is_opposite};
 use lights::RecordedLights;
 use recording::Recording;
 use routes::Routes;
@@ -307,6 +307,9 @@ impl Replay {
         }
         // The recording's steps are numbered from 0 where its routes are read.
         user.advance_to(self.steps - 1);
+        if is_opposite(recorded, net, lane) {
+            user.oppose(net, net.lanes[lane.0 as usize].edge);
+        }
         let is_new = !run.knows_route(user.index, user.route_position);
         let placement = Placement {
             lane,

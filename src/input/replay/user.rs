@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::routes::Route;
-use crate::traffic::net::EdgeIndex;
+use crate::traffic::net::{EdgeIndex, Net};
 use crate::traffic::roster::UserIndex;
 
 /// A road user in the scene.
@@ -33,5 +33,16 @@ impl ReplayedUser {
         let Some(route) = &self.route else { return };
         let ahead = route.reached.iter().skip(self.route_position + 1);
         self.route_position += ahead.take_while(|reached| **reached <= step).count();
+    }
+
+    /// It is on this edge, and goes along it in the other direction. If that is the edge that it drove along, it has turned round
+    /// onto the opposite lane: it is on its next edge already, and overtakes there.
+    pub fn oppose(&mut self, net: &Net, edge: EdgeIndex) {
+        let Some(route) = &self.route else { return };
+        let Some([current, next]) = route.edges.get(self.route_position..self.route_position + 2) else { return };
+        let [[from, to], ends_of_next] = [current, next].map(|edge| net.edges[edge.0 as usize].ends);
+        if *current == edge && ends_of_next == [to, from] {
+            self.route_position += 1;
+        }
     }
 }
