@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree
 
 import closecall as cc
 import pytest
-from conftest import NETS, Copy, Row, closecall, python, rows
+from conftest import NETS, Row, closecall, python, rows
 from recordings import record, replay, same
+
+Copy = Callable[[str], Path]
 
 
 def logged(scene: str, out: Path, *words: str | Path) -> list[Row]:
@@ -53,7 +56,8 @@ def test_the_runner_of_a_red_light_is_named(tmp_path: Path) -> None:
 def test_a_replay_with_recorded_signals_finds_who_ran_a_red_light(event: str, scenario: Copy, tmp_path: Path) -> None:
     config, states = scenario("signals"), tmp_path / "states.xml"
     told = tmp_path / "told.add.xml"
-    told.write_text(f'<additional><timedEvent type="{event}" source="a" dest="{states}"/></additional>')
+    events = (f'<timedEvent type="{event}" source="{light}" dest="{states}"/>' for light in "ab")
+    told.write_text(f"<additional>{''.join(events)}</additional>")
     recording = record(config, "fcd.xml", "--end", "150", sumo=("--additional-files", str(told)))
     live = rows(config.parent / "live" / "conflicts.csv")
     assert any("ran_red" in row["cause"] for row in live)
