@@ -92,6 +92,33 @@ def mttc(gap: float, speeds: tuple[float, float], accelerations: tuple[float, fl
     return float(time[used][0]) if used.any() else None
 
 
+BRAKES = 9.0
+"""SUMO's emergencyDecel of cars, which the followers are, in m/s²."""
+MOST_BRAKING = 12.68
+"""The largest deceleration that a measure gives, in m/s²."""
+
+
+def a_long_req(gap: float, speeds: tuple[float, float], leader_acceleration: float) -> float:
+    """By halving, on courses in small steps until both stand; 0 where no braking is needed."""
+    # A leader that hardly brakes stands after minutes.
+    time = np.concatenate((np.arange(0, 60, 2e-3), np.arange(60, 3600, 0.1)))
+
+    def way(speed: float, deceleration: float) -> Any:
+        moving = np.minimum(time, speed / deceleration) if deceleration > 0 else time
+        return speed * moving - deceleration * moving**2 / 2
+
+    leader = way(speeds[1], max(-leader_acceleration, 0.0))
+    low, high = 0.0, MOST_BRAKING
+    if (way(speeds[0], low) - leader).max() <= gap:
+        return 0.0
+    if (way(speeds[0], high) - leader).max() > gap:
+        return MOST_BRAKING
+    for _ in range(30):
+        middle = (low + high) / 2
+        low, high = (low, middle) if (way(speeds[0], middle) - leader).max() <= gap else (middle, high)
+    return high
+
+
 def rectangle(row: Row, who: str, size: Row) -> Any:
     length, width = (float(size[f"{who}_{name}"]) for name in ("length", "width"))
     x, y, heading = (float(row[f"{who}_{name}"]) for name in ("x", "y", "heading"))
@@ -150,6 +177,9 @@ def of_step(row: Row, size: Row, run: Run) -> dict[str, float | None]:
         "ei": ei(row, size),
         "mttc": mttc(gap, (own, leader), (a, leader_a)) if follows else None,
     }
+    if follows:
+        needed = a_long_req(gap, (own, leader), leader_a)
+        found |= {"a_long_req": needed, "btn": needed / BRAKES}
     later = found["mttc"]
     if later:
         ends = (max(own + a * later, 0), max(leader + leader_a * later, 0))
@@ -182,7 +212,7 @@ def test_the_measures_of_a_step_are_what_its_formulas_give(net: str, measured: C
                 assert is_near(found, expected, measure), (measure, found, expected, row)
                 compared[measure] += found is not None
     needed = {"act", "delta_s", "ei", "max_d", "max_s", "rss_distance"}
-    needed |= {"br", "crash_index", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
+    needed |= {"a_long_req", "br", "btn", "crash_index", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
     assert all(compared[measure] >= 10 for measure in needed), compared
 
 
