@@ -1,7 +1,7 @@
 //! The detector on more and more threads, up to the machine's cores: what each number of threads gains, in which part of
 //! a step, and how much of a part is serial. `cargo bench --bench cores`.
 //!
-//! Beside it as many detectors at once, each with all road users on a thread of its own: the most that so many threads
+//! As a comparison, as many detectors at once, each with all road users on a thread of its own: the most that this many threads
 //! can gain on this machine, as they share its memory and its clock.
 
 #![allow(clippy::unwrap_used, missing_docs, reason = "a benchmark may")]
@@ -20,7 +20,7 @@ use scenes::{Scene, TIMES, detector, wake};
 /// Steps are measured for at least this long.
 const LONG_ENOUGH: Duration = Duration::from_millis(700);
 
-/// At least so many steps are measured.
+/// At least this many steps are measured.
 const FEWEST: usize = 5;
 
 /// With more road users than this, not many detectors are run at once.

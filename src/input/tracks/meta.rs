@@ -14,7 +14,7 @@ pub(super) struct Meta {
     pub class_of: FxHashMap<String, String>,
 }
 
-/// Reads the files beside `00_tracks.csv`, as far as they are there.
+/// Reads those of the files beside `00_tracks.csv` that exist.
 pub(super) fn read_meta(path: &Path) -> Result<Meta> {
     let mut meta = Meta::default();
     if let Some(file) = beside(path, "recordingMeta") {
