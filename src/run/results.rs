@@ -79,7 +79,7 @@ impl Run {
     /// Closes the open conflicts and writes them; returns the summary.
     ///
     /// # Errors
-    /// [`Error::File`] that names what cannot be written; the run is over then too, and counted.
+    /// [`crate::Error::File`] that names what cannot be written; the run is over then too, and counted.
     pub fn finish(&mut self) -> Result<Summary> {
         self.count_exposure(self.step_length.unwrap_or_default());
         let first = self.closed_conflicts() + 1;
