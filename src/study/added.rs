@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 
 use super::clock::median;
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use super::recorded::{RecordedScenario, with_decimals};
+use super::recorded::{RecordedScenario, measure_each, with_decimals};
 use crate::events::Conflict;
 use crate::options::Options;
 use crate::options::measures::{AddedMeasure, Measures};
@@ -67,13 +67,7 @@ impl Method {
 
 pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..1], 100.0, 3) } else { (&NETS[..], 300.0, 9) };
-    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
-    let mut rows = Vec::new();
-    for net in nets {
-        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
-        rows.extend(measure_net(&scenario, rounds)?);
-    }
-    Ok(rows)
+    measure_each(plan, nets, end, record, |scenario, _| measure_net(&scenario, rounds))
 }
 
 fn measure_net(scenario: &RecordedScenario, rounds: usize) -> Result<Vec<Measurement>> {

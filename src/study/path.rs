@@ -5,10 +5,10 @@ use rustc_hash::FxHashMap;
 use super::clock::median;
 use super::driven::{DrivenTraces, IdPair, Truth};
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts};
+use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts, measure_each};
+use crate::Result;
 use crate::options::{Mode, Options, PathModel};
 use crate::util::units::Metre;
-use crate::{Error, Result};
 
 const DEFAULT: &str = "lanes";
 const METHODS: [(&str, Mode, PathModel); 4] = [
@@ -24,13 +24,10 @@ const EVERY: u64 = 10;
 
 pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..3], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
-    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
-    let measured = nets.iter().map(|net| {
-        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
+    measure_each(plan, nets, end, record, |scenario, _| {
         let driven = DrivenTraces::read(&scenario.recording)?;
         DrivenScenario { scenario, driven }.measure(rounds)
-    });
-    Ok(measured.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect())
+    })
 }
 
 /// A recorded run, and what was really driven in it.

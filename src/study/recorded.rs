@@ -7,14 +7,14 @@ use std::time::Instant;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::driven::{IdPair, pair};
-use super::measurement::{Plan, Recorder};
-use crate::Result;
+use super::measurement::{Measurement, Plan, Recorder};
 use crate::events::Conflict;
 use crate::input::replay::Replay;
 use crate::options::Options;
 use crate::run::Run;
 use crate::traffic::net::Net;
 use crate::util::units::{Metre, Second};
+use crate::{Error, Result};
 
 /// Gaps that differ by less are equal: a recording has nine digits.
 pub(super) const ROUNDING: Metre = 1e-6;
@@ -67,6 +67,23 @@ impl RecordedScenario {
         let lasts = started.elapsed().as_secs_f64() - aside;
         Ok(Replayed { lasts, rows, conflicts: run.conflicts() })
     }
+}
+
+/// Records each scenario up to a time, and measures it; the folder is a temporary one.
+pub(super) fn measure_each(
+    plan: &Plan,
+    nets: &[&'static str],
+    end: Second,
+    record: &mut Recorder,
+    measure: impl Fn(RecordedScenario, &Path) -> Result<Vec<Measurement>>,
+) -> Result<Vec<Measurement>> {
+    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
+    let mut rows = Vec::new();
+    for net in nets {
+        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
+        rows.extend(measure(scenario, scratch.path())?);
+    }
+    Ok(rows)
 }
 
 /// The gap of every pair in conflict.

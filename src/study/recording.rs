@@ -7,7 +7,9 @@ use rustc_hash::FxHashSet;
 
 use super::clock::median;
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use super::recorded::{GapsByStep, ROUNDING, RecordedScenario, conflicts, share_without, with_decimals, with_numbers};
+use super::recorded::{
+    GapsByStep, ROUNDING, RecordedScenario, conflicts, measure_each, share_without, with_decimals, with_numbers,
+};
 use crate::options::Options;
 use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
@@ -102,13 +104,7 @@ fn is_at(time: Second, period: Second) -> bool {
 
 pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..1], 100.0, 3) } else { (&NETS[..], 300.0, 5) };
-    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
-    let mut rows = Vec::new();
-    for net in nets {
-        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
-        rows.extend(measure_net(&scenario, scratch.path(), rounds)?);
-    }
-    Ok(rows)
+    measure_each(plan, nets, end, record, |scenario, scratch| measure_net(&scenario, scratch, rounds))
 }
 
 fn measure_net(scenario: &RecordedScenario, scratch: &Path, rounds: usize) -> Result<Vec<Measurement>> {

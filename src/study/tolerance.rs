@@ -8,7 +8,7 @@ use rustc_hash::FxHashSet;
 use super::clock::median;
 use super::driven::{IdPair, ordered};
 use super::measurement::{Axis, Measurement, Plan, Recorder};
-use super::recorded::{RecordedScenario, collisions_file, share_without};
+use super::recorded::{RecordedScenario, collisions_file, measure_each, share_without};
 use crate::options::Options;
 use crate::util::units::Metre;
 use crate::{Error, Result};
@@ -21,13 +21,7 @@ const DEFAULT: Metre = 0.25;
 
 pub(super) fn measure(plan: &Plan, record: &mut Recorder) -> Result<Vec<Measurement>> {
     let (nets, end, rounds) = if plan.quick { (&NETS[..1], 100.0, 3) } else { (&NETS[..], 240.0, 5) };
-    let scratch = tempfile::tempdir().map_err(|source| Error::file(&std::env::temp_dir(), source))?;
-    let mut rows = Vec::new();
-    for net in nets {
-        let scenario = RecordedScenario::record(plan, net, scratch.path(), end, record)?;
-        rows.extend(measure_net(&scenario, rounds)?);
-    }
-    Ok(rows)
+    measure_each(plan, nets, end, record, |scenario, _| measure_net(&scenario, rounds))
 }
 
 fn measure_net(scenario: &RecordedScenario, rounds: usize) -> Result<Vec<Measurement>> {

@@ -85,7 +85,7 @@ def depth(a: Numbers, a_size: tuple[float, float], b: Numbers, b_size: tuple[flo
 
 
 class Way:
-    """The places of a road user at moments that are a part of a step apart: on a curve from step to step, as it drove.
+    """The places of a road user at moments that are a part of a step apart: on a curve between its steps, as it drove.
 
     Where SUMO moves it to another lane, it goes on straight on its lane until the step ends.
     """

@@ -22,6 +22,8 @@ pub struct RecordedLights {
     buffer: Vec<u8>,
     /// The numbers of the net's traffic lights, by id.
     lights: FxHashMap<String, u32>,
+    /// Elements that have begun and not ended.
+    depth: usize,
     /// The first state that is later than the step.
     next: Option<LightState>,
 }
@@ -41,7 +43,7 @@ impl RecordedLights {
     pub fn open(path: &Path, net: &Net) -> Result<Self> {
         let reader = Reader::from_reader(ElementSource::open(path)?);
         let lights = net.lights.iter().zip(0..).map(|(id, light)| (id.clone(), light)).collect();
-        let mut opened = Self { path: path.to_owned(), reader, buffer: Vec::new(), lights, next: None };
+        let mut opened = Self { path: path.to_owned(), reader, buffer: Vec::new(), lights, depth: 0, next: None };
         opened.next = opened.read()?;
         match opened.next {
             Some(_) => Ok(opened),
@@ -67,13 +69,18 @@ impl RecordedLights {
             self.buffer.clear();
             let line = self.reader.get_mut().begin_element();
             let wrong = |message: String| Error::line(&self.path, line, message.replace('\n', " "));
-            match self.reader.read_event_into(&mut self.buffer).map_err(|error| wrong(xml_message(&error)))? {
+            let event = self.reader.read_event_into(&mut self.buffer).map_err(|error| wrong(xml_message(&error)))?;
+            self.depth += usize::from(matches!(event, Event::Start(_)));
+            match event {
                 Event::Start(ref tag) | Event::Empty(ref tag) if tag.name().as_ref() == "tlsState" => {
                     let state = state(tag, &self.lights).map_err(wrong)?;
                     if state.is_some() {
                         return Ok(state);
                     }
                 }
+                Event::End(_) => self.depth = self.depth.saturating_sub(1),
+                // The last states would hold for ever.
+                Event::Eof if self.depth > 0 => return Err(wrong("the file ends before its elements do".to_owned())),
                 Event::Eof => return Ok(None),
                 _ => {}
             }
@@ -118,6 +125,7 @@ mod tests {
             ("<tlsStates/>", "no <tlsState> of a traffic light"),
             (r#"<tlsState time="x" id="J" state="G"/>"#, "line 1: time is \"x\""),
             (r#"<tlsState time="1" id="J"/>"#, "has no state"),
+            (r#"<tlsStates><tlsState time="1" id="K" state="r"/>"#, "ends before its elements do"),
         ] {
             let error = opened(text).err().unwrap().to_string();
             assert!(error.contains(fault), "{error}");
