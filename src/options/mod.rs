@@ -26,7 +26,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::braking::MuModel;
-use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
 use condition::Condition;
 use measures::Measures;
@@ -102,6 +102,8 @@ const REAR_END_BELOW: Radian = FRAC_PI_6;
 const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
 /// Default crash probability from which a conflict is serious (docs/model.md has the figures).
 const SERIOUS_PROBABILITY: f64 = 0.1;
+/// Default ΔV from which a conflict is serious, in m/s: 10 km/h (docs/model.md has the figures).
+const SERIOUS_DELTA_V: MetrePerSecond = 10.0 / 3.6;
 /// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
 const SERIOUS_TTC: Second = 1.5;
 /// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
@@ -155,6 +157,10 @@ pub struct Options {
     /// With `--severity time-left`, a conflict is serious from this crash probability on.
     #[cfg_attr(feature = "cli", arg(long, value_name = "P", default_value_t = SERIOUS_PROBABILITY, value_parser = probability))]
     pub serious_probability: f64,
+    /// With `--severity time-left`, a conflict is serious only if the two, colliding at their present speeds, would change
+    /// the velocity of one of them by at least this, in m/s (default 10 km/h).
+    #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", default_value_t = SERIOUS_DELTA_V, value_parser = speed))]
+    pub serious_delta_v: MetrePerSecond,
     /// With `--severity fhwa`, a conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = duration))]
     pub serious_ttc: Second,
@@ -232,6 +238,7 @@ impl Default for Options {
             frontal_above: FRONTAL_ABOVE,
             severity: SeverityRule::default(),
             serious_probability: SERIOUS_PROBABILITY,
+            serious_delta_v: SERIOUS_DELTA_V,
             serious_ttc: SERIOUS_TTC,
             serious_drac: SERIOUS_DRAC,
             driver: DriverModel::default(),

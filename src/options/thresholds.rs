@@ -2,7 +2,7 @@
 
 use super::Options;
 use super::severity_rule::SeverityRule;
-use crate::util::units::{MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{MetrePerSecond, MetrePerSecondSquared, Probability, Radian, Second};
 
 /// The angles at the conflict point that separate the kinds.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,8 +16,13 @@ pub struct KindBounds {
 /// When a conflict is serious or critical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeverityThresholds {
-    /// Serious from this crash probability on; critical if even braking at once is too late.
-    Probability(f64),
+    /// Serious if both are reached; critical if even braking at once is too late.
+    TimeLeft {
+        /// The crash probability.
+        probability: Probability,
+        /// The larger ΔV of both at their present speeds.
+        delta_v: MetrePerSecond,
+    },
     /// Serious beyond thresholds; critical if DRAC is above the ego's braking deceleration.
     Measures {
         /// Serious below this TTC.
@@ -36,7 +41,9 @@ impl Options {
     /// The thresholds of severity.
     pub fn severity_thresholds(&self) -> SeverityThresholds {
         match self.severity {
-            SeverityRule::TimeLeft => SeverityThresholds::Probability(self.serious_probability),
+            SeverityRule::TimeLeft => {
+                SeverityThresholds::TimeLeft { probability: self.serious_probability, delta_v: self.serious_delta_v }
+            }
             SeverityRule::Fhwa => SeverityThresholds::Measures { ttc: self.serious_ttc, drac: self.serious_drac },
             SeverityRule::Ssm => SeverityThresholds::Measures { ttc: 3.0, drac: 3.0 },
         }

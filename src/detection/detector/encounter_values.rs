@@ -147,7 +147,10 @@ impl StepInputs<'_> {
         let [ego, foe] = [&pair[0][0], &pair[1][0]];
         let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
         let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
-        let inputs = SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, collision };
+        let movements = met.slots.map(|slot| (self.state(self.user(slot)).speed, self.profile(self.user(slot)).mass));
+        let [delta_v, of_foe] = measures::delta_v(movements[0], movements[1], encounter.angle);
+        let delta_v = delta_v.max(of_foe);
+        let inputs = SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, delta_v, collision };
         Nearness {
             clearance,
             ttc,
@@ -157,11 +160,8 @@ impl StepInputs<'_> {
             ttb,
             crash_probability,
             crash_probability_braking: self.crash_probability_braking([ego, foe], met, encounter),
-            extended_delta_v: ttc.map(|left| {
-                let [ego, foe] =
-                    met.slots.map(|slot| (self.state(self.user(slot)).speed, self.profile(self.user(slot)).mass));
-                measures::extended_delta_v(ego, foe, encounter.angle, left)
-            }),
+            extended_delta_v: ttc
+                .map(|left| measures::extended_delta_v(movements[0], movements[1], encounter.angle, left)),
             severity: measures::severity(&inputs, self.options.severity_thresholds()),
         }
     }

@@ -40,16 +40,19 @@ pub struct SeverityInputs {
     pub ttb: Option<Second>,
     /// Probability that the driver does not brake in time.
     pub crash_probability: f64,
+    /// The larger ΔV of both if they collided at their present speeds.
+    pub delta_v: MetrePerSecond,
     /// Whether the two collide.
     pub collision: bool,
 }
 
 /// The severity of a conflict in one step.
 pub fn severity(inputs: &SeverityInputs, thresholds: SeverityThresholds) -> Severity {
-    let SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, collision } = *inputs;
+    let SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, delta_v, collision } = *inputs;
     let (critical, serious) = match thresholds {
-        SeverityThresholds::Probability(serious) => {
-            (ttb == Some(0.0), crash_probability > 0.0 && crash_probability >= serious)
+        SeverityThresholds::TimeLeft { probability, delta_v: least_delta_v } => {
+            let is_late = crash_probability > 0.0 && crash_probability >= probability;
+            (ttb == Some(0.0), is_late && delta_v >= least_delta_v)
         }
         SeverityThresholds::Measures { ttc: serious_ttc, drac: serious_drac } => (
             drac.is_some_and(|drac| drac > ego_deceleration),
@@ -112,17 +115,22 @@ mod tests {
             ego_deceleration: 8.0,
             ttb: Some(0.9),
             crash_probability: 0.2,
+            delta_v: 3.0,
             collision: false,
         };
         let fhwa = SeverityThresholds::Measures { ttc: 1.5, drac: 3.4 };
-        let by_probability = [0.2, 0.21].map(|serious| severity(&inputs, SeverityThresholds::Probability(serious)));
-        assert_eq!(by_probability, [Severity::Serious, Severity::Caution]);
+        let time_left = |probability, delta_v| SeverityThresholds::TimeLeft { probability, delta_v };
+        let with = |(probability, delta_v)| severity(&inputs, time_left(probability, delta_v));
+        assert_eq!(
+            [(0.2, 3.0), (0.21, 3.0), (0.2, 3.1)].map(with),
+            [Severity::Serious, Severity::Caution, Severity::Caution]
+        );
         assert_eq!(severity(&inputs, fhwa), Severity::Serious);
         let too_late = SeverityInputs { ttb: Some(0.0), drac: Some(9.0), ..inputs };
-        assert_eq!(severity(&too_late, SeverityThresholds::Probability(1.0)), Severity::Critical);
+        assert_eq!(severity(&too_late, time_left(1.0, 9.0)), Severity::Critical);
         assert_eq!(severity(&too_late, fhwa), Severity::Critical);
         let apart = SeverityInputs { ttc: None, drac: None, ttb: None, crash_probability: 0.0, ..inputs };
-        assert_eq!(severity(&apart, SeverityThresholds::Probability(0.0)), Severity::Caution);
+        assert_eq!(severity(&apart, time_left(0.0, 0.0)), Severity::Caution);
     }
 
     #[test]
