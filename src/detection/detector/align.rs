@@ -78,7 +78,7 @@ impl Detector {
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);
         let aside = off - direction * along;
-        if (LEAST_JUMP..MOST_JUMP).contains(&aside.norm()) && along.abs() < aside.norm() {
+        if aside.norm() >= LEAST_JUMP && off.norm() < MOST_JUMP {
             let mut path = path.clone();
             path.move_on(of_net, state.speed * (self.step - self.behind()));
             self.jumps.push(Jump { row, user, path });
