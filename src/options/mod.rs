@@ -100,8 +100,8 @@ const CONTACT_TOLERANCE: Metre = 0.25;
 const REAR_END_BELOW: Radian = FRAC_PI_6;
 /// Default bound of frontal conflicts: 150°, in rad.
 const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
-/// Default crash probability from which a conflict is serious (docs/model.md has the figures).
-const SERIOUS_PROBABILITY: f64 = 0.1;
+/// Default crash probability from which a conflict is serious: a driver more likely brakes too late than not.
+const SERIOUS_PROBABILITY: f64 = 0.5;
 /// Default ΔV from which a conflict is serious, in m/s: 10 km/h (docs/model.md has the figures).
 const SERIOUS_DELTA_V: MetrePerSecond = 10.0 / 3.6;
 /// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
