@@ -91,8 +91,8 @@ columns! { |conflict, context|
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `critical`: a collision, or even braking fully at once is too late; `serious`: `crash_probability` of at least 0.1;
-    /// `caution`: neither; the worst of all steps ([other rules](model.md#kind-and-severity))
+    /// `critical`: a collision, or even braking fully at once is too late; `serious`: `crash_probability` of at least
+    /// 0.5 where a collision would change a velocity by 10 km/h or more; `caution`: neither; the worst of all steps ([other rules](model.md#kind-and-severity))
     [Required] severity: Severity = conflict.severity;
     /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
