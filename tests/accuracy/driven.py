@@ -4,21 +4,26 @@
 
 Each scenario of sumo_nets/ is recorded once, in steps of 0.1 s, and replayed with `--path lanes` and `--path driven`. Two
 conflicts are the same if they are of the same two road users, of the same kind, and overlap in time. What is left is counted by
-what the two did within 10 s of the conflict: one changed lanes, or one stood.
+what may explain it: the other path gives them another kind at that time; or within 10 s one of the two jumped to another lane, or
+stood.
 """
 
 from __future__ import annotations
 
 import csv
+import math
 import subprocess
 import sys
 import tempfile
 from collections import Counter, defaultdict
 from pathlib import Path
+from typing import NamedTuple
 
 NETS = Path(__file__).parents[2] / "sumo_nets"
-SCENARIOS = ["left_turn", "roundabout", "reckless", "priority", "town"]
+SCENARIOS = ["left_turn", "roundabout", "reckless", "priority", "signals", "motorway", "town"]
 BIN = Path(sys.executable).parent
+ASIDE = 1.0
+"""Metres to the side within one step that are a change of lanes."""
 WITHIN = 10.0
 """Seconds after a conflict's beginning that its explanation is looked for."""
 Row = dict[str, str]
@@ -43,63 +48,74 @@ def replay(name: str, recording: Path, out: Path, *words: str) -> list[Row]:
         return list(csv.DictReader(file))
 
 
-def lanes_of(recording: Path) -> dict[str, list[tuple[float, str, float]]]:
-    """By road user: each step's time, lane and speed."""
-    found: dict[str, list[tuple[float, str, float]]] = defaultdict(list)
-    time = 0.0
+class Step(NamedTuple):
+    time: float
+    x: float
+    y: float
+    angle: float
+    speed: float
+
+
+def steps_of(recording: Path) -> dict[str, list[Step]]:
+    """By vehicle: its steps."""
+    found: dict[str, list[Step]] = defaultdict(list)
     with recording.open() as file:
         for row in csv.DictReader(file, delimiter=";"):
-            time = float(row["timestep_time"])
             if row["vehicle_id"]:
-                found[row["vehicle_id"]].append((time, row["vehicle_lane"], float(row["vehicle_speed"])))
+                values = (float(row[f"vehicle_{name}"]) for name in ("x", "y", "angle", "speed"))
+                found[row["vehicle_id"]].append(Step(float(row["timestep_time"]), *values))
     return found
 
 
-def same(a: Row, b: Row) -> bool:
+def overlap(a: Row, b: Row) -> bool:
     return (
         {a["ego"], a["foe"]} == {b["ego"], b["foe"]}
-        and a["kind"] == b["kind"]
         and float(a["begin"]) <= float(b["end"])
         and float(b["begin"]) <= float(a["end"])
     )
 
 
-def why(row: Row, lanes: dict[str, list[tuple[float, str, float]]]) -> str:
-    """What the two did that may explain a conflict that only one of the paths has."""
-    begin = float(row["begin"])
-    reasons = set()
-    for user in (row["ego"], row["foe"]):
-        steps = [step for step in lanes.get(user, []) if begin - 1 <= step[0] <= float(row["end"]) + WITHIN]
-        for (_, before, _), (_, after, _) in zip(steps, steps[1:]):
-            if before != after and before.rpartition("_")[0] == after.rpartition("_")[0]:
-                reasons.add("changed lanes")
-        if steps and min(speed for _, _, speed in steps) < 0.1:
-            reasons.add("stood")
-    return next((reason for reason in ("changed lanes", "stood") if reason in reasons), "neither")
+def same(a: Row, b: Row) -> bool:
+    return overlap(a, b) and a["kind"] == b["kind"]
+
+
+def jumps(before: Step, after: Step) -> bool:
+    """Whether a vehicle is put on another lane."""
+    course = math.radians(90 - before.angle)
+    east, north = after.x - before.x, after.y - before.y
+    return abs(north * math.cos(course) - east * math.sin(course)) > ASIDE
+
+
+def why(row: Row, others: list[Row], steps_of: dict[str, list[Step]]) -> str:
+    """What may explain a conflict that only one of the paths has."""
+    if any(overlap(row, other) for other in others):
+        return "other kind"
+    first, last = float(row["begin"]) - 1, float(row["end"]) + WITHIN
+    steps = [[step for step in steps_of.get(row[who], []) if first <= step.time <= last] for who in ("ego", "foe")]
+    if any(jumps(*pair) for of in steps for pair in zip(of, of[1:])):
+        return "changed lanes"
+    return "stood" if any(step.speed < 0.1 for of in steps for step in of) else "neither"
 
 
 def main() -> None:
     print("scenario     lanes driven  same   only lanes / only driven")
+    others = {"lanes": "driven", "driven": "lanes"}
     for name in sys.argv[1:] or SCENARIOS:
         with tempfile.TemporaryDirectory() as folder:
             recording = record(name, Path(folder) / f"{name}.csv")
-            conflicts = {
-                path: replay(name, recording, Path(folder) / path, "--path", path) for path in ("lanes", "driven")
-            }
-            lanes = lanes_of(recording)
-            left = {}
-            for path, other in (("lanes", "driven"), ("driven", "lanes")):
-                left[path] = [one for one in conflicts[path] if not any(same(one, it) for it in conflicts[other])]
-            counts = {path: Counter(why(one, lanes) for one in left[path]) for path in left}
-            total = {path: len(rows) for path, rows in conflicts.items()}
-            both = total["lanes"] - len(left["lanes"])
-            told = " / ".join(f"{len(left[path])} {dict(counts[path])}" for path in left)
-            print(f"{name:12} {total['lanes']:5} {total['driven']:6} {both:5}   {told}")
-            if "-v" in sys.argv or len(sys.argv) == 2:
-                for path, rows in left.items():
-                    for one in rows:
-                        keys = ("kind", "ego", "foe", "begin", "end", "margin", "ego_speed", "foe_speed", "manoeuvre")
-                        print(f"   only {path}:", *(one.get(key, "") for key in keys), why(one, lanes))
+            found = {path: replay(name, recording, Path(folder) / path, "--path", path) for path in others}
+            steps = steps_of(recording)
+        told, left = [], {}
+        for path, other in others.items():
+            left[path] = [one for one in found[path] if not any(same(one, it) for it in found[other])]
+            counts = Counter(why(one, found[other], steps) for one in left[path]).most_common()
+            told.append(f"{len(left[path])} ({', '.join(f'{count} {reason}' for reason, count in counts)})")
+        both = len(found["lanes"]) - len(left["lanes"])
+        print(f"{name:12} {len(found['lanes']):5} {len(found['driven']):6} {both:5}   {' / '.join(told)}")
+        for path, other in others.items():
+            for one in left[path] if len(sys.argv) == 2 else []:
+                values = (one[key] for key in ("kind", "ego", "foe", "begin", "end", "margin", "manoeuvre"))
+                print(f"   only {path}:", *values, why(one, found[other], steps))
 
 
 if __name__ == "__main__":

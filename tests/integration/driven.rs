@@ -17,7 +17,8 @@ type Way = Box<dyn Fn(f64) -> Point>;
 /// A recording of cars that drive along their ways at constant speeds, on one lane.
 fn recording(ways: &[(Way, f64)], seconds: f64, rate: f64) -> tempfile::NamedTempFile {
     let mut text =
-        "timestep_time;vehicle_id;vehicle_x;vehicle_y;vehicle_angle;vehicle_speed;vehicle_lane;vehicle_pos\n".to_owned();
+        "timestep_time;vehicle_id;vehicle_x;vehicle_y;vehicle_angle;vehicle_speed;vehicle_lane;vehicle_pos\n"
+            .to_owned();
     for step in 0..(seconds * rate) as u32 {
         let time = f64::from(step) / rate;
         for (number, (way, speed)) in ways.iter().enumerate() {
