@@ -5,6 +5,7 @@
 //! straight on: as the road user last moved, or as it heads if it moves no more.
 
 use std::collections::VecDeque;
+use std::f64::consts::{FRAC_PI_3, FRAC_PI_6};
 
 use super::lanes::LanePath;
 use super::turn;
@@ -18,9 +19,15 @@ const SPACING: Metre = 0.5;
 /// Places nearer than this to where the road user is now are left out, in m.
 const CLEAR: Metre = SPACING / 2.0;
 /// A place is ahead of the last one if the way to it differs by less than this from the way before, or from the mean of both
-/// headings, which is that of an arc, in rad: 15°. What is further to the side or behind comes from reversing or from a change of
-/// lanes within one step, and no vehicle drives so; 3.2 m to the side then are driven within the next 12 m.
-const AHEAD: Radian = std::f64::consts::PI / 12.0;
+/// headings, which is that of an arc, in rad. Nobody drives forward to another: it comes from reversing.
+const AHEAD: Radian = FRAC_PI_3;
+/// The same after a jump to the side, in rad: 15°. SUMO changes lanes within a step; 3.2 m to the side are driven within the next 12 m
+/// instead.
+const AHEAD_OF_JUMP: Radian = FRAC_PI_3 / 4.0;
+/// Between two positions a road user jumps to the side if it moves by more than this across its heading, in m, and so far from it, in
+/// rad. A recording with steps of 1 s has arcs of which the chord and the heading of a long vehicle differ by 20°.
+const LEAST_JUMP: Metre = 1.0;
+const LEAST_ASIDE: Radian = FRAC_PI_6;
 /// After so many metres to the side or behind, a road user does not come back to its former line; no lane of a street is wider.
 const ELSEWHERE: Metre = 10.0;
 /// Before its first place a road user came straight from where it heads, this far: longer than any vehicle of a street, in m.
@@ -47,23 +54,30 @@ pub struct DrivenCourse {
     way: Vector,
     /// The heading at the last place.
     axis: Vector,
-    /// The time of the last position.
+    /// The time of the last position, which may be no place, and the position and heading.
     time: Second,
     before: Point,
+    axis_before: Vector,
+    /// Whether it has jumped to the side since the last place.
+    is_aside: bool,
 }
 
 impl DrivenCourse {
     /// Takes a position and the heading there; adds the places that follow from it.
     pub fn take(&mut self, time: Second, point: Point, axis: Vector, places: &mut Vec<DrivenPlace>) {
-        let jumps = (point - self.before).norm() > SPEED.most * (time - self.time);
-        (self.time, self.before) = (time, point);
+        let (step, along) = (point - self.before, self.axis_before + axis);
+        let jumps = step.norm() > SPEED.most * (time - self.time);
+        let across = cross(&along, &step).abs() / along.norm();
+        self.is_aside |= across > LEAST_JUMP && turn(&along, &step).abs() > LEAST_ASIDE;
+        (self.time, self.before, self.axis_before) = (time, point, axis);
         let Some(last) = self.last.filter(|_| !jumps) else { return self.begin(time, point, axis, places) };
         let way = point - last.point;
         if way.norm() < SPACING {
             return;
         }
-        if turn(&(self.axis + axis), &way).abs() < AHEAD || turn(&self.way, &way).abs() < AHEAD {
-            (self.way, self.axis) = (way, axis);
+        let ahead = if self.is_aside { AHEAD_OF_JUMP } else { AHEAD };
+        if turn(&(self.axis + axis), &way).abs() < ahead || turn(&self.way, &way).abs() < ahead {
+            (self.way, self.axis, self.is_aside) = (way, axis, false);
             self.push(DrivenPlace { time, point, begins: false }, places);
         } else if cross(&axis, &way).abs().max(-axis.dot(&way)) > ELSEWHERE {
             self.begin(time, point, axis, places);
@@ -71,7 +85,7 @@ impl DrivenCourse {
     }
 
     fn begin(&mut self, time: Second, point: Point, axis: Vector, places: &mut Vec<DrivenPlace>) {
-        (self.way, self.axis) = (axis, axis);
+        (self.way, self.axis, self.is_aside) = (axis, axis, false);
         places.push(DrivenPlace { time, point: point - axis * CAME_FROM, begins: true });
         self.push(DrivenPlace { time, point, begins: false }, places);
     }
@@ -242,6 +256,20 @@ mod tests {
         let found = places((0..40).map(|step| (f64::from(step), if step < 20 { 0.0 } else { 500.0 }, 0.0)));
         let fronts = fronts(&found, 1.0, (10.0, 0.0), 30.0);
         assert_eq!(fronts.last(), Some(&Point::new(40.0, 0.0)));
+    }
+
+    #[test]
+    fn a_sharp_bend_of_a_lane_is_driven() {
+        // The heading of a bus of 12 m lags behind: its rear is still before the bend.
+        let bend = |step: u32| {
+            let way = f64::from(step) * 0.32 - 20.0;
+            let (beyond, heading) = (way.max(0.0), (way / 12.0).clamp(0.0, 1.0) * 0.8);
+            (way.min(0.0) + beyond * f64::cos(0.8), beyond * f64::sin(0.8), heading)
+        };
+        let found = places((0..150).map(bend));
+        assert!(found.iter().skip(1).all(|place| !place.begins));
+        let ways = found.windows(2).skip(1).map(|pair| (pair[1].point - pair[0].point).norm());
+        assert!(ways.fold(0.0, f64::max) < 1.0, "{found:?}");
     }
 
     #[test]
