@@ -3,9 +3,9 @@
     python tests/accuracy/driven.py [SCENARIO ...]
 
 Each scenario of sumo_nets/ is recorded once, in steps of 0.1 s, and replayed with `--path lanes` and `--path driven`. Two
-conflicts are the same if they are of the same two road users, of the same kind, and overlap in time. What is left is counted by
-what may explain it: the other path gives them another kind at that time; or within 10 s one of the two jumped to another lane, or
-stood.
+conflicts are the same if they are of the same two road users, of the same kind, and overlap in time. What is left is
+counted by what may explain it: the other path gives them another kind at that time; or within 10 s one of the two jumped
+to another lane, or stood.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ WITHIN = 10.0
 Row = dict[str, str]
 
 
-def record(name: str, file: Path) -> Path:
-    words = ["--step-length", "0.1", "--fcd-output", file, "--fcd-output.attributes", "all", "--precision", "6"]
+def record(name: str, file: Path, step: str = "0.1") -> Path:
+    words = ["--step-length", step, "--fcd-output", file, "--fcd-output.attributes", "all", "--precision", "6"]
     config = NETS / name / f"{name}.sumocfg"
     subprocess.run([BIN / "sumo", "-c", config, *words], check=True, capture_output=True)
     return file

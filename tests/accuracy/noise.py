@@ -2,9 +2,9 @@
 
     python tests/accuracy/noise.py [SCENARIO]
 
-A scenario of sumo_nets/ is recorded at 25 Hz for two minutes. Its vehicles are written as a table of tracks with noise: white, or
-correlated over one second, with the same standard deviation in x and in y, and headings as if both ends of a vehicle were found
-with it. Speeds are left out. Each table is replayed with `--path driven` as it is and smoothed.
+A scenario of sumo_nets/ is recorded at 25 Hz for two minutes. Its vehicles are written as a table of tracks with noise:
+white, or correlated over one second, with the same standard deviation in x and in y, and headings as if both ends of a
+vehicle were found with it. Speeds are left out. Each table is replayed with `--path driven` as it is and smoothed.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as xml
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Callable, Iterator
 
 import numpy as np
 from driven import BIN, NETS, Row, same
@@ -65,7 +65,9 @@ def correlated(random: np.random.Generator, count: int) -> Numbers:
     return noise
 
 
-def write(tracks: list[Track], file: Path, noise: Callable[[np.random.Generator, int], Numbers], deviation: float) -> None:
+def write(
+    tracks: list[Track], file: Path, noise: Callable[[np.random.Generator, int], Numbers], deviation: float
+) -> None:
     random = np.random.default_rng(7)
     with file.open("w") as out:
         print("id,time,x,y,heading,length,width", file=out)

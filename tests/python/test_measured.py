@@ -71,7 +71,7 @@ def tracks(file: Path, ways: dict[str, Way], noise: float, exchange: tuple[int, 
         for name, way in ways.items():
             id_ = name
             if exchange and frame >= exchange[0] and name in exchange[1:]:
-                id_ = exchange[1 + (name == exchange[1])]
+                id_ = exchange[2] if name == exchange[1] else exchange[1]
             x, y = way.x + way.speed * frame / 25, way.y
             lines.append(f"{id_},{frame / 25},{draw.gauss(x, noise)},{draw.gauss(y, noise)}")
     file.write_text("\n".join(lines) + "\n")
@@ -91,7 +91,9 @@ def test_cars_that_pass_each_other_are_in_conflict_for_noise_only(tmp_path: Path
             "smoothed": len(api.replay(noisy, COLUMNS, path=path, smooth=0.3)),
         }
         assert conflicts["truth"] == 0 and conflicts["smoothed"] <= conflicts["noisy"], conflicts
-    assert len(api.replay(noisy, COLUMNS, path="straight")) > len(api.replay(noisy, COLUMNS, path="straight", smooth=0.3))
+    assert len(api.replay(noisy, COLUMNS, path="straight")) > len(
+        api.replay(noisy, COLUMNS, path="straight", smooth=0.3)
+    )
     with pytest.raises(ValueError, match="smooth"):
         api.replay(noisy, COLUMNS, smooth=-1.0)
 
@@ -105,7 +107,10 @@ def test_exchanged_identities_and_jumps_are_told_and_not_mended(words: tuple[str
 
     assert "identities" not in (clean := told(tracks(tmp_path / "clean.csv", PASSING, 0.1))) and "jumps" not in clean
     exchanged = told(tracks(tmp_path / "exchanged.csv", PASSING, 0.1, exchange=(50, "a", "b")))
-    assert 'identities: 1 time two road users exchange their places between two rows, first "a" and "b" at 2 s' in exchanged
+    assert (
+        'identities: 1 time two road users exchange their places between two rows, first "a" and "b" at 2 s'
+        in exchanged
+    )
     assert "jumps" not in exchanged
     lines = tracks(tmp_path / "jump.csv", PASSING, 0.1).read_text().splitlines()
     lines[121] = "a,2.4,48.0,9.0"
