@@ -3,8 +3,8 @@
     python tests/accuracy/driven.py [SCENARIO ...]
 
 Each scenario of sumo_nets/ is recorded once, in steps of 0.1 s, and replayed with `--path lanes` and `--path driven`.
-Two conflicts are the same if they are of the same two road users and the same kind, and overlap in time. What is left is
-counted by what may explain it: the other path gives them another kind at that time; or within 10 s one of the two
+Two conflicts are the same if they are of the same two road users and the same kind, and overlap in time. What is left
+is counted by what may explain it: the other path gives them another kind at that time; or within 10 s one of the two
 jumped to another lane; or one stood.
 """
 

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 /// The length of SUMO's default car in m.
 const CAR: f64 = 5.0;
 
-/// A car's way: the place of its front bumper after so many metres, 0 where the recording begins.
+/// A car's way: the place of its front bumper by the metres driven, 0 where the recording begins.
 type Way = Box<dyn Fn(f64) -> Point>;
 
 /// A recording of cars that drive along their ways at constant speeds, on one lane.
@@ -44,7 +44,7 @@ fn replay(file: &Path, net: Option<&Arc<Net>>, settings: &[(&str, &str)], mut ea
     }
 }
 
-/// East, round a quarter of a circle to the left, north: the circle, of 10 m radius, begins after so many metres.
+/// East, round a quarter of a circle to the left, north: the circle, of 10 m radius, begins after `turns_after` metres.
 fn left_turn(from: Point, turns_after: f64) -> Way {
     Box::new(move |way| {
         let round = (way - turns_after).clamp(0.0, 10.0 * FRAC_PI_2);

@@ -28,9 +28,9 @@ const AHEAD_OF_JUMP: Radian = FRAC_PI_3 / 4.0;
 /// rad. A recording with steps of 1 s has arcs of which the chord and the heading of a long vehicle differ by 20°.
 const LEAST_JUMP: Metre = 1.0;
 const LEAST_ASIDE: Radian = FRAC_PI_6;
-/// After so many metres to the side or behind, a road user does not come back to its former line; no lane of a street is wider.
+/// Further to the side or behind than this, in m, a road user does not come back to its former line: no lane of a street is wider.
 const ELSEWHERE: Metre = 10.0;
-/// Before its first place a road user came straight from where it heads, this far: longer than any vehicle of a street, in m.
+/// Before its first place a road user drove straight on for this distance, in m: no vehicle of a street is longer.
 const CAME_FROM: Metre = 30.0;
 /// The line is built this much longer than needed, in m.
 const SPARE: Metre = 10.0;

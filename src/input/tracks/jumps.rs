@@ -2,7 +2,7 @@
 
 use super::smooth::Jump;
 
-/// Jumps that are compared with each other: more tell no more, as a recording with so many is of no use.
+/// Jumps that are compared with each other: a recording with more is useless.
 const COMPARED: usize = 1 << 16;
 /// Each of two that exchange their identities is so much nearer to where the other was expected.
 const NEARER: f64 = 0.5;

@@ -20,11 +20,11 @@ const TURNING: f64 = 1.0;
 /// Standard deviations of a speed, an acceleration, a turning speed and its change before a track is known, in SI units.
 const UNKNOWN: [f64; 2] = [40.0, 5.0];
 const UNKNOWN_TURN: [f64; 2] = [1.0, 1.0];
-/// A value that is so many standard deviations from its prediction is not noise.
+/// A value further from its prediction than this number of standard deviations is not noise.
 const SURE: f64 = 5.0;
-/// A velocity below so many standard deviations is that of a road user that stands.
+/// A velocity below this number of standard deviations is that of a road user that stands.
 const MOVES: f64 = 3.0;
-/// A place nearer than this to its prediction is no jump, in m: no identity switch of two vehicles is shorter.
+/// A place nearer than this to its prediction is not a jump, in m: two vehicles that exchange identities are further apart.
 const LEAST_JUMP: Metre = 2.0;
 
 /// A place that its road user cannot have driven to.
@@ -46,7 +46,7 @@ struct Model {
     noise: f64,
     density: f64,
     unknown: [f64; 2],
-    /// The least distance of a value from its prediction that is no noise.
+    /// The least distance of a value from its prediction that is not noise.
     least_jump: f64,
 }
 
@@ -73,8 +73,8 @@ impl Smoother {
         Self { noise, filtered: Vec::new() }
     }
 
-    /// Finds the jumps of a track and smooths it, if that is wanted: places, headings, and the headings and speeds that it lacks
-    /// as far as they follow. Returns how many of these it added.
+    /// Finds the jumps of a track and smooths it, if that is wanted: its places and headings. Adds the headings and speeds that it lacks,
+    /// where the road user moves, and returns their numbers.
     pub fn smooth(&mut self, track: &mut [Row], mut jumped: impl FnMut(Jump)) -> [u64; 2] {
         let noise = self.noise.unwrap_or(USUAL_NOISE);
         let places = Model { noise, density: JERK, unknown: UNKNOWN, least_jump: LEAST_JUMP };
