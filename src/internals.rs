@@ -57,8 +57,8 @@ pub mod input {
     pub use crate::input::sumo_files::{check_xml, fault, net_of};
     #[cfg(feature = "cli")]
     pub use crate::input::tracks::{
-        Opened as OpenedTracks, RecordingFormat, TrackOptions, TrackOrigin, inspect as inspect_tracks,
-        open as open_tracks,
+        NOISE, Opened as OpenedTracks, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE,
+        inspect as inspect_tracks, open as open_tracks,
     };
 }
 

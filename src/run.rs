@@ -20,6 +20,7 @@ use ordinary_driving::OrdinaryDriving;
 use rustc_hash::FxHashSet;
 
 use crate::detection::detector::Detector;
+use crate::detection::path::driven::DrivenPlace;
 use crate::events::{Clips, Conflict, Tracker};
 use crate::geometry::Point;
 use crate::options::Options;
@@ -201,6 +202,11 @@ impl Run {
     pub fn set_placement(&mut self, row: u32, placement: &Placement) {
         self.detector.set_placement(&self.frame, &self.roster, row, placement);
         self.writing.outputs.place(row, placement);
+    }
+
+    /// States places to which a road user will drive, or where it is now, for `--path driven`.
+    pub(crate) fn drive(&mut self, user: UserIndex, places: impl IntoIterator<Item = DrivenPlace>) {
+        self.detector.drive(user, places);
     }
 
     /// By how many lanes the road user of a row has changed in the step under way, positive towards lanes of a higher index;

@@ -96,6 +96,7 @@ impl Checker {
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
+        options.check_future_is_unknown().map_err(exception)?;
         let given = net.clone();
         let net = match (net, source) {
             (Some(path), _) => Some(std::sync::Arc::new(Net::read(&path).map_err(exception)?)),

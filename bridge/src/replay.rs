@@ -11,7 +11,7 @@ use arrow_array::types::{
 use arrow_array::{Array, ArrayRef, RecordBatchReader};
 use arrow_schema::DataType;
 use clap::ValueEnum;
-use closecall::internals::input::{RecordingFormat, TrackOptions, TrackOrigin, open_tracks};
+use closecall::internals::input::{NOISE, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, open_tracks};
 use closecall::internals::output::COLUMNS;
 use closecall::{Error, Net, Options, Replay, Run};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -34,6 +34,8 @@ const STREAM: &str = "__arrow_c_stream__";
 ///     format: the format of a recording, as on the command line; by default as its first bytes and columns tell.
 ///     frame_rate: frames per second, where the time is a number of frames.
 ///     origin: what x and y are: "centre" or "front".
+///     smooth: the standard deviation in m of the noise in places, which are smoothed then; True is 0.1. By default nothing is
+///         smoothed.
 ///     net: the net file; without one, paths follow no lanes.
 ///     route_files: route and additional files that define the types and routes of SUMO's recordings.
 ///     **options: the long options of the command line, with underscores: `path="arc"`, `log="ttc < 3"`.
@@ -42,7 +44,7 @@ const STREAM: &str = "__arrow_c_stream__";
 ///     ValueError: the data cannot be used; the message names row and column.
 ///     OSError: a file cannot be read.
 #[pyfunction]
-#[pyo3(signature = (data, columns=None, *, format=None, frame_rate=None, origin=None, net=None, route_files=Vec::new(), **options))]
+#[pyo3(signature = (data, columns=None, *, format=None, frame_rate=None, origin=None, smooth=None, net=None, route_files=Vec::new(), **options))]
 #[expect(clippy::too_many_arguments, reason = "each is a keyword in Python")]
 pub fn replay(
     py: Python,
@@ -51,6 +53,7 @@ pub fn replay(
     format: Option<&str>,
     frame_rate: Option<f64>,
     origin: Option<&str>,
+    smooth: Option<&Bound<PyAny>>,
     net: Option<PathBuf>,
     route_files: Vec<PathBuf>,
     options: Option<&Bound<PyDict>>,
@@ -60,6 +63,7 @@ pub fn replay(
     tracks.format =
         format.map(|name| RecordingFormat::from_str(name, true)).transpose().map_err(PyValueError::new_err)?;
     tracks.origin = origin.map(|name| TrackOrigin::from_str(name, true)).transpose().map_err(PyValueError::new_err)?;
+    tracks.smooth = smooth.map(noise_of).transpose()?.flatten();
     let check = |path: &Path| check(path, &tracks, net.as_deref(), &route_files, &options);
     if let Ok(path) = data.extract::<PathBuf>() {
         return py.detach(|| check(&path)).map_err(exception).and_then(|run| table(&run));
@@ -72,6 +76,15 @@ pub fn replay(
         error => exception(error),
     })?;
     table(&run)
+}
+
+/// The noise that is to be smoothed; none for False.
+fn noise_of(smooth: &Bound<PyAny>) -> PyResult<Option<f64>> {
+    if let Ok(wanted) = smooth.extract::<bool>() {
+        return Ok(wanted.then_some(USUAL_NOISE));
+    }
+    let noise = smooth.extract::<f64>()?;
+    NOISE.check("smooth", noise).map(Some).map_err(PyValueError::new_err)
 }
 
 /// The text of `--columns`.

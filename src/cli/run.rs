@@ -74,6 +74,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);
     let options = arguments.check.checked(&out)?;
+    options.check_future_is_unknown()?;
     let mut sumo_words = vec!["-c".to_owned(), scenario.display().to_string()];
     let times = [("--begin", arguments.begin), ("--end", arguments.end), ("--step-length", arguments.step_length)];
     for (option, time) in times {

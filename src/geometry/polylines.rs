@@ -63,6 +63,13 @@ impl Lines {
         self.begins.push(end);
     }
 
+    /// Removes all lines, and begins one anew; keeps the memory.
+    pub(crate) fn restart(&mut self) {
+        self.vertices.clear();
+        self.begins.clear();
+        self.begin();
+    }
+
     /// Sets how many metres along the line a metre of the plane is, for the points that follow.
     pub(crate) fn set_stretch(&mut self, stretch: f64) {
         self.stretch = stretch;

@@ -69,6 +69,8 @@ pub enum PathModel {
     Arc,
     /// Straight on along its heading.
     Straight,
+    /// Where it really drove afterwards: only a recording knows.
+    Driven,
 }
 
 /// The deceleration of SUMO's vehicle type that a vehicle brakes with.
@@ -121,7 +123,7 @@ pub struct Options {
     /// Model of the minimal collision distance μ.
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub mu: MuModel,
-    /// Expected path of a braking road user; without a net, `lanes` means straight on.
+    /// Expected path of a braking road user; without a net, `lanes` means straight on. `driven` is for recordings only.
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub path: PathModel,
     /// SUMO attribute that sets the deceleration of a vehicle type without a value of its own.
@@ -296,6 +298,20 @@ impl Options {
             Some(SeriesFormat::Parquet) => Some(SERIES_PARQUET),
             None => self.log_encounters.then_some(ENCOUNTERS),
         }
+    }
+
+    /// Checks that the options are possible for road users whose future is not known.
+    ///
+    /// # Errors
+    /// [`Error::Value`] if they are to be met where they really drive.
+    pub fn check_future_is_unknown(&self) -> Result<()> {
+        if self.path != PathModel::Driven {
+            return Ok(());
+        }
+        Err(Error::Value(
+            "path: driven is where road users drive afterwards, which only a recording knows: see closecall replay"
+                .to_owned(),
+        ))
     }
 
     /// Checks that the options are consistent.

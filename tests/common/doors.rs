@@ -264,7 +264,7 @@ pub fn replay(bytes: &[u8]) {
     fs::write(&fcd, recording).unwrap();
     fs::write(&rou, demand.strip_prefix(&[0]).unwrap_or(b"<routes/>")).unwrap();
     let net = Arc::new(a_net());
-    for path in ["lanes", "arc"] {
+    for path in ["lanes", "arc", "driven"] {
         let options = Options::from_settings([("path", path.to_owned())]).unwrap();
         let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), Some(&net), &options) else { return };
         let mut run = Run::new(&options, Some(net.clone())).unwrap();

@@ -9,6 +9,7 @@ mod clips;
 mod command_line;
 mod contact;
 mod detector;
+mod driven;
 mod hostile;
 mod lane_lengths;
 mod lanes;

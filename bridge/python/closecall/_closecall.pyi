@@ -19,6 +19,7 @@ def replay(
     format: str | None = None,
     frame_rate: float | None = None,
     origin: str | None = None,
+    smooth: float | bool | None = None,
     net: str | PathLike[str] | None = None,
     route_files: Sequence[str | PathLike[str]] = ...,
     **options: Any,

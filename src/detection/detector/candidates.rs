@@ -60,6 +60,9 @@ impl Detector {
         self.redo_jumps();
         self.on_lanes.clear();
         self.on_lanes.resize(frame.len(), false);
+        if self.turns() == PathSource::Driven {
+            self.lay_driven(frame, roster);
+        }
         if self.turns() == PathSource::Lanes {
             for (row, Row { user, state }) in frame.rows().enumerate() {
                 let profile = roster.profile_of(user);
@@ -94,6 +97,7 @@ impl Detector {
         match self.options.path {
             _ if self.options.mode == Mode::Paper => PathSource::Straight,
             PathModel::Arc => PathSource::Arcs,
+            PathModel::Driven => PathSource::Driven,
             PathModel::Lanes if self.net.is_some() => PathSource::Lanes,
             PathModel::Lanes | PathModel::Straight => PathSource::Straight,
         }
@@ -157,7 +161,7 @@ impl Detector {
         });
         for number in 0..busy {
             while let Some(user) = self.workers[number].absent.pop() {
-                self.forget(user);
+                self.lose(user);
             }
         }
     }

@@ -10,6 +10,7 @@ mod align;
 mod candidates;
 mod course;
 mod cover;
+mod driving;
 mod encounter_values;
 mod encounters;
 mod jump;
@@ -36,6 +37,7 @@ use std::sync::Arc;
 use super::broad_phase::Search;
 use super::course::LaneChange;
 use super::encounter::Encounter;
+use super::path::driven::DrivenPlaces;
 use super::path::lanes::LanePath;
 use super::path::turning::Turning;
 use crate::braking::MuModel;
@@ -96,6 +98,8 @@ pub struct Detector {
     users_further: Vec<User>,
     /// By [`UserIndex`], as long as the road user is in the scene.
     paths: Vec<LanePath>,
+    /// By [`UserIndex`]; empty unless paths are what was driven.
+    driven: Vec<DrivenPlaces>,
     /// By [`UserIndex`]; empty unless paths are arcs.
     turnings: Vec<Turning>,
     /// By row of the frame, whether the road user is on its path along lanes.
@@ -139,6 +143,7 @@ impl Detector {
             look: look_ahead(options),
             users_further: Vec::new(),
             paths: Vec::new(),
+            driven: Vec::new(),
             turnings: Vec::new(),
             on_lanes: Vec::new(),
             speeds: Vec::new(),
@@ -224,6 +229,14 @@ impl Detector {
 
     /// Forgets a road user that has left the scene, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
+        self.lose(user);
+        if let Some(places) = self.driven.get_mut(user.0 as usize) {
+            places.clear();
+        }
+    }
+
+    /// Forgets what was known of a road user that is not in the step.
+    fn lose(&mut self, user: UserIndex) {
         self.next_paths.retain(|(other, _)| *other != user);
         if let Some(path) = self.paths.get_mut(user.0 as usize) {
             path.clear();

@@ -15,6 +15,14 @@ pub(super) enum PathSource {
     Straight,
     Arcs,
     Lanes,
+    Driven,
+}
+
+impl PathSource {
+    /// Whether road users have tracks that they follow.
+    pub(super) fn has_tracks(self) -> bool {
+        matches!(self, Self::Lanes | Self::Driven)
+    }
 }
 
 /// All paths, and the lines of the net's lanes, which most of them follow.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::Detector;
+use super::paths::PathSource;
 use super::reach::User;
 use crate::detection::measures::ttc::HORIZON;
 use crate::detection::path::Pose;
@@ -58,7 +59,7 @@ impl Detector {
     /// Extends all paths as far as both phases look, whether in a pair or not: a road user at the end of its path would
     /// get another one.
     pub(super) fn lengthen_all(&mut self, frame: &Frame, roster: &Roster) {
-        let Some(net) = &self.net else { return };
+        let Some(net) = self.net.as_ref().filter(|_| self.turns() == PathSource::Lanes) else { return };
         let cover = self.cover();
         for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
             if *on_lanes || self.look.is_some() {
@@ -71,6 +72,9 @@ impl Detector {
 
     /// Extends a road user's path this far ahead, if its route reaches that far.
     pub(super) fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
+        if self.turns() == PathSource::Driven {
+            return self.lengthen_driven(user, way);
+        }
         if let Some(net) = &self.net {
             self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).length, way);
         }

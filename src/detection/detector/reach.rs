@@ -86,7 +86,7 @@ impl StepView<'_> {
         let RowView { row: Row { user: index, ref state }, profile: type_index } = *seen;
         let (profile, moves) = (self.roster.profile_at(type_index), state.moves());
         let axis = if last.heading == state.heading { last.axis } else { direction(state.heading) };
-        let on_lanes = self.turns == PathSource::Lanes && self.on_lanes[row as usize];
+        let on_lanes = self.turns.has_tracks() && self.on_lanes[row as usize];
         let goes_straight = || {
             let (track, lines) = self.paths.track(index);
             let length = if profile.carriages > 1 { profile.length } else { profile.chord };
@@ -95,8 +95,9 @@ impl StepView<'_> {
         let ahead = match self.turns {
             PathSource::Straight => true,
             PathSource::Arcs => profile.category == Category::Obstacle,
-            PathSource::Lanes if on_lanes => goes_straight(),
+            PathSource::Lanes | PathSource::Driven if on_lanes => goes_straight(),
             PathSource::Lanes => !moves || profile.category != Category::Vehicle,
+            PathSource::Driven => true,
         };
         let last = || self.speeds.get(index.0 as usize);
         let is_new = || last().is_none_or(|last| last.speed.is_nan());
@@ -127,7 +128,11 @@ impl StepView<'_> {
     /// where it stands on them.
     pub fn further(&self, user: &User) -> User {
         let has_path = || self.paths.of(user.index).is_some_and(|path| !path.track.is_empty());
-        let may_have = self.turns == PathSource::Lanes && user.category == Category::Vehicle;
+        let may_have = match self.turns {
+            PathSource::Lanes => user.category == Category::Vehicle,
+            PathSource::Driven => user.category != Category::Obstacle,
+            PathSource::Straight | PathSource::Arcs => false,
+        };
         let on_lanes = user.on_lanes || (may_have && has_path());
         let ahead = user.ahead && !on_lanes;
         let bends = on_lanes && !ahead && self.roster.profile_at(user.profile).carriages > 1;

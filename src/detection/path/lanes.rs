@@ -152,6 +152,30 @@ impl LanePath {
         self.shrink();
     }
 
+    /// Begins a path that follows no lanes with the points behind the front bumper and where that is.
+    pub(super) fn begin_driven(&mut self, behind: impl Iterator<Item = Point>, front: Point) {
+        self.moved_back = 0.0;
+        self.own.get_or_insert_default().begin(&mut self.track, behind, front);
+    }
+
+    /// Extends such a path to a point.
+    pub(super) fn drive_to(&mut self, point: Point) {
+        if let Some(own) = &mut self.own {
+            own.extend(&mut self.track, point);
+        }
+    }
+
+    /// Extends such a path straight on to a distance ahead of the front bumper: as its end leads, or as the heading is if it
+    /// ends there.
+    pub(super) fn drive_on(&mut self, axis: Vector, distance: Metre) {
+        let ahead = self.track.ahead();
+        let end = self.own.as_ref().and_then(|own| own.end());
+        if let Some((point, direction)) = end {
+            let direction = if ahead > 0.0 { direction } else { axis };
+            self.drive_to(point + direction * (distance - ahead));
+        }
+    }
+
     /// Extends the path to at least a distance ahead of the front bumper, if the route goes that far, and removes what
     /// lies behind the rear bumper.
     pub fn extend(&mut self, net: &Net, length: Metre, distance: Metre) {
@@ -208,7 +232,7 @@ impl LanePath {
 
     /// Whether it leads against the direction of its lane.
     pub fn is_against(&self) -> bool {
-        self.edge.is_none() && !self.track.is_empty()
+        self.edge.is_none() && !self.track.is_empty() && self.own.as_ref().is_none_or(|own| own.last().is_some())
     }
 
     /// The lateral speed with which it was begun, positive to the left.

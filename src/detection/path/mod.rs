@@ -1,11 +1,12 @@
 //! The expected path of a road user while it brakes, as poses.
 //!
 //! A pose is the chord from the rear to the front bumper, both on the path, as in SUMO. [`straight`] needs only the state,
-//! [`arc`] the [`turning`] too; [`lanes`] needs the net and the route. The latter builds a [`track::Track`] once and then follows
-//! it; `poses` has the poses along a track.
+//! [`arc`] the [`turning`] too; [`lanes`] needs the net and the route, and [`driven`] the future. The last two build a
+//! [`track::Track`]; `poses` has the poses along it.
 
 pub mod arc;
 mod cursor;
+pub mod driven;
 mod foot;
 pub mod lanes;
 mod lateral_offset;

@@ -3,8 +3,8 @@
 
 use super::lateral_offset::OffsetLine;
 use super::track::Track;
-use crate::geometry::Point;
 use crate::geometry::polylines::{Lines, Vertex};
+use crate::geometry::{Point, Vector};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::util::units::{Metre, MetrePerSecond};
 
@@ -54,6 +54,26 @@ impl OwnLine {
             track.begin(&own.lines, LINE, front);
         }
         own
+    }
+
+    /// A line through the points behind a front bumper, and through it.
+    pub fn begin(&mut self, track: &mut Track, behind: impl Iterator<Item = Point>, front: Point) {
+        self.lines.restart();
+        behind.for_each(|point| self.lines.push(point));
+        self.lines.push(front);
+        track.begin(&self.lines, LINE, self.lines.length(LINE));
+    }
+
+    /// Extends a line that follows no lanes to a point.
+    pub fn extend(&mut self, track: &mut Track, point: Point) {
+        self.lines.push(point);
+        track.begin(&self.lines, LINE, track.front());
+    }
+
+    /// The point and the direction of its end.
+    pub fn end(&self) -> Option<(Point, Vector)> {
+        let [.., before, end] = self.lines.line(LINE) else { return None };
+        Some((end.point, (end.point - before.point).normalize()))
     }
 
     /// A copy of the lines of a track.

@@ -1,7 +1,8 @@
 //! Replay: SUMO's fcd-output as frames, through the same checks as a live run. SUMO is not needed.
 //!
-//! The recording is read twice: once for the routes that the vehicles drove, then step by step. Before that, its beginning
-//! tells whether it fits the net and how SUMO moved the vehicles.
+//! The recording is read twice: once for the routes that the vehicles drove, then step by step. Where paths are those that
+//! were driven, a second reader is ahead of the replay. Before that, its beginning tells whether it fits the net and how SUMO
+//! moved the vehicles.
 
 mod clock;
 mod columns;
@@ -11,6 +12,7 @@ mod csv;
 pub mod demand;
 mod drive;
 mod fit;
+mod future;
 mod lanes;
 pub mod lights;
 mod lists;
@@ -37,7 +39,7 @@ use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashSet;
 
-use crate::options::{Options, PathModel};
+use crate::options::{Mode, Options, PathModel};
 use crate::run::Run;
 use crate::traffic::frame::State;
 use crate::traffic::net::Net;
@@ -47,6 +49,7 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
+use future::Future;
 use lanes::{Lanes, heading, is_opposite};
 use lights::RecordedLights;
 use recording::Recording;
@@ -73,6 +76,8 @@ pub struct Replay {
     lanes: Lanes,
     /// None where paths do not follow lanes.
     routes: Option<Routes>,
+    /// None where paths are not those that were driven.
+    future: Option<Future>,
     /// None where it is not known what the traffic lights showed.
     lights: Option<RecordedLights>,
     options: Options,
@@ -116,6 +121,8 @@ impl Replay {
         let projection = net.map(|net| fit::projection(path, net)).transpose()?.flatten();
         let on_lanes = net.filter(|_| options.path == PathModel::Lanes);
         let routes = on_lanes.map(|net| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
+        let is_driven = options.path == PathModel::Driven && options.mode == Mode::Closecall;
+        let future = if is_driven { Some(Future::open(path)?) } else { None };
         Ok(Self {
             path: path.to_path_buf(),
             recording,
@@ -127,6 +134,7 @@ impl Replay {
             undefined: BTreeSet::new(),
             lanes: Lanes::default(),
             routes,
+            future,
             lights: None,
             options: options.clone(),
             step_length,
@@ -229,6 +237,9 @@ impl Replay {
         if let Some(projection) = &self.projection {
             self.step.project(projection).map_err(|message| Error::content(&self.path, message))?;
         }
+        if let Some(future) = &mut self.future {
+            future.look_from(self.step.time, self.projection.as_ref());
+        }
         self.vehicles.clear();
         if self.step.persons() > 0 {
             self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(exact_state));
@@ -241,6 +252,9 @@ impl Replay {
                 Some(Some(user)) => user.index,
                 _ => self.enter(&row, run)?,
             };
+            if let Some(places) = self.future.as_mut().and_then(|future| future.take(row.user)) {
+                run.drive(user, places);
+            }
             if let (false, Some(net)) = (row.person, run.net()) {
                 self.vehicle_rows += 1;
                 self.unknown_lanes += u64::from(self.lanes.lane(row.lane, &self.recording, net).is_none());
@@ -256,6 +270,9 @@ impl Replay {
         }
         for user in self.step.gone() {
             self.gone.extend(self.users.get_mut(*user as usize).and_then(Option::take).map(|user| user.index));
+            if let Some(future) = &mut self.future {
+                future.leave(*user);
+            }
         }
         self.gone.sort_unstable();
         self.gone.drain(..).for_each(|user| run.leave(user));

@@ -1,6 +1,11 @@
 //! Which column of a table is what, in which unit: the text of `--columns`, and the options beside it.
 
 use super::format::RecordingFormat;
+use crate::util::limits::{Limit, RESERVE};
+use crate::util::units::Metre;
+
+/// The noise of a place: one of 10 m tells no lane from the next.
+pub const NOISE: Limit = Limit { of: "noise", least: 0.0, is_open: true, most: 10.0, ..RESERVE };
 
 /// How a table of trajectories is read.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -23,6 +28,20 @@ pub struct TrackOptions {
     /// What x and y of --columns are: the middle of the road user, or of its front.
     #[cfg_attr(feature = "cli", arg(long, value_enum, value_name = "PLACE"))]
     pub origin: Option<Origin>,
+    /// Smooth the places and headings of a table of trajectories. M is the standard deviation of the noise in a place, in m; without
+    /// a value 0.1.
+    #[cfg_attr(
+        feature = "cli",
+        arg(long, value_name = "M", num_args = 0..=1, require_equals = true, default_missing_value = "0.1", value_parser = noise)
+    )]
+    pub smooth: Option<Metre>,
+}
+
+/// The standard deviation of noise in m.
+#[cfg(feature = "cli")]
+fn noise(text: &str) -> Result<Metre, String> {
+    let noise = text.parse().ok().filter(|noise| NOISE.holds(*noise));
+    noise.ok_or_else(|| format!("it must be {}", NOISE.range()))
 }
 
 /// What x and y of a road user are.

@@ -7,12 +7,14 @@ mod detect;
 mod format;
 mod fzp;
 mod inspect;
+mod jumps;
 mod layouts;
 mod mapping;
 mod matching;
 mod meta;
 mod rows;
 mod sample;
+mod smooth;
 mod spill;
 mod table;
 mod trj;
@@ -25,9 +27,10 @@ use crate::traffic::net::Net;
 use crate::{Error, Result};
 pub use format::RecordingFormat;
 pub use inspect::inspect;
-pub use mapping::{Origin as TrackOrigin, TrackOptions};
+pub use mapping::{NOISE, Origin as TrackOrigin, TrackOptions};
 use matching::LaneFinder;
 use sample::FcdWriter;
+pub use smooth::USUAL_NOISE;
 
 /// A recording as files that replay reads; they are gone when it is dropped.
 #[derive(Debug)]
@@ -90,6 +93,11 @@ pub fn open(path: &Path, options: &TrackOptions, net: Option<&Net>) -> Result<Op
         None if !options.columns.is_empty() => RecordingFormat::Table,
         None => detect::format_of(path)?,
     };
+    if let (Some(_), RecordingFormat::Fcd | RecordingFormat::Trj | RecordingFormat::Fzp) = (options.smooth, format) {
+        let message =
+            "a simulation recorded it, so that its places have no noise: --smooth is for tables of trajectories";
+        return Err(Error::content(path, message));
+    }
     if format == RecordingFormat::Fcd {
         return Ok(Opened::Fcd(path.to_owned()));
     }
@@ -97,7 +105,7 @@ pub fn open(path: &Path, options: &TrackOptions, net: Option<&Net>) -> Result<Op
     let remarks = match format {
         RecordingFormat::Trj => trj::convert(path, net, &mut writer)?,
         RecordingFormat::Fzp => fzp::convert(path, &mut writer)?,
-        _ => rows::convert(path, &layouts::mapping_of(format, options)?, &mut writer)?,
+        _ => rows::convert(path, &layouts::mapping_of(format, options)?, options.smooth, &mut writer)?,
     };
     let (fcd, types) = writer.finish().map_err(|source| Error::file(path, source))?;
     let is_measured = !matches!(format, RecordingFormat::Trj | RecordingFormat::Fzp);

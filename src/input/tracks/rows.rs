@@ -7,10 +7,12 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
+use super::jumps::Jumps;
 use super::layouts::hint;
 use super::mapping::{Field, Mapping, Origin};
 use super::meta::read_meta;
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
+use super::smooth::Smoother;
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
 use crate::geometry::Point;
@@ -97,8 +99,13 @@ impl Users {
     }
 }
 
-/// Turns a table into SUMO's fcd-output; returns what had to be assumed.
-pub(super) fn convert(path: &Path, mapping: &Mapping, out: &mut FcdWriter) -> Result<Vec<String>> {
+/// Turns a table into SUMO's fcd-output, smoothed if its places have this noise; returns what had to be assumed.
+pub(super) fn convert(
+    path: &Path,
+    mapping: &Mapping,
+    noise: Option<Metre>,
+    out: &mut FcdWriter,
+) -> Result<Vec<String>> {
     let mut users = Users::default();
     let mut frame_rate = mapping.frame_rate;
     if mapping.has_meta {
@@ -109,7 +116,14 @@ pub(super) fn convert(path: &Path, mapping: &Mapping, out: &mut FcdWriter) -> Re
     let by_user = read(path, mapping, frame_rate, &mut users)?;
     let fault = |source| Error::file(path, source);
     let mut steps = Sorter::new(Order::Steps);
-    let derived = each_track(by_user, |track| track.iter().try_for_each(|row| steps.push(*row))).map_err(fault)?;
+    let (mut smoother, mut jumps, mut derived) = (Smoother::new(noise), Jumps::default(), [0, 0]);
+    let complete = |track: &mut [Row]| {
+        let added = smoother.smooth(track, |jump| jumps.add(jump));
+        derived = [0, 1].map(|of| derived[of] + added[of]);
+        complete(track, &mut derived);
+        track.iter().try_for_each(|row| steps.push(*row))
+    };
+    each_track(by_user, complete).map_err(fault)?;
     let mut steps = steps.sorted().map_err(fault)?;
     while let Some(Row { user, class, time, values: [x, y, heading, speed, length, width] }) =
         steps.next().map_err(fault)?
@@ -123,7 +137,8 @@ pub(super) fn convert(path: &Path, mapping: &Mapping, out: &mut FcdWriter) -> Re
             out.write(&Sample { time, id, class, front, height: 0.0, heading, speed, length, width, lane: None });
         written.map_err(|why| Error::content(path, format!("\"{id}\" at {time} s: {why}")))?;
     }
-    Ok(remarks(&users, derived))
+    let id = |user: u32| users.ids.get(user as usize).map_or("", String::as_str);
+    Ok(remarks(&users, derived).into_iter().chain(jumps.remarks(id)).collect())
 }
 
 fn remarks(users: &Users, [headings, speeds]: [u64; 2]) -> Vec<String> {
@@ -239,20 +254,18 @@ impl RowReader<'_> {
     }
 }
 
-/// Completes the tracks one by one; returns how many headings and speeds had to be derived.
-fn each_track(mut rows: Sorted, mut with: impl FnMut(&[Row]) -> std::io::Result<()>) -> std::io::Result<[u64; 2]> {
-    let mut derived = [0, 0];
+/// Calls `with` for one track after the other.
+fn each_track(mut rows: Sorted, mut with: impl FnMut(&mut [Row]) -> std::io::Result<()>) -> std::io::Result<()> {
     let mut track: Vec<Row> = Vec::new();
     loop {
         let next = rows.next()?;
         if track.first().is_some_and(|first| next.is_none_or(|next| next.user != first.user)) {
-            complete(&mut track, &mut derived);
-            with(&track)?;
+            with(&mut track)?;
             track.clear();
         }
         match next {
             Some(row) => track.push(row),
-            None => return Ok(derived),
+            None => return Ok(()),
         }
     }
 }
