@@ -63,6 +63,8 @@ pub struct Run {
     collided: Option<Vec<[String; 2]>>,
     /// What the traffic lights show; empty where that is not known.
     signals: Signals,
+    /// The vehicles that stand because of a stop, of those of [`Run::standing`].
+    stopped: Vec<UserIndex>,
     /// All such pairs so far, each in the order of the ids.
     collided_so_far: FxHashSet<[String; 2]>,
     /// Placements asked for so far.
@@ -106,6 +108,7 @@ impl Run {
             unplaced: Vec::new(),
             collided: None,
             signals: Signals::default(),
+            stopped: Vec::new(),
             collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
             contact_tolerance: options.contact_tolerance,
@@ -146,6 +149,7 @@ impl Run {
         self.warm_up.begin_step(time);
         self.summary.steps += u64::from(self.warm_up.is_over());
         self.summary.end = time;
+        self.stopped.clear();
         self.frame.begin(time);
         for &(user, corner) in &self.obstacles {
             self.frame.push(user, State { x: corner.x, y: corner.y, z: 0.0, heading: 0.0, speed: 0.0 });
@@ -166,6 +170,16 @@ impl Run {
     /// States what a traffic light, by its place in [`Net::lights`], shows in the step under way.
     pub fn set_signal(&mut self, light: u32, state: &str) {
         self.signals.set(light, self.frame.time, state);
+    }
+
+    /// The vehicles that are there, were in conflict in the last step and stood then: whether they stop there is a cause.
+    pub fn standing(&self) -> Vec<UserIndex> {
+        self.tracker.standing().filter(|user| self.frame.row_of(*user).is_some()).collect()
+    }
+
+    /// States that one of [`Run::standing`] stands because of a stop, and does not park off the road.
+    pub fn set_stopped(&mut self, user: UserIndex) {
+        self.stopped.push(user);
     }
 
     /// The time of the step under way, if one has begun.

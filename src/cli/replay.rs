@@ -38,6 +38,9 @@ pub struct ReplayArgs {
     /// a net. Without it the causes ran_red and late_amber are not found.
     #[arg(long, value_name = "FILE", requires = "net")]
     signals: Option<PathBuf>,
+    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found for obstacles alone.
+    #[arg(long, value_name = "FILE")]
+    stops: Option<PathBuf>,
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
@@ -61,6 +64,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     if let (Some(signals), Some(net)) = (&arguments.signals, &net) {
         replay.set_lights(signals, net)?;
     }
+    arguments.stops.iter().try_for_each(|stops| replay.set_stops(stops))?;
     let mut run = Run::new(&options, net)?;
     run.set_threads(arguments.threads.into());
     run.set_fixed_routes(true);
@@ -94,7 +98,8 @@ fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
         .into_iter()
         .chain(&arguments.net)
         .chain(&arguments.route_files)
-        .chain(&arguments.signals);
+        .chain(&arguments.signals)
+        .chain(&arguments.stops);
     Ok(RunRecord {
         sublane: arguments.sublane,
         inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,

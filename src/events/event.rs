@@ -146,6 +146,7 @@ impl Conflict {
             ref worst,
             ref added,
             why: Why { manoeuvre, causes, lane_change_reason, lanes },
+            standing: _,
         } = *extremes;
         let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
         let ego_type = roster.profile_of(ego);

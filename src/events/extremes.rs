@@ -5,13 +5,13 @@ use super::between::{Closest, FirstContact};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
-use super::why::{Surroundings, Why};
+use super::why::{STANDS, Surroundings, Why};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
-use crate::geometry::Point;
 use crate::options::measures::AddedValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
+use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
@@ -58,6 +58,8 @@ pub(super) struct Extremes {
     pub added: Option<Box<Added>>,
     /// The manoeuvre of that step, and the causes of all steps that were the worst so far.
     pub why: Why,
+    /// The vehicles that stood in the last step and of which a stop would be a cause.
+    pub standing: [Option<UserIndex>; 2],
 }
 
 /// The step with the smallest margin.
@@ -130,6 +132,16 @@ impl Observation<'_> {
         Why::of((self.frame, self.roster, self.found), self.around, self.past)
     }
 
+    /// The vehicles that stand and of which a stop would be a cause: of one that is followed it is its own.
+    fn standing(&self) -> [Option<UserIndex>; 2] {
+        let Encounter { ego, foe, ego_row, foe_row, kind, .. } = *self.found;
+        let stands = |user: UserIndex, row| {
+            let is_vehicle = self.roster.profile_of(user).category == Category::Vehicle;
+            Some(user).filter(|_| self.frame.state(row).speed < STANDS && is_vehicle)
+        };
+        [stands(ego, ego_row).filter(|_| kind != Kind::RearEnd), stands(foe, foe_row)]
+    }
+
     fn moment(&self) -> Moment {
         let Encounter { x, y, ego_row, .. } = *self.found;
         Moment { time: self.frame.time, x, y, speed: self.frame.state(ego_row).speed }
@@ -137,10 +149,11 @@ impl Observation<'_> {
 }
 
 impl WorstStep {
-    /// This step; `path` has the path of a row's front bumper.
-    fn of(&Observation { frame, roster, found, .. }: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    /// This step, with the paths of both or without.
+    fn of(&Observation { frame, roster, found, around, .. }: &Observation, has_paths: bool) -> Self {
         let Encounter { ego, foe, kind, gap, mu, margin, angle, x, y, lane, .. } = *found;
         let speeds = [found.ego_row, found.foe_row].map(|row| frame.state(row).speed);
+        let path = |row| if has_paths { (around.path)(row) } else { Vec::new() };
         let snapshots = [(ego, found.ego_row), (foe, found.foe_row)]
             .map(|(user, row)| Snapshot::of(frame.state(row), roster.profile_of(user), &path(row)));
         Self { ego, foe, kind, time: frame.time, gap, mu, margin, angle, x, y, lane, speeds, snapshots }
@@ -148,8 +161,8 @@ impl WorstStep {
 }
 
 impl Extremes {
-    /// Those of a first step; `path` has the path of a row's front bumper.
-    pub fn of(seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) -> Self {
+    /// Those of a first step, with the paths of both or without.
+    pub fn of(seen: &Observation, has_paths: bool) -> Self {
         let moment = |_| seen.moment();
         Self {
             begin: seen.frame.time,
@@ -168,18 +181,19 @@ impl Extremes {
             crash_probability_braking: seen.crash_probability_braking(),
             extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
-            worst: WorstStep::of(seen, path),
+            worst: WorstStep::of(seen, has_paths),
             added: seen.added_step().map(|step| Box::new(Added::of(&step))),
             why: seen.why(),
+            standing: seen.standing(),
         }
     }
 
     /// Adds a later step of the same event.
-    pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
+    pub fn take(&mut self, seen: &Observation) {
         // Of margins that differ by rounding only, the first is kept.
         let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN;
         if is_worst {
-            self.worst = WorstStep::of(seen, path);
+            self.worst = WorstStep::of(seen, true);
             self.why = self.why.then(seen.why());
         } else if seen.found.kind != Kind::RearEnd {
             // Who enters a junction first, and on what light, may show only after the smallest margin.
@@ -189,6 +203,7 @@ impl Extremes {
             added.take(&step, is_worst);
         }
         self.end = seen.frame.time;
+        self.standing = seen.standing();
         self.severity = self.severity.max(seen.severity());
         self.clearance = self.clearance.min(seen.clearance());
         self.collision |= seen.found.collision;

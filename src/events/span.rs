@@ -3,8 +3,8 @@
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
 use crate::detection::measures::pet::Pet;
-use crate::geometry::Point;
 use crate::traffic::roster::Roster;
+use crate::util::units::Second;
 
 /// A run of steps.
 #[derive(Debug)]
@@ -15,14 +15,14 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// That of a first step; `path` has the path of a row's front bumper.
-    pub fn of(seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps_steps: bool) -> Self {
-        Self { extremes: Extremes::of(seen, path), steps: keeps_steps.then(|| vec![step(seen)]) }
+    /// That of a first step.
+    pub fn of(seen: &Observation, keeps_steps: bool) -> Self {
+        Self { extremes: Extremes::of(seen, true), steps: keeps_steps.then(|| vec![step(seen)]) }
     }
 
     /// Adds a later step.
-    pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
-        self.extremes.take(seen, path);
+    pub fn take(&mut self, seen: &Observation) {
+        self.extremes.take(seen);
         if let Some(steps) = &mut self.steps {
             steps.push(step(seen));
         }
@@ -34,6 +34,17 @@ impl Span {
         *known = Some(is_reported || *known == Some(true));
     }
 
+    /// Notes that one of [`Extremes::standing`] stood in the last step, at this time, because of a stop.
+    pub fn stood(&mut self, time: Second) {
+        let Extremes { worst, why, .. } = &mut self.extremes;
+        if worst.time == time {
+            why.causes = why.causes.and_stood(why.manoeuvre);
+        }
+        if let Some(step) = self.steps.as_mut().and_then(|steps| steps.last_mut()) {
+            step.causes = step.causes.and_stood(step.manoeuvre);
+        }
+    }
+
     /// The conflict so far, with the PET of its event.
     pub fn conflict(&self, pet: Option<Pet>, roster: &Roster) -> Conflict {
         Conflict { steps: self.steps.clone().unwrap_or_default(), ..Conflict::of(&self.extremes, pet, roster) }
@@ -41,5 +52,5 @@ impl Span {
 }
 
 fn step(seen: &Observation) -> Conflict {
-    Conflict::of(&Extremes::of(seen, &|_| Vec::new()), None, seen.roster)
+    Conflict::of(&Extremes::of(seen, false), None, seen.roster)
 }

@@ -11,7 +11,6 @@ use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Severity;
 use crate::detection::path::Pose;
-use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
 use crate::options::Options;
 use crate::traffic::frame::Frame;
@@ -54,14 +53,12 @@ impl Tracker {
     }
 
     /// Takes the encounters of one step and returns the conflicts that it settles, in the order of their begin and ids.
-    /// `path` returns the path of a row's front bumper, from where it is; `around` is what else is known; `collided` are
-    /// the pairs of ids of which SUMO reports a collision, if that is known.
+    /// `around` is what else is known; `collided` are the pairs of ids of which SUMO reports a collision, if that is known.
     pub fn step<'a>(
         &mut self,
         frame: &Frame,
         roster: &Roster,
         encounters: impl Iterator<Item = &'a Encounter> + Clone,
-        path: impl Fn(u32) -> Vec<Point>,
         around: Surroundings,
         collided: Option<&[[String; 2]]>,
     ) -> &[Conflict] {
@@ -69,12 +66,15 @@ impl Tracker {
         let before = std::mem::replace(&mut self.last_time, frame.time);
         if !self.events.is_empty() || !self.waiting.is_empty() || encounters.clone().any(Encounter::may_be_logged) {
             self.come_closest(frame, roster, before, encounters.clone(), around);
+            if !around.stopped.is_empty() {
+                self.events.iter_mut().for_each(|event| event.note_stopped(around.stopped, before));
+            }
             let past = std::mem::take(&mut self.past);
             let lasted = if before.is_nan() { 0.0 } else { frame.time - before };
             for found in encounters.filter(|found| found.may_be_logged()) {
                 let added = (around.added)(found);
                 let added = added.as_deref();
-                self.take(&Observation { frame, roster, found, added, lasted, around, past: &past }, &path);
+                self.take(&Observation { frame, roster, found, added, lasted, around, past: &past });
             }
             self.past = past;
             if let Some(collided) = collided {
@@ -86,6 +86,12 @@ impl Tracker {
         }
         self.past.add(frame, roster.len());
         &self.closed
+    }
+
+    /// The vehicles in conflict that stood in the last step. The next one is to tell which of them stop there: SUMO says so of
+    /// a vehicle one step after it has come to its stop.
+    pub fn standing(&self) -> impl Iterator<Item = UserIndex> {
+        self.events.iter().flat_map(|event| event.standing(self.last_time))
     }
 
     /// Forgets where a road user was that has left the scene, as its index may be given to another.
@@ -142,11 +148,11 @@ impl Tracker {
         open
     }
 
-    fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>) {
+    fn take(&mut self, seen: &Observation) {
         let pair = pair_of(seen.found);
         match self.events.binary_search_by_key(&pair, |event| event.pair()) {
-            Ok(place) => self.events[place].take(seen, path, self.keeps),
-            Err(place) => self.events.insert(place, Box::new(Event::of(pair, seen, path, self.keeps))),
+            Ok(place) => self.events[place].take(seen, self.keeps),
+            Err(place) => self.events.insert(place, Box::new(Event::of(pair, seen, self.keeps))),
         }
     }
 
@@ -202,6 +208,7 @@ mod tests {
     use super::*;
     use crate::detection::kind::Kind;
     use crate::events::Moment;
+    use crate::geometry::Point;
     use crate::traffic::frame::State;
     use crate::traffic::profile::Profile;
     use crate::traffic::sumo_type::SumoType;
@@ -216,6 +223,8 @@ mod tests {
         Surroundings {
             net: None,
             signals: &SIGNALS,
+            stopped: &[],
+            path: &|_| Vec::new(),
             course: &|_| Default::default(),
             added: &|_| None,
             tadv: &|_| None,
@@ -285,9 +294,7 @@ mod tests {
             };
             let encounter = self.encounter(kind, margin, pet_below);
             let found = if present.len() == 2 { vec![encounter] } else { vec![] };
-            self.tracker
-                .step(&frame, &self.roster, found.iter(), |_| Vec::new(), nothing(), self.collided.as_deref())
-                .to_vec()
+            self.tracker.step(&frame, &self.roster, found.iter(), nothing(), self.collided.as_deref()).to_vec()
         }
     }
 
@@ -353,7 +360,7 @@ mod tests {
             let heading = std::f64::consts::FRAC_PI_2;
             frame.push(scene.users[1], State { x: 0.0, y: way, z: 0.0, heading, speed: 25.0 });
             let found = (time == 0.0).then(|| scene.encounter(Kind::Side, -1.0, f64::INFINITY));
-            scene.tracker.step(&frame, &scene.roster, found.iter(), |_| Vec::new(), nothing(), None);
+            scene.tracker.step(&frame, &scene.roster, found.iter(), nothing(), None);
         }
         let [crash] = scene.tracker.finish(&scene.roster) else { panic!() };
         assert!(crash.collision && crash.overlap > 1.0 && crash.clearance == 0.0);
@@ -404,14 +411,7 @@ mod tests {
             let pet_below = if margin < 0.0 { f64::INFINITY } else { PET };
             let encounter = scene.encounter(Kind::Side, margin, pet_below);
             let seen = (margin < f64::INFINITY).then_some(encounter);
-            found.extend_from_slice(scene.tracker.step(
-                &frame,
-                &scene.roster,
-                seen.iter(),
-                |_| Vec::new(),
-                nothing(),
-                None,
-            ));
+            found.extend_from_slice(scene.tracker.step(&frame, &scene.roster, seen.iter(), nothing(), None));
         }
         found
     }

@@ -68,24 +68,24 @@ pub(super) struct Keeps {
 }
 
 impl Event {
-    /// That of a first step; `path` has the path of a row's front bumper.
-    pub fn of(pair: Pair, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) -> Self {
-        let followed = Span::of(seen, path, keeps.steps);
+    /// That of a first step.
+    pub fn of(pair: Pair, seen: &Observation, keeps: Keeps) -> Self {
+        let followed = Span::of(seen, keeps.steps);
         let last = states(seen.frame, &pair).unwrap_or_default();
         let met = keeps.met.then(Vec::new);
         let mut event = Self { pair, alarm: None, followed, pet_below: f64::NEG_INFINITY, met, last, driven: None };
-        event.note(seen, path, keeps);
+        event.note(seen, keeps);
         event
     }
 
     /// Adds a later step.
-    pub fn take(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) {
-        self.followed.take(seen, path);
-        self.note(seen, path, keeps);
+    pub fn take(&mut self, seen: &Observation, keeps: Keeps) {
+        self.followed.take(seen);
+        self.note(seen, keeps);
     }
 
     /// What the first step and each later one add alike.
-    fn note(&mut self, seen: &Observation, path: &impl Fn(u32) -> Vec<Point>, keeps: Keeps) {
+    fn note(&mut self, seen: &Observation, keeps: Keeps) {
         let Encounter { ego, foe, kind, x, y, margin, nearness, pet_below, .. } = *seen.found;
         if seen.found.is_logged() {
             let (severity, time, at) = (seen.severity(), seen.frame.time, Point::new(x, y));
@@ -95,9 +95,9 @@ impl Event {
             if !seen.found.is_logged() {
                 self.pet_below = self.pet_below.max(pet_below);
             } else if let Some(last) = met.last_mut().filter(|last| !is_over(&last.extremes, seen.frame.time)) {
-                last.take(seen, path);
+                last.take(seen);
             } else {
-                met.push(Span::of(seen, path, keeps.steps));
+                met.push(Span::of(seen, keeps.steps));
             }
         }
         if kind != Kind::RearEnd && self.driven.is_none() {
@@ -174,6 +174,23 @@ impl Event {
             let Pet { lasts, enters, .. } = pet::post_encroachment_time(&mut halves, first, &second, crossing)?;
             (enters > time).then_some(PetSoFar::AtLeast(time - (enters - lasts)))
         })
+    }
+
+    /// The vehicles that stood at this time, its last step, and of which a stop would be a cause.
+    pub fn standing(&self, time: Second) -> impl Iterator<Item = UserIndex> {
+        let spans = [&self.followed].into_iter().chain(self.met.iter().filter_map(|met| met.last()));
+        let last = spans.filter(move |span| span.extremes.end == time);
+        last.flat_map(|span| span.extremes.standing.into_iter().flatten())
+    }
+
+    /// Notes which of these vehicles stood at this time, its last step, because of a stop.
+    pub fn note_stopped(&mut self, stopped: &[UserIndex], time: Second) {
+        let met = self.met.as_mut().and_then(|met| met.last_mut());
+        for span in [&mut self.followed].into_iter().chain(met).filter(|span| span.extremes.end == time) {
+            if span.extremes.standing.iter().flatten().any(|user| stopped.contains(user)) {
+                span.stood(time);
+            }
+        }
     }
 
     /// Notes whether SUMO reports a collision of the two.

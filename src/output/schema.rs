@@ -193,8 +193,8 @@ columns! { |conflict, context|
     /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
     [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
     /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
-    /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `leader_braked`, `too_close`, `too_fast`, `appeared`
-    /// ([rules](causes.md)); empty where none of them is known
+    /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `behind_curve`, `leader_braked`, `too_close`, `too_fast`,
+    /// `appeared` ([rules](causes.md)); empty where none of them is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
     /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
     /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where it is not known, as in a replay

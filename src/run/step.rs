@@ -115,8 +115,9 @@ impl Run {
         let added = |found: &Encounter| detector.added(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
         let net = self.net.as_deref();
-        let around = Surroundings { net, signals: &self.signals, course: &course, added: &added, tadv: &tadv };
-        let closed = self.tracker.step(frame, roster, detector.encounters(), path, around, self.collided.as_deref());
+        let (signals, stopped) = (&self.signals, &self.stopped);
+        let around = Surroundings { net, signals, stopped, path: &path, course: &course, added: &added, tadv: &tadv };
+        let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster, self.net.as_deref()));
     }

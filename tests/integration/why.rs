@@ -38,6 +38,11 @@ fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> V
 /// The conflicts of a run of some seconds. SUMO is taken to move cars to lane 1 for the sake of their route, and back to keep
 /// right.
 fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<Conflict> {
+    conflicts_with(net, drives, signals, &[], lasts)
+}
+
+/// The same where those of these numbers have a stop.
+fn conflicts_with(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &[u32], lasts: f64) -> Vec<Conflict> {
     let net = Arc::new(net.clone());
     let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
     let mut enter = |(drive, number): (&Drive, u32)| {
@@ -81,6 +86,11 @@ fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -
                 route_position: on,
                 lateral_speed: 0.0,
             });
+        }
+        for user in run.standing() {
+            if stops.iter().any(|number| users[*number as usize] == user) {
+                run.set_stopped(user);
+            }
         }
         let stepped: closecall::Result<()> = run.step(|run, rows| {
             for row in rows {
@@ -300,6 +310,47 @@ fn a_person_that_stands_walks_neither_along_nor_across() {
         let found = logged(&road(), &[drive(&["road_0"], 100.0, |_| 15.0), person], &[], 0.5);
         assert_eq!(found, [["rear_end", manoeuvre, ""]]);
     }
+}
+
+/// A lane that bends to the left by this radius in m.
+fn bend(radius: f64) -> Net {
+    let point = |number: u32| {
+        let angle = f64::from(number) / radius;
+        format!("{},{}", radius * angle.sin(), radius * (1.0 - angle.cos()))
+    };
+    let shape = (0..=90).map(point).collect::<Vec<_>>().join(" ");
+    let text = format!(
+        r#"<net><edge id="bend" from="w" to="n"><lane id="bend_0" speed="30" length="90" shape="{shape}"/></edge></net>"#
+    );
+    Net::parse(Path::new("bend.net.xml"), text).unwrap()
+}
+
+#[test]
+fn the_end_of_a_queue_is_behind_a_curve_that_hides_it() {
+    let causes = |net: &Net, speed: fn(f64) -> f64| {
+        let lane = if net.lane("bend_0").is_some() { "bend_0" } else { "road_0" };
+        let found = logged(net, &[drive(&[lane], 20.0, |_| 13.0), drive(&[lane], 60.0, speed)], &[], 2.5);
+        let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
+        assert_eq!(manoeuvre, "following");
+        why.clone()
+    };
+    assert_eq!(causes(&bend(18.0), |_| 1.0), "behind_curve");
+    assert_eq!(causes(&bend(60.0), |_| 1.0), "");
+    assert_eq!(causes(&road(), |_| 1.0), "");
+    assert_eq!(causes(&bend(18.0), |_| 5.0), "", "no queue");
+}
+
+#[test]
+fn a_vehicle_that_stands_because_of_a_stop_stood_there() {
+    let causes = |net: &Net, stops: &[u32]| {
+        let lane = if net.lane("bend_0").is_some() { "bend_0" } else { "road_0" };
+        let drives = [drive(&[lane], 20.0, |_| 13.0), drive(&[lane], 60.0, |_| 0.0)];
+        let found = conflicts_with(net, &drives, &[], stops, 1.5);
+        found.iter().map(|conflict| conflict.causes.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!([causes(&road(), &[1]), causes(&road(), &[])], [["stood"], [""]]);
+    assert_eq!([causes(&bend(18.0), &[1]), causes(&bend(18.0), &[])], [["stood"], ["behind_curve"]]);
+    assert_eq!(causes(&road(), &[0]), [""], "a stop of the one that drives");
 }
 
 #[test]

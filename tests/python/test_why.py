@@ -70,6 +70,60 @@ def test_a_replay_with_recorded_signals_finds_who_ran_a_red_light(event: str, sc
         assert not knows or [row["cause"] for row in found] == [row["cause"] for row in live]
 
 
+def test_a_car_parked_in_the_lane_stood_there(tmp_path: Path) -> None:
+    (row,) = logged("obstacles", tmp_path / "out")
+    assert (row["foe"], row["manoeuvre"], row["cause"]) == ("parked_in_lane", "following", "stood")
+
+
+def test_a_replay_with_recorded_stops_finds_who_stood(scenario: Copy, tmp_path: Path) -> None:
+    config, stops = scenario("obstacles"), tmp_path / "stops.xml"
+    demand = config.with_suffix(".rou.xml")
+    # The stop output does not tell a parking area on the road from one off it.
+    on_the_lane = 'lane="road_0" startPos="552" endPos="560"'
+    demand.write_text(demand.read_text().replace('parkingArea="in_lane"', on_the_lane))
+    told = ("--stop-output", str(stops), "--stop-output.write-unfinished")
+    recording = record(config, "fcd.xml", sumo=told)
+    live = rows(config.parent / "live" / "conflicts.csv")
+    (row,) = (row for row in live if row["foe"] == "parked_in_lane")
+    assert (row["manoeuvre"], row["cause"]) == ("following", "stood")
+    for words, cause in ((("--stops", str(stops)), "stood"), ((), "")):
+        status, said = replay(config, recording, tmp_path / "again", "--force", *words)
+        assert status == 0, said
+        (row,) = (row for row in rows(tmp_path / "again" / "conflicts.csv") if row["foe"] == "parked_in_lane")
+        assert (row["manoeuvre"], row["cause"]) == ("following", cause)
+
+
+CREEPS = """
+<routes>
+    <vType id="slow_car" maxSpeed="1" sigma="0"/>
+    <vType id="late_car" decel="9" emergencyDecel="9" tau="0.3" sigma="0" maxSpeed="13" speedFactor="2.5" speedDev="0"/>
+    <vehicle id="slow" type="slow_car" depart="0" departPos="{place}" departSpeed="1">
+        <route edges="{edges}"/>
+    </vehicle>
+    <vehicle id="late" type="late_car" depart="2" departPos="60" departSpeed="max">
+        <route edges="down_2 down_1 down_0"/>
+    </vehicle>
+</routes>
+"""
+
+
+@pytest.mark.parametrize(
+    ("edges", "place", "cause"), [("down_1 down_0", 22, "behind_curve too_fast"), ("down_0", 60, "")]
+)
+def test_a_queue_ends_behind_a_hairpin(edges: str, place: int, cause: str, tmp_path: Path) -> None:
+    demand, config = tmp_path / "demand.rou.xml", tmp_path / "hairpin.sumocfg"
+    demand.write_text(CREEPS.format(edges=edges, place=place))
+    net = NETS / "curves" / "curves.net.xml"
+    config.write_text(
+        f'<configuration><net-file value="{net}"/><route-files value="{demand}"/><end value="20"/>'
+        '<step-length value="0.1"/></configuration>'
+    )
+    done = closecall("run", config, "--out", tmp_path / "out", "--quiet", "--", "--no-warnings")
+    assert done.returncode == 0, done.stderr
+    (row,) = rows(tmp_path / "out" / "conflicts.csv")
+    assert (row["ego"], row["manoeuvre"], row["cause"]) == ("late", "following", cause)
+
+
 def test_a_change_of_lanes_has_the_reason_in_sumos_own_output(tmp_path: Path) -> None:
     config, told = NETS / "signals" / "signals.sumocfg", tmp_path / "changes.xml"
     words = ("--out", tmp_path / "out", "--quiet", "--", "--no-warnings", "--lanechange-output", told)

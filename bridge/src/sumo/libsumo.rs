@@ -19,6 +19,7 @@ pub struct Libsumo {
     collisions: Py<PyAny>,
     vehicles: LibsumoDomain,
     persons: LibsumoDomain,
+    stop_state: Py<PyAny>,
     /// The getters of the vehicles that begin and end to park.
     parking: [Py<PyAny>; 2],
     types: TypeProfiles,
@@ -59,6 +60,7 @@ impl Libsumo {
                 function("simulation_getParkingStartingVehiclesIDList")?,
                 function("simulation_getParkingEndingVehiclesIDList")?,
             ],
+            stop_state: function("vehicle_getStopState")?,
             types: TypeProfiles::new(module, options)?,
             step_length: module.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
             lights: [function("trafficlight_getIDList")?, function("trafficlight_getRedYellowGreenState")?],
@@ -121,7 +123,19 @@ impl Libsumo {
         }
         self.park(py, run, jumped)?;
         self.vehicles.read(py, run)?;
-        self.persons.read(py, run)
+        self.persons.read(py, run)?;
+        self.read_stops(py, run)
+    }
+
+    /// Asks which vehicles in conflict stand because of a stop; those that park off the road are not in the frame.
+    fn read_stops(&self, py: Python, run: &mut Run) -> PyResult<()> {
+        for user in run.standing() {
+            let id: &str = run.roster.id(user);
+            if simulation::stops(self.stop_state.bind(py).call1((id,))?.extract()?) {
+                run.set_stopped(user);
+            }
+        }
+        Ok(())
     }
 
     /// Reads what the traffic lights show.

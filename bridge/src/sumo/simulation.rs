@@ -56,6 +56,14 @@ pub fn lane_change_state(states: &Bound<PyAny>) -> PyResult<i32> {
     states.get_item(1)?.extract()
 }
 
+/// The bit of SUMO's stop state for a vehicle that has reached a stop.
+const STOPPED: i32 = 1;
+
+/// Whether a vehicle of this stop state has reached a stop, on the road or off it.
+pub fn stops(stop_state: i32) -> bool {
+    stop_state & STOPPED != 0
+}
+
 /// The profiles of SUMO's types; each type is asked for once.
 pub struct TypeProfiles {
     domain: Py<PyAny>,

@@ -228,9 +228,9 @@ impl TraciDomain {
             let value = |variable: i32| latest.as_any().get_item(variable);
             let inside =
                 self.variables.contains(&variable.vehicle) && !value(variable.vehicle)?.extract::<&str>()?.is_empty();
-            let parked = self.variables.contains(&variable.stop_state)
-                && value(variable.stop_state)?.extract::<i32>()? & PARKED != 0;
-            if inside || parked {
+            let has_stops = self.variables.contains(&variable.stop_state);
+            let stop_state: i32 = if has_stops { value(variable.stop_state)?.extract()? } else { 0 };
+            if inside || stop_state & PARKED != 0 {
                 continue;
             }
             let point = value(variable.position)?.cast_into::<PyTuple>()?;
@@ -243,6 +243,9 @@ impl TraciDomain {
             };
             if run.frame.push(live.user, state) {
                 self.rows.push(id.extract()?);
+            }
+            if simulation::stops(stop_state) {
+                run.set_stopped(live.user);
             }
             live.latest = Some(latest.unbind());
         }

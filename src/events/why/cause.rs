@@ -22,8 +22,10 @@ pub enum Cause {
     Overtook,
     /// A person walked across outside a crossing.
     OutsideCrossing,
-    /// An obstacle stood in the way.
+    /// An obstacle stood in the way, or a vehicle because of a stop.
     Stood,
+    /// A queue ended where the line of sight to it left the road.
+    BehindCurve,
     /// The leader braked hard.
     LeaderBraked,
     /// The follower kept too short a distance.
@@ -40,7 +42,7 @@ pub struct Causes(u16);
 
 impl Cause {
     /// All causes, in the order of the evidence.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::RanRed,
         Self::LateAmber,
         Self::DidNotYield,
@@ -48,6 +50,7 @@ impl Cause {
         Self::Overtook,
         Self::OutsideCrossing,
         Self::Stood,
+        Self::BehindCurve,
         Self::LeaderBraked,
         Self::TooClose,
         Self::TooFast,
@@ -64,6 +67,7 @@ impl Cause {
             Self::Overtook => "overtook",
             Self::OutsideCrossing => "outside_crossing",
             Self::Stood => "stood",
+            Self::BehindCurve => "behind_curve",
             Self::LeaderBraked => "leader_braked",
             Self::TooClose => "too_close",
             Self::TooFast => "too_fast",
@@ -89,13 +93,20 @@ impl Causes {
         Self(self.0 & entry.0)
     }
 
+    /// The same where, besides, one of the two stood because of a stop.
+    pub(crate) fn and_stood(mut self, manoeuvre: Option<Manoeuvre>) -> Self {
+        self.add_if(Cause::Stood, true);
+        self.that_fit(manoeuvre)
+    }
+
     /// Those without what only another manoeuvre than this is.
     pub(super) fn that_fit(self, manoeuvre: Option<Manoeuvre>) -> Self {
         let fits = |cause| match cause {
             Cause::ChangedLane => matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange)),
             Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),
             Cause::OutsideCrossing => manoeuvre == Some(Manoeuvre::PersonCrossing),
-            Cause::Stood => manoeuvre == Some(Manoeuvre::Object),
+            // One that stands because of a stop is no end of a queue.
+            Cause::BehindCurve => manoeuvre == Some(Manoeuvre::Following) && !self.has(Cause::Stood),
             Cause::LeaderBraked => {
                 matches!(manoeuvre, None | Some(Manoeuvre::Following | Manoeuvre::CutIn | Manoeuvre::LaneChange))
             }

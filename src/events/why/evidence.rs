@@ -3,6 +3,7 @@
 use super::cause::{Cause, Causes};
 use super::manoeuvre::{Manoeuvre, changed_into};
 use super::pair::{BESIDE_A_CROSSING, Pair, Party};
+use super::sight::is_behind_curve;
 use crate::detection::kind::Kind;
 use crate::traffic::net::{Net, Passage};
 use crate::traffic::profile::Category;
@@ -47,6 +48,7 @@ pub(super) fn causes_of(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> Causes {
     causes.add_if(Cause::Overtook, manoeuvre == Some(Manoeuvre::OvertakingOncoming));
     causes.add_if(Cause::OutsideCrossing, manoeuvre == Some(Manoeuvre::PersonCrossing) && is_outside_crossing(pair));
     causes.add_if(Cause::Stood, manoeuvre == Some(Manoeuvre::Object));
+    causes.add_if(Cause::BehindCurve, comes_to_queue(pair, manoeuvre) && is_behind_curve(pair));
     if pair.kind == Kind::RearEnd && pair.ego.is_vehicle() && pair.foe.is_vehicle() {
         let Pair { ego, foe, gap, .. } = pair;
         let keeps_pace = ego.speed > QUEUE && ego.speed - foe.speed < APPROACHES;
@@ -58,6 +60,15 @@ pub(super) fn causes_of(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> Causes {
     let is_new = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
     causes.add_if(Cause::Appeared, pair.both().iter().any(|(party, _)| is_new(party)));
     causes.that_fit(manoeuvre)
+}
+
+/// Whether the ego approaches the end of a queue; in a tight curve that is a side conflict, too.
+fn comes_to_queue(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> bool {
+    let Pair { ego, foe, .. } = pair;
+    manoeuvre == Some(Manoeuvre::Following)
+        && foe.speed < QUEUE
+        && ego.speed - foe.speed >= APPROACHES
+        && !pair.past.is_new(foe.user, pair.time)
 }
 
 /// A road user and its way through the junction.

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::pair::{Pair, Party, edge_of, turn_between};
+use super::pair::{Pair, Party, STANDS, edge_of, turn_between};
 use crate::detection::kind::Kind;
 use crate::traffic::net::{Direction, Net, Passage};
 use crate::traffic::profile::Category;
@@ -19,8 +19,6 @@ const DRIFT: MetrePerSecond = 0.3;
 const OPPOSITE: Radian = 0.75 * std::f64::consts::PI;
 /// Two that come from directions nearer than this drive side by side, in rad.
 const ALIKE: Radian = 0.25 * std::f64::consts::PI;
-/// A person slower than this waits, in m/s: SUMO's bound.
-const WAITS: MetrePerSecond = 0.1;
 /// Where two ways join, the first of both is behind the joint by at least this at the conflict point, in m.
 const AT_THE_JOINT: Metre = 0.1;
 
@@ -148,7 +146,7 @@ impl Manoeuvre {
 /// Whether a person stands, and not on a crossing.
 fn stands_aside(pair: &Pair, party: &Party) -> bool {
     let is_on_crossing = || pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some());
-    party.category == Category::Person && party.speed < WAITS && !is_on_crossing()
+    party.category == Category::Person && party.speed < STANDS && !is_on_crossing()
 }
 
 /// Whether both take a lane.

@@ -8,9 +8,11 @@ mod cause;
 mod evidence;
 mod manoeuvre;
 mod pair;
+mod sight;
 
 pub use cause::{Cause, Causes};
 pub use manoeuvre::Manoeuvre;
+pub(super) use pair::STANDS;
 pub use pair::Surroundings;
 
 use super::past::Past;

@@ -17,6 +17,9 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 /// A vehicle's front bumper may be this far before a crossing when it touches a person there, in m.
 pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
 
+/// One that is slower than this stands, in m/s: what SUMO takes for halting.
+pub(crate) const STANDS: MetrePerSecond = 0.1;
+
 /// What is known of a step besides the road users' states.
 #[derive(Clone, Copy)]
 pub struct Surroundings<'a> {
@@ -24,6 +27,10 @@ pub struct Surroundings<'a> {
     pub net: Option<&'a Net>,
     /// What the traffic lights show, where that is known.
     pub signals: &'a Signals,
+    /// Those of `Tracker::standing` that stand because of a stop.
+    pub stopped: &'a [UserIndex],
+    /// The path of the front bumper of a row's road user, from where it is.
+    pub path: &'a dyn Fn(u32) -> Vec<Point>,
     /// The course of the road user of a row.
     pub course: &'a dyn Fn(u32) -> Course,
     /// The chosen measures of an encounter, if any is chosen.

@@ -27,6 +27,7 @@ pub mod recording;
 pub mod routes;
 pub mod rows;
 mod source;
+pub mod stops;
 mod tags;
 mod types;
 mod update;
@@ -55,6 +56,7 @@ use lights::RecordedLights;
 use recording::Recording;
 use routes::Routes;
 use rows::{RecordedRow, RecordedStep};
+use stops::RecordedStops;
 use types::VehicleTypes;
 use user::ReplayedUser;
 
@@ -80,6 +82,8 @@ pub struct Replay {
     future: Option<Future>,
     /// None where it is not known what the traffic lights showed.
     lights: Option<RecordedLights>,
+    /// Where vehicles stopped on the road; none where that is not known.
+    stops: RecordedStops,
     options: Options,
     step_length: Second,
     averaged_over: f64,
@@ -136,6 +140,7 @@ impl Replay {
             routes,
             future,
             lights: None,
+            stops: RecordedStops::default(),
             options: options.clone(),
             step_length,
             averaged_over: update::averaged_over(path)?,
@@ -158,6 +163,15 @@ impl Replay {
         Ok(())
     }
 
+    /// States in each step which vehicles stop on the road, as this file of SUMO's says.
+    ///
+    /// # Errors
+    /// Those of [`RecordedStops::read`].
+    pub fn set_stops(&mut self, path: &Path) -> Result<()> {
+        self.stops = RecordedStops::read(path)?;
+        Ok(())
+    }
+
     /// Checks the next step; returns its time, or none where the recording has ended.
     ///
     /// # Errors
@@ -177,6 +191,7 @@ impl Replay {
             lights.show(run, self.step.time)?;
         }
         self.fill(run)?;
+        self.stops.show(run, self.step.time);
         run.step(|run, rows| rows.iter().try_for_each(|row| self.place(run, *row)))?;
         Ok(Some(self.step.time))
     }

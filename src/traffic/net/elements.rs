@@ -156,6 +156,11 @@ impl Junction {
         has_digit(&self.foes, one, other) || has_digit(&self.foes, other, one)
     }
 
+    /// Whether a link crosses or merges with any other.
+    pub fn has_foes(&self, link: u32) -> bool {
+        self.foes.get(link as usize).is_some_and(|row| row.contains('1'))
+    }
+
     /// Whether a link has to yield to any other.
     pub fn has_to_yield(&self, link: u32) -> bool {
         self.responses.get(link as usize).is_some_and(|row| row.contains('1'))

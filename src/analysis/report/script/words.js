@@ -83,7 +83,8 @@ const OFTEN = {
 const WHY = {
   ran_red: "one of them ran a red light", late_amber: "one of them passed its stop line late on amber",
   did_not_yield: "one of them had to yield and did not", changed_lane: "one of them changed lanes", overtook: "one of them overtook against the oncoming traffic",
-  outside_crossing: "the person walked where no crossing is", stood: "the obstacle stood there", leader_braked: "the one in front braked hard",
+  outside_crossing: "the person walked where no crossing is", stood: "one of them stood there",
+  behind_curve: "a queue ended where the line of sight to it left the road", leader_braked: "the one in front braked hard",
   too_close: "the ego followed too closely", too_fast: "one of them drove faster than the limit", appeared: "one of them had only just entered the simulation",
 };
 
