@@ -20,7 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 NETS = Path(__file__).parents[2] / "sumo_nets"
-SCENARIOS = ["left_turn", "roundabout", "reckless", "priority", "signals", "motorway", "town"]
+SCENARIOS = ["left_turn", "roundabout", "reckless", "priority", "signals", "motorway"]
 BIN = Path(sys.executable).parent
 ASIDE = 1.0
 """Metres to the side within one step that are a change of lanes."""
