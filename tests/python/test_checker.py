@@ -25,7 +25,7 @@ while sumo.simulation.getMinExpectedNumber() > 0 and sumo.simulation.getTime() <
     sumo.simulationStep()
 conflicts, summary = checker.conflicts, checker.summary
 sumo.close()
-fields = ["ego", "foe", "kind", "severity", "begin", "margin", "ttc", "drac", "lane"]
+fields = ["ego", "foe", "kind", "severity", "begin", "margin", "ttc", "drac", "lane", "cause"]
 print(json.dumps([[getattr(conflict, field) for field in fields] for conflict in conflicts]))
 print(json.dumps(summary), file=sys.stderr)
 """
@@ -47,6 +47,16 @@ def test_a_listener_finds_what_the_command_finds(scenario: Copy, tmp_path: Path)
     assert closecall("run", config, "--end", "60", "--out", tmp_path / "out").returncode == 0
     logged = rows(tmp_path / "out" / "conflicts.csv")
     assert {(row["ego"], row["foe"], row["kind"]) for row in logged} == {tuple(row[:3]) for row in with_libsumo}
+
+
+@pytest.mark.parametrize("module", ["libsumo", "traci"])
+def test_a_listener_knows_which_vehicle_stopped(module: str, scenario: Copy) -> None:
+    config = scenario("obstacles")
+    demand = config.with_suffix(".rou.xml")
+    on_the_lane = 'lane="road_0" startPos="552" endPos="560"'
+    demand.write_text(demand.read_text().replace('parkingArea="in_lane"', on_the_lane))
+    causes = {(row[1], row[-1]) for row in listen(module, config)}
+    assert ("parked_in_lane", "stood") in causes
 
 
 NOT_STARTED = """
