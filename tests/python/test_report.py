@@ -314,7 +314,7 @@ def test_values_beyond_an_axis_are_counted_beside_it(browser: Any, tmp_path: Pat
 def test_every_chart_says_what_it_shows(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html")
     labels = opened.labels()
-    assert len(labels) == 14
+    assert len(labels) == 13
     assert all(len(label) > 20 for label in labels), labels
     [of_map] = [label for label in labels if label.startswith("Map of")]
     found = severe(rows(town / "log" / "conflicts.csv"))

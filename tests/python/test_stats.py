@@ -42,7 +42,10 @@ def plans(once: Once) -> Path:
             for seed in seeds:
                 half = "first" if seed <= 8 else "second"
                 out = folder / plan / half / f"seed={seed}"
-                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, "--seed", str(seed), "--log-clips", "serious")
+                # Few of them are late enough to be serious by default.
+                rule = ("--serious-probability", "0.1", "--serious-delta-v", "0")
+                words = ("--seed", str(seed), "--log-clips", "serious", *rule)
+                simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, *words)
 
     return once("plans", fill)
 

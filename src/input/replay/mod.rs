@@ -166,7 +166,7 @@ impl Replay {
     /// States in each step which vehicles stop on the road, as this file of SUMO's says.
     ///
     /// # Errors
-    /// Those of [`RecordedStops::read`].
+    /// An error that names the file, the line and what is wrong; a file of something else is refused.
     pub fn set_stops(&mut self, path: &Path) -> Result<()> {
         self.stops = RecordedStops::read(path)?;
         Ok(())
