@@ -88,10 +88,13 @@ fn speeds_of_a_moment_are_left_where_they_are() {
 fn a_change_of_lanes_comes_after_the_step() {
     let (way, car) = (Way::bend(), car());
     let at = |distance: f64| way.vehicle(&car, distance, 8.0);
-    for front in (48..200).map(f64::from) {
-        let (along, mut to) = (way.at(front + 0.1) - way.at(front - 0.1), at(front));
-        let aside = Vector::new(along.y, -along.x).normalize() * 3.2;
-        (to.x, to.y, to.heading) = (to.x + aside.x, to.y + aside.y, to.heading - 0.7);
+    // The other lane may begin some metres further on.
+    let fronts = (48..200).map(f64::from);
+    for (front, further) in fronts.flat_map(|front| [(front, 0.0), (front, 6.0)]) {
+        let along = (way.at(front + 0.1) - way.at(front - 0.1)).normalize();
+        let moved = Vector::new(along.y, -along.x) * 3.2 + along * further;
+        let mut to = at(front);
+        (to.x, to.y, to.heading) = (to.x + moved.x, to.y + moved.y, to.heading - 0.7);
         let steps: [&[State]; 2] = [&[at(front - 8.0)], &[to]];
         let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, front - 8.0)), steps);
         let (found, expected) = (found[0], at(front - 4.0));

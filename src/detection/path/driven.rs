@@ -19,7 +19,7 @@ const SPACING: Metre = 0.5;
 /// Places nearer than this to where the road user is now are left out, in m.
 const CLEAR: Metre = SPACING / 2.0;
 /// A place is ahead of the last one if the way to it differs by less than this from the way before, or from the mean of both
-/// headings, which is that of an arc, in rad. Nobody drives forward to another: it comes from reversing.
+/// headings, which is that of an arc, in rad. Any other place comes from reversing.
 const AHEAD: Radian = FRAC_PI_3;
 /// The same after a jump to the side, in rad: 15°. SUMO changes lanes within a step; 3.2 m to the side are driven within the next 12 m
 /// instead.

@@ -105,7 +105,7 @@ impl Causes {
             Cause::ChangedLane => matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange)),
             Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),
             Cause::OutsideCrossing => manoeuvre == Some(Manoeuvre::PersonCrossing),
-            // One that stands because of a stop is no end of a queue.
+            // A vehicle that stands because of a stop is not the end of a queue.
             Cause::BehindCurve => manoeuvre == Some(Manoeuvre::Following) && !self.has(Cause::Stood),
             Cause::LeaderBraked => {
                 matches!(manoeuvre, None | Some(Manoeuvre::Following | Manoeuvre::CutIn | Manoeuvre::LaneChange))

@@ -14,7 +14,7 @@ const BESIDE_THE_ROAD: Metre = 0.45;
 
 /// Whether the straight line from the ego's front bumper to where it would touch the foe leaves the road.
 ///
-/// A turn at a junction is no curve: the corner between its roads is kept free for the drivers' sight there.
+/// A turn at a junction does not count as a curve: the corner between its roads is kept free for the drivers' sight there.
 pub(super) fn is_behind_curve(pair: &Pair) -> bool {
     let Some(net) = pair.around.net else { return false };
     let ahead = (pair.around.path)(pair.found.ego_row);
