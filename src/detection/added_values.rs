@@ -9,7 +9,7 @@ use super::measures::advantage::{Advantage, advantage};
 use super::measures::emergency_index::emergency_index;
 use super::measures::mttc::{Accelerating, mttc};
 use super::measures::plane::{Moving, anticipated_collision_time, delta_s};
-use super::measures::ttc::SteadyMotion;
+use super::measures::ttc::{HORIZON, SteadyMotion};
 use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss, threat};
 use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
@@ -40,10 +40,15 @@ pub(super) struct PairInStep<'a> {
     pub step: Second,
 }
 
-/// Whether any of the chosen measures follows both along their paths.
-pub(super) fn need_courses(measures: Measures) -> bool {
+/// How long the chosen measures follow both of a pair along their paths; none where they do not.
+pub(super) fn need_courses(measures: Measures, found: &Encounter) -> Option<Second> {
     use AddedMeasure::{ALatReq, Stn, T2, Tadv};
-    [Tadv, T2, ALatReq, Stn].into_iter().any(|measure| measures.has(measure))
+    let has = |any: [AddedMeasure; 2]| any.into_iter().any(|measure| measures.has(measure));
+    match (found.kind, found.nearness.and_then(|nearness| nearness.ttc)) {
+        (Kind::Frontal | Kind::Side, None) if has([Tadv, T2]) => Some(HORIZON),
+        (Kind::RearEnd | Kind::Frontal, Some(ttc)) if has([ALatReq, Stn]) && ttc > 0.0 => Some(ttc),
+        _ => None,
+    }
 }
 
 impl PairInStep<'_> {
@@ -115,9 +120,13 @@ impl PairInStep<'_> {
     }
 
     fn advantage(&self) -> Option<Advantage> {
-        let (ego, foe) = (self.ego.course?, self.foe.course?);
-        let may_cross = self.found.kind != Kind::RearEnd && self.in_plane().is_some();
-        may_cross.then(|| advantage([&ego, &foe], self.ttc(), self.crossing)).flatten()
+        if self.found.kind == Kind::RearEnd || self.in_plane().is_none() {
+            return None;
+        }
+        if let Some(ttc) = self.ttc() {
+            return Some(Advantage::on_collision_course(ttc));
+        }
+        advantage([&self.ego.course?, &self.foe.course?], self.crossing)
     }
 
     fn rss_distance(&self) -> Option<Metre> {

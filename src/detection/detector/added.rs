@@ -5,7 +5,7 @@ use super::reach::User;
 use crate::detection::added_values::{PairInStep, UserInStep, need_courses};
 use crate::detection::encounter::Encounter;
 use crate::detection::measures::plane::Moving;
-use crate::detection::measures::ttc::{HORIZON, SteadyMotion};
+use crate::detection::measures::ttc::SteadyMotion;
 use crate::geometry::rectangle::Rectangle;
 use crate::options::measures::{AddedMeasure, AddedValues, Measures};
 use crate::traffic::frame::Frame;
@@ -33,10 +33,10 @@ impl Detector {
         let (sight, scene) = (self.sight(frame, roster), self.scene(frame, roster));
         let users = [found.ego_row, found.foe_row].map(|row| sight.user(row, &sight.see(row), &User::default()));
         let mut courses = [Vec::new(), Vec::new()];
-        if need_courses(measures) {
+        if let Some(until) = need_courses(measures, found) {
             for (user, poses) in users.iter().zip(&mut courses) {
                 if let Some(first) = scene.carriages(user).next() {
-                    scene.course(user, first, &[scene.state(user).speed * HORIZON], true, poses);
+                    scene.course(user, first, &[scene.state(user).speed * until], true, poses);
                 }
             }
         }

@@ -24,11 +24,15 @@ pub struct Advantage {
     pub t2: Second,
 }
 
-/// TAdv and T2 of two that touch after `ttc`, if ever. Paths that meet at an angle below `crossing` do not cross.
-pub fn advantage(pair: [&SteadyMotion; 2], ttc: Option<Second>, crossing: Radian) -> Option<Advantage> {
-    if let Some(ttc) = ttc {
-        return Some(Advantage { tadv: 0.0, t2: ttc });
+impl Advantage {
+    /// That of two that touch after this time.
+    pub fn on_collision_course(ttc: Second) -> Self {
+        Self { tadv: 0.0, t2: ttc }
     }
+}
+
+/// TAdv and T2 of two that do not touch. Paths that meet at an angle below `crossing` do not cross.
+pub fn advantage(pair: [&SteadyMotion; 2], crossing: Radian) -> Option<Advantage> {
     let [a, b] = pair.map(predicted);
     let pet = post_encroachment_time(&mut Bisection::default(), &a, &b, crossing)?;
     Some(Advantage { tadv: pet.lasts, t2: pet.enters })
@@ -105,24 +109,32 @@ mod tests {
             if time_to_collision(pair[0], pair[1]).is_some() {
                 continue;
             }
-            let (Some(found), Some((tadv, t2))) = (advantage(pair, None, CROSSING), sampled(pair)) else { continue };
+            let (Some(found), Some((tadv, t2))) = (advantage(pair, CROSSING), sampled(pair)) else { continue };
             compared += 1;
             assert!((found.tadv - tadv).abs() < 0.05 && (found.t2 - t2).abs() < 0.03, "{found:?}, {tadv} and {t2}");
         }
     }
 
     #[test]
-    fn on_a_collision_course_the_second_arrives_at_the_ttc() {
-        let (a, b) = (poses((0.0, 0.0), 0.0, 10.0, 0.0), poses((40.0, -40.0), 1.6, 10.0, 0.0));
-        let pair = [&motion(&a, 10.0), &motion(&b, 10.0)];
-        assert_eq!(advantage(pair, Some(3.5), CROSSING), Some(Advantage { tadv: 0.0, t2: 3.5 }));
+    fn of_two_that_just_miss_it_is_nearly_that_of_a_collision_course() {
+        // The first has left the way of the second, 2 m wide, after 4.5 s.
+        let north = std::f64::consts::FRAC_PI_2;
+        for late in [0.05, 0.02] {
+            let (a, b) = (poses((0.0, 0.0), 0.0, 10.0, 0.0), poses((40.0, -46.0 - 10.0 * late), north, 10.0, 0.0));
+            let found = advantage([&motion(&a, 10.0), &motion(&b, 10.0)], CROSSING).unwrap();
+            let limit = Advantage::on_collision_course(4.5);
+            assert!(
+                (found.tadv - limit.tadv - late).abs() < 0.01 && (found.t2 - limit.t2 - late).abs() < 0.01,
+                "{found:?}"
+            );
+        }
     }
 
     #[test]
     fn neither_a_follower_nor_one_that_stands_beside_has_one() {
         let (a, b) = (poses((0.0, 0.0), 0.0, 10.0, 0.0), poses((20.0, 0.0), 0.0, 10.0, 0.0));
-        assert_eq!(advantage([&motion(&a, 10.0), &motion(&b, 10.0)], None, CROSSING), None);
+        assert_eq!(advantage([&motion(&a, 10.0), &motion(&b, 10.0)], CROSSING), None);
         let aside = poses((20.0, -9.0), 1.6, 0.0, 0.0);
-        assert_eq!(advantage([&motion(&a, 10.0), &motion(&aside, 0.0)], None, CROSSING), None);
+        assert_eq!(advantage([&motion(&a, 10.0), &motion(&aside, 0.0)], CROSSING), None);
     }
 }
