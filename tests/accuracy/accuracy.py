@@ -40,28 +40,34 @@ class Tally:
 
     def add(self, time: float, truth: Verdict | None, row: dict[str, str] | None) -> None:
         """Count one pair in one step."""
-        if truth is not None and truth.excluded:
-            self.excluded[truth.excluded] += 1
-            return
-        margins = [] if truth is None else [truth.margin]
-        margins += [] if row is None else [float(row["margin"])]
-        if any(abs(margin) <= NEAR for margin in margins):
-            self.excluded["near the limit"] += 1
-            return
-        is_true = truth is not None and truth.margin < 0
-        if row is not None:
-            fits = is_true and truth is not None and truth.kind in ("", row["kind"])
-            self.counts[row["kind"], "right" if fits else "false"] += 1
-            if not fits:
-                self.wrong.append((time, "false", truth, row))
-        elif is_true and truth is not None:
-            self.counts[truth.kind or "side", "missed"] += 1
-            self.wrong.append((time, "missed", truth, None))
+        kind, what = outcome(truth, row)
+        if what in ("right", "false", "missed"):
+            self.counts[kind, what] += 1
+        elif what:
+            self.excluded[what] += 1
+        if what in ("false", "missed"):
+            self.wrong.append((time, what, truth, row))
 
     def share(self, kind: str, against: str) -> float:
         """Precision (against "false") or recall (against "missed") in percent."""
         right, other = self.counts[kind, "right"], self.counts[kind, against]
         return 100.0 * right / (right + other) if right + other else float("nan")
+
+
+def outcome(truth: Verdict | None, row: dict[str, str] | None) -> tuple[str, str]:
+    """The kind of a pair, and whether closecall is "right" or "false", or has "missed" it, or why it does not count."""
+    if truth is not None and truth.excluded:
+        return "", truth.excluded
+    margins = [] if truth is None else [truth.margin]
+    margins += [] if row is None else [float(row["margin"])]
+    if any(abs(margin) <= NEAR for margin in margins):
+        return "", "near the limit"
+    if row is not None:
+        fits = truth is not None and truth.margin < 0 and truth.kind in ("", row["kind"])
+        return row["kind"], "right" if fits else "false"
+    if truth is not None and truth.margin < 0:
+        return truth.kind or "side", "missed"
+    return "", ""
 
 
 def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[str, str]], every: float) -> Tally:
@@ -73,8 +79,15 @@ def compare(recording: Recording, rows: dict[tuple[int, frozenset[str]], dict[st
         key = round(time * 1000)
         truth = step_truth(recording, step)
         pairs = {pair for at, pair in rows if at == key} | set(truth)
+        before: dict[frozenset[str], Verdict] | None = None
         for pair in sorted(pairs, key=sorted):
-            tally.add(time, truth.get(pair), rows.get((key, pair)))
+            verdict, row = truth.get(pair), rows.get((key, pair))
+            if outcome(verdict, row)[1] in ("false", "missed") and step:
+                # closecall looks half a step before, so that what is true in either step will do.
+                before = step_truth(recording, step - 1) if before is None else before
+                if outcome(before.get(pair), row)[1] == "right":
+                    verdict = before.get(pair)
+            tally.add(time, verdict, row)
     return tally
 
 

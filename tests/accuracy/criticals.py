@@ -28,7 +28,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from recording import Numbers, Recording, Track, record
+from recording import Numbers, Recording, record
+from ways import BETWEEN, Way
 
 TOLERANCE = 0.25
 """closecall's default of --contact-tolerance, in m."""
@@ -38,8 +39,6 @@ MOMENT = 0.02
 """Between the moments at which the rectangles are compared, in s."""
 GRAZE = -0.05
 """Two that overlap by more than this graze, in m."""
-BETWEEN = 10
-"""Moments per step at which real places are compared."""
 RIGHT = ("contact", "too late")
 VERDICTS = (*RIGHT, "grazes", "wrong")
 SHOWN = (
@@ -57,10 +56,6 @@ SHOWN = (
     "ego_type",
     "foe_type",
 )
-SIDEWAYS = 0.5
-"""A road user that is further beside where its speed takes it has changed lanes within the step, in m."""
-STRAIGHT = 0.1
-"""One that turns by more than this within a step does not go straight on, in rad."""
 
 
 def depth(a: Numbers, a_size: tuple[float, float], b: Numbers, b_size: tuple[float, float]) -> Numbers:
@@ -82,37 +77,6 @@ def depth(a: Numbers, a_size: tuple[float, float], b: Numbers, b_size: tuple[flo
                 reach += (along * length + across * width) / 2
             found = np.minimum(found, reach - np.abs((between * way).sum(-1)))
     return found
-
-
-class Way:
-    """The places of a road user at moments that are a part of a step apart: on a curve between its steps, as it drove.
-
-    Where SUMO moves it to another lane, it goes on straight on its lane until the step ends.
-    """
-
-    def __init__(self, track: Track, step: float) -> None:
-        self.track, self.step = track, step
-        places, headings = np.stack([track.x, track.y], -1), np.unwrap(track.heading)
-        moved, jump = np.diff(places, axis=0), jumps(track, step)
-        # The slope at a place is that from the one before to the one after, but not across a jump or an end.
-        slopes = (moved[1:] + moved[:-1]) / 2
-        smooth = (jump[1:] == 0) & (jump[:-1] == 0)
-        begins, ends = moved.copy(), moved.copy()
-        begins[1:][smooth], ends[:-1][smooth] = slopes[smooth], slopes[smooth]
-        normals = np.stack([-np.sin(headings[1:]), np.cos(headings[1:])], -1)
-        straight = moved - jump[:, None] * normals
-        parts = np.arange(BETWEEN)[:, None, None] / BETWEEN
-        curve = (parts**3 - 2 * parts**2 + parts) * begins + (parts**3 - parts**2) * ends
-        curve += (3 * parts**2 - 2 * parts**3) * moved
-        curve = np.where(jump[:, None] != 0, parts * straight, curve) + places[:-1]
-        self.places = np.concatenate([curve.swapaxes(0, 1).reshape(-1, 2), places[-1:]])
-        steps = np.arange(len(headings))
-        self.headings = np.interp(np.arange(len(self.places)) / BETWEEN, steps, headings)
-
-    def poses(self, first: int, last: int) -> Numbers:
-        """The poses from one step of the recording to another."""
-        span = slice((first - self.track.first) * BETWEEN, (last - self.track.first) * BETWEEN + 1)
-        return np.column_stack([self.places[span], self.headings[span]])
 
 
 class Mover:
@@ -186,20 +150,6 @@ def too_late(ego: Mover, foe: Mover, kind: str) -> float:
     return deepest
 
 
-def jumps(track: Track, step: float) -> Numbers:
-    """How far SUMO moves a road user to the side at the end of each step but the first; 0 where it turns.
-
-    It stands or drives on its former lane until then.
-    """
-    moved = np.stack([np.diff(track.x), np.diff(track.y)], -1)
-    turned = np.abs(np.diff(np.unwrap(track.heading)))
-    heading = np.stack([np.cos(track.heading[1:]), np.sin(track.heading[1:])], -1)
-    rest = moved - heading * (track.speed[1:] * step)[:, None]
-    along = (rest * heading).sum(-1)
-    aside = rest[:, 1] * heading[:, 0] - rest[:, 0] * heading[:, 1]
-    return np.where((turned < STRAIGHT) & (np.abs(aside) > SIDEWAYS) & (np.abs(along) < np.abs(aside)), aside, 0.0)
-
-
 def really_touch(a: Way, b: Way, first: int, last: int) -> float:
     """The deepest overlap of the places that both had in these steps and between them, in m."""
     tracks = [a.track, b.track]
@@ -216,7 +166,7 @@ def judge(recording: Recording, row: dict[str, str]) -> Verdict:
     first, last = (round((float(row[name]) - recording.begin) / recording.step) for name in ("begin", "end"))
     ways = [
         [
-            Way(track, recording.step)
+            Way(track, recording)
             for track in recording.tracks.get(row[name], [])
             if track.first <= last + 1 and track.first + len(track.x) >= first
         ]

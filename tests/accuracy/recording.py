@@ -31,8 +31,22 @@ class Profile:
 
 
 @dataclass
+class Lane:
+    """A lane as drawn: its edge, the points of its shape, its length in SUMO's metres, and the lanes that follow."""
+
+    edge: str
+    shape: Numbers
+    length: float
+    following: list[str]
+
+
+@dataclass
 class Track:
-    """A road user's states in consecutive steps from `first` on, and whether it left before the recording ended."""
+    """A road user's states in consecutive steps from `first` on, and whether it left before the recording ended.
+
+    `lane` is its lane's place in the recording's list, -1 where it has none, and `position` where its front bumper is
+    there, in SUMO's metres.
+    """
 
     profile: Profile
     first: int
@@ -40,6 +54,8 @@ class Track:
     y: Numbers
     heading: Numbers
     speed: Numbers
+    lane: Numbers
+    position: Numbers
     left: bool
 
 
@@ -51,6 +67,8 @@ class Recording:
     step: float
     steps: int
     tracks: dict[str, list[Track]]
+    lane_names: list[str]
+    lanes: dict[str, Lane]
 
 
 def record(words: list[str]) -> Recording:
@@ -70,7 +88,9 @@ def run(words: list[str]) -> Recording:
     libsumo.start(["sumo", *words, "--no-warnings", "--no-step-log"])
     simulation, vehicle, person = libsumo.simulation, libsumo.vehicle, libsumo.person
     step, begin, end = simulation.getDeltaT(), simulation.getTime(), simulation.getEndTime()
-    rows: dict[str, list[tuple[int, float, float, float, float]]] = {}
+    rows: dict[str, list[tuple[float, ...]]] = {}
+    lanes = {name: lane(libsumo, name) for name in libsumo.lane.getIDList()}
+    numbers = {name: number for number, name in enumerate(lanes)}
     profiles: dict[str, Profile] = {}
     count = 0
     while simulation.getMinExpectedNumber() > 0 and (end < 0 or simulation.getTime() < end):
@@ -85,11 +105,20 @@ def run(words: list[str]) -> Recording:
                 if user not in profiles:
                     profiles[user] = profile(libsumo, domain.getTypeID(user), is_person, step)
                 heading = np.radians(90.0 - domain.getAngle(user))
-                rows.setdefault(user, []).append((count, x, y, heading, domain.getSpeed(user)))
+                on = -1 if is_person else numbers.get(domain.getLaneID(user), -1)
+                place = (on, domain.getLanePosition(user))
+                rows.setdefault(user, []).append((count, x, y, heading, domain.getSpeed(user), *place))
         count += 1
     libsumo.close()
     tracks = {user: split(np.array(states), profiles[user], step, count) for user, states in rows.items()}
-    return Recording(begin, step, count, tracks)
+    return Recording(begin, step, count, tracks, list(lanes), lanes)
+
+
+def lane(libsumo: object, name: str) -> Lane:
+    """A lane of the net; the lanes within junctions follow those before them."""
+    lanes = libsumo.lane  # type: ignore[attr-defined]
+    following = [link[4] or link[0] for link in lanes.getLinks(name)]
+    return Lane(lanes.getEdgeID(name), np.array(lanes.getShape(name)), lanes.getLength(name), following)
 
 
 def profile(libsumo: object, name: str, person: bool, step: float) -> Profile:
@@ -104,7 +133,7 @@ def profile(libsumo: object, name: str, person: bool, step: float) -> Profile:
 
 def split(states: Numbers, profile: Profile, step: float, steps: int) -> list[Track]:
     """Split a road user's states into tracks at each missing step and each jump, such as a teleport."""
-    index, x, y, _, speed = states.T
+    index, x, y, _, speed = states.T[:5]
     far = np.hypot(np.diff(x), np.diff(y)) > np.maximum(speed[1:], speed[:-1]) * step * 1.5 + 5.0
     cuts = np.flatnonzero((np.diff(index) > 1) | far) + 1
     pieces = np.split(states, cuts)

@@ -63,20 +63,32 @@ class Course:
     axes: Numbers
     known: float
     jumps: float
-    """Distance along the path at which SUMO first moves it sideways; infinite if it never does."""
+    """Distance along the path at which SUMO first moves it sideways; infinite if it never does, 0 if it just has.
+
+    Half a step before, the moment to which its speed belongs, one that just has was still beside its path.
+    """
+
+
+def moves_sideways(x: Numbers, y: Numbers, heading: Numbers) -> Mask:
+    """Whether SUMO moves a road user sideways from each of these steps to the next."""
+    dx, dy = np.diff(x), np.diff(y)
+    middle = (heading[1:] + heading[:-1]) / 2
+    forward = np.maximum(dx * np.cos(middle) + dy * np.sin(middle), 0.0)
+    across = np.abs(dy * np.cos(middle) - dx * np.sin(middle))
+    sideways: Mask = across > np.maximum(SIDEWAYS, 0.8 * forward)
+    return sideways
 
 
 def course(track: Track, step: int, wanted: float, recording: Recording) -> Course:
     """The course of a road user from a step on."""
     at = step - track.first
     x, y, heading = track.x[at:], track.y[at:], np.unwrap(track.heading[at:])
-    dx, dy = np.diff(x), np.diff(y)
-    middle = (heading[1:] + heading[:-1]) / 2
-    forward = np.maximum(dx * np.cos(middle) + dy * np.sin(middle), 0.0)
-    across = np.abs(dy * np.cos(middle) - dx * np.sin(middle))
-    driven = np.concatenate([[0.0], np.cumsum(np.hypot(dx, dy))])
-    leaps = np.flatnonzero(across > np.maximum(SIDEWAYS, 0.8 * forward))
+    driven = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    leaps = np.flatnonzero(moves_sideways(x, y, heading))
     jumps = float(driven[leaps[0]]) if len(leaps) else math.inf
+    last = slice(max(at - 1, 0), at + 1)
+    if moves_sideways(track.x[last], track.y[last], np.unwrap(track.heading[last])).any():
+        jumps = 0.0
     keep = np.concatenate([[True], np.diff(driven) > 1e-6])
     known = float(driven[-1])
     distances = np.append(np.arange(0, min(wanted, known), SPACING), min(wanted, known))
