@@ -1,13 +1,14 @@
-//! What happens to the two of an event between two steps: each moves evenly from where it was to where it is.
+//! What happens to the two of an event between two steps: each moves evenly from where it was to where it is, on an arc where
+//! it turns.
 //!
-//! A coarse step may end before and after a pair came closest, or even touched. The
-//! signed distance of two rectangles that do not turn (below 0: how deep they overlap) is a convex function of time, so that a
-//! golden-section search finds the smallest; a step in which they turn is cut into parts in which they hardly do. The time to collision needs no search:
-//! of two in line it is a quotient of linear functions of time, which has its extremes at the ends of the step.
-
-use std::f64::consts::PI;
+//! A coarse step may end before and after a pair came closest, or even touched. Where road users are moved back to the moment
+//! of their speeds, the place that SUMO reports is another one on their way. The signed distance of two rectangles that do not
+//! turn (below 0: how deep they overlap) is a convex function of time, so that a golden-section search finds the smallest; a way
+//! on which they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a
+//! quotient of linear functions of time, which has its extremes at the ends of the step.
 
 use crate::detection::measures;
+use crate::geometry::bow::Bow;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Point, angle_between, contact};
 use crate::traffic::frame::State;
@@ -26,16 +27,25 @@ const CLOSER: Metre = 1e-6;
 /// A road user that has moved this much further than its speeds allow was put elsewhere, in m.
 const PUT_ELSEWHERE: Metre = 1.0;
 
-/// The states of two road users at the begin or the end of a step.
+/// The states of two road users at a moment.
 pub(super) type Both = [State; 2];
+
+/// A moment, in s, and the states then.
+pub(super) type Moment = (Second, Both);
 
 /// The two of an event in one step.
 pub(super) struct Between<'a> {
-    /// When the step begins and ends.
-    pub times: [Second; 2],
-    /// Their states then.
-    pub states: [Both; 2],
+    /// When the step begins and ends, and what is known of a moment between.
+    pub moments: &'a [Moment],
     pub profiles: [&'a Profile; 2],
+}
+
+/// The two between two moments.
+#[derive(Clone, Copy)]
+struct Leg<'a> {
+    from: &'a Moment,
+    to: &'a Moment,
+    profiles: [&'a Profile; 2],
 }
 
 /// How close they came, if that was closer than at both ends of the step, or if they collided.
@@ -60,36 +70,64 @@ pub(super) struct FirstContact {
 }
 
 impl Between<'_> {
-    /// How close they came; none where the begin or the end of the step is closest. They collide where they overlap by more than `tolerance`; a collision that lasts until the end of
-    /// the step is one only if it `is_seen` there, as the tolerance depends on the lanes that they are on.
+    /// How close they came; none where the begin or the end of the step is closest. They collide where they overlap by more
+    /// than `tolerance`, and between the ends by as much as arcs leave the straight line besides: so well is the way known. A
+    /// collision that lasts until the end of the step is one only if it `is_seen` there, as the tolerance depends on the lanes
+    /// that they are on.
     pub fn closest(&self, tolerance: Metre, is_seen: bool) -> Option<Closest> {
+        let [Some(first), Some(last)] = [self.legs().next(), self.legs().last()] else { return None };
         if (0..2).any(|one| self.is_put_elsewhere(one)) {
             return None;
         }
-        let [begin, end] = [0.0, 1.0].map(|part| self.room(part));
+        let [begin, end] = [first.room(0.0), last.room(1.0)];
         // The signed distance changes at most as fast as the corners move: two in line are nearest at an end.
-        if !is_seen && (begin + end - self.most_change()) / 2.0 >= begin.min(end) - CLOSER {
+        let most_change = self.legs().map(|leg| leg.most_change()).sum::<Metre>();
+        if !is_seen && (begin + end - most_change) / 2.0 >= begin.min(end) - CLOSER {
             return None;
         }
-        let turn = [0, 1].map(|one| self.turn(one).abs()).iter().sum::<Radian>();
-        let parts = (turn / TURN).ceil().max(1.0);
-        let lows = (0..parts as u32).map(|part| {
-            let [from, to] = [part, part + 1].map(|part| f64::from(part) / parts);
-            let (low, high) = golden_section(|part| -self.room(part), from, to, STEPS);
-            let middle = (low + high) / 2.0;
-            (middle, self.room(middle))
-        });
-        let (lowest, least) = lows.fold((1.0, end), |best, low| if low.1 < best.1 { low } else { best });
+        let lows = self.legs().flat_map(Leg::lows);
+        let lowest = lows.fold((last, 1.0, end), |best, low| if low.2 < best.2 { low } else { best });
+        let (leg, part, least) = lowest;
         let tolerance = tolerance - begin.min(0.0);
-        let collides = -least > tolerance && (is_seen || -end <= tolerance);
+        let unsure = if is_seen { 0.0 } else { leg.depth() };
+        let collides = -least > tolerance + unsure && (is_seen || -end <= tolerance);
         (collides || least < begin.min(end) - CLOSER).then(|| Closest {
             clearance: least.max(0.0),
             overlap: f64::max(-least, 0.0),
-            contact: collides.then(|| self.first_contact(lowest, tolerance)),
+            contact: collides.then(|| {
+                let mut before = self.legs().take_while(|other| other.from.0 < leg.from.0);
+                let overlaps_before = before.find(|leg| -leg.room(1.0) > tolerance).map(|leg| (leg, 1.0));
+                let (leg, until) = overlaps_before.unwrap_or((leg, part));
+                leg.first_contact(until, tolerance)
+            }),
         })
     }
 
-    /// The first contact deeper than a tolerance, which they have at a part of the step.
+    fn legs(&self) -> impl Iterator<Item = Leg<'_>> {
+        self.moments.windows(2).map(|ends| Leg { from: &ends[0], to: &ends[1], profiles: self.profiles })
+    }
+
+    fn is_put_elsewhere(&self, one: usize) -> bool {
+        let [(begin, from), .., (end, to)] = self.moments else { return false };
+        let [from, to] = [from[one], to[one]];
+        (to.front() - from.front()).norm() > from.speed.max(to.speed) * (end - begin) + PUT_ELSEWHERE
+    }
+}
+
+impl<'a> Leg<'a> {
+    /// Where they are closest in each part in which they hardly turn, and their distance there.
+    fn lows(self) -> impl Iterator<Item = (Self, f64, Metre)> + use<'a> {
+        let turn = [0, 1].map(|one| self.way(one).turn.abs()).iter().sum::<Radian>();
+        let parts = (turn / TURN).ceil().max(1.0);
+        (0..parts as u32).map(move |part| {
+            let [from, to] = [part, part + 1].map(|part| f64::from(part) / parts);
+            let (low, high) = golden_section(|part| -self.room(part), from, to, STEPS);
+            let middle = (low + high) / 2.0;
+            (self, middle, self.room(middle))
+        })
+    }
+
+    /// The first contact deeper than a tolerance, which they have at a part of the way.
     fn first_contact(&self, until: f64, tolerance: Metre) -> FirstContact {
         let (mut before, mut after) = (0.0, until);
         for _ in 0..HALVINGS {
@@ -97,23 +135,31 @@ impl Between<'_> {
             if -self.room(middle) > tolerance { after = middle } else { before = middle }
         }
         let part = after;
-        let speeds = [0, 1].map(|one| between(self.states.map(|states| states[one].speed), part));
+        let speeds = [0, 1].map(|one| between([self.from.1[one].speed, self.to.1[one].speed], part));
         let rectangles = [0, 1].map(|one| self.rectangle(one, part));
         let angle = angle_between(&rectangles[0].axis, &rectangles[1].axis);
         let [one, other] = [0, 1].map(|one| (speeds[one], self.profiles[one].mass));
         let [ego, foe] = measures::delta_v(one, other, angle);
         let fronts = rectangles.map(|rectangle| rectangle.centre + rectangle.axis * rectangle.half_length);
-        FirstContact { time: between(self.times, part), fronts, speeds, delta_v: ego.max(foe) }
+        FirstContact { time: between([self.from.0, self.to.0], part), fronts, speeds, delta_v: ego.max(foe) }
     }
 
-    /// By how much their distance can change in the step.
+    /// By how much their distance can change.
     fn most_change(&self) -> Metre {
-        let moves = [0, 1].map(|one| self.states[1][one].front() - self.states[0][one].front());
-        let turns = [0, 1].map(|one| self.turn(one).abs() * self.profiles[one].length.hypot(self.profiles[one].width));
+        let moves = [0, 1].map(|one| self.to.1[one].front() - self.from.1[one].front());
+        let turns = [0, 1].map(|one| {
+            let (way, Profile { length, width, .. }) = (self.way(one), self.profiles[one]);
+            way.turn.abs() * length.hypot(*width) + 2.0 * way.depth()
+        });
         (moves[0] - moves[1]).norm() + turns[0] + turns[1]
     }
 
-    /// Their distance after a part of the step; below 0, how deep they overlap.
+    /// How far their ways leave the straight line.
+    fn depth(&self) -> Metre {
+        [0, 1].map(|one| self.way(one).depth()).iter().sum()
+    }
+
+    /// Their distance after a part of the way; below 0, how deep they overlap.
     fn room(&self, part: f64) -> Metre {
         let [a, b] = [0, 1].map(|one| self.rectangle(one, part));
         match contact::overlap(&a, &b) {
@@ -123,32 +169,28 @@ impl Between<'_> {
     }
 
     fn rectangle(&self, one: usize, part: f64) -> Rectangle {
-        let [from, to] = self.states.map(|states| states[one].front());
-        let heading = self.states[0][one].heading + self.turn(one) * part;
+        let way = self.way(one);
+        let heading = self.from.1[one].heading + way.turn * part;
         let Profile { length, width, .. } = *self.profiles[one];
-        Rectangle::behind(from + (to - from) * part, direction(heading), length, width)
+        Rectangle::behind(way.at(part), direction(heading), length, width)
     }
 
-    /// By how much it turns, −π to π.
-    fn turn(&self, one: usize) -> Radian {
-        let [from, to] = self.states.map(|states| states[one].heading);
-        (to - from + PI).rem_euclid(2.0 * PI) - PI
-    }
-
-    fn is_put_elsewhere(&self, one: usize) -> bool {
-        let [from, to] = self.states.map(|states| states[one]);
-        let lasted = self.times[1] - self.times[0];
-        (to.front() - from.front()).norm() > from.speed.max(to.speed) * lasted + PUT_ELSEWHERE
+    /// The way of one.
+    fn way(&self, one: usize) -> Bow {
+        let states = [self.from.1[one], self.to.1[one]];
+        Bow::new(states.map(|state| state.front()), states.map(|state| state.heading))
     }
 }
 
-/// A value after a part of the step.
+/// A value after a part of the way.
 fn between([from, to]: [f64; 2], part: f64) -> f64 {
     from + (to - from) * part
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use proptest::prelude::*;
 
     use super::*;
@@ -165,7 +207,8 @@ mod tests {
 
     fn closest(states: [Both; 2], lasted: f64, tolerance: f64, is_seen: bool) -> Option<Closest> {
         let car = car();
-        Between { times: [10.0, 10.0 + lasted], states, profiles: [&car, &car] }.closest(tolerance, is_seen)
+        let moments = [(10.0, states[0]), (10.0 + lasted, states[1])];
+        Between { moments: &moments, profiles: [&car, &car] }.closest(tolerance, is_seen)
     }
 
     /// Two that cross at right angles with 20 m/s within a second, the second `late` s after the first.
@@ -203,6 +246,39 @@ mod tests {
     }
 
     #[test]
+    fn one_in_a_bend_passes_what_stands_inside() {
+        // 0.8 rad to the left around the origin, past a car that points away from there. Its front is outside the
+        // straight line between both ends of the step, which is 1.6 m from the arc.
+        let on = |angle: f64, radius: f64, heading: f64, speed: f64| {
+            state(radius * angle.cos(), radius * angle.sin(), heading, speed)
+        };
+        let bend = |angle: f64| on(angle, 20.0, angle + PI / 2.0, 15.0);
+        let found = |radius| {
+            let stands = on(0.35, radius, 0.35, 0.0);
+            closest([[bend(0.0), stands], [bend(0.8), stands]], 1.1, 0.1, false)
+        };
+        let near = found(18.5).unwrap();
+        assert!(near.contact.is_none() && near.clearance > 0.2, "{near:?}");
+        assert!(found(20.9).unwrap().contact.is_some());
+        // That deep the way is not known.
+        let graze = found(20.0).unwrap();
+        assert!(graze.contact.is_none() && graze.overlap > 0.4, "{graze:?}");
+    }
+
+    #[test]
+    fn the_place_between_two_steps_is_on_the_way() {
+        // Around a car that stands on the straight line.
+        let [from, middle, to] = [(-12.0, 0.0), (1.0, 6.0), (14.0, 0.0)].map(|(x, y)| state(x, y, 0.0, 26.0));
+        let stands = state(0.0, 0.0, 0.0, 0.0);
+        let car = car();
+        let closest = |moments: &[Moment]| Between { moments, profiles: [&car, &car] }.closest(0.1, false).unwrap();
+        let (begin, end) = ((0.0, [from, stands]), (1.0, [to, stands]));
+        assert!(closest(&[begin, end]).contact.is_some());
+        let around = closest(&[begin, (0.5, [middle, stands]), end]);
+        assert!(around.contact.is_none() && around.clearance > 0.5, "{around:?}");
+    }
+
+    #[test]
     fn what_was_put_elsewhere_did_not_drive_there() {
         let [from, mut to] = crossing(0.1);
         to[0].x += 2.0;
@@ -222,10 +298,12 @@ mod tests {
                 state(x + way.x, y + way.y, heading + turns[one], speed)
             });
             let car = car();
-            let step = Between { times: [0.0, 1.0], states: [from, to], profiles: [&car, &car] };
+            let moments = [(0.0, from), (1.0, to)];
+            let step = Between { moments: &moments, profiles: [&car, &car] };
             let found = step.closest(f64::INFINITY, false);
-            let least = (0..=500).map(|part| step.room(f64::from(part) / 500.0)).fold(f64::INFINITY, f64::min);
-            let ends = step.room(0.0).min(step.room(1.0));
+            let leg = step.legs().next().unwrap();
+            let least = (0..=500).map(|part| leg.room(f64::from(part) / 500.0)).fold(f64::INFINITY, f64::min);
+            let ends = leg.room(0.0).min(leg.room(1.0));
             let least_found = found.map_or(ends, |found| if found.overlap > 0.0 { -found.overlap } else { found.clearance });
             prop_assert!(least_found <= least + 5e-3 && least_found <= ends, "{least_found} {least}");
         }

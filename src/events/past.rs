@@ -14,7 +14,8 @@ const STEPS: usize = 10;
 /// from it by rounding.
 const APART: Second = 0.5 - 1e-6;
 
-/// A road user that has been in the scene for less than this has just appeared, in s: less than a driver's response time.
+/// A road user that has been in the scene for less than this, or for one step, has just appeared, in s: less than a driver's
+/// response time.
 const NEW: Second = 1.0;
 
 /// The x, y and heading of a road user that is not there.
@@ -65,11 +66,12 @@ impl Past {
         since.filter_map(move |step| step.of(user)).take_while(move |(time, ..)| *time < before)
     }
 
-    /// Whether a road user has been in the scene for less than [`NEW`], although the run has lasted longer.
+    /// Whether a road user has been in the scene for less than [`NEW`] or for one step, although the run has lasted longer.
     pub fn is_new(&self, user: UserIndex, time: Second) -> bool {
         let then = time - NEW;
-        self.steps.front().is_some_and(|step| step.time <= then)
-            && self.of(user, time).next().is_none_or(|(first, ..)| first > then)
+        let [Some(first), Some(last)] = [self.steps.front(), self.steps.back()] else { return false };
+        let is_late = |(since, ..): (Second, _, _)| since > then || since >= last.time;
+        first.time <= then && self.of(user, time).next().is_none_or(is_late)
     }
 
     /// Forgets a road user that has left, as its index may be given to another.
@@ -108,6 +110,23 @@ mod tests {
         let expected = (0..10).map(|step| 3.5 + f64::from(step) * 0.5).collect::<Vec<_>>();
         assert!(times(&past).iter().zip(&expected).all(|(time, expected)| (time - expected).abs() < 1e-6));
         assert_eq!((times(&past).len(), past.of(USER, 5.1).count()), (10, 4));
+    }
+
+    #[test]
+    fn what_came_within_a_second_or_a_step_is_new() {
+        for (step, expected) in
+            [(0.1, [true, true, true, false]), (0.5, [true, true, false, false]), (2.0, [true, true, false, false])]
+        {
+            let mut past = Past::default();
+            let mut is_new = |number: u32| {
+                let time = f64::from(number) * step;
+                let new = past.is_new(USER, time);
+                past.add(&frame(time, number >= 20), 2);
+                new
+            };
+            let found = (0..40).map(&mut is_new).collect::<Vec<_>>();
+            assert_eq!([20, 21, 22, 31].map(|number| found[number]), expected, "{step}");
+        }
     }
 
     #[test]

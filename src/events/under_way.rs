@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use super::alarm::{Alarm, PetSoFar};
-use super::between::{Between, Both};
+use super::between::{Between, Both, Moment};
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
 use super::span::Span;
@@ -14,7 +14,7 @@ use crate::detection::measures::pet::{self, Pet};
 use crate::detection::path::Pose;
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
-use crate::traffic::frame::{Frame, State};
+use crate::traffic::frame::Frame;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, Radian, SAME_MOMENT, Second};
@@ -37,9 +37,18 @@ pub(super) struct Event {
     pet_below: Second,
     /// The runs of steps that meet the condition whatever the PET is; none where it does not ask for the PET.
     met: Option<Vec<Span>>,
-    /// The states of both in the last step, in the order of the pair.
-    last: Both,
+    /// Where both were in the last step, in the order of the pair.
+    last: Seen,
     driven: Option<Box<Driven>>,
+}
+
+/// Where two road users were in a step.
+#[derive(Clone, Copy, Debug, Default)]
+struct Seen {
+    states: Both,
+    /// As their source has them, later by `behind`.
+    reported: Both,
+    behind: Second,
 }
 
 /// The paths that the two of a side or frontal event have driven, from some seconds before it became one, in their order,
@@ -71,7 +80,7 @@ impl Event {
     /// That of a first step.
     pub fn of(pair: Pair, seen: &Observation, keeps: Keeps) -> Self {
         let followed = Span::of(seen, keeps.steps);
-        let last = states(seen.frame, &pair).unwrap_or_default();
+        let last = Seen::of(seen.frame, &pair).unwrap_or_default();
         let met = keeps.met.then(Vec::new);
         let mut event = Self { pair, alarm: None, followed, pet_below: f64::NEG_INFINITY, met, last, driven: None };
         event.note(seen, keeps);
@@ -139,14 +148,20 @@ impl Event {
         is_seen: bool,
         has_jumped: impl Fn(UserIndex) -> bool,
     ) {
-        let Some(now) = states(frame, &self.pair) else { return };
-        let states = [std::mem::replace(&mut self.last, now), now];
+        let Some(now) = Seen::of(frame, &self.pair) else { return };
+        let last = std::mem::replace(&mut self.last, now);
         let profiles = self.pair.map(|user| roster.profile_of(user));
         let is_rectangle = |of: &&Profile| of.category != Category::Obstacle && of.carriages == 1;
         if self.followed.extremes.end != before || !profiles.iter().all(is_rectangle) {
             return;
         }
-        let step = Between { times: [before, frame.time], states, profiles };
+        let mut moments = SmallVec::<[Moment; 3]>::from_slice(&[(before, last.states)]);
+        if last.behind > 0.0 {
+            let lasted = frame.time - now.behind - (before - last.behind);
+            moments.push((before + (frame.time - before) * (last.behind / lasted), last.reported));
+        }
+        moments.push((frame.time, now.states));
+        let step = Between { moments: &moments, profiles };
         let Some(closest) = step.closest(tolerance, is_seen) else { return };
         if self.followed.extremes.is_closer(&closest) && !self.pair.into_iter().any(has_jumped) {
             let ego = usize::from(self.pair[1] == self.followed.extremes.worst.ego);
@@ -210,7 +225,11 @@ impl Event {
             };
             if roster.profile_of(*user).category != Category::Obstacle {
                 let state = frame.state(row);
-                path.push(frame.time, state.front(), state.heading);
+                path.drive_to(frame.time, state.front(), state.heading);
+                if frame.behind() > 0.0 {
+                    let state = frame.reported(row);
+                    path.drive_to(frame.time + frame.behind(), state.front(), state.heading);
+                }
             }
         }
     }
@@ -248,15 +267,19 @@ fn driven_before(user: UserIndex, seen: &Observation) -> DrivenPath {
     let mut path = DrivenPath::of_carriages(profile.carriages(), profile.width);
     if profile.category != Category::Obstacle {
         let past = seen.past.of(user, seen.frame.time);
-        past.for_each(|(time, front, heading)| path.push(time, front, heading));
+        past.for_each(|(time, front, heading)| path.drive_to(time, front, heading));
     }
     path
 }
 
-/// The states of a pair in a step, if both are there.
-fn states(frame: &Frame, pair: &Pair) -> Option<[State; 2]> {
-    let [one, other] = pair.map(|user| frame.row_of(user));
-    Some([*frame.state(one?), *frame.state(other?)])
+impl Seen {
+    /// Where a pair is in a step, if both are there.
+    fn of(frame: &Frame, pair: &Pair) -> Option<Self> {
+        let [one, other] = pair.map(|user| frame.row_of(user));
+        let rows = [one?, other?];
+        let [states, reported] = [Frame::state, Frame::reported].map(|of| rows.map(|row| *of(frame, row)));
+        Some(Self { states, reported, behind: frame.behind() })
+    }
 }
 
 /// Whether a run of steps has ended so long before this time that it is closed.

@@ -4,6 +4,7 @@
 //! [`polygon::convex_parts`]); the conversion to its types is in `parry.rs` alone.
 
 pub mod bisection;
+pub mod bow;
 pub mod contact;
 pub mod convex;
 pub mod exact;

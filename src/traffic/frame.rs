@@ -94,6 +94,10 @@ pub struct Frame {
     users: Vec<UserIndex>,
     /// By row.
     states: Vec<State>,
+    /// By row, the states as their source has them, if these are not those.
+    reported: Vec<State>,
+    /// How long before `time` road users are where their states say, in s.
+    behind: Second,
     /// By [`UserIndex`], the row.
     rows: Vec<u32>,
     /// The first road user that is where none can be, and why.
@@ -111,6 +115,8 @@ impl Frame {
             self.rows[user.0 as usize] = ABSENT;
         }
         self.states.clear();
+        self.reported.clear();
+        self.behind = 0.0;
         self.impossible = None;
     }
 
@@ -218,6 +224,22 @@ impl Frame {
     /// A row's state, to change it.
     pub fn state_mut(&mut self, row: u32) -> &mut State {
         &mut self.states[row as usize]
+    }
+
+    /// Keeps the states as they are now as those that were reported, before they are changed to those of `behind` s earlier.
+    pub(crate) fn begin_to_move_back(&mut self, behind: Second) {
+        self.reported.clone_from(&self.states);
+        self.behind = behind;
+    }
+
+    /// How long before [`Frame::time`] road users are where their states say, in s.
+    pub(crate) fn behind(&self) -> Second {
+        self.behind
+    }
+
+    /// The state of a row as its source has it, at [`Frame::time`].
+    pub(crate) fn reported(&self, row: u32) -> &State {
+        self.reported.get(row as usize).unwrap_or_else(|| self.state(row))
     }
 
     /// The row of a road user, the last one if it has several; none where it is absent in this step.

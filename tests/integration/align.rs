@@ -129,14 +129,32 @@ fn one_that_is_put_elsewhere_has_not_changed_lanes() {
 
 #[test]
 fn what_enters_after_the_moment_collides_with_nothing() {
-    let [behind, ahead] = [20.0, 28.0].map(|x| State { x, speed: x, ..State::default() });
-    let encounters = |first: [State; 2]| {
+    let encounters = |[behind, ahead]: [f64; 2], is_new: bool| {
+        let [behind, ahead] = [(20.0, behind), (28.0, ahead)].map(|(x, speed)| State { x, speed, ..State::default() });
+        let before = State { speed: if is_new { f64::NAN } else { ahead.speed }, ..ahead };
         let mut detector = aligning(None);
-        second_step(&mut detector, None, [&first, &[behind, ahead]]);
-        detector.encounters().filter(|found| found.collision).count()
+        second_step(&mut detector, None, [&[behind, before], &[behind, ahead]]);
+        let collisions = detector.encounters().filter(|found| found.collision).count();
+        (detector.encounters().count(), collisions)
     };
-    assert_eq!(encounters([behind, ahead]), 1, "half a step back they overlap");
-    assert_eq!(encounters([State { speed: f64::NAN, ..behind }, ahead]), 0);
+    // Half a step back the first of these overlap.
+    assert_eq!((encounters([20.0, 28.0], false), encounters([20.0, 28.0], true).1), ((1, 1), 0));
+    assert_eq!((encounters([20.0, 18.0], false), encounters([20.0, 18.0], true)), ((1, 0), (1, 0)));
+    assert_eq!((encounters([20.0, 0.0], false).0, encounters([20.0, 0.0], true).0), (1, 0));
+}
+
+#[test]
+fn what_was_put_elsewhere_meets_nothing_there() {
+    let (way, car) = (Way::bend(), car());
+    let stands = way.vehicle(&car, 100.0, 0.0);
+    let encounters = |from: f64| {
+        let mut detector = aligning(Some(&way));
+        let before = way.vehicle(&car, from, 8.0);
+        let steps: [&[State]; 2] = [&[before, stands], &[way.vehicle(&car, 93.0, 8.0), stands]];
+        second_step(&mut detector, Some((&way.net, from)), steps);
+        detector.encounters().count()
+    };
+    assert_eq!((encounters(85.0), encounters(60.0)), (1, 0));
 }
 
 #[test]

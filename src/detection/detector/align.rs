@@ -3,11 +3,13 @@
 //! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
 //! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
 //! v(t) Δt/2 further back along the path that it drove. A change of lanes is a jump at the step's end, so that it was still on
-//! the lane before. One that enters the scene at the step's end was not there; it keeps its distance from the others if it is
-//! moved back too, but no overlap is a collision then.
+//! the lane before. One that enters the scene at the step's end was not there. If it moves, it keeps its distance from the others
+//! by being moved back too, but no overlap is a collision then. If it stands, or was put elsewhere, it meets nothing in that
+//! step.
 
 use super::Detector;
 use super::jump::Jump;
+use super::last_speed::LastSpeed;
 use super::paths::lines_of;
 use crate::detection::path::turn;
 use crate::geometry::rectangle::direction;
@@ -52,6 +54,7 @@ impl Detector {
         if behind == 0.0 {
             return;
         }
+        frame.begin_to_move_back(behind);
         // What has jumped was not on its path then.
         for jump in &self.jumps {
             self.on_lanes[jump.row as usize] = false;
@@ -67,7 +70,8 @@ impl Detector {
         self.undo_jumps(frame, roster);
     }
 
-    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back.
+    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. One that was put
+    /// elsewhere is as if it had just entered the scene.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
         let path = &self.paths[user.0 as usize];
         if self.behind() == 0.0 || path.track.is_empty() {
@@ -78,7 +82,10 @@ impl Detector {
         let (off, direction) = (state.front() - point, direction.normalize());
         let along = off.dot(&direction);
         let aside = off - direction * along;
-        if aside.norm() >= LEAST_JUMP && off.norm() < MOST_JUMP {
+        if off.norm() >= MOST_JUMP {
+            self.speeds[user.0 as usize] = LastSpeed::default();
+            self.put_elsewhere.push(user);
+        } else if aside.norm() >= LEAST_JUMP {
             let mut path = path.clone();
             path.move_on(of_net, state.speed * (self.step - self.behind()));
             self.jumps.push(Jump { row, user, path });
@@ -103,6 +110,7 @@ impl Detector {
     pub(super) fn redo_jumps(&mut self) {
         self.jumps.clear();
         self.jumped.clear();
+        self.put_elsewhere.clear();
         for (user, path) in self.next_paths.drain(..) {
             self.paths[user.0 as usize] = path;
             self.jumped.push(user);

@@ -113,6 +113,7 @@ impl Detector {
             turns,
             epsilon,
             is_earlier: self.behind() > 0.0,
+            put_elsewhere: &self.put_elsewhere,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths,

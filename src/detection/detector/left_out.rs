@@ -1,7 +1,7 @@
 //! The tests that a run skipped, how often and why.
 //!
-//! Skipping them changes no result. Pairs that cannot be encounters by definition (both stand, both are persons, on
-//! different levels) are only counted.
+//! Skipping them changes no result. Pairs that cannot be encounters by definition (one was not there yet, both stand,
+//! both are persons, on different levels) are only counted.
 
 use std::fmt;
 
@@ -54,6 +54,7 @@ pub(super) fn left_out(work: &Work, shortcuts: Shortcuts) -> Vec<LeftOut> {
     let unneeded = tests.into_iter().filter(|(.., unneeded)| *unneeded && shortcuts.in_line);
     let counted = [
         ("pair tests", "too far apart to meet before both stand", work.areas_apart),
+        ("pair tests", "one was not there yet", work.not_there_yet),
         ("pair tests", "both stand", work.both_stand),
         ("pair tests", "on different levels", work.other_level),
         ("pair tests", "both are persons", work.both_persons),

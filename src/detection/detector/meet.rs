@@ -45,9 +45,13 @@ impl Unsettled {
     }
 }
 
-/// Whether two road users can be a pair at all. Two that stand are one only in the step in which one of them stops: what
-/// it ran into on its last metre is a collision.
+/// Whether two road users can be a pair at all. One of which it is not known where it was meets nothing. Two that stand are a pair only in the
+/// step in which one of them stops: what it ran into on its last metre is a collision.
 fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
+    if [a, b].into_iter().any(|user| user.motion == Motion::WasElsewhere) {
+        work.not_there_yet += 1;
+        return false;
+    }
     let has_stopped = [a, b].into_iter().any(|user| user.motion == Motion::HasStopped) && mode == Mode::Closecall;
     if !a_state.moves() && !b_state.moves() && !has_stopped {
         work.both_stand += 1;

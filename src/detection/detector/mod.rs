@@ -87,6 +87,8 @@ pub struct Detector {
     next_paths: Vec<(UserIndex, LanePath)>,
     /// Those that jumped at the end of the last step.
     jumped: Vec<UserIndex>,
+    /// Those that were put elsewhere at the end of this step.
+    put_elsewhere: Vec<UserIndex>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -137,6 +139,7 @@ impl Detector {
             jumps: Vec::new(),
             next_paths: Vec::new(),
             jumped: Vec::new(),
+            put_elsewhere: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -315,6 +318,7 @@ impl Detector {
             turns,
             epsilon,
             is_earlier: self.behind() > 0.0,
+            put_elsewhere: &self.put_elsewhere,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths: self.all_paths(),

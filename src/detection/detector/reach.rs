@@ -25,6 +25,8 @@ pub(super) enum Motion {
     HasStopped,
     /// It moves, and has entered the scene after the moment to which the others are moved back.
     Enters,
+    /// It was put where it is after that moment, or stands there since: where it was then is not known.
+    WasElsewhere,
     /// It stands, and stood in the step before or has just entered the scene.
     Rests,
 }
@@ -57,6 +59,8 @@ pub(super) struct StepView<'a> {
     pub epsilon: Metre,
     /// Whether road users are moved back to a moment before the end of the step.
     pub is_earlier: bool,
+    /// Those that were put elsewhere in this step.
+    pub put_elsewhere: &'a [UserIndex],
     pub on_lanes: &'a [bool],
     /// By [`UserIndex`], the speed in the last step that the road user was in.
     pub speeds: &'a [LastSpeed],
@@ -113,7 +117,13 @@ impl StepView<'_> {
             profile: type_index,
             category: profile.category,
             motion: match moves {
-                true if self.is_earlier && is_new() => Motion::Enters,
+                _ if self.is_earlier && is_new() => {
+                    if moves && !self.put_elsewhere.contains(&index) {
+                        Motion::Enters
+                    } else {
+                        Motion::WasElsewhere
+                    }
+                }
                 true => Motion::Moves,
                 false if last().is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
                 false => Motion::Rests,

@@ -9,7 +9,9 @@ pub struct Work {
     pub pairs: u64,
     /// Pairs left out because they are too far apart to meet before both stand.
     pub areas_apart: u64,
-    /// Pairs that pass, but are left out because both stand.
+    /// Pairs that pass, but are left out because one was not there yet at the moment of the step.
+    pub not_there_yet: u64,
+    /// Left out because both stand.
     pub both_stand: u64,
     /// Left out because one is on a bridge above the other.
     pub other_level: u64,
@@ -36,6 +38,7 @@ impl std::ops::AddAssign for Work {
         self.rows += other.rows;
         self.pairs += other.pairs;
         self.areas_apart += other.areas_apart;
+        self.not_there_yet += other.not_there_yet;
         self.both_stand += other.both_stand;
         self.other_level += other.other_level;
         self.both_persons += other.both_persons;

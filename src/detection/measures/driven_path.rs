@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use smallvec::SmallVec;
 
 use crate::detection::path::Pose;
+use crate::geometry::bow::Bow;
 use crate::geometry::movement::TOLERANCE;
 use crate::geometry::rectangle::{Rectangle, direction};
 use crate::geometry::{Bounds, Point};
@@ -53,6 +54,24 @@ impl DrivenPath {
             [.., before, last] if before.stands_as(last) && last.stands_as(&pose) => last.time = time,
             _ => self.poses.push(pose),
         }
+    }
+
+    /// Adds the same of a road user that was seen there, with what lies between on the arc that it drove.
+    pub fn drive_to(&mut self, time: Second, front: Point, heading: Radian) {
+        // Steps of a recording that differ in length may overlap by a part of one.
+        while self.poses.last().is_some_and(|last| last.time >= time) {
+            self.poses.pop();
+        }
+        if let Some(last) = self.poses.last().copied() {
+            let bow = Bow::new([last.front, front], [last.heading, heading]);
+            // A straight line through a part of an arc leaves it by the square of its share.
+            let parts = (bow.depth() / TOLERANCE).sqrt().ceil();
+            for part in (1..parts as u32).map(|part| f64::from(part) / parts) {
+                let time = last.time + (time - last.time) * part;
+                self.push(time, bow.at(part), last.heading + bow.turn * part);
+            }
+        }
+        self.push(time, front, heading);
     }
 
     /// The same if it goes on along these poses. When it comes to each is left open: a second later for each metre.

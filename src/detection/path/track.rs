@@ -93,14 +93,16 @@ impl Track {
         if self.is_empty() {
             return false;
         }
-        let under = lines.segment(self.vertex);
+        let (under, stretch) = (lines.segment(self.vertex), lines.most_stretch());
         if let Some(distance) = under.distance_of(front) {
+            if distance > self.front + driven * stretch + ON_THE_LINE {
+                return false;
+            }
             let goes_on = distance >= self.front - BACKWARDS;
             self.front = distance;
             return goes_on;
         }
         let moved = (front - under.at(self.front)).norm();
-        let stretch = lines.most_stretch();
         let searched = (LONGEST_DETOUR * moved).min(driven) * stretch;
         let furthest = self.front + searched + ON_THE_LINE;
         let beyond = driven * stretch - searched;
