@@ -45,6 +45,7 @@ pub(super) struct Between<'a> {
 struct Leg<'a> {
     from: &'a Moment,
     to: &'a Moment,
+    ways: [Bow; 2],
     profiles: [&'a Profile; 2],
 }
 
@@ -104,7 +105,13 @@ impl Between<'_> {
     }
 
     fn legs(&self) -> impl Iterator<Item = Leg<'_>> {
-        self.moments.windows(2).map(|ends| Leg { from: &ends[0], to: &ends[1], profiles: self.profiles })
+        self.moments.windows(2).map(|ends| {
+            let ways = [0, 1].map(|one| {
+                let states = [&ends[0].1[one], &ends[1].1[one]];
+                Bow::new(states.map(State::front), states.map(|state| state.heading))
+            });
+            Leg { from: &ends[0], to: &ends[1], ways, profiles: self.profiles }
+        })
     }
 
     fn is_put_elsewhere(&self, one: usize) -> bool {
@@ -117,7 +124,7 @@ impl Between<'_> {
 impl<'a> Leg<'a> {
     /// Where they are closest in each part in which they hardly turn, and their distance there.
     fn lows(self) -> impl Iterator<Item = (Self, f64, Metre)> + use<'a> {
-        let turn = [0, 1].map(|one| self.way(one).turn.abs()).iter().sum::<Radian>();
+        let turn = self.ways.iter().map(|way| way.turn.abs()).sum::<Radian>();
         let parts = (turn / TURN).ceil().max(1.0);
         (0..parts as u32).map(move |part| {
             let [from, to] = [part, part + 1].map(|part| f64::from(part) / parts);
@@ -148,7 +155,7 @@ impl<'a> Leg<'a> {
     fn most_change(&self) -> Metre {
         let moves = [0, 1].map(|one| self.to.1[one].front() - self.from.1[one].front());
         let turns = [0, 1].map(|one| {
-            let (way, Profile { length, width, .. }) = (self.way(one), self.profiles[one]);
+            let (way, Profile { length, width, .. }) = (self.ways[one], self.profiles[one]);
             way.turn.abs() * length.hypot(*width) + 2.0 * way.depth()
         });
         (moves[0] - moves[1]).norm() + turns[0] + turns[1]
@@ -156,7 +163,7 @@ impl<'a> Leg<'a> {
 
     /// How far their ways leave the straight line.
     fn depth(&self) -> Metre {
-        [0, 1].map(|one| self.way(one).depth()).iter().sum()
+        self.ways.iter().map(Bow::depth).sum()
     }
 
     /// Their distance after a part of the way; below 0, how deep they overlap.
@@ -169,16 +176,10 @@ impl<'a> Leg<'a> {
     }
 
     fn rectangle(&self, one: usize, part: f64) -> Rectangle {
-        let way = self.way(one);
+        let way = &self.ways[one];
         let heading = self.from.1[one].heading + way.turn * part;
         let Profile { length, width, .. } = *self.profiles[one];
         Rectangle::behind(way.at(part), direction(heading), length, width)
-    }
-
-    /// The way of one.
-    fn way(&self, one: usize) -> Bow {
-        let states = [self.from.1[one], self.to.1[one]];
-        Bow::new(states.map(|state| state.front()), states.map(|state| state.heading))
     }
 }
 

@@ -125,7 +125,7 @@ def driven(track: Track, recording: Recording, at: int, behind: Numbers) -> tupl
 
 
 def leading(lanes: dict[str, Lane], begin: str, end: str) -> list[str]:
-    """The lanes from one to another, or else to one of its edge; empty where there is no short way."""
+    """The lanes from one to another, or else to one of its edge; empty where none is short."""
     edge = lanes[end].edge
     chains, found = [[begin]], []
     for chain in chains:

@@ -12,6 +12,9 @@ use crate::geometry::{Bounds, Point};
 use crate::traffic::profile::Carriage;
 use crate::util::units::{Metre, Radian, Second};
 
+/// Parts of an arc, at most: 2.6 m deep. A deeper one is none, since the road user was put elsewhere.
+const MOST_PARTS: f64 = 16.0;
+
 /// The path that one road user drove: where it was at each time.
 #[derive(Clone, Debug, Default)]
 pub struct DrivenPath {
@@ -65,7 +68,7 @@ impl DrivenPath {
         if let Some(last) = self.poses.last().copied() {
             let bow = Bow::new([last.front, front], [last.heading, heading]);
             // A straight line through a part of an arc leaves it by the square of its share.
-            let parts = (bow.depth() / TOLERANCE).sqrt().ceil();
+            let parts = (bow.depth() / TOLERANCE).sqrt().ceil().min(MOST_PARTS);
             for part in (1..parts as u32).map(|part| f64::from(part) / parts) {
                 let time = last.time + (time - last.time) * part;
                 self.push(time, bow.at(part), last.heading + bow.turn * part);
