@@ -3,7 +3,7 @@
 //! The broad phase finds the pairs that may meet. The narrow phase finds their conflict points. The measures tell how
 //! close a pair is.
 
-mod added_values;
+mod chosen_values;
 pub mod broad_phase;
 pub mod course;
 pub mod detector;

@@ -11,7 +11,7 @@ use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::Pet;
-use crate::options::measures::{AddedMeasure, AddedValues};
+use crate::options::measures::{ChosenMeasure, ChosenValues};
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -117,7 +117,7 @@ pub struct Conflict {
     pub found: [Option<Moment>; 3],
     /// The measures that are logged only if they are chosen; none where none is.
     #[serde(skip)]
-    pub(crate) added: Option<Box<AddedValues>>,
+    pub(crate) chosen: Option<Box<ChosenValues>>,
     /// Each of its steps as a conflict of its own, without paths and PET, where a series is wanted.
     #[serde(skip)]
     pub steps: Vec<Self>,
@@ -144,7 +144,7 @@ impl Conflict {
             extended_delta_v,
             ref found,
             ref worst,
-            ref added,
+            ref chosen,
             why: Why { manoeuvre, causes, lane_change_reason, lanes },
             standing: _,
         } = *extremes;
@@ -200,13 +200,13 @@ impl Conflict {
             ego_snapshot,
             foe_snapshot,
             found: [found[0], found[1], entered],
-            added: added.as_ref().map(|added| Box::new(added.values())),
+            chosen: chosen.as_ref().map(|chosen| Box::new(chosen.values())),
             steps: Vec::new(),
         }
     }
 
     /// The value of a measure that is logged only if it is chosen.
-    pub(crate) fn added(&self, measure: AddedMeasure) -> Option<f64> {
-        self.added.as_ref().and_then(|values| values[measure as usize])
+    pub(crate) fn chosen(&self, measure: ChosenMeasure) -> Option<f64> {
+        self.chosen.as_ref().and_then(|values| values[measure as usize])
     }
 }

@@ -1,6 +1,6 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
-use super::added::{Added, Step};
+use super::chosen_measures::{ChosenMeasures, Step};
 use super::between::{Closest, FirstContact};
 use super::moment::Moment;
 use super::past::Past;
@@ -8,7 +8,7 @@ use super::snapshot::Snapshot;
 use super::why::{STANDS, Surroundings, Why};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
-use crate::options::measures::AddedValues;
+use crate::options::measures::ChosenValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::profile::Category;
@@ -25,7 +25,7 @@ pub(super) struct Observation<'a> {
     pub roster: &'a Roster,
     pub found: &'a Encounter,
     /// The chosen measures of this step; none where none is chosen.
-    pub added: Option<&'a AddedValues>,
+    pub chosen: Option<&'a ChosenValues>,
     /// Since the step before, in s; 0 in the first of a run.
     pub lasted: Second,
     pub around: Surroundings<'a>,
@@ -55,7 +55,7 @@ pub(super) struct Extremes {
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
     /// The chosen measures; none where none is chosen.
-    pub added: Option<Box<Added>>,
+    pub chosen: Option<Box<ChosenMeasures>>,
     /// The manoeuvre of that step, and the causes of all steps that were the worst so far.
     pub why: Why,
     /// The vehicles that stood in the last step and of which a stop would be a cause.
@@ -124,8 +124,8 @@ impl Observation<'_> {
         self.found.nearness?.extended_delta_v
     }
 
-    fn added_step(&self) -> Option<Step<'_>> {
-        self.added.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
+    fn chosen_step(&self) -> Option<Step<'_>> {
+        self.chosen.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
     }
 
     fn why(&self) -> Why {
@@ -182,7 +182,7 @@ impl Extremes {
             extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, has_paths),
-            added: seen.added_step().map(|step| Box::new(Added::of(&step))),
+            chosen: seen.chosen_step().map(|step| Box::new(ChosenMeasures::of(&step))),
             why: seen.why(),
             standing: seen.standing(),
         }
@@ -199,8 +199,8 @@ impl Extremes {
             // Who enters a junction first, and on what light, may show only after the smallest margin.
             self.why.causes.add(seen.why().causes.at_the_entry());
         }
-        if let (Some(added), Some(step)) = (&mut self.added, seen.added_step()) {
-            added.take(&step, is_worst);
+        if let (Some(chosen), Some(step)) = (&mut self.chosen, seen.chosen_step()) {
+            chosen.take(&step, is_worst);
         }
         self.end = seen.frame.time;
         self.standing = seen.standing();

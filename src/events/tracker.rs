@@ -72,9 +72,9 @@ impl Tracker {
             let past = std::mem::take(&mut self.past);
             let lasted = if before.is_nan() { 0.0 } else { frame.time - before };
             for found in encounters.filter(|found| found.may_be_logged()) {
-                let added = (around.added)(found);
-                let added = added.as_deref();
-                self.take(&Observation { frame, roster, found, added, lasted, around, past: &past });
+                let chosen = (around.chosen)(found);
+                let chosen = chosen.as_deref();
+                self.take(&Observation { frame, roster, found, chosen, lasted, around, past: &past });
             }
             self.past = past;
             if let Some(collided) = collided {
@@ -226,7 +226,7 @@ mod tests {
             stopped: &[],
             path: &|_| Vec::new(),
             course: &|_| Default::default(),
-            added: &|_| None,
+            chosen: &|_| None,
             tadv: &|_| None,
         }
     }

@@ -5,16 +5,16 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-/// Makes [`AddedMeasure`], with the name of its column in the log.
+/// Makes [`ChosenMeasure`], with the name of its column in the log.
 macro_rules! measures {
     ($($variant:ident $name:literal),+ $(,)?) => {
         /// A measure that is computed and logged only if it is chosen; docs/measures.md describes each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum AddedMeasure {
+        pub enum ChosenMeasure {
             $( #[doc = concat!("The column `", $name, "`.")] $variant, )+
         }
 
-        impl AddedMeasure {
+        impl ChosenMeasure {
             /// All, in the order of their columns.
             pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
 
@@ -56,16 +56,16 @@ measures! {
     Ei "ei",
 }
 
-/// A value of each [`AddedMeasure`], in their order; none where it is not chosen or does not exist.
-pub type AddedValues = [Option<f64>; AddedMeasure::ALL.len()];
+/// A value of each [`ChosenMeasure`], in their order; none where it is not chosen or does not exist.
+pub type ChosenValues = [Option<f64>; ChosenMeasure::ALL.len()];
 
-/// The measures that are chosen: a bit for each [`AddedMeasure`].
+/// The measures that are chosen: a bit for each [`ChosenMeasure`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measures(u32);
 
 impl Measures {
     /// All of them.
-    pub const ALL: Self = Self((1 << AddedMeasure::ALL.len()) - 1);
+    pub const ALL: Self = Self((1 << ChosenMeasure::ALL.len()) - 1);
 
     /// Whether none is chosen.
     pub fn is_empty(&self) -> bool {
@@ -73,18 +73,18 @@ impl Measures {
     }
 
     /// Whether a measure is chosen.
-    pub fn has(self, measure: AddedMeasure) -> bool {
+    pub fn has(self, measure: ChosenMeasure) -> bool {
         self.0 & Self::from(measure).0 != 0
     }
 
     /// The chosen ones, in the order of their columns.
-    pub fn chosen(self) -> impl Iterator<Item = AddedMeasure> {
-        AddedMeasure::ALL.into_iter().filter(move |measure| self.has(*measure))
+    pub fn chosen(self) -> impl Iterator<Item = ChosenMeasure> {
+        ChosenMeasure::ALL.into_iter().filter(move |measure| self.has(*measure))
     }
 }
 
-impl From<AddedMeasure> for Measures {
-    fn from(measure: AddedMeasure) -> Self {
+impl From<ChosenMeasure> for Measures {
+    fn from(measure: ChosenMeasure) -> Self {
         Self(1 << measure as u32)
     }
 }
@@ -98,10 +98,10 @@ impl FromStr for Measures {
             measures.0 |= match name {
                 "default" => 0,
                 "all" => Self::ALL.0,
-                _ => match AddedMeasure::ALL.into_iter().find(|measure| measure.name() == name) {
+                _ => match ChosenMeasure::ALL.into_iter().find(|measure| measure.name() == name) {
                     Some(measure) => Self::from(measure).0,
                     None => {
-                        let names = AddedMeasure::ALL.map(AddedMeasure::name).join(", ");
+                        let names = ChosenMeasure::ALL.map(ChosenMeasure::name).join(", ");
                         return Err(format!("cannot add an unknown measure \"{name}\"; known are {names}"));
                     }
                 },
@@ -116,7 +116,7 @@ impl fmt::Display for Measures {
         match *self {
             Self(0) => f.write_str("default"),
             Self::ALL => f.write_str("all"),
-            _ => f.write_str(&self.chosen().map(AddedMeasure::name).collect::<Vec<_>>().join(",")),
+            _ => f.write_str(&self.chosen().map(ChosenMeasure::name).collect::<Vec<_>>().join(",")),
         }
     }
 }

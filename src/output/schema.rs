@@ -13,7 +13,7 @@ use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
 use crate::events::{Conflict, Manoeuvre, Snapshot};
 use crate::geometry::Point;
-use crate::options::measures::{AddedMeasure, Measures};
+use crate::options::measures::{ChosenMeasure, Measures};
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::Net;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -218,62 +218,62 @@ columns! { |conflict, context|
     [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
     /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
     /// course; side and frontal conflicts only
-    [Chosen] tadv: Option<Second> = conflict.added(AddedMeasure::Tadv);
+    [Chosen] tadv: Option<Second> = conflict.chosen(ChosenMeasure::Tadv);
     /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their paths; the
     /// TTC on a collision course; side and frontal conflicts only
-    [Chosen] t2: Option<Second> = conflict.added(AddedMeasure::T2);
+    [Chosen] t2: Option<Second> = conflict.chosen(ChosenMeasure::T2);
     /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
-    [Chosen] rss_distance: Option<Metre> = conflict.added(AddedMeasure::RssDistance);
+    [Chosen] rss_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssDistance);
     /// safe lateral distance by RSS; rear-end and frontal conflicts only
-    [Chosen] rss_lateral_distance: Option<Metre> = conflict.added(AddedMeasure::RssLateralDistance);
+    [Chosen] rss_lateral_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssLateralDistance);
     /// how long of the conflict the gap was below `rss_distance`
-    [Chosen] rss_violation: Option<Second> = conflict.added(AddedMeasure::RssViolation);
+    [Chosen] rss_violation: Option<Second> = conflict.chosen(ChosenMeasure::RssViolation);
     /// time headway from front to front: smallest of all steps; rear-end conflicts only
-    [Chosen] thw: Option<Second> = conflict.added(AddedMeasure::Thw);
+    [Chosen] thw: Option<Second> = conflict.chosen(ChosenMeasure::Thw);
     /// space gap: smallest gap of all steps; rear-end conflicts only
-    [Chosen] sgap: Option<Metre> = conflict.added(AddedMeasure::Sgap);
+    [Chosen] sgap: Option<Metre> = conflict.chosen(ChosenMeasure::Sgap);
     /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
-    [Chosen] br: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Br);
+    [Chosen] br: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Br);
     /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²;
     /// rear-end conflicts only
-    [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Mdrac);
+    [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Mdrac);
     /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
-    [Chosen] mttc: Option<Second> = conflict.added(AddedMeasure::Mttc);
+    [Chosen] mttc: Option<Second> = conflict.chosen(ChosenMeasure::Mttc);
     /// crash index: largest of all steps; rear-end conflicts only
-    [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.added(AddedMeasure::CrashIndex);
+    [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.chosen(ChosenMeasure::CrashIndex);
     /// time exposed to a TTC of at most 3 s
-    [Chosen] tet: Option<Second> = conflict.added(AddedMeasure::Tet);
+    [Chosen] tet: Option<Second> = conflict.chosen(ChosenMeasure::Tet);
     /// integral over time of what the TTC lacks to 3 s
-    [Chosen] tit: Option<SecondSquared> = conflict.added(AddedMeasure::Tit);
+    [Chosen] tit: Option<SecondSquared> = conflict.chosen(ChosenMeasure::Tit);
     /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
-    [Chosen] cpi: Option<Probability> = conflict.added(AddedMeasure::Cpi);
+    [Chosen] cpi: Option<Probability> = conflict.chosen(ChosenMeasure::Cpi);
     /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most 12.68 m/s²
-    [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::ALongReq);
+    [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALongReq);
     /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²; rear-end and
     /// frontal conflicts only
-    [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::ALatReq);
+    [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALatReq);
     /// brake threat number: `a_long_req` over the ego's braking deceleration
-    [Chosen] btn: Option<Ratio> = conflict.added(AddedMeasure::Btn);
+    [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
     /// steer threat number: `a_lat_req` over the ego's braking deceleration
-    [Chosen] stn: Option<Ratio> = conflict.added(AddedMeasure::Stn);
+    [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
     /// time to accident: the TTC when the first of both brakes with at least 1.3 m/s²
-    [Chosen] ta: Option<Second> = conflict.added(AddedMeasure::Ta);
+    [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
     /// speed of the one that brakes then, before it does
-    [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.added(AddedMeasure::ConflictingSpeed);
+    [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);
     /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
-    [Chosen] ta_level: Option<Ratio> = conflict.added(AddedMeasure::TaLevel);
+    [Chosen] ta_level: Option<Ratio> = conflict.chosen(ChosenMeasure::TaLevel);
     /// SSAM's MaxS: the largest speed of both in any step
-    [Chosen] max_s: Option<MetrePerSecond> = conflict.added(AddedMeasure::MaxS);
+    [Chosen] max_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::MaxS);
     /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
-    [Chosen] delta_s: Option<MetrePerSecond> = conflict.added(AddedMeasure::DeltaS);
+    [Chosen] delta_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::DeltaS);
     /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
-    [Chosen] dr: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::Dr);
+    [Chosen] dr: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Dr);
     /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
-    [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.added(AddedMeasure::MaxD);
+    [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::MaxD);
     /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
-    [Chosen] act: Option<Second> = conflict.added(AddedMeasure::Act);
+    [Chosen] act: Option<Second> = conflict.chosen(ChosenMeasure::Act);
     /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
-    [Chosen] ei: Option<MetrePerSecond> = conflict.added(AddedMeasure::Ei);
+    [Chosen] ei: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::Ei);
 }
 
 impl LoggedConflict {
@@ -483,12 +483,12 @@ mod tests {
     #[test]
     fn what_may_be_added_is_a_column_in_this_order() {
         let chosen = COLUMNS.iter().filter(|column| column.presence == Presence::Chosen).map(|column| column.name);
-        assert_eq!(chosen.collect::<Vec<_>>(), AddedMeasure::ALL.map(AddedMeasure::name));
+        assert_eq!(chosen.collect::<Vec<_>>(), ChosenMeasure::ALL.map(ChosenMeasure::name));
         let in_log = |measures: &str| COLUMNS.iter().filter(|column| column.is_in(measures.parse().unwrap())).count();
         let all = COLUMNS.len();
         assert_eq!(
             ["all", "default", "t2"].map(in_log),
-            [all, all - AddedMeasure::ALL.len(), all - AddedMeasure::ALL.len() + 1]
+            [all, all - ChosenMeasure::ALL.len(), all - ChosenMeasure::ALL.len() + 1]
         );
     }
 

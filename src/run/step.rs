@@ -112,11 +112,11 @@ impl Run {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
         let course = |row| detector.course(frame, roster, row);
-        let added = |found: &Encounter| detector.added(frame, roster, found);
+        let chosen = |found: &Encounter| detector.chosen(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
         let net = self.net.as_deref();
         let (signals, stopped) = (&self.signals, &self.stopped);
-        let around = Surroundings { net, signals, stopped, path: &path, course: &course, added: &added, tadv: &tadv };
+        let around = Surroundings { net, signals, stopped, path: &path, course: &course, chosen: &chosen, tadv: &tadv };
         let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster, self.net.as_deref()));

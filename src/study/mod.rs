@@ -3,7 +3,7 @@
 //! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
 //! reference that is independent of all of them: [`reference`], or the paths that the vehicles really drove.
 
-mod added;
+mod chosen_measures;
 mod braking;
 mod candidates;
 mod chart;
@@ -58,7 +58,7 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
                 Axis::Path => path::measure,
                 Axis::Recording => recording::measure,
                 Axis::Tolerance => tolerance::measure,
-                _ => added::measure,
+                _ => chosen_measures::measure,
             };
             measure(plan, record)?
         }

@@ -6,7 +6,7 @@ use super::decisions::{self, ContactTest, RectanglePair};
 use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
 use super::reference::pairs;
-use crate::detection::narrow_phase::paper::a_vertex_touches_a_side;
+use crate::detection::narrow_phase::paper_mode::a_vertex_touches_a_side;
 use crate::geometry::contact::{plainly_touches, touches};
 use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{Vector, parry};

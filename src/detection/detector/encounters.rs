@@ -3,7 +3,7 @@
 use super::overlap::Overlap;
 use super::reach::User;
 use super::step::StepInputs;
-use super::work::Work;
+use super::work_counts::Work;
 use super::worker::{Findings, Met};
 use crate::braking::MuModel;
 use crate::detection::encounter::Encounter;

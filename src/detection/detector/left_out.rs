@@ -8,7 +8,7 @@ use std::fmt;
 use serde::Serialize;
 
 use super::shortcuts::Shortcuts;
-use super::work::Work;
+use super::work_counts::Work;
 
 /// A kind of test that was skipped.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

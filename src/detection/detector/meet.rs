@@ -10,7 +10,7 @@ use super::occupancy::{Carriages, OccupancyCache};
 use super::overlap::Overlap;
 use super::reach::{Motion, User};
 use super::step::StepInputs;
-use super::work::Work;
+use super::work_counts::Work;
 use super::worker::{Findings, Worker};
 use crate::braking::{self, Braking, MuModel};
 use crate::detection::narrow_phase::{self, Approach, ConflictPoint, Ego, Participant, side};
@@ -322,7 +322,7 @@ impl StepInputs<'_> {
         work.frontal += 1;
         work.side += 1;
         let (first, second) = (self.mover(slots[0]), self.mover(slots[1]));
-        let measured = narrow_phase::paper::measure(&first, &second, self.options.kind_bounds());
+        let measured = narrow_phase::paper_mode::measure(&first, &second, self.options.kind_bounds());
         let roles = Roles::new(measured.approach.ego, slots, [&first, &second]);
         let (ego, foe) = (roles.ego, roles.foe);
         let between = (foe.rectangle.centre - ego.rectangle.centre).norm();

@@ -5,7 +5,7 @@
 //! `encounters`, `encounter_values`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
-mod added;
+mod chosen_values;
 mod align;
 mod candidates;
 mod course;
@@ -28,7 +28,7 @@ pub mod shortcuts;
 mod step;
 mod straight_pair;
 mod timely;
-mod work;
+mod work_counts;
 mod worker;
 
 use std::iter::repeat_n;
@@ -67,7 +67,7 @@ const LEVEL: Metre = 2.5;
 const ENCOUNTER: usize = 50;
 
 pub use left_out::LeftOut;
-pub use work::Work;
+pub use work_counts::Work;
 
 /// Finds the encounters of one step after the other.
 pub struct Detector {

@@ -3,7 +3,7 @@
 
 use super::reach::User;
 use super::step::StepInputs;
-use super::work::Work;
+use super::work_counts::Work;
 use super::worker::Findings;
 use crate::detection::narrow_phase::Participant;
 use crate::detection::path::{Pose, straight};

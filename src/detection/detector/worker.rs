@@ -1,7 +1,7 @@
 //! One thread's memory for its part of a step, and what it finds.
 
 use super::occupancy::{MOST_POSES, OccupancyCache};
-use super::work::Work;
+use super::work_counts::Work;
 use crate::detection::encounter::Encounter;
 use crate::detection::measures::MOST_TIMES;
 use crate::detection::narrow_phase::ConflictPoint;

@@ -7,7 +7,7 @@
 mod approach;
 mod conflict_point;
 mod frontal;
-pub mod paper;
+pub mod paper_mode;
 mod participant;
 mod rear_end;
 pub mod side;

@@ -6,7 +6,7 @@ use crate::detection::kind::Kind;
 use crate::events::past::Past;
 use crate::geometry::Point;
 use crate::geometry::polylines::Vertex;
-use crate::options::measures::AddedValues;
+use crate::options::measures::ChosenValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::{EdgeIndex, LaneIndex, Net, Passage};
 use crate::traffic::profile::Category;
@@ -34,7 +34,7 @@ pub struct Surroundings<'a> {
     /// The course of the road user of a row.
     pub course: &'a dyn Fn(u32) -> Course,
     /// The chosen measures of an encounter, if any is chosen.
-    pub added: &'a dyn Fn(&Encounter) -> Option<Box<AddedValues>>,
+    pub chosen: &'a dyn Fn(&Encounter) -> Option<Box<ChosenValues>>,
     /// The time advantage of an encounter.
     pub tadv: &'a dyn Fn(&Encounter) -> Option<Second>,
 }

@@ -2,12 +2,12 @@
 
 use super::Detector;
 use super::reach::User;
-use crate::detection::added_values::{PairInStep, UserInStep, need_courses};
+use crate::detection::chosen_values::{PairInStep, UserInStep, need_courses};
 use crate::detection::encounter::Encounter;
 use crate::detection::measures::plane::Moving;
 use crate::detection::measures::ttc::SteadyMotion;
 use crate::geometry::rectangle::Rectangle;
-use crate::options::measures::{AddedMeasure, AddedValues, Measures};
+use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::Roster;
 use crate::util::units::Second;
@@ -19,17 +19,17 @@ impl Detector {
     }
 
     /// The values of the chosen measures of a pair in this step; none where none is chosen.
-    pub fn added(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<AddedValues>> {
+    pub fn chosen(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Box<ChosenValues>> {
         let measures = self.options.measures;
         (!measures.is_empty()).then(|| Box::new(self.values(frame, roster, found, measures)))
     }
 
     /// The time advantage of a pair in this step.
     pub fn tadv(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Second> {
-        self.values(frame, roster, found, AddedMeasure::Tadv.into())[AddedMeasure::Tadv as usize]
+        self.values(frame, roster, found, ChosenMeasure::Tadv.into())[ChosenMeasure::Tadv as usize]
     }
 
-    fn values(&self, frame: &Frame, roster: &Roster, found: &Encounter, measures: Measures) -> AddedValues {
+    fn values(&self, frame: &Frame, roster: &Roster, found: &Encounter, measures: Measures) -> ChosenValues {
         let (sight, scene) = (self.sight(frame, roster), self.scene(frame, roster));
         let users = [found.ego_row, found.foe_row].map(|row| sight.user(row, &sight.see(row), &User::default()));
         let mut courses = [Vec::new(), Vec::new()];

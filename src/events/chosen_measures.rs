@@ -1,6 +1,6 @@
 //! The measures of an event that a log has only if they are chosen: what it makes of the values of its steps.
 
-use crate::options::measures::{AddedMeasure, AddedValues};
+use crate::options::measures::{ChosenMeasure, ChosenValues};
 use crate::util::units::Second;
 
 /// What an event makes of the values of its steps.
@@ -24,38 +24,38 @@ enum Over {
     Mean,
 }
 
-fn over(measure: AddedMeasure) -> Over {
+fn over(measure: ChosenMeasure) -> Over {
     match measure {
-        AddedMeasure::Tadv
-        | AddedMeasure::T2
-        | AddedMeasure::Thw
-        | AddedMeasure::Sgap
-        | AddedMeasure::Mttc
-        | AddedMeasure::MaxD
-        | AddedMeasure::Act => Over::Least,
-        AddedMeasure::Br
-        | AddedMeasure::Mdrac
-        | AddedMeasure::CrashIndex
-        | AddedMeasure::ALongReq
-        | AddedMeasure::ALatReq
-        | AddedMeasure::Btn
-        | AddedMeasure::Stn
-        | AddedMeasure::MaxS
-        | AddedMeasure::Ei => Over::Most,
-        AddedMeasure::RssDistance | AddedMeasure::RssLateralDistance => Over::Worst,
-        AddedMeasure::DeltaS => Over::LeastTtc,
-        AddedMeasure::Ta | AddedMeasure::ConflictingSpeed | AddedMeasure::TaLevel => Over::First,
-        AddedMeasure::Dr => Over::FirstBelowZero,
-        AddedMeasure::RssViolation | AddedMeasure::Tet | AddedMeasure::Tit => Over::Integral,
-        AddedMeasure::Cpi => Over::Mean,
+        ChosenMeasure::Tadv
+        | ChosenMeasure::T2
+        | ChosenMeasure::Thw
+        | ChosenMeasure::Sgap
+        | ChosenMeasure::Mttc
+        | ChosenMeasure::MaxD
+        | ChosenMeasure::Act => Over::Least,
+        ChosenMeasure::Br
+        | ChosenMeasure::Mdrac
+        | ChosenMeasure::CrashIndex
+        | ChosenMeasure::ALongReq
+        | ChosenMeasure::ALatReq
+        | ChosenMeasure::Btn
+        | ChosenMeasure::Stn
+        | ChosenMeasure::MaxS
+        | ChosenMeasure::Ei => Over::Most,
+        ChosenMeasure::RssDistance | ChosenMeasure::RssLateralDistance => Over::Worst,
+        ChosenMeasure::DeltaS => Over::LeastTtc,
+        ChosenMeasure::Ta | ChosenMeasure::ConflictingSpeed | ChosenMeasure::TaLevel => Over::First,
+        ChosenMeasure::Dr => Over::FirstBelowZero,
+        ChosenMeasure::RssViolation | ChosenMeasure::Tet | ChosenMeasure::Tit => Over::Integral,
+        ChosenMeasure::Cpi => Over::Mean,
     }
 }
 
 /// The chosen measures of an event so far.
 #[derive(Clone, Debug)]
-pub(super) struct Added {
+pub(super) struct ChosenMeasures {
     /// Of an integral or a mean, the integral.
-    values: AddedValues,
+    values: ChosenValues,
     /// How long the steps so far lasted together.
     lasted: Second,
     /// The smallest TTC so far.
@@ -64,18 +64,18 @@ pub(super) struct Added {
 
 /// What a step adds.
 pub(super) struct Step<'a> {
-    pub values: &'a AddedValues,
+    pub values: &'a ChosenValues,
     pub ttc: Option<Second>,
     /// Since the step before, in s.
     pub lasted: Second,
 }
 
-impl Added {
+impl ChosenMeasures {
     /// Those of a first step.
     pub fn of(step: &Step) -> Self {
-        let mut added = Self { values: [None; AddedMeasure::ALL.len()], lasted: 0.0, ttc: f64::INFINITY };
-        added.take(step, true);
-        added
+        let mut chosen = Self { values: [None; ChosenMeasure::ALL.len()], lasted: 0.0, ttc: f64::INFINITY };
+        chosen.take(step, true);
+        chosen
     }
 
     /// Adds a step, which may be the one with the smallest margin so far.
@@ -83,7 +83,7 @@ impl Added {
         let has_least_ttc = step.ttc.is_some_and(|ttc| ttc < self.ttc);
         self.ttc = step.ttc.map_or(self.ttc, |ttc| ttc.min(self.ttc));
         self.lasted += step.lasted;
-        for (measure, (known, now)) in AddedMeasure::ALL.into_iter().zip(self.values.iter_mut().zip(step.values)) {
+        for (measure, (known, now)) in ChosenMeasure::ALL.into_iter().zip(self.values.iter_mut().zip(step.values)) {
             *known = match (over(measure), *known, *now) {
                 (Over::Worst, _, now) if is_worst => now,
                 (Over::LeastTtc, _, now) if has_least_ttc => now,
@@ -98,9 +98,9 @@ impl Added {
     }
 
     /// The measures of the event.
-    pub fn values(&self) -> AddedValues {
+    pub fn values(&self) -> ChosenValues {
         let mut values = self.values;
-        for (measure, value) in AddedMeasure::ALL.into_iter().zip(&mut values) {
+        for (measure, value) in ChosenMeasure::ALL.into_iter().zip(&mut values) {
             if over(measure) == Over::Mean {
                 *value = value.map(|sum| sum / self.lasted).filter(|mean| mean.is_finite());
             }
@@ -112,25 +112,25 @@ impl Added {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::measures::AddedMeasure::{Cpi, DeltaS, Dr, MaxD, RssDistance, RssViolation, Ta, Tadv, Tet};
+    use crate::options::measures::ChosenMeasure::{Cpi, DeltaS, Dr, MaxD, RssDistance, RssViolation, Ta, Tadv, Tet};
 
     /// A measure over steps of 0.1 s, the first of them the first of the run; each has a TTC and a margin.
-    fn over_steps(measure: AddedMeasure, steps: &[(Option<f64>, f64)]) -> Option<f64> {
-        let mut added: Option<Added> = None;
+    fn over_steps(measure: ChosenMeasure, steps: &[(Option<f64>, f64)]) -> Option<f64> {
+        let mut chosen: Option<ChosenMeasures> = None;
         let mut ttcs = (1..).map(|number| f64::from((number * 5) % 7));
         let mut least = f64::INFINITY;
         for (number, (value, margin)) in steps.iter().enumerate() {
-            let mut values = [None; AddedMeasure::ALL.len()];
+            let mut values = [None; ChosenMeasure::ALL.len()];
             values[measure as usize] = *value;
             let step = Step { values: &values, ttc: ttcs.next(), lasted: if number == 0 { 0.0 } else { 0.1 } };
             let is_worst = *margin < least;
             least = least.min(*margin);
-            match &mut added {
-                Some(added) => added.take(&step, is_worst),
-                None => added = Some(Added::of(&step)),
+            match &mut chosen {
+                Some(chosen) => chosen.take(&step, is_worst),
+                None => chosen = Some(ChosenMeasures::of(&step)),
             }
         }
-        added?.values()[measure as usize]
+        chosen?.values()[measure as usize]
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::measures::ttc::{HORIZON, SteadyMotion};
 use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss, threat};
 use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
-use crate::options::measures::{AddedMeasure, AddedValues, Measures};
+use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::profile::{Category, Profile};
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
 
@@ -42,8 +42,8 @@ pub(super) struct PairInStep<'a> {
 
 /// How long the chosen measures follow both of a pair along their paths; none where they do not.
 pub(super) fn need_courses(measures: Measures, found: &Encounter) -> Option<Second> {
-    use AddedMeasure::{ALatReq, Stn, T2, Tadv};
-    let has = |any: [AddedMeasure; 2]| any.into_iter().any(|measure| measures.has(measure));
+    use ChosenMeasure::{ALatReq, Stn, T2, Tadv};
+    let has = |any: [ChosenMeasure; 2]| any.into_iter().any(|measure| measures.has(measure));
     match (found.kind, found.nearness.and_then(|nearness| nearness.ttc)) {
         (Kind::Frontal | Kind::Side, None) if has([Tadv, T2]) => Some(HORIZON),
         (Kind::RearEnd | Kind::Frontal, Some(ttc)) if has([ALatReq, Stn]) && ttc > 0.0 => Some(ttc),
@@ -53,47 +53,47 @@ pub(super) fn need_courses(measures: Measures, found: &Encounter) -> Option<Seco
 
 impl PairInStep<'_> {
     /// The values of the chosen measures.
-    pub fn values(&self, measures: Measures) -> AddedValues {
-        let is_ahead = measures.has(AddedMeasure::Tadv) || measures.has(AddedMeasure::T2);
+    pub fn values(&self, measures: Measures) -> ChosenValues {
+        let is_ahead = measures.has(ChosenMeasure::Tadv) || measures.has(ChosenMeasure::T2);
         let advantage = if is_ahead { self.advantage() } else { None };
-        AddedMeasure::ALL.map(|measure| {
+        ChosenMeasure::ALL.map(|measure| {
             if measures.has(measure) { self.value(measure, advantage).filter(|value| value.is_finite()) } else { None }
         })
     }
 
-    fn value(&self, measure: AddedMeasure, advantage: Option<Advantage>) -> Option<f64> {
+    fn value(&self, measure: ChosenMeasure, advantage: Option<Advantage>) -> Option<f64> {
         let Self { found, ego, foe, .. } = *self;
         let kind = found.kind;
         let speeds = [ego.moving.speed, foe.moving.speed];
         let drac = || found.nearness?.drac;
         match measure {
-            AddedMeasure::Tadv => advantage.map(|advantage| advantage.tadv),
-            AddedMeasure::T2 => advantage.map(|advantage| advantage.t2),
-            AddedMeasure::RssDistance => self.rss_distance(),
-            AddedMeasure::RssLateralDistance => self.rss_lateral_distance(),
-            AddedMeasure::RssViolation => self.rss_distance().map(|safe| f64::from(found.gap < safe)),
-            AddedMeasure::Thw => headway::time_headway(kind, found.gap, foe.of.length, speeds[0]),
-            AddedMeasure::Sgap => self.behind().map(|_| found.gap),
-            AddedMeasure::Br => Some(-ego.acceleration).filter(|braking| *braking > 0.0),
-            AddedMeasure::Mdrac => mdrac::mdrac(found.gap, speeds[0] - self.behind()?.speed),
-            AddedMeasure::Mttc => self.mttc().map(|(time, _)| time),
-            AddedMeasure::CrashIndex => self.mttc()?.1,
-            AddedMeasure::Tet => Some(exposure::exposed(self.ttc())),
-            AddedMeasure::Tit => Some(exposure::lacks(self.ttc())),
-            AddedMeasure::Cpi if found.collision => Some(1.0),
-            AddedMeasure::Cpi => Some(crash_potential::exceeds_brakes(&ego.of.driver, drac())),
-            AddedMeasure::ALongReq => self.required_braking(),
-            AddedMeasure::ALatReq => self.required_steering(),
-            AddedMeasure::Btn => self.required_braking().map(|needed| needed / ego.of.brakes.deceleration),
-            AddedMeasure::Stn => self.required_steering().map(|needed| needed / ego.of.brakes.deceleration),
-            AddedMeasure::Ta => self.evasion().map(|(ta, _)| ta),
-            AddedMeasure::ConflictingSpeed => self.evasion().map(|(_, speed)| speed),
-            AddedMeasure::TaLevel => self.evasion().map(|(ta, speed)| accident::level(ta, speed)),
-            AddedMeasure::MaxS => Some(speeds[0].max(speeds[1])),
-            AddedMeasure::DeltaS => self.ttc().map(|_| delta_s(&ego.moving, &foe.moving)),
-            AddedMeasure::Dr | AddedMeasure::MaxD => Some(ego.acceleration),
-            AddedMeasure::Act => self.in_plane().and_then(|[ego, foe]| anticipated_collision_time(ego, foe)),
-            AddedMeasure::Ei => self.in_plane().and_then(|[ego, foe]| emergency_index(ego, foe)),
+            ChosenMeasure::Tadv => advantage.map(|advantage| advantage.tadv),
+            ChosenMeasure::T2 => advantage.map(|advantage| advantage.t2),
+            ChosenMeasure::RssDistance => self.rss_distance(),
+            ChosenMeasure::RssLateralDistance => self.rss_lateral_distance(),
+            ChosenMeasure::RssViolation => self.rss_distance().map(|safe| f64::from(found.gap < safe)),
+            ChosenMeasure::Thw => headway::time_headway(kind, found.gap, foe.of.length, speeds[0]),
+            ChosenMeasure::Sgap => self.behind().map(|_| found.gap),
+            ChosenMeasure::Br => Some(-ego.acceleration).filter(|braking| *braking > 0.0),
+            ChosenMeasure::Mdrac => mdrac::mdrac(found.gap, speeds[0] - self.behind()?.speed),
+            ChosenMeasure::Mttc => self.mttc().map(|(time, _)| time),
+            ChosenMeasure::CrashIndex => self.mttc()?.1,
+            ChosenMeasure::Tet => Some(exposure::exposed(self.ttc())),
+            ChosenMeasure::Tit => Some(exposure::lacks(self.ttc())),
+            ChosenMeasure::Cpi if found.collision => Some(1.0),
+            ChosenMeasure::Cpi => Some(crash_potential::exceeds_brakes(&ego.of.driver, drac())),
+            ChosenMeasure::ALongReq => self.required_braking(),
+            ChosenMeasure::ALatReq => self.required_steering(),
+            ChosenMeasure::Btn => self.required_braking().map(|needed| needed / ego.of.brakes.deceleration),
+            ChosenMeasure::Stn => self.required_steering().map(|needed| needed / ego.of.brakes.deceleration),
+            ChosenMeasure::Ta => self.evasion().map(|(ta, _)| ta),
+            ChosenMeasure::ConflictingSpeed => self.evasion().map(|(_, speed)| speed),
+            ChosenMeasure::TaLevel => self.evasion().map(|(ta, speed)| accident::level(ta, speed)),
+            ChosenMeasure::MaxS => Some(speeds[0].max(speeds[1])),
+            ChosenMeasure::DeltaS => self.ttc().map(|_| delta_s(&ego.moving, &foe.moving)),
+            ChosenMeasure::Dr | ChosenMeasure::MaxD => Some(ego.acceleration),
+            ChosenMeasure::Act => self.in_plane().and_then(|[ego, foe]| anticipated_collision_time(ego, foe)),
+            ChosenMeasure::Ei => self.in_plane().and_then(|[ego, foe]| emergency_index(ego, foe)),
         }
     }
 

@@ -10,7 +10,7 @@ use super::measurement::{Axis, Measurement, Plan, Recorder};
 use super::recorded::{RecordedScenario, measure_each, with_decimals};
 use crate::events::Conflict;
 use crate::options::Options;
-use crate::options::measures::{AddedMeasure, Measures};
+use crate::options::measures::{ChosenMeasure, Measures};
 use crate::{Error, Result};
 
 /// A quick study uses the first.
@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-6;
 #[derive(Clone, Copy, PartialEq)]
 enum Method {
     Nothing,
-    One(AddedMeasure),
+    One(ChosenMeasure),
     All,
 }
 
@@ -39,7 +39,7 @@ impl Method {
 
     /// Measures of a kind have a colour in common.
     fn name(self) -> &'static str {
-        use AddedMeasure::{
+        use ChosenMeasure::{
             ALatReq, ALongReq, Act, Br, Btn, ConflictingSpeed, Cpi, CrashIndex, DeltaS, Dr, Ei, MaxD, MaxS, Mdrac,
             Mttc, RssDistance, RssLateralDistance, RssViolation, Sgap, Stn, T2, Ta, TaLevel, Tadv, Tet, Thw, Tit,
         };
@@ -61,7 +61,7 @@ impl Method {
 
     /// The value of a conflict that is compared.
     fn value(self, conflict: &Conflict) -> Option<f64> {
-        if let Self::One(measure) = self { conflict.added(measure) } else { conflict.ttc }
+        if let Self::One(measure) = self { conflict.chosen(measure) } else { conflict.ttc }
     }
 }
 
@@ -75,7 +75,7 @@ fn measure_net(scenario: &RecordedScenario, rounds: usize) -> Result<Vec<Measure
     let rounded = exact.with_extension("rounded.fcd.xml");
     let text = fs::read_to_string(exact).map_err(|source| Error::file(exact, source))?;
     fs::write(&rounded, with_decimals(&text, DECIMALS)).map_err(|source| Error::file(&rounded, source))?;
-    let each = AddedMeasure::ALL.map(Method::One);
+    let each = ChosenMeasure::ALL.map(Method::One);
     let methods = [Method::Nothing].into_iter().chain(each).chain([Method::All]).collect::<Vec<_>>();
     let mut times = vec![Vec::new(); methods.len()];
     let mut items = 0;
