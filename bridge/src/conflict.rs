@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
+use closecall::Run;
 use closecall::internals::analysis::ConflictReader;
-use closecall::internals::output::{COLUMNS, Column, LoggedConflict, Presence, Value};
+use closecall::internals::output::{COLUMNS, Column, Context, LoggedConflict, Presence, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
@@ -112,4 +113,11 @@ pub fn read_log(py: Python, folder: PathBuf) -> PyResult<Vec<Conflict>> {
         ConflictReader::open(&folder)?.with_snapshots().map(|conflict| conflict.map(Conflict)).collect()
     };
     py.detach(read).map_err(exception)
+}
+/// The conflicts of a run as a log has them.
+pub fn logged(run: &Run) -> Vec<LoggedConflict> {
+    let context = |number| Context { number, net: run.net(), roster: &run.roster };
+    let conflicts = run.conflicts();
+    let numbered = (run.first_number()..).zip(&conflicts);
+    numbered.map(|(number, conflict)| LoggedConflict::new(conflict, context(number))).collect()
 }

@@ -5,6 +5,7 @@
 
 mod alarm;
 mod checker;
+mod checker_state;
 mod conflict;
 mod error;
 mod exclusive;

@@ -18,7 +18,8 @@ use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyCapsuleMethods, PyDict};
 
-use crate::checker::{logged, options_from};
+use crate::checker::options_from;
+use crate::conflict::logged;
 use crate::error::exception;
 use crate::table::Table;
 

@@ -3,8 +3,8 @@
 //! The broad phase finds the pairs that may meet. The narrow phase finds their conflict points. The measures tell how
 //! close a pair is.
 
-mod chosen_values;
 pub mod broad_phase;
+mod chosen_values;
 pub mod course;
 pub mod detector;
 pub mod encounter;

@@ -1,7 +1,7 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
-use super::chosen_measures::{ChosenMeasures, Step};
 use super::between::{Closest, FirstContact};
+use super::chosen_measures::{ChosenMeasures, Step};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;

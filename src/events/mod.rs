@@ -7,9 +7,9 @@
 //! it is, is known at the end: then the whole event is one conflict. Otherwise only what meets the rest of the condition is
 //! logged, each run of such steps as a conflict of its own.
 
-mod chosen_measures;
 mod alarm;
 mod between;
+mod chosen_measures;
 mod clips;
 mod event;
 mod extremes;

@@ -4,8 +4,10 @@
 //! option with underscores, and all three use the same parser ([`Options::from_settings`]).
 
 mod align;
+mod choices;
 mod clip_level;
 pub mod condition;
+mod defaults;
 mod driver;
 pub mod measures;
 #[cfg(feature = "cli")]
@@ -19,7 +21,6 @@ mod type_options;
 #[cfg(feature = "cli")]
 mod values;
 
-use std::f64::consts::FRAC_PI_6;
 use std::path::PathBuf;
 
 use rustc_hash::FxHashMap;
@@ -28,12 +29,19 @@ use serde::Serialize;
 use crate::braking::MuModel;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 use crate::{Error, Result};
+use choices::{ENCOUNTERS, SERIES, SERIES_PARQUET};
 use condition::Condition;
+use defaults::{
+    CONTACT_TOLERANCE, FRONTAL_ABOVE, HYDRAULIC_DELAY, PNEUMATIC_DELAY, REAR_END_BELOW, RESPONSE_TIME, SERIOUS_DELTA_V,
+    SERIOUS_DRAC, SERIOUS_PROBABILITY, SERIOUS_TTC,
+};
 use measures::Measures;
 use shortcut::Shortcut;
 
 pub use align::Align;
+pub use choices::{Deceleration, Mode, PathModel, SERIES_FILES, SeriesFormat};
 pub use clip_level::ClipLevel;
+pub use defaults::{BUILD_UP, EPSILON, RESPONSE};
 pub use driver::{DriverModel, DriverOptions};
 pub use severity_rule::SeverityRule;
 #[cfg(feature = "cli")]
@@ -43,75 +51,6 @@ pub use type_options::{BrakeSystem, TypeOptions};
 pub(crate) use values::{
     angle, deceleration, deceleration_threshold, duration, probability, reserve, share, speed, step_length, time,
 };
-
-/// The method that finds the conflicts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-pub enum Mode {
-    /// closecall's own method: paths, conflict points and the corrected μ.
-    #[default]
-    Closecall,
-    /// The paper's flow chart as printed (Guan et al. 2008, fig. 5), for comparison.
-    Paper,
-}
-
-/// The path that a road user is expected to take while it brakes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-#[non_exhaustive]
-pub enum PathModel {
-    /// Along the lanes of its route; needs a net.
-    #[default]
-    Lanes,
-    /// On a circle with its current curvature.
-    Arc,
-    /// Straight on along its heading.
-    Straight,
-    /// Where it really drove afterwards: only a recording knows.
-    Driven,
-}
-
-/// The deceleration of SUMO's vehicle type that a vehicle brakes with.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-pub enum Deceleration {
-    /// `emergencyDecel`, its maximum.
-    #[default]
-    Emergency,
-    /// `decel`, that of ordinary driving.
-    Decel,
-}
-
-/// Default of the driver's response time t1, in s (Guan et al. 2008, fig. 4).
-const RESPONSE_TIME: Second = 0.8;
-/// Default of the brake coordination time t2 of hydraulic brakes, in s (the paper's lower bound).
-const HYDRAULIC_DELAY: Second = 0.25;
-/// Default of the brake coordination time t2 of pneumatic brakes, in s (the paper's lower bound).
-const PNEUMATIC_DELAY: Second = 0.35;
-/// Default of the build-up time t3, in s.
-pub const BUILD_UP: Second = 0.1;
-/// Default of the reserve ε of μ, in m (eq. 21).
-pub const EPSILON: Metre = 0.5;
-/// Default overlap up to which two road users touch but do not collide, in m: SUMO draws lanes up to this much too near
-/// each other (docs/model.md has the figures).
-const CONTACT_TOLERANCE: Metre = 0.25;
-/// Default bound of rear-end conflicts: 30°, in rad.
-const REAR_END_BELOW: Radian = FRAC_PI_6;
-/// Default bound of frontal conflicts: 150°, in rad.
-const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
-/// Default crash probability from which a conflict is serious: a driver more likely brakes too late than not.
-const SERIOUS_PROBABILITY: f64 = 0.5;
-/// Default ΔV from which a conflict is serious, in m/s: 10 km/h (docs/model.md has the figures).
-const SERIOUS_DELTA_V: MetrePerSecond = 10.0 / 3.6;
-/// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
-const SERIOUS_TTC: Second = 1.5;
-/// Default DRAC above which a conflict is serious, in m/s² (Archer 2005).
-const SERIOUS_DRAC: MetrePerSecondSquared = 3.4;
-/// Default of t1 + t2 with hydraulic brakes, in s.
-pub const RESPONSE: Second = RESPONSE_TIME + HYDRAULIC_DELAY;
 
 /// The settings of the detector and of what is logged.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -260,27 +199,6 @@ impl Default for Options {
         }
     }
 }
-
-/// How the file with each step of each conflict is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
-#[serde(rename_all = "kebab-case")]
-pub enum SeriesFormat {
-    /// As text, while the run goes on.
-    Csv,
-    /// As Parquet, when the run ends.
-    #[cfg(feature = "parquet")]
-    Parquet,
-}
-
-/// The file with each step of each conflict.
-const SERIES: &str = "series.csv";
-/// The same as Parquet.
-const SERIES_PARQUET: &str = "series.parquet";
-/// The same where it is asked for by the option's former name.
-const ENCOUNTERS: &str = "encounters.csv";
-/// All of these.
-pub const SERIES_FILES: [&str; 3] = [SERIES, SERIES_PARQUET, ENCOUNTERS];
 
 impl Options {
     /// Sets what only a TOML file can: its tables of types and drivers.

@@ -3,10 +3,10 @@
 //! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
 //! reference that is independent of all of them: [`reference`], or the paths that the vehicles really drove.
 
-mod chosen_measures;
 mod braking;
 mod candidates;
 mod chart;
+mod chosen_measures;
 mod clock;
 mod curvature;
 mod decisions;

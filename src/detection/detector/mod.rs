@@ -5,9 +5,9 @@
 //! `encounters`, `encounter_values`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
-mod chosen_values;
 mod align;
 mod candidates;
+mod chosen_values;
 mod course;
 mod cover;
 mod driving;

@@ -3,6 +3,7 @@
 //! It holds only what paths, obstacles and the log need: lane shapes, links and junctions. `overlaps`, `corners` and `quality`
 //! find where it is not drawn as it is driven.
 
+mod attributes;
 mod connect;
 mod corners;
 mod elements;

@@ -1,22 +1,20 @@
 //! Reads the elements of a SUMO net: XML as netconvert writes it, plain or gzipped.
 
-use std::borrow::Cow;
 use std::path::Path;
 
 use quick_xml::Reader;
-use quick_xml::escape::unescape;
-use quick_xml::events::attributes::Attribute;
 use quick_xml::events::{BytesStart, Event};
 use rustc_hash::FxHashMap;
 
+use super::attributes::ElementAttributes;
 use super::elements::{
     Direction, Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Signal, USUAL_WIDTH,
 };
 use super::network::Net;
+use crate::geometry::Vector;
 use crate::geometry::polylines::stretch;
-use crate::geometry::{Point, Vector};
 use crate::util::input_file::{ElementSource, xml_message};
-use crate::util::limits::{HEIGHT, LANE_LENGTH, LANE_WIDTH, Limit, POSITION};
+use crate::util::limits::{LANE_LENGTH, LANE_WIDTH, POSITION};
 use crate::{Error, Result};
 
 impl Net {
@@ -101,23 +99,25 @@ impl NetReader<'_> {
     }
 
     fn element(&mut self, tag: &BytesStart) -> Result<()> {
+        let (path, line) = (self.path, self.line);
+        let attributes = || ElementAttributes::of(tag, path, line);
         match tag.name().as_ref() {
             "net" => {
-                self.net.left_hand = matches!(self.attributes(tag)?.get("lefthand"), Some("true" | "1"));
+                self.net.left_hand = matches!(attributes()?.get("lefthand"), Some("true" | "1"));
                 Ok(())
             }
-            "edge" => self.edge(&self.attributes(tag)?),
-            "lane" => self.lane(&self.attributes(tag)?),
-            "junction" => self.junction(&self.attributes(tag)?),
-            "request" => self.request(&self.attributes(tag)?),
-            "connection" => self.connection(&self.attributes(tag)?),
-            "location" => self.location(&self.attributes(tag)?),
+            "edge" => self.edge(&attributes()?),
+            "lane" => self.lane(&attributes()?),
+            "junction" => self.junction(&attributes()?),
+            "request" => self.request(&attributes()?),
+            "connection" => self.connection(&attributes()?),
+            "location" => self.location(&attributes()?),
             _ => Ok(()),
         }
     }
 
     fn edge(&mut self, attributes: &ElementAttributes) -> Result<()> {
-        let id = self.required(attributes, "id")?;
+        let id = attributes.required("id")?;
         let function = match attributes.get("function") {
             Some("internal") => EdgeFunction::Internal,
             Some("crossing") => EdgeFunction::Crossing,
@@ -148,17 +148,18 @@ impl NetReader<'_> {
     }
 
     fn lane(&mut self, attributes: &ElementAttributes) -> Result<()> {
-        let id = self.required(attributes, "id")?;
+        let id = attributes.required("id")?;
         let Some(edge) = self.net.edges.len().checked_sub(1) else {
             return Err(self.wrong(format!("lane \"{id}\" is not inside an edge")));
         };
-        let shape = self.shape(id, self.required(attributes, "shape")?, true)?;
+        let (shape, heights) = attributes.shape(attributes.required("shape")?)?;
+        self.net.heights = heights.iter().fold(self.net.heights, |[low, high], z| [low.min(*z), high.max(*z)]);
         if shape.len() < 2 {
             let points = shape.len();
             return Err(self.wrong(format!("lane \"{id}\" has {points} shape point(s); at least two are needed")));
         }
-        let length = self.number(attributes, "length", f64::NAN, &LANE_LENGTH)?;
-        let width = self.number(attributes, "width", USUAL_WIDTH, &LANE_WIDTH)?;
+        let length = attributes.number("length", f64::NAN, &LANE_LENGTH)?;
+        let width = attributes.number("width", USUAL_WIDTH, &LANE_WIDTH)?;
         let limit = attributes.get("speed").and_then(|speed| speed.parse().ok()).filter(|speed| *speed > 0.0);
         let speed = limit.unwrap_or(f64::INFINITY);
         let has_vehicles = attributes.get("allow") != Some("pedestrian") && attributes.get("disallow") != Some("all");
@@ -181,9 +182,9 @@ impl NetReader<'_> {
     }
 
     fn junction(&mut self, attributes: &ElementAttributes) -> Result<()> {
-        let id = self.required(attributes, "id")?;
+        let id = attributes.required("id")?;
         let shape = match attributes.get("shape") {
-            Some(shape) => self.shape(id, shape, false)?,
+            Some(shape) => attributes.shape(shape)?.0,
             None => Vec::new(),
         };
         let (link_lanes, foes, responses) = (Vec::new(), Vec::new(), Vec::new());
@@ -194,7 +195,7 @@ impl NetReader<'_> {
 
     /// A link through the junction read last; SUMO writes them in order.
     fn request(&mut self, attributes: &ElementAttributes) -> Result<()> {
-        let foes = self.required(attributes, "foes")?.into();
+        let foes = attributes.required("foes")?.into();
         let Some(junction) = self.net.junctions.last_mut() else {
             return Err(self.wrong("a request is not inside a junction"));
         };
@@ -207,9 +208,9 @@ impl NetReader<'_> {
         let index = attributes.get("linkIndex").and_then(|index| index.parse().ok());
         let signal = attributes.get("tl").zip(index).map(|(light, index)| Signal { light: self.light(light), index });
         let end = |edge: &str, lane: &str| -> Result<(String, u32)> {
-            let index = self.required(attributes, lane)?;
+            let index = attributes.required(lane)?;
             let index = index.parse().map_err(|_| self.wrong(format!("connection: {lane} is \"{index}\"")))?;
-            Ok((self.required(attributes, edge)?.to_owned(), index))
+            Ok((attributes.required(edge)?.to_owned(), index))
         };
         let connection = Connection {
             line: self.line,
@@ -253,79 +254,8 @@ impl NetReader<'_> {
         Ok(())
     }
 
-    /// The points of a shape. Repeated points are dropped, since they have no direction, unless fewer than two would be
-    /// left. The heights of a lane's are those of the net.
-    fn shape(&mut self, id: &str, text: &str, is_lane: bool) -> Result<Vec<Point>> {
-        let mut points: Vec<Point> = Vec::new();
-        for triple in text.split_ascii_whitespace() {
-            let mut values = triple.split(',').map(|value| value.parse::<f64>().ok());
-            let (x, y, z) = (values.next().flatten(), values.next().flatten(), values.next());
-            let (Some(x), Some(y), None | Some(Some(_))) = (x, y, z) else {
-                return Err(self.wrong(format!("\"{id}\": shape point \"{triple}\" is not x,y or x,y,z")));
-            };
-            let z = z.flatten().unwrap_or(0.0);
-            for (name, value, limit) in [("x", x, &POSITION), ("y", y, &POSITION), ("z", z, &HEIGHT)] {
-                limit.check(name, value).map_err(|why| self.wrong(format!("\"{id}\": {why}")))?;
-            }
-            if is_lane {
-                let [low, high] = self.net.heights;
-                self.net.heights = [low.min(z), high.max(z)];
-            }
-            let point = Point::new(x, y);
-            if points.len() != 1 && points.last() == Some(&point) {
-                continue;
-            }
-            if let [first, second] = points[..]
-                && first == second
-            {
-                points.pop();
-            }
-            points.push(point);
-        }
-        Ok(points)
-    }
-
-    fn attributes<'a>(&self, tag: &'a BytesStart) -> Result<ElementAttributes<'a>> {
-        let mut attributes = ElementAttributes::default();
-        for attribute in tag.attributes() {
-            let Attribute { key, value } = attribute.map_err(|error| self.wrong(error.to_string()))?;
-            let value = match value {
-                Cow::Borrowed(value) => unescape(value),
-                Cow::Owned(value) => unescape(&value).map(|value| value.into_owned().into()),
-            };
-            attributes.0.push((key.into_inner(), value.map_err(|error| self.wrong(error.to_string()))?));
-        }
-        Ok(attributes)
-    }
-
-    fn required<'a>(&self, attributes: &'a ElementAttributes, name: &str) -> Result<&'a str> {
-        attributes.get(name).ok_or_else(|| match attributes.get("id") {
-            Some(id) => self.wrong(format!("\"{id}\" has no attribute \"{name}\"")),
-            None => self.wrong(format!("attribute \"{name}\" is missing")),
-        })
-    }
-
-    fn number(&self, attributes: &ElementAttributes, name: &str, default: f64, limit: &Limit) -> Result<f64> {
-        let id = attributes.get("id").unwrap_or_default();
-        let value = match attributes.get(name) {
-            Some(text) => text.parse().map_err(|_| self.wrong(format!("{name} is \"{text}\", not a number")))?,
-            None => default,
-        };
-        limit.check(name, value).map_err(|why| self.wrong(format!("\"{id}\": {why}")))
-    }
-
     pub fn wrong(&self, message: impl Into<String>) -> Error {
         Error::line(self.path, self.line, message)
-    }
-}
-
-/// The attributes of an element. They borrow from the file unless escaped: large nets have millions.
-#[derive(Default)]
-struct ElementAttributes<'a>(Vec<(&'a str, Cow<'a, str>)>);
-
-impl ElementAttributes<'_> {
-    fn get(&self, name: &str) -> Option<&str> {
-        self.0.iter().find(|(key, _)| *key == name).map(|(_, value)| &**value)
     }
 }
 
