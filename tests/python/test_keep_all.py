@@ -7,47 +7,109 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import NETS, closecall
+from conftest import NETS, closecall, python
 
+Found = tuple[dict[str, bytes], dict[str, Any]]
+"""The files of a log, and its record without the fields that tell only how it was computed."""
+
+END = 100
 ENDS = {"town": 25, "bridge": 60}
-"""Shorter ends in s: with every pair kept, the time of a step grows with the square of the road users."""
+"""Ends in s: with every pair kept, the time of a step grows with the square of the road users."""
+BESIDE_ENDS = {"town": 12, "bridge": 60}
+"""The same where several checkers follow one simulation."""
 SEEDS = {"town": 44}
 """With this seed a stale path of a vehicle that had been in no pair for a while would change the conflict at 23 s."""
 
+BESIDE = """
+import sys
+from pathlib import Path
+from closecall import _sumo
+libsumo = _sumo.import_libsumo()
+import closecall
+try:
+    import tomllib
+except ImportError:
+    import tomli as tomllib
 
-def checked(config: Path, out: Path, *words: str) -> tuple[dict[str, bytes], dict[str, Any]]:
-    """The log of a scenario, and its record without the fields that tell only how it was computed."""
-    end = ["--end", str(ENDS[config.stem])] if config.stem in ENDS else []
-    seed = ["--seed", str(SEEDS[config.stem])] if config.stem in SEEDS else []
-    more = ["--config", str(config.parent / "closecall.toml"), *end, *seed, *words]
-    done = closecall("run", config, *more, "--log-series", "--quiet", "--out", out)
-    assert done.returncode == 0, done.stderr
+config, out, end = Path(sys.argv[1]), sys.argv[2], float(sys.argv[3])
+settings = tomllib.loads((config.parent / "closecall.toml").read_text())
+for of_a_run in ("regress", "end"):
+    settings.pop(of_a_run, None)
+libsumo.start(["sumo", "-c", str(config), "--no-warnings"])
+methods = {"arc": {"path": "arc"}, "paper": {"mode": "paper"}}
+checkers = [
+    closecall.Checker(libsumo, out=f"{out}/{name}/{keep_all}", log_series=True, keep_all=keep_all, **method, **settings)
+    for name, method in methods.items()
+    for keep_all in (False, True)
+]
+last = libsumo.simulation.getEndTime()
+end = min(end, last) if last >= 0 else end
+while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < end:
+    libsumo.simulationStep()
+    for checker in checkers:
+        checker.step()
+for checker in checkers:
+    checker.close()
+"""
+"""Checkers of two other methods beside one another, each with every test and without what the scene does not need."""
+
+BY_DEFINITION = {"one was not there yet", "both stand", "both are persons", "on different levels"}
+OF_THE_SCENE = {"no sumo-gui", "none enters the scene"}
+
+
+def logged(out: Path, kept: bool) -> Found:
+    """What a checker has logged."""
     record = json.loads((out / "run.json").read_text())
-    assert record["options"].pop("keep_all") is ("--keep-all" in words)
+    assert record["options"].pop("keep_all") is kept
     record["left_out"] = record["summary"].pop("left_out")
     return {name: (out / name).read_bytes() for name in ("conflicts.csv", "series.csv")}, record
 
 
-@pytest.mark.parametrize("method", ["--path lanes", "--path arc", "--mode paper"])
-@pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
-def test_leaving_out_changes_no_result(config: Path, method: str, tmp_path: Path) -> None:
-    log, record = checked(config, tmp_path / "left_out", *method.split())
-    whole_log, whole_record = checked(config, tmp_path / "kept", *method.split(), "--keep-all")
+def checked(config: Path, out: Path, *words: str) -> Found:
+    """The log of a run."""
+    end = ["--end", str(ENDS.get(config.stem, END))]
+    seed = ["--seed", str(SEEDS[config.stem])] if config.stem in SEEDS else []
+    more = ["--config", str(config.parent / "closecall.toml"), *end, *seed, *words]
+    done = closecall("run", config, *more, "--log-series", "--quiet", "--out", out)
+    assert done.returncode == 0, done.stderr
+    return logged(out, "--keep-all" in words)
+
+
+def differ_only_in_what_is_left_out(found: Found, whole: Found) -> tuple[int, int]:
+    """Assert it, and return how many tests were left out, and how many where all are kept."""
+    (log, record), (whole_log, whole_record) = found, whole
     assert log == whole_log
     left_out, kept = record.pop("left_out"), whole_record.pop("left_out")
     assert record == whole_record
-    by_definition = {"one was not there yet", "both stand", "both are persons", "on different levels"}
-    of_the_scene = {"no sumo-gui", "none enters the scene"}
-    assert {entry["why"] for entry in kept} <= by_definition | of_the_scene
-    # Paper mode leaves out only pairs that are too far apart, and a small scene has none.
-    assert method == "--mode paper" or len(left_out) > len(kept)
+    assert {entry["why"] for entry in kept} <= BY_DEFINITION | OF_THE_SCENE
+    return len(left_out), len(kept)
+
+
+all_scenarios = pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg")), ids=lambda config: config.stem)
+
+
+@all_scenarios
+def test_leaving_out_changes_no_result(config: Path, tmp_path: Path) -> None:
+    found, whole = checked(config, tmp_path / "left_out"), checked(config, tmp_path / "kept", "--keep-all")
+    left_out, kept = differ_only_in_what_is_left_out(found, whole)
+    assert left_out > kept
+
+
+@all_scenarios
+def test_leaving_out_changes_no_result_of_other_methods(config: Path, tmp_path: Path) -> None:
+    done = python(BESIDE, config, tmp_path, str(BESIDE_ENDS.get(config.stem, END)))
+    assert done.returncode == 0, done.stderr
+    for method in ("arc", "paper"):
+        found, whole = (logged(tmp_path / method / str(keep_all), keep_all) for keep_all in (False, True))
+        left_out, kept = differ_only_in_what_is_left_out(found, whole)
+        # Paper mode leaves out only pairs that are too far apart, and a small scene has none.
+        assert method == "paper" or left_out > kept
 
 
 @pytest.mark.parametrize("net", ["left_turn", "reckless"])
 def test_leaving_out_changes_no_result_of_a_wider_condition(net: str, tmp_path: Path) -> None:
     config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "100")
-    log, record = checked(config, tmp_path / "left_out", *wider)
-    whole_log, whole_record = checked(config, tmp_path / "kept", *wider, "--keep-all")
-    assert log == whole_log and log["conflicts.csv"].count(b"\n") > 10
-    assert len(record.pop("left_out")) > len(whole_record.pop("left_out"))
-    assert record == whole_record
+    found, whole = checked(config, tmp_path / "left_out", *wider), checked(config, tmp_path / "kept", *wider, "--keep-all")
+    assert found[0]["conflicts.csv"].count(b"\n") > 10
+    left_out, kept = differ_only_in_what_is_left_out(found, whole)
+    assert left_out > kept

@@ -7,6 +7,7 @@ import os
 import re
 import sys
 import tempfile
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
@@ -16,6 +17,9 @@ GUI_SETTINGS = Path(__file__).with_name("gui-settings.xml")
 
 WINDOW_SIZE = "1200,800"
 """In pixels: it fits on the screen of a small laptop."""
+
+VIEW_OPENS_WITHIN = 10.0
+"""In s: a busy machine takes several."""
 
 UNUSED = ("numpy", "lxml", "importlib.metadata")
 """Optional imports of libsumo and its sumolib that closecall does not need. They cost 0.1 s of each run and numpy's
@@ -40,7 +44,16 @@ def start(words: list[str], gui: bool) -> Any:
         except (libsumo.TraCIException, libsumo.exceptions.FatalTraCIError, RuntimeError) as error:
             caught.seek(0)
             raise RuntimeError(first_error(caught.read()) or str(error)) from error
+    if gui:
+        wait_for_view(libsumo)
     return libsumo
+
+
+def wait_for_view(libsumo: Any) -> None:
+    """Wait until the window can be asked for what it shows: sumo-gui opens it in a thread of its own."""
+    end = time.monotonic() + VIEW_OPENS_WITHIN
+    while not libsumo.gui.getIDList() and time.monotonic() < end:
+        time.sleep(0.01)
 
 
 def import_libsumo() -> Any:
