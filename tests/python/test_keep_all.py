@@ -109,7 +109,10 @@ def test_leaving_out_changes_no_result_of_other_methods(config: Path, tmp_path: 
 @pytest.mark.parametrize("net", ["left_turn", "reckless"])
 def test_leaving_out_changes_no_result_of_a_wider_condition(net: str, tmp_path: Path) -> None:
     config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "100")
-    found, whole = checked(config, tmp_path / "left_out", *wider), checked(config, tmp_path / "kept", *wider, "--keep-all")
+    found, whole = (
+        checked(config, tmp_path / "left_out", *wider),
+        checked(config, tmp_path / "kept", *wider, "--keep-all"),
+    )
     assert found[0]["conflicts.csv"].count(b"\n") > 10
     left_out, kept = differ_only_in_what_is_left_out(found, whole)
     assert left_out > kept
