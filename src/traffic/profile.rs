@@ -29,6 +29,8 @@ impl Category {
 pub struct Profile {
     /// SUMO's type id.
     pub name: String,
+    /// SUMO's `vClass`; empty for an obstacle.
+    pub class: String,
     /// Vehicle, person or obstacle.
     pub category: Category,
     /// Length in m, from front to rear bumper.
@@ -183,6 +185,7 @@ impl Profile {
         let (chord, carriages) = carriages(&sumo.shape, &sumo.vehicle_class, length);
         Self {
             name: sumo.name.clone(),
+            class: sumo.vehicle_class.clone(),
             category: Category::Vehicle,
             length,
             chord,
@@ -206,6 +209,7 @@ impl Profile {
         let set = settings(&sumo.name, options);
         Self {
             name: sumo.name.clone(),
+            class: sumo.vehicle_class.clone(),
             category: Category::Person,
             length: set.length.unwrap_or(sumo.length),
             chord: set.length.unwrap_or(sumo.length),
@@ -223,6 +227,7 @@ impl Profile {
     pub fn obstacle(polygon_type: &str) -> Self {
         Self {
             name: obstacle_name(polygon_type),
+            class: String::new(),
             category: Category::Obstacle,
             length: 0.0,
             chord: 0.0,

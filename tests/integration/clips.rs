@@ -80,6 +80,7 @@ fn a_clip_has_all_within_50_m_from_5_s_before_to_3_after() {
     let users = clip["users"].as_array().unwrap();
     let ids = users.iter().map(|user| user["id"].as_str().unwrap()).collect::<Vec<_>>();
     assert_eq!((ids[0], ids[1]), (&row[1], &row[2]), "the ego, the foe");
+    assert!(users.iter().all(|user| user["class"] == "passenger"));
     assert!(ids.contains(&"waits") && ids.contains(&"gone") && !ids.contains(&"far"), "{ids:?}");
     let x_of = |id: &str| {
         let user = users.iter().find(|user| user["id"] == id).unwrap();

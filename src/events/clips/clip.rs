@@ -71,6 +71,9 @@ pub struct ClipUser {
     pub id: String,
     /// What it is.
     pub category: ClipCategory,
+    /// SUMO's `vClass`; empty for an obstacle.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub class: String,
     /// Length in m.
     pub length: Metre,
     /// Width in m.

@@ -222,6 +222,7 @@ fn user_at(user: UserIndex, time: Second, source: &Source) -> ClipUser {
             Category::Person => ClipCategory::Person,
             Category::Obstacle => ClipCategory::Obstacle,
         },
+        class: profile.class.clone(),
         length: profile.length,
         width: profile.width,
         outlines: source.roster.shape(user).iter().map(corners).collect(),

@@ -20,6 +20,7 @@ use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 pub fn car() -> Profile {
     Profile {
         name: "car".to_owned(),
+        class: "passenger".to_owned(),
         category: Category::Vehicle,
         length: 5.0,
         width: 2.0,
