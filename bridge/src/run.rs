@@ -7,6 +7,7 @@ use std::sync::Arc;
 use closecall::cli::{ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
 use closecall::internals::batch::Task;
 use closecall::internals::detection::LeftOut;
+use closecall::internals::geometry::Bounds;
 use closecall::internals::input as sumo_files;
 use closecall::internals::output::Input;
 use closecall::{Ending, Error, LogFolder, RecordedRun, Result, Run, RunRecord, Summary, cli};
@@ -28,6 +29,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
     let mut show = |request: &ShowRequest| start::show(py, request);
     let mut save_configuration = |words: &[String], to: &Path| start::save_configuration(py, words, to);
+    let mut convert_net = |net: &Path, within: &Bounds, to: &Path| start::convert_net(py, net, within, to);
     let mut interrupted = || interrupts.had_any();
     let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd| {
         interrupts.report();
@@ -37,6 +39,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
         simulate: &mut simulate,
         show: &mut show,
         save_configuration: &mut save_configuration,
+        convert_net: &mut convert_net,
         distribute: &mut distribute,
         closecall: closecall(py)?,
         interrupted: &mut interrupted,

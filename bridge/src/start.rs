@@ -6,6 +6,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use closecall::cli::{RunRequest, ShowRequest};
+use closecall::internals::geometry::Bounds;
 use closecall::internals::input as sumo_files;
 use closecall::{Error, Net, Result};
 use pyo3::exceptions::{PyImportError, PyModuleNotFoundError};
@@ -81,6 +82,14 @@ pub fn save_configuration(py: Python, words: &[String], to: &Path) -> Result<()>
     let started = starter.call_method1("start", (words, false)).map_err(refused);
     close(py, false);
     started.map(drop)
+}
+
+/// Writes the part of a net that is within bounds as OpenDRIVE.
+pub fn convert_net(py: Python, net: &Path, within: &Bounds, to: &Path) -> Result<()> {
+    let refused = |error| Error::content(net, message(py, &error));
+    let starter = py.import("closecall._sumo").map_err(refused)?;
+    let corners = [within.low.x, within.low.y, within.high.x, within.high.y];
+    starter.call_method1("convert_net", (net, corners, to)).map(drop).map_err(refused)
 }
 
 /// Checks that sumo-gui can be shown: without a display it ends the whole process without a message.

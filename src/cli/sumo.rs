@@ -13,7 +13,7 @@ use crate::output::summary::Summary;
 #[cfg(feature = "parquet")]
 use super::workers::Distribute;
 
-pub use crate::batch::extract::SaveConfiguration;
+pub use crate::batch::extract::{ConvertNet, SaveConfiguration};
 
 /// What the bridge offers the commands that run SUMO.
 pub struct Sumo<'a> {
@@ -23,6 +23,8 @@ pub struct Sumo<'a> {
     pub show: &'a mut dyn FnMut(&ShowRequest) -> Result<()>,
     /// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
     pub save_configuration: &'a mut SaveConfiguration<'a>,
+    /// Writes the part of a net that is within bounds as OpenDRIVE.
+    pub convert_net: &'a mut ConvertNet<'a>,
     /// Distributes the runs of a sweep to workers.
     #[cfg(feature = "parquet")]
     pub distribute: &'a mut Distribute<'a>,

@@ -5,6 +5,8 @@ from __future__ import annotations
 import io
 import os
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import time
@@ -98,6 +100,23 @@ def close(gui: bool) -> None:
     if gui:
         libsumo.simulationStep()
     libsumo.close()
+
+
+def convert_net(net: Path, within: list[float], to: Path) -> None:
+    """Write the part of a net within low x, low y, high x and high y as OpenDRIVE.
+
+    Raises:
+        RuntimeError: netconvert is not there, or refuses, with its own message.
+    """
+    places = [str(Path(sys.executable).parent), str(Path(os.environ.get("SUMO_HOME", "")) / "bin")]
+    netconvert = shutil.which("netconvert", path=os.pathsep.join([*places, os.environ.get("PATH", "")]))
+    if netconvert is None:
+        raise RuntimeError("SUMO's netconvert, which writes OpenDRIVE, is not there: pip install eclipse-sumo")
+    boundary = ",".join(str(corner) for corner in within)
+    words = ["--sumo-net-file", str(net), "--keep-edges.in-boundary", boundary, "--opendrive-output", str(to)]
+    done = subprocess.run([netconvert, *words], capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode != 0:
+        raise RuntimeError(f"netconvert says: {first_error(done.stderr) or f'status {done.returncode}'}")
 
 
 def gui_settings(words: list[str]) -> list[str]:

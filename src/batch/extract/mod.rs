@@ -1,4 +1,5 @@
-//! `closecall extract`: one conflict of a run as a scenario of its own, in which it happens again.
+//! `closecall extract`: one conflict of a run as a scenario of its own, in which it happens again: in SUMO (here), or as the
+//! log's clip in ASAM's formats (`clip.rs`).
 //!
 //! The shortest way there is a state that SUMO saves some seconds before: with all digits and the states of the random
 //! numbers it mostly goes on exactly, if no route files are read beside it, for which SUMO would draw random numbers again. A state
@@ -6,6 +7,7 @@
 //! there, the scenario begins where the run did. The net stays whole: SUMO draws the random numbers of drivers by the places
 //! of lanes in the net, so that a part of it would have other drivers.
 
+mod clip;
 mod configuration;
 mod settings;
 mod source;
@@ -24,6 +26,7 @@ use crate::output::input_hash::Input;
 use crate::util::output_file::{self, folder_of};
 use crate::util::units::{Metre, SAME_MOMENT, Second};
 use crate::{Error, Result};
+pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
 use configuration::{CONFIGURATION, Configuration, STATE};
 use source::{Period, check_can_be_run};
 use words::Words;
@@ -70,6 +73,14 @@ pub fn extract(folder: &Path, which: Which, out: &Path, tools: &mut Tools) -> Re
     let conflict = which.find(folder)?;
     let run = LoggedRun::read(folder)?;
     let seed = check_can_be_run(&run).map_err(|why| Error::content(folder, why))?;
+    let remark =
+        fill(out, |place, logs| Cut { conflict: &conflict, run: &run, seed, place, logs }.make(folder, tools))?;
+    Ok(Made { conflict, remark })
+}
+
+/// Fills a folder that must be new or empty, whole or not at all. `make` gets the folder to fill, which is then renamed, and
+/// one for what is not kept.
+fn fill<T>(out: &Path, make: impl FnOnce(&Path, &Path) -> Result<T>) -> Result<T> {
     check_is_new(out)?;
     let within = folder_of(out);
     fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
@@ -77,14 +88,13 @@ pub fn extract(folder: &Path, which: Which, out: &Path, tools: &mut Tools) -> Re
     let draft = draft.map_err(|source| Error::file(within, source))?;
     let place = draft.path().join("scenario");
     fs::create_dir(&place).map_err(|source| Error::file(&place, source))?;
-    let cut = Cut { conflict: &conflict, run: &run, seed, place: &place, logs: draft.path() };
-    let remark = cut.make(folder, tools)?;
+    let made = make(&place, draft.path())?;
     if out.exists() {
         fs::remove_dir(out).map_err(|source| Error::file(out, source))?;
     }
     fs::rename(&place, out).map_err(|source| Error::file(out, source))?;
     output_file::sync_folder(within);
-    Ok(Made { conflict, remark })
+    Ok(made)
 }
 
 fn check_is_new(out: &Path) -> Result<()> {

@@ -1,6 +1,7 @@
 //! Files in the formats of other tools: written next to the log (SUMO's SSM device, FHWA's SSAM), or exported from it (these,
 //! maps, sumo-gui).
 
+mod asam;
 mod exported;
 mod geojson;
 #[cfg(feature = "parquet")]
@@ -22,6 +23,7 @@ use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::output_file::same_file;
 use crate::{Error, Result};
+pub use asam::{Scenario, scenario, trace};
 pub use exported::{ExportFormat, Exported};
 use ssm::Ssm;
 use trajectories::Trajectories;
