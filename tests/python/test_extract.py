@@ -33,3 +33,28 @@ def test_a_conflict_comes_back_in_a_folder_of_its_own(scenario: Copy, closecall_
     check = runpy.run_path(str(out / "test_conflict.py"))["test_the_conflict_is_still_there"]
     check(lambda name: closecall_scenario(out / name))
     assert f"pytest.approx({float(wanted['margin'])!r}, abs=1e-6)" in (out / "test_conflict.py").read_text()
+
+
+def test_a_scenario_begins_where_the_run_did_if_no_state_leads_there(scenario: Copy, tmp_path: Path) -> None:
+    config, log, out = scenario("pedestrian"), tmp_path / "log", tmp_path / "out"
+    # SUMO reads routes a second ahead and one road user further, which here is this one. So the state, which is
+    # saved 1.3 s before the car departs, lacks the car.
+    other = '<person id="other" depart="5.7"><walk edges="west_in" arrivalPos="1"/></person>\n<vehicle id="car"'
+    routes = config.with_name("pedestrian.rou.xml")
+    routes.write_text(routes.read_text().replace('<vehicle id="car"', other))
+    words = ("--end", "16", "--", "--no-warnings", "--route-steps", "1")
+    assert closecall("run", config, "--quiet", "--out", log, *words).returncode == 0
+    [wanted] = rows(log / "conflicts.csv")
+    done = closecall("extract", log, wanted["id"], "--out", out)
+    assert done.returncode == 0, done.stderr
+    remark = "the scenario begins where the run did, since SUMO's saved state is not exact here"
+    assert done.stderr == f'closecall: {remark}: "car" and "walker" are in no conflict\n'
+    assert sorted(path.name for path in out.iterdir()) == [
+        "README.md",
+        "closecall.toml",
+        "conflict.sumocfg",
+        "pedestrian.net.xml",
+        "pedestrian.rou.xml",
+        "test_conflict.py",
+    ]
+    assert "`conflict.sumocfg` begins where the run did" in (out / "README.md").read_text()

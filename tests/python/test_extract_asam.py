@@ -14,6 +14,8 @@ import pytest
 from conftest import NETS, closecall
 from lxml import etree
 
+SCHEMA = etree.XMLSchema(file=distribution("scenariogeneration").locate_file("schemas/OpenSCENARIO_1_2.xsd"))
+"""ASAM's own."""
 LANE = 3.2
 """Width of the lanes in m."""
 ROUNDED = 0.01
@@ -27,8 +29,8 @@ def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of a run in which a car that turns left gets in the way of others, some of whom come later or leave."""
     folder = tmp_path_factory.mktemp("asam")
     shutil.copytree(NETS / "left_turn", folder / "net", ignore=shutil.ignore_patterns("expected"))
-    words = ["--end", "40", "--log-clips", "caution", "--out", folder / "log", "--", "--no-warnings"]
-    done = closecall("run", folder / "net" / "left_turn.sumocfg", "--quiet", *words)
+    words = ["--quiet", "--end", "40", "--log-clips", "caution", "--", "--no-warnings"]
+    done = closecall("run", folder / "net" / "left_turn.sumocfg", "--out", folder / "log", *words)
     assert done.returncode == 0, done.stderr
     return folder / "log"
 
@@ -61,8 +63,7 @@ def test_an_openscenario_is_valid_and_drives_what_the_clip_holds(log: Path, tmp_
     clip = extracted(log, "openscenario", tmp_path / "out")
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["conflict.xosc", "net.xodr"]
     text = etree.parse(tmp_path / "out" / "conflict.xosc")
-    schema = distribution("scenariogeneration").locate_file("schemas/OpenSCENARIO_1_2.xsd")
-    etree.XMLSchema(etree.parse(schema)).assertValid(text)
+    SCHEMA.assertValid(text)
     come_later = 0
     for user in clip["users"]:
         [box] = text.xpath(f"//ScenarioObject[@name='{user['id']}']/Vehicle/BoundingBox")
@@ -126,26 +127,63 @@ def test_an_osi_trace_has_the_places_of_the_clip(log: Path, tmp_path: Path) -> N
             assert math.dist(velocity, (base.velocity.x, base.velocity.y)) < 1e-9
 
 
-def test_a_recording_needs_no_net_and_leaves_out_roads(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The log of a recording without a net: a car, a bicycle, and a pedestrian of the car's name that is lost for 2 s.
+
+    In its clip there is a crate besides.
+    """
+    folder = tmp_path_factory.mktemp("recording")
     rows = ["id,t,x,y,heading,speed,class"]
     for step in range(100):
         time = step / 10
         rows += [f"$a,{time},{time * 10 - 60},0,0,10,car", f"a<b,{time},0,{time * 10 - 62},90,10,bicycle"]
         rows += [] if 30 < step < 50 else [f"a,{time},{time * 2},10,0,2,pedestrian"]
-    (tmp_path / "tracks.csv").write_text("\n".join(rows))
+    (folder / "tracks.csv").write_text("\n".join(rows))
     columns = "id=id,time=t,x=x,y=y,heading=heading[deg],speed=speed,class=class"
     words = ["--columns", columns, "--path", "straight", "--log-clips", "caution", "--quiet", "--out", "log"]
-    assert closecall("replay", "tracks.csv", *words, cwd=tmp_path).returncode == 0
-    done = closecall("extract", "log", "1", "--format", "openscenario", "--out", "out", cwd=tmp_path)
+    done = closecall("replay", "tracks.csv", *words, cwd=folder)
+    assert done.returncode == 0, done.stderr
+    clip = clip_of(folder / "log", 1)
+    crate = [[10.0, 4.0], [12.0, 4.0], [12.0, 5.0]]
+    lists = {name: [4.0] * len(clip["times"]) for name in ("x", "y", "heading", "speed")}
+    clip["users"].append({"id": "crate", "category": "obstacle", "length": 0, "width": 0, "outlines": [crate], **lists})
+    with gzip.open(folder / "log" / "clips.jsonl.gz", "wt") as lines:
+        lines.write(json.dumps(clip, separators=(",", ":")) + "\n")
+    return folder / "log"
+
+
+def test_a_recording_needs_no_net(recording: Path, tmp_path: Path) -> None:
+    done = closecall("extract", recording, "1", "--format", "openscenario", "--out", tmp_path / "out")
     assert done.returncode == 0
     assert done.stderr == "closecall: no net was found, so that the scenario has no roads; --net gives one\n"
     text = etree.parse(tmp_path / "out" / "conflict.xosc")
-    schema = distribution("scenariogeneration").locate_file("schemas/OpenSCENARIO_1_2.xsd")
-    etree.XMLSchema(etree.parse(schema)).assertValid(text)
+    SCHEMA.assertValid(text)
     # A name that begins with $ would be a parameter's, and none may occur twice.
     objects = {entity.get("name"): entity[0] for entity in text.iter("ScenarioObject")}
-    assert sorted(objects) == ["a", "a<b", "a_2"]
+    assert sorted(objects) == ["a", "a<b", "a_2", "crate"]
     assert objects["a<b"].get("vehicleCategory") == "bicycle"
+    box = objects["crate"].find("BoundingBox/Dimensions")
+    assert (objects["crate"].tag, box.get("length"), box.get("width")) == ("MiscObject", "2", "1")
+    at = text.find(".//Private[@entityRef='crate']//WorldPosition")
+    assert (at.get("x"), at.get("y")) == ("11", "4.5")
     walker = next(name for name, entity in objects.items() if entity.tag == "Pedestrian")
     events = text.xpath(f"//ManeuverGroup[@name='{walker}']//Event/@name")
     assert events == ["drives_0", "leaves_0", "drives_1"]
+
+
+def test_pedestrians_and_obstacles_have_osi_types_of_their_own(recording: Path, tmp_path: Path) -> None:
+    betterosi = pytest.importorskip("betterosi")
+    out = tmp_path / "worst_gt.osi"
+    clip = extracted(recording, "osi", out)
+    first = next(iter(betterosi.read(str(out), return_ground_truth=True)))
+    kinds = betterosi.MovingObject.Type
+    walks = [user["category"] == "person" for user in clip["users"][:-1]]
+    assert [moving.type for moving in first.moving_object] == [
+        kinds.PEDESTRIAN if it else kinds.VEHICLE for it in walks
+    ]
+    [crate] = first.stationary_object
+    middle = crate.base.position
+    corners = [(middle.x + corner.x, middle.y + corner.y) for corner in crate.base.base_polygon]
+    assert corners == [tuple(corner) for corner in clip["users"][-1]["outlines"][0]]
+    assert crate.id.value == len(clip["users"]) + 1

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use super::{Made, fill};
+use super::made::{Made, fill};
 use crate::analysis::logged::{Which, record};
 use crate::analysis::playback::Playback;
 use crate::events::Clip;

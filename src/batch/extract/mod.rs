@@ -9,6 +9,7 @@
 
 mod clip;
 mod configuration;
+mod made;
 mod settings;
 mod source;
 mod words;
@@ -23,11 +24,13 @@ use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, Which};
 use crate::batch::regress::running::{Job, Runner};
 use crate::batch::regress::scenario::{SETTINGS, Scenario};
 use crate::output::input_hash::Input;
-use crate::util::output_file::{self, folder_of};
+use crate::util::output_file;
 use crate::util::units::{Metre, SAME_MOMENT, Second};
 use crate::{Error, Result};
 pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
 use configuration::{CONFIGURATION, Configuration, STATE};
+pub use made::Made;
+use made::fill;
 use source::{Period, check_can_be_run};
 use words::Words;
 
@@ -55,15 +58,6 @@ pub struct Tools<'a> {
 /// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
 pub type SaveConfiguration<'a> = dyn FnMut(&[String], &Path) -> Result<()> + 'a;
 
-/// What was cut out.
-#[derive(Debug)]
-pub struct Made {
-    /// The conflict.
-    pub conflict: LoggedConflict,
-    /// What the user should know about it.
-    pub remark: Option<String>,
-}
-
 /// Cuts a conflict of the log in a folder out, into the folder `out`, whole or not at all.
 ///
 /// # Errors
@@ -76,33 +70,6 @@ pub fn extract(folder: &Path, which: Which, out: &Path, tools: &mut Tools) -> Re
     let remark =
         fill(out, |place, logs| Cut { conflict: &conflict, run: &run, seed, place, logs }.make(folder, tools))?;
     Ok(Made { conflict, remark })
-}
-
-/// Fills a folder that must be new or empty, whole or not at all. `make` gets the folder to fill, which is then renamed, and
-/// one for what is not kept.
-fn fill<T>(out: &Path, make: impl FnOnce(&Path, &Path) -> Result<T>) -> Result<T> {
-    check_is_new(out)?;
-    let within = folder_of(out);
-    fs::create_dir_all(within).map_err(|source| Error::file(within, source))?;
-    let draft = tempfile::Builder::new().prefix(".closecall-").tempdir_in(within);
-    let draft = draft.map_err(|source| Error::file(within, source))?;
-    let place = draft.path().join("scenario");
-    fs::create_dir(&place).map_err(|source| Error::file(&place, source))?;
-    let made = make(&place, draft.path())?;
-    if out.exists() {
-        fs::remove_dir(out).map_err(|source| Error::file(out, source))?;
-    }
-    fs::rename(&place, out).map_err(|source| Error::file(out, source))?;
-    output_file::sync_folder(within);
-    Ok(made)
-}
-
-fn check_is_new(out: &Path) -> Result<()> {
-    match fs::read_dir(out).map(|mut entries| entries.next().is_some()) {
-        Ok(true) => Err(Error::content(out, "it is not empty; a cut-out needs a folder of its own")),
-        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(Error::file(out, error)),
-        _ => Ok(()),
-    }
 }
 
 /// A conflict that is being cut out.
@@ -261,18 +228,3 @@ impl Cut<'_> {
 
 /// Whether the conflict came back; if not, what happened instead.
 type Found = std::result::Result<(), String>;
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_folder_that_is_not_empty_is_left_alone() {
-        let folder = tempfile::tempdir().unwrap();
-        check_is_new(folder.path()).unwrap();
-        check_is_new(&folder.path().join("new")).unwrap();
-        fs::write(folder.path().join("a"), "").unwrap();
-        assert!(check_is_new(folder.path()).unwrap_err().to_string().contains("it is not empty"));
-        assert!(matches!(check_is_new(&folder.path().join("a")), Err(Error::File { .. })));
-    }
-}
