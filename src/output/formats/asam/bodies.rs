@@ -15,7 +15,7 @@ pub const WHEEL: Metre = 0.65;
 /// The height of an obstacle in m: as high as a car, since SUMO's polygons have none.
 const OBSTACLE_HEIGHT: Metre = 1.5;
 
-/// What the formats say of a class.
+/// The words of the formats for a class.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Class {
     /// OpenSCENARIO's `VehicleCategory`.

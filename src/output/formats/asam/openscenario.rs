@@ -31,7 +31,7 @@ pub struct Scenario<'a> {
     pub conflict: &'a LoggedConflict,
     /// Where the road users were.
     pub clip: &'a Clip,
-    /// The file of OpenDRIVE beside the scenario; none where there is no net.
+    /// The file of OpenDRIVE beside the scenario; none without a net.
     pub roads: Option<&'a str>,
     /// When the log was written, as the format has it: 2026-11-28T09:30:00Z.
     pub date: &'a str,
