@@ -9,6 +9,7 @@ mod checker_state;
 mod conflict;
 mod error;
 mod exclusive;
+mod film;
 mod frames;
 mod functions;
 mod interrupts;

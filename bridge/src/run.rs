@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::cli::{ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
+use closecall::cli::{FilmRequest, ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
 use closecall::internals::batch::Task;
 use closecall::internals::detection::LeftOut;
 use closecall::internals::geometry::Bounds;
@@ -20,7 +20,7 @@ use crate::session::Session;
 use crate::start::{self, NetAhead};
 use crate::step_times::StepTimes;
 use crate::sumo::{self, Source};
-use crate::{provenance, sweep};
+use crate::{film, provenance, sweep};
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
@@ -28,6 +28,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let interrupts = Interrupts::new(py)?;
     let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
     let mut show = |request: &ShowRequest| start::show(py, request);
+    let mut make_film = |request: &FilmRequest| film::film(py, request);
     let mut save_configuration = |words: &[String], to: &Path| start::save_configuration(py, words, to);
     let mut convert_net = |net: &Path, within: &Bounds, to: &Path| start::convert_net(py, net, within, to);
     let mut interrupted = || interrupts.had_any();
@@ -38,6 +39,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
     let sumo = Sumo {
         simulate: &mut simulate,
         show: &mut show,
+        film: &mut make_film,
         save_configuration: &mut save_configuration,
         convert_net: &mut convert_net,
         distribute: &mut distribute,

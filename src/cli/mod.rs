@@ -45,7 +45,9 @@ use crate::{Error, Result};
 use parse::{Command, ParseError, command, parse};
 
 pub use crate::util::panics::keep_quiet as keep_panics_quiet;
-pub use sumo::{ConvertNet, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
+pub use sumo::{
+    ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo,
+};
 #[cfg(feature = "parquet")]
 pub use workers::{Distribute, ReportEnd, Workers};
 
@@ -71,7 +73,7 @@ pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8
         #[cfg(feature = "study")]
         Command::Study(arguments) => study::run(*arguments, sumo, &parse::parse_run),
         Command::Stats(arguments) => stats::run(arguments).map(|()| 0),
-        Command::Clip(arguments) => playback::clip(&arguments).map(|()| 0),
+        Command::Clip(arguments) => playback::clip(&arguments, sumo).map(|()| 0),
         Command::Show(arguments) => playback::show(&arguments, sumo).map(|()| 0),
         Command::Inspect(arguments) => inspect::run(&arguments).map(|()| 0),
         Command::Extract(arguments) => extract::run(&arguments, &settings::known(&command()), sumo).map(|()| 0),

@@ -5,12 +5,16 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::say::{say, value};
-use super::sumo::{ShowRequest, Sumo, no_sumo};
+use super::sumo::{FilmRequest, ShowRequest, Sumo, no_sumo};
 use super::which::WhichArgs;
 use crate::Result;
 use crate::analysis::logged::check_keeps_logs;
-use crate::analysis::playback::{Playback, svg};
+use crate::analysis::playback::{Playback, stills, svg};
+use crate::output::font::FONT;
 use crate::util::output_file;
+
+/// Pictures a second of a film: two for each of the steps of 0.1 s that most runs have.
+const RATE: u32 = 20;
 
 /// Which conflict, and on what to draw it.
 #[derive(Args)]
@@ -33,7 +37,7 @@ impl Choice {
 pub struct ClipArgs {
     #[command(flatten)]
     choice: Choice,
-    /// SVG file to write.
+    /// File to write: .svg, an animated picture that browsers play, or a film, .webp or .mp4 (`closecall[video]`).
     #[arg(short, long, value_name = "FILE", default_value = "clip.svg")]
     out: PathBuf,
     /// Print only errors.
@@ -55,20 +59,24 @@ pub struct ShowArgs {
 }
 
 /// Draws the clip and prints the file's name.
-pub fn clip(arguments: &ClipArgs) -> Result<()> {
+pub fn clip(arguments: &ClipArgs, sumo: Option<Sumo>) -> Result<()> {
     let ClipArgs { choice, out, quiet } = arguments;
-    check_is_svg(out)?;
+    let format = Format::of(out)?;
     check_keeps_logs(out, std::slice::from_ref(&choice.conflict.folder), choice.net.as_deref())?;
     let playback = choice.find()?;
     if !quiet {
         playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
     }
-    output_file::write(out, svg(&playback).as_bytes())?;
+    let bytes = match format {
+        Format::Svg => svg(&playback).into_bytes(),
+        Format::Film(format) => film(&playback, format, sumo)?,
+    };
+    output_file::write(out, &bytes)?;
     if *quiet {
         return Ok(());
     }
     let conflict = &playback.conflict;
-    say(format_args!("conflict {} at {} s in {}; a browser plays it\n", conflict.id, conflict.time, out.display()))
+    say(format_args!("conflict {} at {} s in {}{}\n", conflict.id, conflict.time, out.display(), format.hint()))
 }
 
 /// Shows the clip in sumo-gui.
@@ -83,12 +91,38 @@ pub fn show(arguments: &ShowArgs, sumo: Option<Sumo>) -> Result<()> {
     (sumo.show)(&ShowRequest { scene, label: arguments.label, quit_on_end: arguments.quit_on_end })
 }
 
-fn check_is_svg(out: &Path) -> Result<()> {
-    match out.extension().and_then(|extension| extension.to_str()) {
-        Some("svg") => Ok(()),
-        _ => Err(value(format!(
-            "{}: a clip is an SVG, which browsers play; name the file .svg. Screen recorders make films of it",
-            out.display()
-        ))),
+fn film(playback: &Playback, format: &'static str, sumo: Option<Sumo>) -> Result<Vec<u8>> {
+    let Some(sumo) = sumo else {
+        return Err(value(
+            "this binary was built without Python, which makes films; `pip install 'closecall[video]'` gives one that can",
+        ));
+    };
+    let pictures = stills(playback, f64::from(RATE));
+    (sumo.film)(&FilmRequest { pictures, rate: RATE, format, font: FONT })
+}
+
+/// What a clip is written as.
+#[derive(Clone, Copy)]
+enum Format {
+    Svg,
+    Film(&'static str),
+}
+
+impl Format {
+    /// That of a file's extension.
+    fn of(out: &Path) -> Result<Self> {
+        match out.extension().and_then(|extension| extension.to_str()) {
+            Some("svg") => Ok(Self::Svg),
+            Some("webp") => Ok(Self::Film("webp")),
+            Some("mp4") => Ok(Self::Film("mp4")),
+            _ => Err(value(format!("{}: a clip is a .svg, which browsers play, a .webp or an .mp4", out.display()))),
+        }
+    }
+
+    fn hint(self) -> &'static str {
+        match self {
+            Self::Svg => "; a browser plays it",
+            Self::Film(_) => "",
+        }
     }
 }

@@ -21,6 +21,8 @@ pub struct Sumo<'a> {
     pub simulate: &'a mut Simulate<'a>,
     /// Shows a clip in sumo-gui.
     pub show: &'a mut dyn FnMut(&ShowRequest) -> Result<()>,
+    /// Makes a film of pictures: the file's bytes.
+    pub film: &'a mut dyn FnMut(&FilmRequest) -> Result<Vec<u8>>,
     /// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
     pub save_configuration: &'a mut SaveConfiguration<'a>,
     /// Writes the part of a net that is within bounds as OpenDRIVE.
@@ -79,6 +81,19 @@ pub struct ShowRequest {
     pub label: bool,
     /// Whether to close sumo-gui at the end, and not to halt before.
     pub quit_on_end: bool,
+}
+
+/// A film that is to be made of pictures.
+#[derive(Clone, Debug)]
+pub struct FilmRequest {
+    /// Its pictures as SVGs, in their order.
+    pub pictures: Vec<String>,
+    /// Pictures a second.
+    pub rate: u32,
+    /// The format's name, which is also the file's extension.
+    pub format: &'static str,
+    /// The font of the pictures' texts, as the bytes of its file.
+    pub font: &'static [u8],
 }
 
 /// Runs SUMO with the checker attached; the folder is the request's, for this run alone.

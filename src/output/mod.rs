@@ -4,6 +4,8 @@ pub mod clips;
 mod csv_file;
 pub mod earlier_log;
 pub mod folder;
+#[cfg(feature = "cli")]
+pub mod font;
 pub mod formats;
 pub mod input_hash;
 pub mod log;

@@ -1,14 +1,17 @@
-"""`closecall clip` in a real browser: the picture moves without a script, and shows the conflict while it lasts."""
+"""`closecall clip` in a real browser and as a film: the picture moves, and shows the conflict while it lasts."""
 
 from __future__ import annotations
 
 import io
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any, Callable
 
+import av
 import numpy as np
 import pytest
-from conftest import closecall
+from conftest import closecall, is_one_message
 from numpy.typing import NDArray
 from PIL import Image
 
@@ -22,9 +25,9 @@ LOOP = 8
 """About the length of the loop, in s."""
 
 
-def drawn(config: Path, folder: Path, *more: str) -> Path:
+def drawn(config: Path, folder: Path, name: str = "clip.svg", *more: str) -> Path:
     """The picture of the worst conflict of a scenario."""
-    log, picture = folder / "log", folder / "clip.svg"
+    log, picture = folder / "log", folder / name
     done = closecall("run", config, "--quiet", "--out", log, "--log-clips", "caution", *more)
     assert done.returncode == 0, done.stderr
     done = closecall("clip", log, "--worst", "1", "-o", picture)
@@ -73,3 +76,57 @@ def test_the_picture_plays_as_an_image_of_a_page(browser: Any, scenario: Copy, t
     first = page.screenshot()
     page.wait_for_timeout(600)
     assert page.screenshot() != first
+
+
+STILLS = [
+    f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 64 40"><rect width="64" height="40" fill="#dfe5d8"/>'
+    f'<rect x="{x}" width="16" height="40" fill="#ff5c6c"/></svg>'
+    for x in (0, 0, 16, 32)
+]
+"""A bar that stands for two pictures, then moves to the right."""
+
+
+@pytest.mark.parametrize("file_format", ["webp", "mp4"])
+def test_readers_see_every_picture_of_a_film(file_format: str) -> None:
+    from closecall._film import film
+
+    file = io.BytesIO(film(STILLS, 20, file_format, b""))
+    if file_format == "webp":
+        animated = Image.open(file)
+        shown = []
+        for place in range(animated.n_frames):
+            animated.seek(place)
+            shown.append((np.asarray(animated.convert("RGB")).astype(int), animated.info["duration"]))
+        assert [time for _, time in shown] == [100, 50, 50], "equal ones are one"
+        pictures = [picture for picture, time in shown for _ in range(time // 50)]
+    else:
+        with av.open(file) as reader:
+            assert reader.streams.video[0].average_rate == 20
+            pictures = [frame.to_ndarray(format="rgb24").astype(int) for frame in reader.decode(video=0)]
+    assert len(pictures) == len(STILLS)
+    for picture, x in zip(pictures, (0, 0, 16, 32)):
+        bar = np.abs(picture[20] - SEVERITIES[2]).max(-1) < 30
+        assert bar[x + 2 : x + 14].all() and not bar[: max(x - 2, 0)].any() and not bar[x + 18 :].any()
+        assert np.abs(picture[20, 60] - (0xDF, 0xE5, 0xD8)).max() < 6, "colours are those of the picture"
+
+
+def test_a_film_shows_the_conflict_at_its_worst_step(scenario: Copy, tmp_path: Path) -> None:
+    film = drawn(scenario("rear_end"), tmp_path, "clip.webp", "--end", "10")
+    animated = Image.open(film)
+    assert animated.size == (SIZE["width"], SIZE["height"]) and animated.info["loop"] == 0
+    counts = []
+    for place in range(animated.n_frames):
+        animated.seek(place)
+        counts.append(coloured(np.asarray(animated.convert("RGB")).astype(int)))
+    assert counts[0] < 20 and max(counts) > 600
+
+
+def test_without_its_packages_a_film_is_refused_in_one_line(scenario: Copy, tmp_path: Path) -> None:
+    script = "import sys; sys.modules['av'] = None; from closecall.__main__ import main; sys.exit(main())"
+    log = drawn(scenario("rear_end"), tmp_path).parent / "log"
+    words = [sys.executable, "-c", script, "clip", str(log), "-o", str(tmp_path / "a.mp4")]
+    refused = subprocess.run(words, capture_output=True, text=True)
+    assert refused.returncode == 2 and is_one_message(refused.stderr)
+    assert "pip install 'closecall[video]'" in refused.stderr
+    refused = closecall("clip", log, "-o", tmp_path / "a.gif")
+    assert refused.returncode == 2 and ".webp or an .mp4" in refused.stderr

@@ -7,5 +7,5 @@ mod roads;
 mod view;
 
 pub use found::{Playback, clips, may_have_clip};
-pub use picture::svg;
+pub use picture::{stills, svg};
 pub use roads::{signal_bar, signal_colour};

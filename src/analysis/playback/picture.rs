@@ -1,10 +1,11 @@
-//! A clip as an animated SVG: the roads, the road users as rectangles, the predicted paths, and the time left as a bar.
+//! A clip as an animated SVG, or as the stills of a film: the roads, the road users as rectangles, the predicted paths, and the
+//! time left as a bar.
 //!
 //! No script and nothing from outside, so that it plays wherever a picture may stand, also in a README.
 
 use std::fmt::Write;
 
-use super::animation::Loop;
+use super::animation::{Changing, Loop};
 use super::found::Playback;
 use super::roads::{roads, signals};
 use super::view::{PANEL, SIZE, View, front, place_of};
@@ -27,10 +28,22 @@ const FONT: &str = "system-ui,-apple-system,Segoe UI,DejaVu Sans,sans-serif";
 
 /// The clip as an SVG.
 pub fn svg(playback: &Playback) -> String {
+    picture(playback, &time_of(playback))
+}
+
+/// The clip as SVGs that stand still, this many for each second.
+pub fn stills(playback: &Playback, rate: f64) -> Vec<String> {
+    time_of(playback).stills(rate).map(|still| picture(playback, &still)).collect()
+}
+
+fn time_of(playback: &Playback) -> Loop {
+    let times = &playback.clip.times;
+    Loop::new(times, place_of(times, playback.conflict.time))
+}
+
+fn picture(playback: &Playback, time: &Loop) -> String {
     let Playback { conflict, clip, net, .. } = playback;
     let view = View::of(playback);
-    let worst = place_of(&clip.times, conflict.time);
-    let time = Loop::new(&clip.times, worst);
     let [width, height] = SIZE;
     let field = height - PANEL;
     let title = heading(playback);
@@ -40,27 +53,30 @@ pub fn svg(playback: &Playback) -> String {
          role=\"img\" aria-label=\"{full}\">\n<title>{full}</title>\n\
          <clipPath id=\"f\"><rect width=\"{width}\" height=\"{field}\"/></clipPath>\n\
          <rect width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>\n\
-         <g clip-path=\"url(#f)\"><rect width=\"{width}\" height=\"{field}\" fill=\"{GRASS}\"/>\n"
+         <g{}><rect width=\"{width}\" height=\"{field}\" fill=\"{GRASS}\"/>\n",
+        // A still has edges, and the panel below covers the rest; to clip its roads takes longer than all else of it.
+        if time.plays() { " clip-path=\"url(#f)\"" } else { "" }
     );
     if let Some(net) = net {
         text += &roads(net, &view);
-        text += &signals(net, &clip.signals, &view, &time);
+        text += &signals(net, &clip.signals, &view, time);
     }
-    text += &paths(playback, &view, &time);
+    text += &paths(playback, &view, time);
     let is_seen = |user: &&ClipUser| {
         user.category == ClipCategory::Obstacle
             || (0..clip.times.len()).filter_map(|place| front(user, place)).any(|at| view.sees(&[at], user.length))
     };
     for user in clip.users.iter().skip(2).filter(is_seen) {
-        text += &road_user(user, None, playback, &view, &time);
+        text += &road_user(user, None, playback, &view, time);
     }
-    // The ego above the foe.
-    for of in [1, 0] {
-        text += &road_user(&clip.users[of], Some(of), playback, &view, &time);
+    // The smaller one above, so that a vehicle does not hide the person that it hits.
+    let [ego, foe] = [0, 1].map(|of| clip.users[of].length * clip.users[of].width);
+    for of in if foe < ego { [0, 1] } else { [1, 0] } {
+        text += &road_user(&clip.users[of], Some(of), playback, &view, time);
     }
-    text += &conflict_point(playback, &view, &time);
+    text += &conflict_point(playback, &view, time);
     text += "</g>\n";
-    text += &panel(playback, &title, &time);
+    text += &panel(playback, &title, time);
     text + "</svg>\n"
 }
 
@@ -88,13 +104,12 @@ fn paths(playback: &Playback, view: &View, time: &Loop) -> String {
         }
         let colour = |place: usize| danger(playback, place).unwrap_or_else(|| OTHER.to_owned());
         let (points, width) = (view.points(path), user.width.max(0.5) * view.scale());
-        let changes = time.jumps("stroke", colour);
-        let _ = writeln!(
-            text,
-            "<g opacity=\"0\">{}<polyline points=\"{points}\" fill=\"none\" stroke=\"{OTHER}\" stroke-width=\"{width:.1}\" \
-             stroke-opacity=\"{opacity}\">{changes}</polyline></g>",
-            time.visible(seen)
+        let Changing { first, changes } = time.jumps("stroke", colour);
+        let band = format!(
+            "<polyline points=\"{points}\" fill=\"none\" {first} stroke-width=\"{width:.1}\" \
+             stroke-opacity=\"{opacity}\">{changes}</polyline>"
         );
+        text += &time.seen(seen, &band);
     }
     text
 }
@@ -117,21 +132,20 @@ fn road_user(user: &ClipUser, of: Option<usize>, playback: &Playback, view: &Vie
         let turn = (heading - turned + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU) - std::f64::consts::PI;
         turned += turn;
         places.push(view.to_picture(last));
-        turns.push(-turned.to_degrees());
+        turns.push([-turned.to_degrees()]);
     }
     let (length, width) = (user.length * view.scale(), user.width * view.scale());
     let fill = |place: usize| of.and_then(|_| danger(playback, place)).unwrap_or_else(|| OTHER.to_owned());
-    let change = time.jumps("fill", fill);
-    let colour = fill(0);
+    let Changing { first: colour, changes: change } = time.jumps("fill", fill);
     let body = if user.category == ClipCategory::Person {
         let radius = width.max(length).max(8.0) / 2.0;
-        format!("<circle r=\"{radius:.1}\" fill=\"{colour}\" stroke=\"{INK}\">{change}</circle>")
+        format!("<circle r=\"{radius:.1}\" {colour} stroke=\"{INK}\">{change}</circle>")
     } else {
         let (round, half) = ((width / 4.0).min(5.0), width / 2.0);
         // The windscreen tells front from rear.
         let (back, deep) = (0.3 * length.min(3.0 * width), 0.14 * length.min(3.0 * width));
         format!(
-            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{length:.1}\" height=\"{width:.1}\" rx=\"{round:.1}\" fill=\"{colour}\" \
+            "<rect x=\"{:.1}\" y=\"{:.1}\" width=\"{length:.1}\" height=\"{width:.1}\" rx=\"{round:.1}\" {colour} \
              stroke=\"{INK}\">{change}</rect><rect x=\"{:.1}\" y=\"{:.1}\" width=\"{deep:.1}\" height=\"{:.1}\" rx=\"2\" \
              fill=\"{GLASS}\"/>",
             -length,
@@ -145,14 +159,10 @@ fn road_user(user: &ClipUser, of: Option<usize>, playback: &Playback, view: &Vie
         Some(of) => (ring(user, of, view), label(of)),
         None => (String::new(), String::new()),
     };
-    let turn = time.transform("rotate", |place| format!("{:.1}", turns[place]));
-    let go = time.transform("translate", |place| format!("{:.1} {:.1}", places[place][0], places[place][1]));
-    let seen = |place: usize| user.x[place].is_some();
-    format!(
-        "<g opacity=\"{}\">{}<g>{go}<g>{turn}{ring}{body}</g>{name}</g></g>\n",
-        u8::from(seen(0)),
-        time.visible(seen)
-    )
+    let turn = time.transform("rotate", |place| turns[place]);
+    let go = time.transform("translate", |place| places[place]);
+    let all = format!("<g {}>{}<g {}>{}{ring}{body}</g>{name}</g>\n", go.first, go.changes, turn.first, turn.changes);
+    time.seen(|place: usize| user.x[place].is_some(), &all)
 }
 
 /// The ring around the ego, solid, or the foe, dashed.
@@ -178,12 +188,12 @@ fn label(of: usize) -> String {
 
 fn conflict_point(playback: &Playback, view: &View, time: &Loop) -> String {
     let [x, y] = view.to_picture(Point::new(playback.conflict.x, playback.conflict.y));
-    let seen = time.visible(|place| playback.clip.severity[place].is_some());
     let cross = format!("M{:.1} {:.1}l16 16m0 -16l-16 16", x - 8.0, y - 8.0);
-    format!(
-        "<g opacity=\"0\" fill=\"none\" stroke-linecap=\"round\">{seen}<path d=\"{cross}\" stroke=\"{INK}\" \
-         stroke-width=\"8\"/><path d=\"{cross}\" stroke=\"#fff\" stroke-width=\"4\"/></g>\n"
-    )
+    let drawn = format!(
+        "<g fill=\"none\" stroke-linecap=\"round\"><path d=\"{cross}\" stroke=\"{INK}\" stroke-width=\"8\"/><path \
+         d=\"{cross}\" stroke=\"#fff\" stroke-width=\"4\"/></g>\n"
+    );
+    time.seen(|place| playback.clip.severity[place].is_some(), &drawn)
 }
 
 /// Below the roads: what it is, the time left, where in time one is, and what the colours mean.
@@ -206,12 +216,11 @@ fn panel(playback: &Playback, title: &str, time: &Loop) -> String {
     );
     let length = |place: usize| clip.time_left[place].map_or(0.0, |left| (left / FULL).clamp(0.0, 1.0) * BAR);
     let colour = |place: usize| hex(clip.worst_so_far(place).unwrap_or(Severity::Caution), Ground::Light);
+    let (length, colour) = (time.smooth("width", length), time.jumps("fill", colour));
     let _ = writeln!(
         text,
-        "<rect x=\"{x}\" y=\"{y}\" width=\"0\" height=\"20\" fill=\"{}\">{}{}</rect>",
-        colour(0),
-        time.smooth("width", |place| format!("{:.1}", length(place))),
-        time.jumps("fill", colour)
+        "<rect x=\"{x}\" y=\"{y}\" height=\"20\" {} {}>{}{}</rect>",
+        length.first, colour.first, length.changes, colour.changes
     );
     let needed = (playback.response * 100.0).round() / 100.0;
     let mark = x + (needed / FULL).min(1.0) * BAR;
@@ -263,9 +272,8 @@ fn numbers(x: f64, y: f64, time: &Loop, count: usize, text_at: impl Fn(usize) ->
     texts.sort_unstable();
     texts.dedup();
     let drawn = texts.iter().map(|text| {
-        let is_seen = |place: usize| text_at(place) == *text;
-        let first = u8::from(is_seen(0));
-        format!("<text x=\"{x}\" y=\"{y}\" opacity=\"{first}\">{}{text}</text>\n", time.visible(is_seen))
+        let drawn = format!("<text x=\"{x}\" y=\"{y}\">{text}</text>\n");
+        time.seen(|place: usize| text_at(place) == *text, &drawn)
     });
     drawn.collect()
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::animation::Loop;
+use super::animation::{Changing, Loop};
 use super::view::View;
 use crate::events::ClipSignal;
 use crate::geometry::{Point, Vector, left_of};
@@ -81,8 +81,8 @@ pub fn signals(net: &Net, shown: &[ClipSignal], view: &View, time: &Loop) -> Str
     for (place, signal) in shown.iter().enumerate() {
         let Some(corners) = signal_bar(net, shown, place) else { continue };
         let colour = |place: usize| signal_colour(signal.states.as_bytes()[place]).to_owned();
-        let (points, first, change) = (view.points(&corners), colour(0), time.jumps("fill", colour));
-        let _ = writeln!(text, "<polygon points=\"{points}\" fill=\"{first}\">{change}</polygon>");
+        let (points, Changing { first, changes }) = (view.points(&corners), time.jumps("fill", colour));
+        let _ = writeln!(text, "<polygon points=\"{points}\" {first}>{changes}</polygon>");
     }
     text
 }

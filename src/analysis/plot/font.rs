@@ -1,11 +1,10 @@
-//! The font of all pictures, part of the program, so that none has to be installed.
+//! The font of the charts.
 
 use plotters::style::{FontStyle, register_font};
 
+use crate::output::font::FONT;
 use crate::{Error, Result};
 
-/// DejaVu Sans, reduced to Latin, Greek and the signs of formulas.
-const FONT: &[u8] = include_bytes!("font/DejaVuSans.ttf");
 /// The font's name in the pictures; an SVG viewer uses its own font of that name, or its own sans-serif.
 pub(crate) const NAME: &str = "DejaVu Sans, sans-serif";
 
