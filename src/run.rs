@@ -4,6 +4,7 @@
 //! [`Run::begin_step`], pushes a row into [`Run::frame`] per road user, and calls [`Run::step`] with a function that
 //! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
 
+mod entering;
 mod obstacles;
 mod ordinary_driving;
 pub mod recorded;
@@ -16,6 +17,7 @@ mod writing;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
+use entering::Entering;
 use ordinary_driving::OrdinaryDriving;
 use rustc_hash::FxHashSet;
 
@@ -76,6 +78,7 @@ pub struct Run {
     step_length: Option<Second>,
     summary: Summary,
     ordinary_driving: OrdinaryDriving,
+    entering: Entering,
 }
 
 impl Run {
@@ -116,6 +119,7 @@ impl Run {
             step_length: None,
             summary: Summary::default(),
             ordinary_driving: OrdinaryDriving::default(),
+            entering: Entering::default(),
         })
     }
 
@@ -197,6 +201,19 @@ impl Run {
             if self.roster.profile_of(user).category == Category::Vehicle {
                 exposure.vehicle_kilometres += state.speed * lasted / 1e3;
                 exposure.vehicle_hours += lasted / 3600.0;
+            }
+        }
+    }
+
+    /// Counts the vehicles that enter junctions, unless the step is one of the warm-up.
+    fn count_entering(&mut self) {
+        let Self { net: Some(net), frame, detector, entering, .. } = self else { return };
+        if self.warm_up.is_over() {
+            // One that stands enters nothing.
+            for Row { user, .. } in frame.rows().filter(|row| row.state.moves()) {
+                if let Some(lane) = detector.lane(user) {
+                    entering.see(net, user, lane);
+                }
             }
         }
     }

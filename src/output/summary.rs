@@ -1,5 +1,6 @@
 //! The numbers of a run: the table at its end and the counts in `run.json`.
 
+use std::collections::BTreeMap;
 use std::fmt;
 
 use ecow::EcoString;
@@ -33,6 +34,9 @@ pub struct Summary {
     pub collisions_sumo: Option<SumoCollisions>,
     /// The amount of traffic.
     pub exposure: Exposure,
+    /// The vehicles that entered each junction, by its id; empty where vehicles have no lanes.
+    #[serde(default)]
+    pub entered: BTreeMap<String, u64>,
     /// What the scene did not need; not read back.
     #[serde(skip_deserializing)]
     pub left_out: Vec<LeftOut>,

@@ -88,6 +88,7 @@ impl Run {
         let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
         count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, &self.roster, self.net.as_deref()));
+        self.summary.entered = self.net.as_deref().map(|net| self.entering.by_junction(net)).unwrap_or_default();
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
         let unmet = self.type_settings.iter().filter(|(_, name)| !self.roster.has_any_of(name));

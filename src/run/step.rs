@@ -61,6 +61,7 @@ impl Run {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
+        self.count_entering();
         // With the positions that SUMO has, before road users are moved back.
         let recorded = self.writing.trajectories(&self.frame, &self.roster, self.net.as_deref());
         self.detector.align(&mut self.frame, &self.roster);
@@ -144,6 +145,7 @@ impl Run {
                 clips.forget(user, self.frame.time, &self.roster);
             }
             self.roster.leave(user);
+            self.entering.forget(user);
             self.detector.forget(user);
             self.tracker.forget(user);
             self.writing.outputs.forget(user);

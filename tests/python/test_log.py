@@ -147,3 +147,22 @@ def test_pairs_of_the_ssm_device_are_logged_or_explained(net: str, end: str, lea
     assert len(theirs) >= least and len(missing) <= 0.02 * len(theirs)
     assert missing <= others, "closecall has them, with values that are not beyond the thresholds"
     assert all(theirs[pair] <= CROSSING_OR_LEFT for pair in missing)
+
+
+@pytest.mark.parametrize("net", ["roundabout", "signals"])
+def test_entered_counts_the_vehicles_of_each_junction(net: str, tmp_path: Path) -> None:
+    logged(net, tmp_path, "--end", "60", "--", "--fcd-output", str(tmp_path / "fcd.xml"))
+    roads = ET.parse(NETS / net / f"{net}.net.xml").getroot()
+    begins = {edge.get("id"): edge.get("from") for edge in roads.findall("edge")}
+    last: dict[str, str] = {}
+    expected: dict[str, int] = {}
+    for vehicle in ET.parse(tmp_path / "fcd.xml").getroot().iter("vehicle"):
+        name, edge = str(vehicle.get("id")), str(vehicle.get("lane")).rsplit("_", 1)[0]
+        junction = edge[1:].rsplit("_", 1)[0] if edge.startswith(":") else str(begins[edge])
+        before = last.get(name)
+        was_there = before is not None and before.startswith(f":{junction}_")
+        if before != edge and not was_there and (before is not None or edge.startswith(":")):
+            expected[junction] = expected.get(junction, 0) + 1
+        last[name] = edge
+    assert json.loads((tmp_path / "run.json").read_text())["summary"]["entered"] == expected
+    assert sum(expected.values()) > 20

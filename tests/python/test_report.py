@@ -244,6 +244,13 @@ def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, tow
     assert [float(line[2]) for line in lines[:3]] == pytest.approx([value for _, value in ranked[:3]], abs=0.01)
     low, high = (float(end) for end in lines[0][3].split(" to "))
     assert low < ranked[0][1] < high
+    entered = json.loads((town / "log" / "run.json").read_text())["summary"]["entered"]
+    for line in lines:
+        junction = line[1].removeprefix("junction ")
+        assert (line[4] == "–") == (junction == line[1]), "known of junctions"
+        if junction != line[1]:
+            rate = 1000 * crashes[line[1]] / entered[junction]
+            assert float(line[4].split()[0]) == pytest.approx(rate, abs=0.06 if rate < 10 else 0.6)
     assert ranked[0][0] in opened.text("#verdict")
     opened.page.locator(".unfold").first.click()
     assert opened.page.get_attribute(".unfold", "aria-expanded") == "true"

@@ -53,7 +53,7 @@ pub fn read(
 ) -> Result<Conflicts> {
     filter.check()?;
     let logs = log_folders(folders)?;
-    let records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
+    let mut records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
     let runs = records.iter().map(logs::run).collect::<Vec<_>>();
     // A run without a result belongs to no variant.
     let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
@@ -101,6 +101,11 @@ pub fn read(
     if !filter.is_empty() {
         let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };
         ground.notes.push(format!("Filtered: {passed} of {all} conflicts, by {filter}."));
+    }
+    if filter.has_period() {
+        // How much of the traffic was in the period is not known.
+        let summaries = records.iter_mut().filter_map(|record| record.get_mut("summary")?.as_object_mut());
+        summaries.for_each(|summary| drop(summary.remove("entered")));
     }
     let filter = (!filter.is_empty()).then(|| filter.to_string());
     Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen, filter, lost })

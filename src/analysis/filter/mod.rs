@@ -101,6 +101,7 @@ impl ConflictFilter {
         summary.begin = self.from.map_or(summary.begin, |from| from.max(summary.begin));
         summary.end = self.to.map_or(summary.end, |to| to.min(summary.end)).max(summary.begin + none);
         summary.exposure = Exposure::default();
+        summary.entered.clear();
     }
 }
 

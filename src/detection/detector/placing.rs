@@ -11,6 +11,7 @@ use crate::detection::path::lanes::PathStart;
 use crate::geometry::Point;
 use crate::geometry::rectangle::direction;
 use crate::traffic::frame::{Frame, Row};
+use crate::traffic::net::LaneIndex;
 use crate::traffic::placement::Placement;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::Metre;
@@ -27,6 +28,11 @@ impl Detector {
     /// Whether a road user's route is known from this position on.
     pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
         self.paths.get(user.0 as usize).is_some_and(|path| path.knows_route(position))
+    }
+
+    /// The lane that a road user's front bumper is on, where it follows lanes.
+    pub fn lane(&self, user: UserIndex) -> Option<LaneIndex> {
+        self.paths.get(user.0 as usize)?.lane()
     }
 
     /// Sets a road user's place on the net. No effect while it is still on a path that matches its route.

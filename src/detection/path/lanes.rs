@@ -202,6 +202,14 @@ impl LanePath {
         self.own.as_ref().map_or(Some(LaneIndex(line)), |own| own.lane_at(vertex))
     }
 
+    /// The lane that the front bumper is on.
+    pub fn lane(&self) -> Option<LaneIndex> {
+        match &self.own {
+            Some(own) => own.lane_at(self.track.vertex).filter(|_| !self.track.is_empty()),
+            None => self.track.lines.get(self.track.at).map(|line| LaneIndex(*line)),
+        }
+    }
+
     /// The lanes between two distances ahead of the front bumper; those behind it have negative distances.
     pub fn lanes_between(&self, of_net: &Lines, from: Metre, to: Metre) -> SmallVec<[LaneIndex; 4]> {
         let mut found = SmallVec::new();

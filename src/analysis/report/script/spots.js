@@ -85,11 +85,43 @@ function spotRows(rows) {
       [spot.x, spot.y] = [column.x, column.y].map((axis) => of_place.reduce((sum, row) => sum + weight(row) * axis[row], 0) / all);
       return spot;
     });
+    const entered = enteringByPlace();
+    for (const spot of spots) {
+      spot.entered = entered.get(spotName(spot)) || null;
+      spot.rate = spot.entered && (PER_ENTERING * spot.risk) / spot.entered;
+    }
     spots.sort((a, b) => b.risk - a.risk || b.counts[2] - a.counts[2] || b.rows.length - a.rows.length || a.place - b.place);
     spots.forEach((spot, rank) => { spot.rank = rank + 1; });
     Object.assign(spotRows, { rows, spots });
   }
   return spotRows.spots;
+}
+
+/** The vehicles that entered each junction in the runs that are shown, by the junction's name; empty where that is not known. */
+function enteringByPlace() {
+  const entered = new Map();
+  // Of a period only the conflicts are known, not the traffic.
+  if (Number.isFinite(filter.from) || Number.isFinite(filter.to)) return entered;
+  const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
+  // A run of an earlier version, or one that was killed, has no such counts.
+  if (!runs.every((run) => run.summary?.steps > 0 && run.summary.entered)) return entered;
+  for (const run of runs) {
+    for (const [junction, vehicles] of Object.entries(run.summary.entered)) {
+      entered.set(`junction ${junction}`, (entered.get(`junction ${junction}`) || 0) + vehicles);
+    }
+  }
+  return entered;
+}
+
+/** Expected crashes per this many entering vehicles. */
+const PER_ENTERING = 1000;
+
+/** The expected crashes per entering vehicles with their interval. */
+function rateWords({ rate, entered, ...group }) {
+  if (rate === null) return "–";
+  const ends = intervalOf(group).map((end) => (PER_ENTERING * end) / entered);
+  const [middle, low, high] = [rate, ...ends].map((value) => number(value, value < 10 ? 1 : 0));
+  return `${middle} (${low} to ${high})`;
 }
 
 const spotName = (spot) => conflicts.spots[spot.place] || "no lane";
@@ -133,7 +165,8 @@ class SortedTable {
   draw() {
     const { by, down } = this;
     // A severity that the filter leaves out has no column.
-    const columns = this.columns.filter(({ severity }) => severity === undefined || filter.severities[severity]);
+    const hasEntering = this.groups.some((group) => group.entered);
+    const columns = this.columns.filter(({ severity, entering }) => (severity === undefined || filter.severities[severity]) && (!entering || hasEntering));
     const head = make("tr", {}, ...columns.map((column_of, place) => {
       const cell = make("th", { className: column_of === BAR ? "share" : column_of.text ? "" : "number", scope: "col" });
       cell.setAttribute("aria-sort", column_of === this.columns[by] ? (down ? "descending" : "ascending") : "none");
@@ -150,6 +183,8 @@ class SortedTable {
         this.element.querySelectorAll("th")[place].querySelector("button").focus();
       };
       cell.append(button);
+      // Paper repeats the heading on each page, but no buttons.
+      cell.dataset.heading = column_of.heading;
       return cell;
     }));
     const value = this.columns[by].value;
@@ -195,7 +230,9 @@ const hotSpots = new SortedTable(byId("spots"), [
     choosePlace(filter.spot === group.place ? null : group.place, null);
     map.go(group.x, group.y, 120);
   }, (group) => filter.spot === group.place),
-  ...COMMON,
+  ...COMMON.slice(0, 2),
+  { heading: "per 1,000 entering", entering: true, value: (group) => group.rate ?? -1, cell: (group) => numberCell(rateWords(group)) },
+  ...COMMON.slice(2),
   { heading: "Mostly", text: true, value: (group) => usual(group.rows, manoeuvreOf), cell: (group) => textCell(inWords(usual(group.rows, manoeuvreOf)) || NOT_KNOWN) },
   { heading: "Why", text: true, value: (group) => usual(group.rows, strongestCause), cell: (group) => textCell(inWords(usual(group.rows, strongestCause)) || NOT_KNOWN) },
   BAR,
@@ -232,6 +269,7 @@ function showSpots(rows) {
   const spots = spotRows(rows);
   hotSpots.show(spots);
   const listed = spots.slice(0, MOST_SPOTS);
+  byId("per").hidden = !spots.some((spot) => spot.entered);
   const others = listed.slice(1).filter((spot) => mayOutrank(spot, listed[0])).length;
   byId("doubt").textContent = others ? `The intervals of ${number(others)} of the ${number(listed.length - 1)} places after the first overlap its own: their ranks may be chance.` : "";
   const ranked = (groupsOf) => [...grouped(rows, groupsOf)].map(([name, of_name]) => ({ name, ...sums(of_name) }))
