@@ -12,12 +12,15 @@ use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
 use crate::analysis::statistics::Effects;
 use crate::detection::kind::{Kind, Severity};
+use crate::events::Cause;
 use crate::options::Options;
 use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 use crate::traffic::net::{EdgeFunction, Net};
 
 /// The worst conflicts, this many, can be drawn with both rectangles and paths.
 const DRAWN: usize = 2_000;
+/// The cause that one of the two had to yield and did not.
+const DID_NOT_YIELD: &str = Cause::DidNotYield.name();
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
@@ -119,8 +122,11 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     let mut movements = Movements::of(net);
     let moves = conflicts().map(|conflict| movements.of_both(conflict)).collect::<Vec<_>>();
     for (place, name) in ["ego_movement", "foe_movement"].into_iter().enumerate() {
-        add(name, moves.iter().map(|both| both.map(|both| both[place])).collect());
+        add(name, moves.iter().map(|both| both.map(|both| both.movements[place])).collect());
     }
+    let did_not_yield = |conflict: &LoggedConflict| conflict.cause.split(' ').any(|cause| cause == DID_NOT_YIELD);
+    let yields = moves.iter().zip(conflicts()).map(|(both, conflict)| both.filter(|_| did_not_yield(conflict))?.yields);
+    add("yields", yields.collect());
     let is_there = |column: &&Column| {
         column.presence != Presence::Chosen || conflicts().any(|conflict| (column.get)(conflict) != Cell::Missing)
     };

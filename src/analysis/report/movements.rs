@@ -1,5 +1,6 @@
-//! From where to where the two of a conflict went through its junction, for the page's movement diagrams: by the lanes that the
-//! log names and, where several ways lead on, by the predicted path. Without a net only the edges' names are known.
+//! From where to where the two of a conflict went through its junction, for the page's movement diagrams, and which of them had
+//! to yield: by the lanes that the log names and, where several ways lead on, by the predicted path. Without a net only the
+//! edges' names are known.
 
 use std::collections::BTreeMap;
 
@@ -47,6 +48,18 @@ struct Movement {
     turn: Option<&'static str>,
 }
 
+/// What is known of both movements of a conflict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Both {
+    /// The places of the ego's and of the foe's movement in the list.
+    pub movements: [usize; 2],
+    /// Which of the two has to yield to the other by the junction's right of way, 0 for the ego.
+    pub yields: Option<u8>,
+}
+
+/// The ways through a junction that a movement may be.
+type Ways<'a> = Vec<&'a Passage>;
+
 /// The movements of the conflicts within junctions.
 pub struct Movements<'a> {
     net: Option<&'a Net>,
@@ -71,24 +84,28 @@ impl<'a> Movements<'a> {
         Self { net, edges, approaches: BTreeMap::new(), list: Vec::new(), places: FxHashMap::default() }
     }
 
-    /// The places of the ego's and of the foe's movement in the list; none outside junctions and where the log has no lanes.
-    pub fn of_both(&mut self, conflict: &LoggedConflict) -> Option<[usize; 2]> {
+    /// Both movements of a conflict; none outside junctions and where the log has no lanes.
+    pub fn of_both(&mut self, conflict: &LoggedConflict) -> Option<Both> {
         if conflict.ego_lane.is_empty() || conflict.foe_lane.is_empty() {
             return None;
         }
-        let both = match self.net {
-            Some(net) => self.in_net(net, conflict)?,
+        let (both, yields) = match self.net {
+            Some(net) => {
+                let [(ego, ego_ways), (foe, foe_ways)] = self.in_net(net, conflict)?;
+                ([ego, foe], yields(net, &ego_ways, &foe_ways))
+            }
             None => {
                 let junction = Some(conflict.junction()).filter(|junction| !junction.is_empty())?;
-                [&conflict.ego_lane, &conflict.foe_lane].map(|lane| self.by_name(junction, lane))
+                ([&conflict.ego_lane, &conflict.foe_lane].map(|lane| self.by_name(junction, lane)), None)
             }
         };
-        Some(both.map(|movement| {
+        let movements = both.map(|movement| {
             *self.places.entry(movement).or_insert_with(|| {
                 self.list.push(movement);
                 self.list.len() - 1
             })
-        }))
+        });
+        Some(Both { movements, yields })
     }
 
     /// For each junction its approaches, and all movements.
@@ -115,7 +132,7 @@ impl<'a> Movements<'a> {
         Movement { from: Some(from), ..Movement::default() }
     }
 
-    fn in_net(&mut self, net: &Net, conflict: &LoggedConflict) -> Option<[Movement; 2]> {
+    fn in_net(&mut self, net: &'a Net, conflict: &LoggedConflict) -> Option<[(Movement, Ways<'a>); 2]> {
         let edge = &net.edges[net.lanes[net.lane(&conflict.lane)?.0 as usize].edge.0 as usize];
         if edge.function == EdgeFunction::Normal || edge.junction.is_empty() {
             return None;
@@ -132,10 +149,11 @@ impl<'a> Movements<'a> {
         let ego = (ego_lane, ego_x.zip(*ego_y), ego_path, is_person(is_ego_shorter));
         let foe = (foe_lane, foe_x.zip(*foe_y), foe_path, is_person(!is_ego_shorter));
         Some([ego, foe].map(|(lane, front, path, is_person)| {
-            let Some(lane) = net.lane(lane) else { return Movement::default() };
+            let Some(lane) = net.lane(lane) else { return Default::default() };
             if is_person || is_on_foot(net, lane) {
                 let crossing = front.and_then(|(x, y)| net.crossing_at(Point::new(x, y), AT_CROSSING));
-                return self.on_foot(net, junction, at, crossing.unwrap_or(lane));
+                let movement = self.on_foot(net, junction, at, crossing.unwrap_or(lane));
+                return (movement, crossing.and_then(|crossing| net.passage(crossing)).into_iter().collect());
             }
             self.of_vehicle(net, junction, at, lane, || samples(front, path))
         }))
@@ -151,12 +169,12 @@ impl<'a> Movements<'a> {
 
     fn of_vehicle(
         &self,
-        net: &Net,
+        net: &'a Net,
         junction: &str,
         at: JunctionIndex,
         lane: LaneIndex,
         path: impl Fn() -> Vec<Point>,
-    ) -> Movement {
+    ) -> (Movement, Ways<'a>) {
         let index = net.lanes[lane.0 as usize].edge;
         let edge = &net.edges[index.0 as usize];
         let place_of = |edge: EdgeIndex, role| {
@@ -165,15 +183,16 @@ impl<'a> Movements<'a> {
         };
         let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
         if let Some(passage) = net.passage(lane).filter(|_| edge.ends[0] == at) {
-            return Movement {
+            let movement = Movement {
                 from: place_of(edge_of(passage.from), Role::In),
                 to: place_of(edge_of(passage.to), Role::Out),
                 turn: Some(turn(passage.direction)),
             };
+            return (movement, vec![passage]);
         }
         if edge.ends[1] != at || edge.function != EdgeFunction::Normal {
             let to = place_of(index, Role::Out).filter(|_| edge.ends[0] == at);
-            return Movement { to, ..Movement::default() };
+            return (Movement { to, ..Movement::default() }, Vec::new());
         }
         let from = place_of(index, Role::In);
         let vias = edge.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).filter_map(|link| link.via);
@@ -197,7 +216,9 @@ impl<'a> Movements<'a> {
             best.filter(is_sure).map(|best| ways[best])
         };
         let to = way.and_then(|way| place_of(edge_of(way.to), Role::Out));
-        Movement { from, to, turn: way.map(|way| turn(way.direction)) }
+        let is_alike = |other: &&Passage| way.is_some_and(|way| edge_of(other.to) == edge_of(way.to));
+        let alike = ways.iter().copied().filter(is_alike).collect::<Ways>();
+        (Movement { from, to, turn: way.map(|way| turn(way.direction)) }, alike)
     }
 
     /// The place of an approach, which is added where it is new.
@@ -228,6 +249,14 @@ impl<'a> Movements<'a> {
         }
         Point::from((bounds.low.coords + bounds.high.coords) / 2.0)
     }
+}
+
+/// Which of two has to yield to the other, where that is the same on all ways that they may take.
+fn yields(net: &Net, ego: &[&Passage], foe: &[&Passage]) -> Option<u8> {
+    let all = |one: &[&Passage], to: &[&Passage]| {
+        !one.is_empty() && !to.is_empty() && one.iter().all(|one| to.iter().all(|to| net.yields(one, to)))
+    };
+    if all(ego, foe) { Some(0) } else { all(foe, ego).then_some(1) }
 }
 
 /// Whether a lane is for persons only.
@@ -325,8 +354,9 @@ mod tests {
             let all = way.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].shape);
             let path = all.map(|point| format!("{} {}", point.x, point.y)).collect::<Vec<_>>().join(" ");
             let both = movements.of_both(&conflict(&lane.id, &lane.id, net.lane_id(way.from), &path)).unwrap();
-            assert_eq!(both[0], both[1], "{}", lane.id);
-            let Movement { from, to, turn } = movements.list[both[0]];
+            let [ego, foe] = both.movements;
+            assert_eq!((ego, both.yields), (foe, None), "{}", lane.id);
+            let Movement { from, to, turn } = movements.list[ego];
             assert!(from.is_some() && to.is_some(), "{}", lane.id);
             turns.extend(turn);
         }
@@ -336,11 +366,28 @@ mod tests {
     }
 
     #[test]
+    fn the_one_without_the_right_of_way_yields() {
+        let net = Net::read("sumo_nets/priority/priority.net.xml".as_ref()).unwrap();
+        let mut movements = Movements::of(Some(&net));
+        let ways = (0..net.lanes.len() as u32).map(LaneIndex).filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
+        let id = |way: &Passage| net.lane_id(way.lanes[0]);
+        let mut found = 0;
+        for (one, other) in ways.iter().flat_map(|one| ways.iter().map(move |other| (one, other))) {
+            let has_to = |one, other| net.yields(one, other);
+            let expected = if has_to(one, other) { Some(0) } else { has_to(other, one).then_some(1) };
+            let both = movements.of_both(&conflict(id(one), id(one), id(other), "")).unwrap();
+            assert_eq!(both.yields, expected, "{} {}", id(one), id(other));
+            found += u32::from(expected.is_some());
+        }
+        assert!(found > 0);
+    }
+
+    #[test]
     fn without_a_net_an_approach_is_its_edge() {
         let mut movements = Movements::of(None);
         let both = movements.of_both(&conflict(":J_1_0", "a_b_0", ":J_1_0", "")).unwrap();
         assert_eq!(movements.json()["approaches"]["junction J"][0][0], "a_b");
-        assert_eq!(movements.list[both[1]], Movement::default());
+        assert_eq!((movements.list[both.movements[1]], both.yields), (Movement::default(), None));
         assert_eq!(movements.of_both(&conflict("a_0", "a_0", "b_0", "")), None, "outside junctions");
     }
 }

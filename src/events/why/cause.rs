@@ -58,7 +58,7 @@ impl Cause {
     ];
 
     /// The name in columns and tables.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Self::RanRed => "ran_red",
             Self::LateAmber => "late_amber",

@@ -88,6 +88,12 @@ const WHY = {
   too_close: "the ego followed too closely", too_fast: "one of them drove faster than the limit", appeared: "one of them had only just entered the simulation",
 };
 
+/** A cause of a conflict; who had to yield is known where the net is. */
+function whyOf(row, cause) {
+  const who = cause === "did_not_yield" && column.yields ? column.yields[row] : null;
+  return who === null ? WHY[cause] || inWords(cause) : `the ${["ego", "foe"][who]}, ${[egoId, foeId][who](row)}, had to yield and did not`;
+}
+
 /** The log's row of a conflict as sentences: what happened, why, and how much time was left. */
 function storyOf(row) {
   const value = (name) => column[name][row];
@@ -101,7 +107,7 @@ function storyOf(row) {
   const causes = causeNames(row);
   if (causes.length) {
     const order = conflicts.causes[column.cause[row]].split(" ");
-    sentences.push(`Why: ${order.map((cause) => WHY[cause] || inWords(cause)).join("; ")}.`);
+    sentences.push(`Why: ${order.map((cause) => whyOf(row, cause)).join("; ")}.`);
   }
   const left = column.response_left && value("response_left");
   if (value("collision")) {
