@@ -57,7 +57,7 @@ impl Loop {
         (0..count as usize).map(move |still| Self { still: Some(still as f64 / count), ..self.clone() })
     }
 
-    /// Whether it plays, and is no still.
+    /// Whether it plays; otherwise it is a still.
     pub fn plays(&self) -> bool {
         self.still.is_none()
     }

@@ -141,6 +141,11 @@ fn most(mut rows: Vec<Effect>) -> Vec<Effect> {
     rows
 }
 
+/// A difference that rounds to nothing.
+const AS_MANY: &str = "as many";
+/// From this ratio on, the sentence counts in times, not in per cent.
+const MANY_TIMES: f64 = 3.0;
+
 /// The difference in a sentence: how many more or fewer, whether that may be chance, from how many runs.
 fn sentence(all: &Effect, what: &str, unit: &str, [after, before]: [usize; 2]) -> String {
     let runs = format!("{} after, {before} before", counted(after as u64, "run"));
@@ -149,14 +154,19 @@ fn sentence(all: &Effect, what: &str, unit: &str, [after, before]: [usize; 2]) -
     let Some(Ratio { value, low, high, .. }) = all.ratio else {
         return format!("Neither set of runs has {what} ({runs}).");
     };
-    let change = |ratio: f64| {
-        let percent = format!("{:.0} %", (ratio - 1.0).abs() * 100.0);
-        if ratio < 1.0 { format!("{percent} fewer") } else { format!("{percent} more") }
+    let change = |ratio: f64| match (ratio - 1.0) * 100.0 {
+        percent if percent.round() == 0.0 => AS_MANY.to_owned(),
+        percent if percent < 0.0 => format!("{:.0} % fewer", -percent),
+        percent if ratio < MANY_TIMES => format!("{percent:.0} % more"),
+        _ => format!("{ratio:.0} times as many"),
     };
     let end = |high: Option<f64>| high.map_or("without a bound above".to_owned(), change);
     let interval = format!("95 % interval: {} to {}", change(low), end(high));
     let is_sure = low > 1.0 || high.is_some_and(|high| high < 1.0);
     let head = match value {
+        Some(value) if !is_sure && change(value) == AS_MANY => {
+            format!("Per {per} there were as many {what} after the change as before")
+        }
         Some(value) if is_sure => format!("Per {per} there were {} {what} after the change", change(value)),
         Some(value) => format!(
             "Per {per} there were {} {what} after the change, but chance alone may explain the difference",
@@ -187,6 +197,11 @@ mod tests {
         );
         assert!(said(Some(0.66), 0.5, Some(1.1)).contains("chance alone may explain"));
         assert!(said(Some(1.3), 1.1, Some(1.6)).contains("30 % more serious"));
+        assert!(
+            said(Some(1.001), 0.05, Some(21.6))
+                .contains("many serious and critical conflicts after the change as before (95 %")
+        );
+        assert!(said(Some(1.001), 0.05, Some(21.6)).contains("interval: 95 % fewer to 22 times as many;"));
         assert!(said(None, 1.5, None).starts_with("There were serious and critical conflicts only after"));
     }
 

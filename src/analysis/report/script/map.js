@@ -233,7 +233,7 @@ const map = {
       const upTo = (end) => number(density.ends[end], Math.min(Math.max(Math.ceil(-Math.log10(density.ends[end]) - 1e-9), 0), 4));
       if (this.mode === "difference") {
         [[3, "fewer"], [2, "fewer"], [1, "fewer"], [1, "more"], [2, "more"], [3, "more"]].forEach(([step, what]) => {
-          const text = { 1: `up to ${upTo(1)} ${what}`, 2: `to ${upTo(3)} ${what}`, 3: `above ${upTo(3)} ${what}` }[step];
+          const text = { 1: `up to ${upTo(1)} ${what}`, 2: `${upTo(1)} to ${upTo(3)} ${what}`, 3: `more than ${upTo(3)} ${what}` }[step];
           entries.push(entry(patch(`var(--${what}-${step})`), text));
         });
       } else {
