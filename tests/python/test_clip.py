@@ -111,7 +111,7 @@ def test_readers_see_every_picture_of_a_film(file_format: str) -> None:
 
 
 def test_a_film_shows_the_conflict_at_its_worst_step(scenario: Copy, tmp_path: Path) -> None:
-    film = drawn(scenario("rear_end"), tmp_path, "clip.webp", "--end", "10")
+    film = drawn(scenario("rear_end"), tmp_path, "clip.webp", "--end", "2.3")
     animated = Image.open(film)
     assert animated.size == (SIZE["width"], SIZE["height"]) and animated.info["loop"] == 0
     counts = []
@@ -124,9 +124,9 @@ def test_a_film_shows_the_conflict_at_its_worst_step(scenario: Copy, tmp_path: P
 def test_without_its_packages_a_film_is_refused_in_one_line(scenario: Copy, tmp_path: Path) -> None:
     script = "import sys; sys.modules['av'] = None; from closecall.__main__ import main; sys.exit(main())"
     log = drawn(scenario("rear_end"), tmp_path).parent / "log"
-    words = [sys.executable, "-c", script, "clip", str(log), "-o", str(tmp_path / "a.mp4")]
+    words = [sys.executable, "-c", script, "clip", str(log), "--worst", "1", "-o", str(tmp_path / "a.mp4")]
     refused = subprocess.run(words, capture_output=True, text=True)
     assert refused.returncode == 2 and is_one_message(refused.stderr)
     assert "pip install 'closecall[video]'" in refused.stderr
-    refused = closecall("clip", log, "-o", tmp_path / "a.gif")
+    refused = closecall("clip", log, "--worst", "1", "-o", tmp_path / "a.gif")
     assert refused.returncode == 2 and ".webp or an .mp4" in refused.stderr
