@@ -6,6 +6,7 @@ import io
 import itertools
 import tempfile
 from pathlib import Path
+from typing import cast
 
 import av
 import resvg_py
@@ -30,12 +31,12 @@ def film(pictures: list[str], rate: int, file_format: str, font: bytes) -> bytes
     ):
         font_file = Path(folder) / "font.ttf"
         font_file.write_bytes(font)
-        stream = None
+        stream: av.VideoStream | None = None
         place = 0
         for picture, same in itertools.groupby(pictures):
             drawn = frame(picture, font_file)
             if stream is None:
-                stream = out.add_stream(codec, rate=rate, options=options)
+                stream = cast(av.VideoStream, out.add_stream(codec, rate=rate, options=options))
                 stream.width, stream.height, stream.pix_fmt = drawn.width, drawn.height, pixels
             for _ in same:
                 shown = drawn.reformat(format=pixels, dst_color_range=colours)

@@ -67,7 +67,7 @@ impl Loop {
         let what = format!("attributeName=\"{attribute}\"");
         let value = |place: usize| [value(place)];
         Changing {
-            first: format!("{attribute}=\"{}\"", self.first(&value)),
+            first: format!("{attribute}=\"{}\"", self.first(value)),
             changes: self.steady("animate", &what, value),
         }
     }
