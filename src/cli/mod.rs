@@ -45,9 +45,7 @@ use crate::{Error, Result};
 use parse::{Command, ParseError, command, parse};
 
 pub use crate::util::panics::keep_quiet as keep_panics_quiet;
-pub use sumo::{
-    ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo,
-};
+pub use sumo::{ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
 #[cfg(feature = "parquet")]
 pub use workers::{Distribute, ReportEnd, Workers};
 
