@@ -16,6 +16,7 @@ use crate::output::record::RunRecord;
 use crate::run::Run;
 use crate::run::recorded::{Ending, RecordedRun};
 use crate::traffic::net::Net;
+use crate::util::threads::default_threads;
 use crate::{Error, Result};
 
 /// A recording and how to check it.
@@ -44,9 +45,10 @@ pub struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Threads that test the pairs of a step. More than one pays off with thousands of road users.
-    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u8).range(1..=64))]
-    threads: u8,
+    /// Threads at most that test the pairs of a step [default: one per processor]. A step uses as many as its road users keep
+    /// busy: one below 5,000.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    threads: Option<u8>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
 }
@@ -66,7 +68,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     }
     arguments.stops.iter().try_for_each(|stops| replay.set_stops(stops))?;
     let mut run = Run::new(&options, net)?;
-    run.set_threads(arguments.threads.into());
+    run.set_threads(arguments.threads.unwrap_or_else(default_threads).into());
     run.set_fixed_routes(true);
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();

@@ -9,6 +9,7 @@ use super::sumo::{GuiRequest, RunRequest, Sumo, no_sumo};
 use crate::input::sumo_files;
 use crate::options::{step_length, time};
 use crate::util::input_file;
+use crate::util::threads::default_threads;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -42,10 +43,10 @@ pub struct RunArgs {
     /// Length of a simulation step, in s.
     #[arg(long, value_name = "S", value_parser = step_length)]
     step_length: Option<Second>,
-    /// Threads, SUMO's own included. With 2, closecall works while SUMO computes its next step; use 1 when running many
-    /// simulations at once.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(1..=64))]
-    threads: u8,
+    /// Threads at most, SUMO's own included [default: one per processor]. With 2, closecall works while SUMO computes its next
+    /// step; more help with thousands of road users. Use 1 when running many simulations at once.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    threads: Option<u8>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
     /// Options passed on to SUMO.
@@ -90,7 +91,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
         scenario,
         gui: arguments.gui.then_some(GuiRequest { label: arguments.label, quit_on_end: arguments.quit_on_end }),
         out,
-        threads: arguments.threads,
+        threads: arguments.threads.unwrap_or_else(default_threads),
         quiet: arguments.check.quiet,
         outputs: arguments.check.outputs.clone(),
         options,

@@ -143,6 +143,11 @@ pub fn processors() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
+/// The threads of a command that is not told how many: one per processor, up to the 64 that the option allows.
+pub fn default_threads() -> u8 {
+    processors().min(64) as u8
+}
+
 #[cfg(test)]
 mod tests {
     use crate::util::threads::*;
