@@ -18,12 +18,12 @@ APACHE = ROOT / "LICENSE"
 NAMES = ("license", "licence", "copying", "notice", "unlicense", "copyright")
 
 EMBEDDED = {
-    "Apache ECharts 6.1.0 (Apache-2.0)": ["report/vendor/NOTICE-echarts", "report/vendor/LICENSE-echarts"],
-    "ZRender 6.1.0, in Apache ECharts (BSD-3-Clause)": ["report/vendor/LICENSE-zrender"],
-    "d3, in Apache ECharts (BSD-3-Clause)": ["report/vendor/LICENSE-d3"],
-    "DejaVu Sans (Bitstream Vera, Arev)": ["plot/font/LICENSE-dejavu"],
+    "Apache ECharts 6.1.0 (Apache-2.0)": ["analysis/report/vendor/NOTICE-echarts", "analysis/report/vendor/LICENSE-echarts"],
+    "ZRender 6.1.0, in Apache ECharts (BSD-3-Clause)": ["analysis/report/vendor/LICENSE-zrender"],
+    "d3, in Apache ECharts (BSD-3-Clause)": ["analysis/report/vendor/LICENSE-d3"],
+    "DejaVu Sans (Bitstream Vera, Arev)": ["output/font/LICENSE-dejavu"],
 }
-"""What is embedded besides crates, each with its files below `src/analysis`."""
+"""What is embedded besides crates, each with its files below `src`."""
 
 STANDARD_LIBRARY = "Rust's standard library, The Rust Project contributors (MIT OR Apache-2.0)"
 
@@ -71,8 +71,7 @@ def texts(folder: Path, licence: str) -> list[Path]:
 
 def document() -> str:
     """The licences, each text below what it is of."""
-    analysis = ROOT / "src" / "analysis"
-    works = {name: [analysis / file for file in files] for name, files in EMBEDDED.items()}
+    works = {name: [ROOT / "src" / file for file in files] for name, files in EMBEDDED.items()}
     works |= {STANDARD_LIBRARY: [APACHE]} | crates()
     owners: dict[str, list[str]] = {}
     for work, files in works.items():

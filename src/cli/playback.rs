@@ -64,13 +64,13 @@ pub fn clip(arguments: &ClipArgs, sumo: Option<Sumo>) -> Result<()> {
     let format = Format::of(out)?;
     check_keeps_logs(out, std::slice::from_ref(&choice.conflict.folder), choice.net.as_deref())?;
     let playback = choice.find()?;
-    if !quiet {
-        playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
-    }
     let bytes = match format {
         Format::Svg => svg(&playback).into_bytes(),
         Format::Film(format) => film(&playback, format, sumo)?,
     };
+    if !quiet {
+        playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
+    }
     output_file::write(out, &bytes)?;
     if *quiet {
         return Ok(());

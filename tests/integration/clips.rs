@@ -131,7 +131,8 @@ fn a_conflict_without_a_clip_says_how_to_get_one() {
     assert!(refused("", "clip log 7").contains("log has no conflict 7"));
     assert!(refused("", "clip log --worst 2").contains("log has 1 conflict"));
     assert!(refused("", "clip log --worst 0").contains("--worst 0"));
-    assert!(refused("", "clip log 1 -o film.mp4").contains("film.mp4: a clip is an SVG"));
+    assert!(refused("", "clip log 1 -o film.gif").contains("film.gif: a clip is a .svg"));
+    assert!(refused("", "clip log 1 -o film.mp4").contains("without Python"));
     assert!(refused("", "clip elsewhere 1").contains("elsewhere"));
     assert!(refused("", "show log 1").contains("without Python"));
 }
