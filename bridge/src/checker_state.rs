@@ -1,4 +1,4 @@
-//! What a step of a checker changes: the run, where its road users come from, what is told of it.
+//! What a step of a checker changes: the run, the source of its road users, its painter and its listeners.
 
 use closecall::{Ending, Error, RecordedRun};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};

@@ -4,7 +4,7 @@
 
 use std::fs;
 use std::path::Path;
-use std::time::{SystemTime, UNIX_EPOCH};
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use super::made::{Made, fill};
 use crate::analysis::logged::{Which, record};
@@ -22,6 +22,9 @@ pub const SCENARIO: &str = "conflict.xosc";
 const ROADS: &str = "net.xodr";
 /// How far beyond the road users the net is converted, in m.
 const AROUND: Metre = 100.0;
+
+/// From 1970 to the last second of the year 9999.
+const YEAR_9999: Duration = Duration::from_secs(253_402_300_799);
 
 /// Writes the part of a SUMO net that is within bounds as OpenDRIVE.
 pub type ConvertNet<'a> = dyn FnMut(&Path, &Bounds, &Path) -> Result<()> + 'a;
@@ -83,32 +86,20 @@ fn written(folder: &Path) -> Result<String> {
     Ok(date(time))
 }
 
-/// A time as XML Schema has it, in UTC. The calendar is computed as by Hinnant (2021), "chrono-compatible low-level date
-/// algorithms", `civil_from_days`.
+/// A time as XML Schema has it, in UTC; one outside the years 1970 to 9999, which humantime refuses, as their end.
 fn date(time: SystemTime) -> String {
-    let seconds = time.duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
-    let days = seconds / 86_400 + 719_468;
-    let (era, day) = (days / 146_097, days % 146_097);
-    let year = (day - day / 1460 + day / 36_524 - day / 146_096) / 365;
-    let day = day - (365 * year + year / 4 - year / 100);
-    let month = (5 * day + 2) / 153;
-    let (day, month) = (day - (153 * month + 2) / 5 + 1, if month < 10 { month + 3 } else { month - 9 });
-    let year = year + era * 400 + u64::from(month <= 2);
-    let [hour, minute, second] = [seconds / 3600 % 24, seconds / 60 % 60, seconds % 60];
-    format!("{year:04}-{month:02}-{day:02}T{hour:02}:{minute:02}:{second:02}Z")
+    humantime::format_rfc3339_seconds(time.clamp(UNIX_EPOCH, UNIX_EPOCH + YEAR_9999)).to_string()
 }
 
 #[cfg(test)]
 mod tests {
-    use std::time::Duration;
-
     use super::*;
 
     #[test]
-    fn dates_are_those_of_the_calendar() {
-        let of = |seconds| date(UNIX_EPOCH + Duration::from_secs(seconds));
-        assert_eq!(of(0), "1970-01-01T00:00:00Z");
-        assert_eq!(of(951_782_400), "2000-02-29T00:00:00Z");
-        assert_eq!(of(1_795_858_323), "2026-11-28T09:32:03Z");
+    fn any_time_of_a_file_has_a_date() {
+        let of = |time: Option<SystemTime>| date(time.unwrap());
+        assert_eq!(of(UNIX_EPOCH.checked_add(Duration::from_secs(951_782_400))), "2000-02-29T00:00:00Z");
+        assert_eq!(of(UNIX_EPOCH.checked_sub(Duration::from_secs(1))), "1970-01-01T00:00:00Z");
+        assert_eq!(of(UNIX_EPOCH.checked_add(2 * YEAR_9999)), "9999-12-31T23:59:59Z");
     }
 }
