@@ -134,6 +134,11 @@ def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
         if by in ("edge", "junction"):
             counts.pop("(none)", None)
             assert {spot["id"]: spot["count"] for spot in found[f"{by}s"]} == counts
+    entered = json.loads((log / "run.json").read_text())["summary"]["entered"]
+    for spot in found["junctions"]:
+        per_entering = spot["expected_crashes_per_1000_entering"]
+        for end in ("value", "low", "high"):
+            assert per_entering[end] == pytest.approx(1000 * spot["expected_crashes"][end] / entered[spot["id"]])
     assert {"car", "walker"} <= {name for row in logged for name in (row["ego_type"], row["foe_type"])}
 
 

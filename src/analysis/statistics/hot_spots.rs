@@ -20,14 +20,35 @@ pub struct HotSpot {
     pub critical: u64,
     /// The sum of the crash probabilities: an index for comparing places, not a forecast.
     pub expected_crashes: Option<Rate>,
+    /// The same per 1,000 vehicles that entered; of junctions, where all runs have counted them.
+    pub expected_crashes_per_1000_entering: Option<Rate>,
     /// Per simulated hour.
     pub per_hour: Option<Rate>,
     /// Per 1,000 vehicles of the run.
     pub per_1000_vehicles: Option<Rate>,
 }
 
-/// The `wanted` spots with the most expected crashes, the most first; equal ones by their conflicts, then by id.
-pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wanted: usize) -> Vec<HotSpot> {
+/// The edges with the most expected crashes, at most `wanted`.
+pub(super) fn edges(set: &Collection, wanted: usize) -> Vec<HotSpot> {
+    hot_spots(set, &set.edges, wanted, |_| None)
+}
+
+/// The junctions with the most expected crashes, at most `wanted`.
+pub(super) fn junctions(set: &Collection, wanted: usize) -> Vec<HotSpot> {
+    // A run of an earlier version has no such counts.
+    let are_known = set.runs.iter().all(|run| !run.summary.entered.is_empty());
+    let entered = |id: &str| set.runs.iter().filter_map(|run| run.summary.entered.get(id)).sum::<u64>();
+    hot_spots(set, &set.junctions, wanted, |id| Some(entered(id)).filter(|entered| are_known && *entered > 0))
+}
+
+/// The `wanted` spots with the most expected crashes, the most first; equal ones by their conflicts, then by id. `entered`
+/// tells how many vehicles entered a spot.
+fn hot_spots(
+    set: &Collection,
+    spots: &FxHashMap<String, Spot>,
+    wanted: usize,
+    entered: impl Fn(&str) -> Option<u64>,
+) -> Vec<HotSpot> {
     let mut spots = spots.iter().map(|(id, spot)| (spot.counts.sum(), id, spot)).collect::<Vec<_>>();
     spots.sort_by(|a, b| b.2.crashes.sum().total_cmp(&a.2.crashes.sum()).then_with(|| (b.0, a.1).cmp(&(a.0, b.1))));
     spots.truncate(wanted);
@@ -47,6 +68,9 @@ pub(super) fn hot_spots(set: &Collection, spots: &FxHashMap<String, Spot>, wante
             serious,
             critical,
             expected_crashes,
+            expected_crashes_per_1000_entering: expected_crashes
+                .zip(entered(id))
+                .map(|(crashes, entered)| crashes.times(1000.0 / entered as f64)),
             per_hour: rates.per_hour,
             per_1000_vehicles: rates.per_1000_vehicles,
         }

@@ -29,7 +29,6 @@ use serde::Serialize;
 use super::filter::ConflictFilter;
 use super::logged::{LoggedRun, LostRows, Progress};
 use crate::{Error, Result};
-use hot_spots::hot_spots;
 
 pub use chosen::LeftOutLog;
 pub use collect::Collection;
@@ -141,8 +140,8 @@ impl Statistics {
             lost,
             filter: (!request.filter.is_empty()).then(|| request.filter.to_string()),
             by: request.by,
-            edges: hot_spots(&set, &set.edges, request.worst),
-            junctions: hot_spots(&set, &set.junctions, request.worst),
+            edges: hot_spots::edges(&set, request.worst),
+            junctions: hot_spots::junctions(&set, request.worst),
             extremes: set.tails.extrapolate(hours),
             comparison,
             groups: variant::groups(&mut set, request.by),

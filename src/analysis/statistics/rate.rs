@@ -44,6 +44,13 @@ pub struct Rate {
     pub method: IntervalMethod,
 }
 
+impl Rate {
+    /// The rate in another unit.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self { value: factor * self.value, low: factor * self.low, high: factor * self.high, ..self }
+    }
+}
+
 /// The rate of `counts` per `traffic`, one entry of each per run; none without traffic.
 pub fn rate(counts: &[f64], traffic: &[f64]) -> Option<Rate> {
     let count = counts.iter().sum::<f64>();

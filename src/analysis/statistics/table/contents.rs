@@ -160,29 +160,27 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
 }
 
 fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
-    let rows = spots.iter().map(|spot| {
+    let is_entered = spots.iter().any(|spot| spot.expected_crashes_per_1000_entering.is_some());
+    let rates: [(&str, fn(&HotSpot) -> Option<Rate>); 4] = [
+        ("expected crashes", |spot| spot.expected_crashes),
+        ("crashes per 1000 entering", |spot| spot.expected_crashes_per_1000_entering),
+        ("per hour", |spot| spot.per_hour),
+        ("per 1000 vehicles", |spot| spot.per_1000_vehicles),
+    ];
+    let rates =
+        rates.into_iter().filter(|(name, _)| is_entered || *name != "crashes per 1000 entering").collect::<Vec<_>>();
+    let row = |spot: &HotSpot| {
         let counts = [spot.count, spot.serious, spot.critical].map(Cell::Count);
-        let rates = [spot.expected_crashes, spot.per_hour, spot.per_1000_vehicles].into_iter().flat_map(with_interval);
+        let rates = rates.iter().flat_map(|(_, rate)| with_interval(rate(spot)));
         std::iter::once(Cell::Text(spot.id.clone())).chain(counts).chain(rates).collect()
-    });
+    };
     Table {
         title,
-        columns: vec![
-            "id",
-            "conflicts",
-            "serious",
-            "critical",
-            "expected crashes",
-            "low",
-            "high",
-            "per hour",
-            "low",
-            "high",
-            "per 1000 vehicles",
-            "low",
-            "high",
-        ],
-        rows: rows.collect(),
+        rows: spots.iter().map(row).collect(),
+        columns: ["id", "conflicts", "serious", "critical"]
+            .into_iter()
+            .chain(rates.iter().flat_map(|(name, _)| [*name, "low", "high"]))
+            .collect(),
         notes: Vec::new(),
     }
 }
