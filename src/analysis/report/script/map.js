@@ -92,7 +92,9 @@ const map = {
         const wasClose = this.view?.scale >= CLOSE;
         this.view = viewOf(params, api);
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
-        const over = [...badgesOf(this.view, rows, this.mode), ...scaleBar(1 / this.view.scale, this.view.height)];
+        // The table ranks the places by what happens after, not by the change.
+        const badges = this.mode === "difference" ? [] : badgesOf(this.view, rows, this.mode);
+        const over = [...badges, ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
           return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
@@ -245,6 +247,8 @@ const map = {
     if (net && this.view?.scale >= CLOSE) {
       entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
     }
-    byId("legend").replaceChildren(words[this.mode], ...entries, make("span", { className: "said", textContent: `Circled numbers: the first places of the table, whole junctions and edges${this.mode === "density" ? ", each at its hexagon with the most" : ""}` }));
+    const circled = { points: "Circled numbers: the first places of the table, whole junctions and edges",
+      density: "Circled numbers: the first places of the table, whole junctions and edges, each at its hexagon with the most" }[this.mode];
+    byId("legend").replaceChildren(words[this.mode], ...entries, ...(circled ? [make("span", { className: "said", textContent: circled })] : []));
   },
 };
