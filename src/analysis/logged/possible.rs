@@ -1,5 +1,7 @@
 //! Whether a row is one that a run can have written: its values within their limits, its times in order, its id new.
 
+use std::sync::LazyLock;
+
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Value};
 use crate::util::limits::{ANGLE, DECELERATION, LENGTH, Limit, POSITION, SPEED, TIME, WIDTH};
 
@@ -8,6 +10,10 @@ const DISTANCE: Limit = Limit { least: -1e9, most: 1e9, ..POSITION };
 /// Times that follow from a speed just above 0 have no largest value.
 const SPAN: Limit = Limit { least: 0.0, most: f64::MAX, ..TIME };
 const CHANCE: Limit = Limit { unit: "", least: 0.0, most: 1.0, ..POSITION };
+
+/// The columns whose numbers have limits.
+static LIMITED: LazyLock<Vec<(&Column, &Limit)>> =
+    LazyLock::new(|| COLUMNS.iter().filter_map(|column| Some((column, limit_of(column)?))).collect());
 
 /// What the rows so far demand of the next.
 #[derive(Debug, Default)]
@@ -24,10 +30,8 @@ impl PossibleRows {
     /// What no run writes.
     pub fn check(&mut self, conflict: &LoggedConflict) -> Result<(), String> {
         let LoggedConflict { id, begin, time, end, margin, collision, ego_path, foe_path, .. } = conflict;
-        for column in &COLUMNS {
-            if let Value::Number(number) = (column.get)(conflict)
-                && let Some(limit) = limit_of(column)
-            {
+        for (column, limit) in LIMITED.iter() {
+            if let Value::Number(number) = (column.get)(conflict) {
                 limit.check(column.name, number)?;
             }
         }
