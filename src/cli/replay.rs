@@ -46,7 +46,7 @@ pub struct ReplayArgs {
     #[arg(long)]
     sublane: bool,
     /// Threads at most that test the pairs of a step [default: one per processor]. A step uses as many as its road users keep
-    /// busy: one below 5,000.
+    /// busy: one below 5,000. With 1, no thread reads ahead either.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]
@@ -63,12 +63,16 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let opened = tracks::open(&arguments.recording, &arguments.tracks, net.as_deref())?;
     let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options)?;
+    let threads = arguments.threads.unwrap_or_else(default_threads);
+    if threads > 1 {
+        replay = replay.read_ahead()?;
+    }
     if let (Some(signals), Some(net)) = (&arguments.signals, &net) {
         replay.set_lights(signals, net)?;
     }
     arguments.stops.iter().try_for_each(|stops| replay.set_stops(stops))?;
     let mut run = Run::new(&options, net)?;
-    run.set_threads(arguments.threads.unwrap_or_else(default_threads).into());
+    run.set_threads(threads.into());
     run.set_fixed_routes(true);
     run.set_sublane(arguments.sublane);
     run.drop_closed_conflicts();

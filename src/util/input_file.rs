@@ -8,6 +8,8 @@ use std::path::Path;
 use flate2::bufread::MultiGzDecoder;
 
 use super::limits::{ELEMENT, INFLATION, LINE, Limit, TEXT};
+use super::read_ahead::ReadAhead;
+use super::threads::processors;
 use crate::{Error, Result};
 
 /// Bytes that are read at once.
@@ -39,20 +41,25 @@ pub fn text(path: &Path) -> Result<String> {
     if text.len() as u64 > most { Err(Error::content(path, longer("it", &TEXT))) } else { Ok(text) }
 }
 
-/// A file that may be gzipped, to be read from its beginning.
+/// A file that may be gzipped, to be read from its beginning; a thread of its own unpacks it where the machine has several
+/// processors.
 ///
 /// # Errors
 /// Those of [`file`].
-pub fn open(path: &Path) -> Result<Box<dyn BufRead>> {
+pub fn open(path: &Path) -> Result<Box<dyn BufRead + Send>> {
     let mut file = file(path)?;
     let mut magic = [0; 2];
     let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;
     file.seek(SeekFrom::Start(0)).map_err(|source| Error::file(path, source))?;
     let file = BufReader::with_capacity(BLOCK, file);
-    Ok(if magic[..length] == [0x1f, 0x8b] {
-        Box::new(BufReader::with_capacity(BLOCK, MultiGzDecoder::new(file)))
+    if magic[..length] != [0x1f, 0x8b] {
+        return Ok(Box::new(file));
+    }
+    let unpacked = MultiGzDecoder::new(file);
+    Ok(if processors() > 1 {
+        Box::new(ReadAhead::new(unpacked).map_err(|source| Error::file(path, source))?)
     } else {
-        Box::new(file)
+        Box::new(BufReader::with_capacity(BLOCK, unpacked))
     })
 }
 

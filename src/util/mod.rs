@@ -10,5 +10,6 @@ pub mod output_file;
 pub mod panics;
 #[cfg(feature = "parquet")]
 pub mod parquet_column;
+mod read_ahead;
 pub mod threads;
 pub mod units;

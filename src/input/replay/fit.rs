@@ -26,7 +26,7 @@ pub(super) fn projection(path: &Path, net: &Net) -> Result<Option<Projection>> {
     let mut unknown = None;
     while recording.next_step(&mut step).or_else(end_of_cut_short)? {
         for row in step.rows().iter().filter(|row| !row.person) {
-            if let Some(lane) = lanes.lane(row.lane, &recording, net) {
+            if let Some(lane) = lanes.lane(row.lane, |lane| recording.lane(lane), net) {
                 return fitting(row, net, lane).map_err(|reason| {
                     let (id, lane, x, y) = (recording.id(row.user), recording.lane(row.lane), row.x, row.y);
                     let message = format!(

@@ -1,6 +1,5 @@
 //! Finds the recording's lanes in the net, and how a road user stands to its lane.
 
-use super::recording::Recording;
 use super::rows::RecordedRow;
 use crate::detection::path::Foot;
 use crate::geometry::Point;
@@ -22,12 +21,12 @@ pub(super) struct Lanes {
 }
 
 impl Lanes {
-    /// The lane for a [`RecordedRow::lane`], if the net has it.
+    /// The lane for a [`RecordedRow::lane`], if the net has it; `id` tells a lane's id.
     #[inline]
-    pub fn lane(&mut self, lane: u32, recording: &Recording, net: &Net) -> Option<LaneIndex> {
+    pub fn lane<'a>(&mut self, lane: u32, id: impl Fn(u32) -> &'a str, net: &Net) -> Option<LaneIndex> {
         // The recording numbers its lanes in the order in which they appear.
         while self.known.len() <= lane as usize {
-            self.known.push(net.lane(recording.lane(self.known.len() as u32)));
+            self.known.push(net.lane(id(self.known.len() as u32)));
         }
         self.known[lane as usize]
     }

@@ -4,6 +4,7 @@
 //! were driven, a second reader is ahead of the replay. Before that, its beginning tells whether it fits the net and how SUMO
 //! moved the vehicles.
 
+mod ahead;
 mod clock;
 mod columns;
 mod complete;
@@ -51,6 +52,7 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
+use ahead::Steps;
 use future::Future;
 use lanes::{Lanes, heading, is_opposite};
 use lights::RecordedLights;
@@ -64,7 +66,7 @@ use user::ReplayedUser;
 /// A recording that is replayed into a run.
 pub struct Replay {
     path: PathBuf,
-    recording: Recording,
+    recorded_steps: Steps,
     /// None if the recording is in the net's metres.
     projection: Option<Projection>,
     step: RecordedStep,
@@ -127,7 +129,7 @@ impl Replay {
         let future = if is_driven { Some(Future::open(path)?) } else { None };
         Ok(Self {
             path: path.to_path_buf(),
-            recording,
+            recorded_steps: Steps::InPlace(recording),
             projection,
             step,
             second_step,
@@ -150,6 +152,14 @@ impl Replay {
             rows: Vec::new(),
             gone: Vec::new(),
         })
+    }
+
+    /// Reads the steps ahead, in a thread of its own.
+    ///
+    /// # Errors
+    /// [`Error::Value`] where the system gives no thread.
+    pub fn read_ahead(self) -> Result<Self> {
+        Ok(Self { recorded_steps: self.recorded_steps.read_ahead()?, ..self })
     }
 
     /// States in each step what the traffic lights of the net showed, as this file of SUMO's says.
@@ -181,7 +191,7 @@ impl Replay {
                 return Ok(None);
             }
             std::mem::swap(&mut self.step, &mut self.second_step);
-        } else if self.steps > 2 && !self.recording.next_step(&mut self.step)? {
+        } else if self.steps > 2 && !self.recorded_steps.next_step(&mut self.step)? {
             return Ok(None);
         }
         run.begin_step(self.step.time);
@@ -234,7 +244,8 @@ impl Replay {
             }
             if let (false, Some(net)) = (row.person, run.net()) {
                 self.vehicle_rows += 1;
-                self.unknown_lanes += u64::from(self.lanes.lane(row.lane, &self.recording, net).is_none());
+                self.unknown_lanes +=
+                    u64::from(self.lanes.lane(row.lane, |lane| self.recorded_steps.lane(lane), net).is_none());
             }
             // SUMO gives a person that rides in a vehicle the vehicle's position; it is not a road user of its own.
             if row.person && self.vehicles.contains(&exact_state(&row)) {
@@ -258,7 +269,7 @@ impl Replay {
 
     /// A road user enters the scene.
     fn enter(&mut self, row: &RecordedRow, run: &mut Run) -> Result<UserIndex> {
-        let type_name = self.recording.type_name(row);
+        let type_name = self.recorded_steps.type_name(row);
         let category = if row.person { Category::Person } else { Category::Vehicle };
         let profile = match run.roster.profile_named(type_name, category) {
             Some(known) => known,
@@ -275,7 +286,7 @@ impl Replay {
                 run.roster.profile(profile)?
             }
         };
-        let user = run.enter(self.recording.id(row.user), profile);
+        let user = run.enter(self.recorded_steps.id(row.user), profile);
         let number = match &mut self.routes {
             Some(routes) if !row.person => Some(routes.enter()?),
             _ => None,
@@ -293,7 +304,9 @@ impl Replay {
         let Some(&index) = self.rows.get(row as usize) else { return Ok(()) };
         let (Some(recorded), Some(net)) = (self.step.rows().get(index as usize), run.net()) else { return Ok(()) };
         let Some(Some(user)) = self.users.get_mut(recorded.user as usize) else { return Ok(()) };
-        let Some(lane) = self.lanes.lane(recorded.lane, &self.recording, net) else { return Ok(()) };
+        let Some(lane) = self.lanes.lane(recorded.lane, |lane| self.recorded_steps.lane(lane), net) else {
+            return Ok(());
+        };
         if user.route.is_none()
             && let (Some(routes), Some(number)) = (&mut self.routes, user.number)
         {

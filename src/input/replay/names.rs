@@ -17,6 +17,11 @@ impl Names {
         self.texts.get(name as usize).map_or("", String::as_str)
     }
 
+    /// The texts after the first `known`.
+    pub fn from(&self, known: usize) -> &[String] {
+        self.texts.get(known..).unwrap_or_default()
+    }
+
     /// The number of a text, which is most likely `guess`.
     #[inline]
     fn number(&mut self, text: &[u8], guess: u32) -> Result<u32, String> {
@@ -48,6 +53,8 @@ pub(super) struct Users {
     known: [FxHashMap<Box<[u8]>, u32>; 2],
     free: Vec<u32>,
     gone: Vec<u32>,
+    /// The road users that were given a number in this step.
+    entered: Vec<u32>,
     step: u64,
     /// The road users of the previous step and of this one, in the recording's order.
     before: Vec<u32>,
@@ -85,6 +92,16 @@ impl Users {
         self.users.get(user as usize).map_or("", |user| &user.id)
     }
 
+    /// The numbers that were given in this step, with the ids that they stand for.
+    pub fn entered(&self) -> impl Iterator<Item = (u32, &str)> {
+        self.entered.iter().map(|user| (*user, self.id(*user)))
+    }
+
+    /// The numbers that are in use or were, with the ids that they stand for.
+    pub fn all(&self) -> impl Iterator<Item = (u32, &str)> {
+        (0..).zip(&self.users).map(|(number, user)| (number, &*user.id))
+    }
+
     /// Begins a step. The numbers of road users that were not in the previous one become free only now.
     pub fn begin(&mut self) {
         for user in self.gone.drain(..) {
@@ -94,6 +111,7 @@ impl Users {
         }
         std::mem::swap(&mut self.before, &mut self.now);
         self.now.clear();
+        self.entered.clear();
         self.expected = 0;
         self.step += 1;
     }
@@ -161,6 +179,7 @@ impl Users {
             None => self.users.push(user),
         }
         self.known[usize::from(person)].insert(id.into(), index);
+        self.entered.push(index);
         Ok(index)
     }
 }

@@ -15,7 +15,7 @@ use crate::{Error, Result};
 /// A recording being read.
 pub struct Recording {
     format: Format,
-    users: Users,
+    pub(super) users: Users,
 }
 
 enum Format {
@@ -62,7 +62,7 @@ impl Recording {
         Self::from_source(path, reader, scope)
     }
 
-    fn from_source(path: &Path, reader: Box<dyn BufRead>, scope: Scope) -> Result<Self> {
+    fn from_source(path: &Path, reader: Box<dyn BufRead + Send>, scope: Scope) -> Result<Self> {
         const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
         let mut source = ByteWindow::new(reader);
         let first = loop {

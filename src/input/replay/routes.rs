@@ -85,7 +85,7 @@ impl Routes {
                         &mut vehicle.drive
                     }
                 };
-                let lane = lanes.lane(row.lane, &recording, net);
+                let lane = lanes.lane(row.lane, |lane| recording.lane(lane), net);
                 match lane.and_then(|lane| Some((lane, edges_of(net, lane)?))) {
                     None => drive.lose_sight(now.before),
                     Some((lane, (edge, ahead))) if is_against(row, net, lane) => {

@@ -11,7 +11,7 @@ const BLOCK: usize = 1 << 18;
 
 /// A window that moves along a file; its memory does not grow with the file.
 pub(super) struct ByteWindow {
-    reader: Box<dyn BufRead>,
+    reader: Box<dyn BufRead + Send>,
     buffer: Vec<u8>,
     start: usize,
     end: usize,
@@ -21,7 +21,7 @@ pub(super) struct ByteWindow {
 }
 
 impl ByteWindow {
-    pub fn new(reader: Box<dyn BufRead>) -> Self {
+    pub fn new(reader: Box<dyn BufRead + Send>) -> Self {
         Self { reader, buffer: Vec::new(), start: 0, end: 0, lines_before: 0, mark: 0, marked: false }
     }
 
