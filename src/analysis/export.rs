@@ -54,7 +54,7 @@ pub fn write(
             file.write(conflict)?;
             written += 1;
         }
-        reading.count();
+        reading.count(1);
     }
     file.finish()?;
     Ok(Made { conflicts: written, all, lost: conflicts.lost() })

@@ -66,7 +66,7 @@ pub fn read(
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
         for conflict in &mut conflicts {
             let conflict = conflict?;
-            reading.count();
+            reading.count(1);
             all += 1;
             if filter.passes(&conflict) {
                 worst.push(RunConflict { run, conflict });

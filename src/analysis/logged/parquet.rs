@@ -53,8 +53,8 @@ fn value(file: &SerializedFileReader<File>, key: &str) -> Option<String> {
     pairs.filter(|pair| pair.key == key).find_map(|pair| pair.value.clone())
 }
 
-/// Rows in memory at once.
-const BATCH: usize = 4096;
+/// Rows in memory at once: few, so that all of their columns stay in a core's cache.
+const BATCH: usize = 256;
 
 /// What a `conflicts.parquet` holds besides its rows.
 #[derive(Clone, Debug, PartialEq)]

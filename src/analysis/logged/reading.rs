@@ -3,9 +3,6 @@
 /// Takes how many of how many conflicts are read.
 pub type Progress<'a> = dyn FnMut(u64, u64) + 'a;
 
-/// Conflicts between two reports.
-const EVERY: u64 = 4096;
-
 /// Counts conflicts as they are read.
 pub struct Reading<'a, 'b> {
     read: u64,
@@ -19,10 +16,13 @@ impl<'a, 'b> Reading<'a, 'b> {
         Self { read: 0, all, progress }
     }
 
-    /// Another conflict is read.
-    pub fn count(&mut self) {
-        self.read += 1;
-        if self.read.is_multiple_of(EVERY) {
+    /// This many conflicts more are read.
+    pub fn count(&mut self, more: u64) {
+        /// Conflicts between two reports.
+        const EVERY: u64 = 4096;
+        let reports = self.read / EVERY;
+        self.read += more;
+        if self.read / EVERY > reports {
             (self.progress)(self.read, self.all.max(self.read));
         }
     }

@@ -1,22 +1,27 @@
 //! One pass over the logs of a set of runs: counts per run, the values of each measure, the worst conflicts.
 //!
-//! Each conflict leaves four numbers (32 B), so 10⁷ conflicts fit in 1 GiB.
+//! As many runs are read at the same time as the machine has processors. Each conflict leaves four numbers (32 B), so 10⁷
+//! conflicts fit in 1 GiB.
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::mpsc::channel;
+use std::thread;
 
 use rustc_hash::FxHashMap;
 
 use super::chosen::{Chosen, LeftOutLog, choose};
 use super::extremes::Tails;
 use super::group::By;
-use super::quantiles::quantile;
+use super::of_run::OfRun;
 use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
 use crate::analysis::filter::ConflictFilter;
-use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, LostRows, Progress, Reading, log_folders};
+use crate::analysis::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
+use crate::util::threads::processors;
 use crate::{Error, Result};
 
 /// The measures whose values are kept, by their names in every output; ΔV is the larger of the two.
@@ -30,11 +35,17 @@ pub type Columns = [Vec<f64>; MEASURES.len()];
 pub struct Counts(Vec<(u32, u64)>);
 
 impl Counts {
-    fn add(&mut self, run: usize) {
+    /// Adds a conflict of a run; runs come in their order.
+    pub fn add(&mut self, run: usize) {
         match self.0.last_mut() {
             Some((last, count)) if *last as usize == run => *count += 1,
             _ => self.0.push((run as u32, 1)),
         }
+    }
+
+    /// Adds the counts of later runs.
+    fn append(&mut self, later: &mut Self) {
+        self.0.append(&mut later.0);
     }
 
     /// The counts with one entry per run.
@@ -73,6 +84,15 @@ pub struct ConflictGroup {
     pub columns: Columns,
 }
 
+impl ConflictGroup {
+    /// Adds the conflicts of later runs.
+    fn append(&mut self, mut later: Self) {
+        self.counts.append(&mut later.counts);
+        self.collisions += later.collisions;
+        self.columns.iter_mut().zip(&mut later.columns).for_each(|(values, more)| values.append(more));
+    }
+}
+
 /// The conflicts of one edge or junction.
 #[derive(Debug, Default)]
 pub struct Spot {
@@ -82,6 +102,15 @@ pub struct Spot {
     pub severities: [u64; 3],
     /// The conflicts with their crash probabilities.
     pub crashes: WeightedEvents,
+}
+
+impl Spot {
+    /// Adds the conflicts of later runs.
+    fn append(&mut self, mut later: Self) {
+        self.counts.append(&mut later.counts);
+        self.severities.iter_mut().zip(later.severities).for_each(|(count, more)| *count += more);
+        self.crashes.append(later.crashes);
+    }
 }
 
 /// The result of one pass over a set of runs.
@@ -156,79 +185,44 @@ impl Collection {
         }
         let mut progress = Reading::new(conflicts, progress);
         let mut columns: Option<(PathBuf, Vec<String>)> = None;
-        for (run, variant) in variant_of.into_iter().enumerate() {
-            let reader = ConflictReader::open(&found.folders[run])?;
-            let header = reader.columns();
-            if let Some(needed) = by.needs().filter(|needed| !header.iter().any(|column| column == needed)) {
-                let message = format!("the column \"{needed}\" is missing: logs of earlier versions do not have it");
-                return Err(Error::line(reader.path(), 1, message));
-            }
-            match &columns {
-                Some((first, known)) if *known != header => {
-                    let message = format!("its columns are not those of {}", first.display());
-                    return Err(Error::line(reader.path(), 1, message));
+        let all = (0..found.runs.len()).collect::<Vec<_>>();
+        for together in all.chunks(processors()) {
+            let read = |run: usize, progress: &mut dyn FnMut(u64)| {
+                OfRun::read((run, &found.folders[run]), by, filter, worst, progress)
+            };
+            for (run, of_run) in together.iter().zip(side_by_side(together, &read, &mut progress)) {
+                let of_run = of_run?;
+                match &columns {
+                    Some((first, known)) if *known != of_run.columns => {
+                        let message = format!("its columns are not those of {}", first.display());
+                        return Err(Error::line(&of_run.path, 1, message));
+                    }
+                    Some(_) => {}
+                    None => columns = Some((of_run.path.clone(), of_run.columns.clone())),
                 }
-                Some(_) => {}
-                None => columns = Some((reader.path().to_owned(), header)),
+                found.append(variant_of[*run], of_run);
             }
-            found.add_run((run, variant), reader, by, filter, &mut progress)?;
         }
         Ok(found)
     }
 
-    fn add_run(
-        &mut self,
-        (run, variant): (usize, usize),
-        mut reader: ConflictReader,
-        by: By,
-        filter: &ConflictFilter,
-        progress: &mut Reading,
-    ) -> Result<()> {
-        let folder = self.folders[run].clone();
-        let mut own = Columns::default();
-        for conflict in &mut reader {
-            let conflict = conflict?;
-            progress.count();
-            self.read += 1;
-            if !filter.passes(&conflict) {
-                continue;
-            }
-            self.passed += 1;
-            self.add(run, variant, &folder, &conflict, by);
-            for (column, value) in own.iter_mut().zip(measures(&conflict)) {
-                column.extend(value);
-            }
+    /// Adds the conflicts of the next run.
+    fn append(&mut self, variant: usize, of_run: OfRun) {
+        self.read += of_run.read;
+        self.passed += of_run.passed;
+        self.lost.extend(of_run.lost);
+        self.medians.push(of_run.medians);
+        for (name, group) in of_run.groups {
+            self.groups[variant].entry(name).or_default().append(group);
         }
-        self.lost.extend(reader.lost());
-        self.medians.push(own.map(|mut values| {
-            values.sort_unstable_by(f64::total_cmp);
-            quantile(&values, 0.5)
-        }));
-        Ok(())
-    }
-
-    fn add(&mut self, run: usize, variant: usize, folder: &Arc<Path>, conflict: &LoggedConflict, by: By) {
-        update(&mut self.groups[variant], &by.group(conflict), |group| {
-            group.counts.add(run);
-            group.collisions += u64::from(conflict.collision);
-            for (column, value) in group.columns.iter_mut().zip(measures(conflict)) {
-                column.extend(value);
-            }
-        });
-        let kind = rank(&Kind::ALL, conflict.kind);
-        let severity = rank(&Severity::ALL, conflict.severity);
-        self.tallies[kind][severity].add(run);
-        for (spots, name) in [(&mut self.edges, conflict.edge()), (&mut self.junctions, conflict.junction())] {
-            if !name.is_empty() {
-                update(spots, name, |spot: &mut Spot| {
-                    spot.counts.add(run);
-                    spot.severities[severity] += 1;
-                    spot.crashes.add(run, conflict.crash_probability.unwrap_or_default());
-                });
-            }
+        for (counts, mut of_run) in self.tallies.iter_mut().flatten().zip(of_run.tallies.into_iter().flatten()) {
+            counts.append(&mut of_run);
         }
-        self.worst.take(run, folder, conflict);
-        self.tails.take(conflict);
+        for (spots, of_run) in [(&mut self.edges, of_run.edges), (&mut self.junctions, of_run.junctions)] {
+            of_run.into_iter().for_each(|(name, spot)| spots.entry(name).or_default().append(spot));
+        }
+        self.worst.append(of_run.worst);
+        self.tails.append(of_run.tails);
     }
 
     /// What the filter left, in words; none without a filter.
@@ -285,21 +279,26 @@ impl Collection {
     }
 }
 
-fn measures(conflict: &LoggedConflict) -> [Option<f64>; MEASURES.len()] {
-    [conflict.ttc, conflict.pet, Some(conflict.margin), Some(conflict.delta_v())]
-}
-
-fn rank<T: PartialEq>(all: &[T], one: T) -> usize {
-    all.iter().position(|known| *known == one).unwrap_or_default()
-}
-
-/// Changes the entry of a name; copies the name only if it is new.
-fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl FnOnce(&mut T)) {
-    if let Some(known) = map.get_mut(name) {
-        change(known);
-    } else {
-        let mut new = T::default();
-        change(&mut new);
-        map.insert(name.to_owned(), new);
+/// What is read of each of these runs, each in a thread of its own; how many conflicts of a run are read more is reported
+/// to its last argument.
+fn side_by_side<T: Send>(
+    runs: &[usize],
+    read: &(impl Fn(usize, &mut dyn FnMut(u64)) -> T + Sync),
+    progress: &mut Reading,
+) -> Vec<T> {
+    if let [run] = runs {
+        return vec![read(*run, &mut |more| progress.count(more))];
     }
+    thread::scope(|scope| {
+        let (sender, counts) = channel();
+        let begin = |run: &usize| {
+            let (run, sender) = (*run, sender.clone());
+            // Nobody counts any more once a reader has panicked.
+            scope.spawn(move || read(run, &mut |more| _ = sender.send(more)))
+        };
+        let readers = runs.iter().map(begin).collect::<Vec<_>>();
+        drop(sender);
+        counts.iter().for_each(|more| progress.count(more));
+        readers.into_iter().map(|reader| reader.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    })
 }

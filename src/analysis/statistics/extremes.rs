@@ -62,18 +62,31 @@ pub struct Tails {
     tails: [(usize, BinaryHeap<Value>); QUANTITIES.len()],
 }
 
+/// Adds a value to the smallest ones.
+fn keep(smallest: &mut BinaryHeap<Value>, value: Value) {
+    if smallest.len() <= MOST_BELOW {
+        smallest.push(value);
+    } else if smallest.peek().is_some_and(|largest| value < *largest) {
+        smallest.pop();
+        smallest.push(value);
+    }
+}
+
 impl Tails {
     /// Adds a conflict.
     pub fn take(&mut self, conflict: &LoggedConflict) {
         for ((count, smallest), value) in self.tails.iter_mut().zip(quantities(conflict)) {
             let Some(value) = value else { continue };
             *count += 1;
-            if smallest.len() <= MOST_BELOW {
-                smallest.push(Value(value));
-            } else if smallest.peek().is_some_and(|largest| value < largest.0) {
-                smallest.pop();
-                smallest.push(Value(value));
-            }
+            keep(smallest, Value(value));
+        }
+    }
+
+    /// Adds the conflicts of other runs.
+    pub fn append(&mut self, others: Self) {
+        for ((count, smallest), (more, others)) in self.tails.iter_mut().zip(others.tails) {
+            *count += more;
+            others.into_iter().for_each(|value| keep(smallest, value));
         }
     }
 

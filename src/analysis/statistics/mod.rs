@@ -12,6 +12,7 @@ mod extremes;
 mod gpd;
 mod group;
 mod hot_spots;
+mod of_run;
 mod pairs;
 pub(crate) mod permutation;
 mod quantiles;

@@ -24,6 +24,13 @@ impl WeightedEvents {
         self.greatest = self.greatest.max(weight);
     }
 
+    /// Adds the events of later runs.
+    pub fn append(&mut self, mut later: Self) {
+        self.per_run.append(&mut later.per_run);
+        self.squares += later.squares;
+        self.greatest = self.greatest.max(later.greatest);
+    }
+
     /// The sum of all weights.
     pub fn sum(&self) -> f64 {
         self.per_run.iter().map(|(_, sum)| sum).sum()

@@ -95,7 +95,16 @@ impl WorstOf {
             command: None,
             run,
         };
-        self.kept.push(MildestFirst(worst));
+        self.keep(MildestFirst(worst));
+    }
+
+    /// Adds the worst of other runs.
+    pub fn append(&mut self, others: Self) {
+        others.kept.into_iter().for_each(|kept| self.keep(kept));
+    }
+
+    fn keep(&mut self, conflict: MildestFirst) {
+        self.kept.push(conflict);
         if self.kept.len() > self.wanted {
             self.kept.pop();
         }
