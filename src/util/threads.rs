@@ -12,6 +12,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 /// jam, a quarter in platoons, and two fifths where they are spread uniformly.
 const LEAST_SHARE: usize = 2500;
 
+/// Work per thread, in time, that is worth waking one for: that alone takes up to 70 µs on a virtual machine.
+const LEAST_TIME: Duration = Duration::from_micros(200);
+
 /// Chunks per thread; a thread that wakes late or runs slower takes fewer.
 const PARTS: usize = 8;
 
@@ -44,6 +47,11 @@ impl Team {
     /// The number of threads worth using for `count` road users.
     pub fn busy(&self, count: usize) -> usize {
         (count / LEAST_SHARE).clamp(1, self.threads())
+    }
+
+    /// The number of threads worth using for what would take one of them this long.
+    pub fn busy_for(&self, alone: Duration) -> usize {
+        (alone.as_nanos() / LEAST_TIME.as_nanos()).clamp(1, self.threads() as u128) as usize
     }
 
     /// Does each part of the work once, by the next free worker; the first worker runs on the caller's thread. That takes

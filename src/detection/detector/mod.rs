@@ -33,6 +33,7 @@ mod worker;
 
 use std::iter::repeat_n;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 
 use super::broad_phase::Search;
 use super::course::LaneChange;
@@ -61,10 +62,6 @@ use worker::Worker;
 
 /// Two road users further apart in height than this are not a pair, in m: one is on a bridge.
 const LEVEL: Metre = 2.5;
-
-/// An encounter takes at least as long as this many road users without one, for its sweep and its measures: 2 to 10 µs. Those of
-/// the last step tell how many threads the narrow phase is worth.
-const ENCOUNTER: usize = 50;
 
 pub use left_out::LeftOut;
 pub use work_counts::Work;
@@ -122,6 +119,8 @@ pub struct Detector {
     /// Whether the step has more pairs than can be checked.
     is_crowded: bool,
     team: Team,
+    /// How long the narrow phase of the last step takes one thread, about.
+    narrow_phase_alone: Duration,
 }
 
 impl Detector {
@@ -159,6 +158,7 @@ impl Detector {
             workers: vec![Worker::default()],
             is_crowded: false,
             team: Team::default(),
+            narrow_phase_alone: Duration::ZERO,
         }
     }
 
@@ -269,11 +269,13 @@ impl Detector {
             worker.further.begin(self.users_further.len());
         }
         let scene = self.scene(frame, roster);
-        let busy = self.team.busy(frame.len() + ENCOUNTER * self.order.len());
-        let share = share(busy, self.pairs.iter().map(Vec::len).sum());
+        // What the last step took tells how many threads this one is worth: a pair takes 0.05 to 10 µs.
+        let begun = Instant::now();
+        let threads = self.team.busy_for(self.narrow_phase_alone);
+        let share = share(threads, self.pairs.iter().map(Vec::len).sum());
         let parts = self.pairs.iter().flat_map(|pairs| pairs.chunks(share));
         let most = FEWEST_ENCOUNTERS.max(frame.len() * ENCOUNTERS.count());
-        self.team.each(workers.iter_mut().take(busy), parts, |worker, pairs| scene.meet_all(worker, pairs, most));
+        self.team.each(workers.iter_mut().take(threads), parts, |worker, pairs| scene.meet_all(worker, pairs, most));
         self.is_crowded |= workers.iter().map(|worker| worker.found.encounters.len()).sum::<usize>() > most;
         for (_, met) in workers.iter().flat_map(|worker| &worker.found.unmeasured) {
             for slot in met.slots {
@@ -290,6 +292,7 @@ impl Detector {
         let busy = workers.iter().filter(|worker| has_more(worker)).count();
         let parts = workers.iter_mut().filter(|worker| has_more(worker));
         self.team.each(repeat_n((), busy), parts, |(), worker| scene.measure_all(worker));
+        self.narrow_phase_alone = begun.elapsed() * threads as u32;
         self.order.sort(frame.len(), &workers);
         for worker in &mut workers {
             self.work += std::mem::take(&mut worker.work);

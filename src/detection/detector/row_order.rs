@@ -52,11 +52,6 @@ impl RowOrder {
         }
     }
 
-    /// The number of encounters.
-    pub(super) fn len(&self) -> usize {
-        self.sorted.len()
-    }
-
     /// Keeps only the encounters for which `keep` returns true.
     pub(super) fn retain(&mut self, workers: &mut [Worker], mut keep: impl FnMut(&mut Encounter) -> bool) {
         self.sorted.retain(|&(_, worker, index)| keep(&mut workers[worker as usize].found.encounters[index as usize]));
