@@ -45,8 +45,8 @@ pub struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Threads at most that test the pairs of a step [default: one per processor]. A step uses as many as its road users keep
-    /// busy: one below 5,000. With 1, no thread reads ahead either.
+    /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
+    /// reads ahead either.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use super::collect::{Collection, MEASURES};
+use super::collect::Collection;
+use super::counts::MEASURES;
 use super::pairs::{Unit, pairs, ratio};
 use super::permutation::{Test, holm, p_value, splits};
 use super::quantiles::{cliffs_delta, quantile};

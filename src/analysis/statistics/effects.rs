@@ -6,7 +6,8 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use super::collect::{Collection, Counts, Spot};
+use super::collect::Collection;
+use super::counts::{Counts, Spot};
 use super::group::By;
 use super::pairs::{Unit, pairs, ratio};
 use super::rate::{Ratio, rate_ratio};

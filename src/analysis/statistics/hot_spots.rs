@@ -3,7 +3,8 @@
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use super::collect::{Collection, Spot};
+use super::collect::Collection;
+use super::counts::Spot;
 use super::rate::Rate;
 use super::rates::Rates;
 

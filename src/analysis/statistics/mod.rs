@@ -7,6 +7,7 @@
 mod chosen;
 mod collect;
 mod compare;
+mod counts;
 mod effects;
 mod extremes;
 mod gpd;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use rustc_hash::FxHashMap;
 
-use super::collect::{ConflictGroup, Counts, MEASURES, Spot};
+use super::counts::{ConflictGroup, Counts, MEASURES, Spot, measures};
 use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::quantile;
@@ -124,10 +124,6 @@ impl OfRun {
         self.worst.take(run, folder, conflict);
         self.tails.take(conflict);
     }
-}
-
-fn measures(conflict: &LoggedConflict) -> [Option<f64>; MEASURES.len()] {
-    [conflict.ttc, conflict.pet, Some(conflict.margin), Some(conflict.delta_v())]
 }
 
 fn rank<T: PartialEq>(all: &[T], one: T) -> usize {

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use rustc_hash::FxHashMap;
 use serde::Serialize;
 
-use super::collect::{Collection, Columns, ConflictGroup, MEASURES};
+use super::collect::Collection;
+use super::counts::{Columns, ConflictGroup, MEASURES};
 use super::group::By;
 use super::pairs::{Unit, pairs, ratio};
 use super::quantiles::Quantiles;

@@ -6,6 +6,7 @@ use std::vec;
 
 use super::recording::Recording;
 use super::rows::{RecordedRow, RecordedStep};
+use crate::util::panics;
 use crate::{Error, Result};
 
 /// Steps are handed over together from this many rows on, or from this many steps on: waking a thread takes as long as
@@ -102,7 +103,7 @@ fn text(texts: &[String], place: u32) -> &str {
 impl StepsAhead {
     fn new(mut recording: Recording) -> Result<Self> {
         let (sender, batches) = sync_channel(WAITING);
-        let [types, lanes] = [&recording.users.types, &recording.users.lanes].map(|names| names.from(0).to_vec());
+        let [types, lanes] = [&recording.users.types, &recording.users.lanes].map(|names| names.after(0).to_vec());
         let ids = recording.users.all().map(|(_, id)| id.to_owned()).collect();
         let mut known = [types.len(), lanes.len()];
         let read = move || {
@@ -128,8 +129,8 @@ impl StepsAhead {
                 }
                 (None, Some(end)) => return end.map(|()| false),
                 (None, None) => {
-                    let lost = |_| Error::Value("the thread that reads the recording has ended".to_owned());
-                    let batch = self.batches.recv().map_err(lost)?;
+                    // Without an end, its thread has panicked.
+                    let batch = self.batches.recv().map_err(|_| Error::Internal(panics::last()))?;
                     (self.batch, self.end) = (batch.steps.into_iter(), batch.end);
                 }
             }
@@ -164,7 +165,7 @@ fn next_batch(recording: &mut Recording, known: &mut [usize; 2]) -> Batch {
         rows += step.rows().len();
         let users = &recording.users;
         let [types, lanes] =
-            [(&users.types, known[0]), (&users.lanes, known[1])].map(|(it, from)| it.from(from).to_vec());
+            [(&users.types, known[0]), (&users.lanes, known[1])].map(|(it, from)| it.after(from).to_vec());
         *known = [known[0] + types.len(), known[1] + lanes.len()];
         let ids = users.entered().map(|(user, id)| (user, id.to_owned())).collect();
         batch.steps.push(NamedStep { step, ids, types, lanes });

@@ -18,7 +18,7 @@ impl Names {
     }
 
     /// The texts after the first `known`.
-    pub fn from(&self, known: usize) -> &[String] {
+    pub fn after(&self, known: usize) -> &[String] {
         self.texts.get(known..).unwrap_or_default()
     }
 
