@@ -206,6 +206,38 @@ GOALS = [
         at_least=1.5,
     ),
     # The system accounts for a few pages more or less.
+    Goal(
+        "replay with two threads over one, times faster",
+        lambda lines: {scene: lines("gain of two threads", scene, "replay") for scene in ("grid", "town")},
+        at_least=1.7,
+    ),
+    Goal(
+        "replay of a gzipped file, times as fast as of a plain one",
+        lambda lines: {scene: lines("gzipped over plain", scene, "replay") for scene in ("grid", "town")},
+        at_least=0.8,
+    ),
+    Goal(
+        "statistics of 10⁷ conflicts in Parquet, s",
+        lambda lines: {
+            "by kind": lines("statistics", "town", "closecall"),
+            "by edge": lines("statistics", "town", "closecall --by edge"),
+        },
+        at_most=5,
+        form=".1f",
+        beside=lambda lines: ", ".join(f"{it} {lines('statistics', 'town', it):.1f}" for it in ("DuckDB", "Polars")),
+    ),
+    Goal(
+        "their memory, MB",
+        lambda lines: {
+            "by kind": lines("statistics memory", "town", "closecall"),
+            "by edge": lines("statistics memory", "town", "closecall --by edge"),
+        },
+        at_most=500,
+        form=".0f",
+        beside=lambda lines: ", ".join(
+            f"{it} {lines('statistics memory', 'town', it):.0f}" for it in ("DuckDB", "Polars")
+        ),
+    ),
     Goal("memory of a replay of a file 100 times larger over that of the small file", peaks, at_most=1.05),
     Goal(
         "bytes per road user, in addition to SUMO's",
