@@ -8,6 +8,8 @@ use crate::analysis::statistics::{
 
 /// A measure's name in the table, and its quantiles.
 type QuantileRow = (&'static str, fn(&GroupStatistics) -> &Quantiles);
+/// A rate's name in the table of places, and its value.
+type SpotRate = (&'static str, fn(&HotSpot) -> Option<Rate>);
 
 const MEASURES: [QuantileRow; 4] = [
     ("TTC s", |group| &group.ttc),
@@ -161,7 +163,7 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
 
 fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
     let is_entered = spots.iter().any(|spot| spot.expected_crashes_per_1000_entering.is_some());
-    let rates: [(&str, fn(&HotSpot) -> Option<Rate>); 4] = [
+    let rates: [SpotRate; 4] = [
         ("expected crashes", |spot| spot.expected_crashes),
         ("crashes per 1000 entering", |spot| spot.expected_crashes_per_1000_entering),
         ("per hour", |spot| spot.per_hour),
