@@ -96,7 +96,7 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	-$(BIN)/python benches/commonroad.py target/bench/scenes > $(PARTS)/commonroad.csv
 	cargo bench --bench replay > $(PARTS)/replay.csv
 	$(BIN)/python benches/threads.py > $(PARTS)/threads.csv
-	$(BIN)/python benches/statistics.py > $(PARTS)/statistics.csv
+	$(BIN)/python benches/stats.py > $(PARTS)/stats.csv
 	$(BIN)/python benches/memory.py > $(PARTS)/attached_memory.csv
 	cargo bench --bench memory > $(PARTS)/day.csv
 	$(BIN)/python benches/table.py target/bench $(BENCH)

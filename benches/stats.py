@@ -1,9 +1,9 @@
 """`closecall stats` on ten million conflicts in Parquet, beside DuckDB and Polars doing the same aggregation.
 
-    python benches/statistics.py
+    python benches/stats.py
 
-The conflicts are those of the town, in as many runs as it takes; the files are links to one. Times are those of whole processes, the
-best of three; memory is the largest of each.
+The conflicts are those of the town, in as many runs as it takes; the files are links to one. Times are those of whole
+processes, the best of three; memory is the largest of each.
 """
 
 from __future__ import annotations
@@ -26,10 +26,11 @@ DUCKDB = """
 import duckdb, sys
 files = f"read_parquet('{sys.argv[1]}/*/conflicts.parquet')"
 quantiles = ", ".join(f"quantile_cont({name}, [0.05, 0.25, 0.5, 0.75, 0.95])" for name in sys.argv[2:])
+crashes = f"count(*), sum(crash_probability) as crashes from {files} group by"
 for query in (
     f"select kind, count(*), {quantiles} from {files} group by kind",
-    f"select edge, count(*), sum(crash_probability) as crashes from {files} group by edge order by crashes desc limit 10",
-    f"select junction, count(*), sum(crash_probability) as crashes from {files} group by junction order by crashes desc limit 10",
+    f"select edge, {crashes} edge order by crashes desc limit 10",
+    f"select junction, {crashes} junction order by crashes desc limit 10",
     f"select * from {files} order by severity, crash_probability desc limit 10",
 ):
     duckdb.sql(query).fetchall()
