@@ -55,9 +55,9 @@ polars.collect_all([
 def runs(folder: Path) -> int:
     """Fill the folder with runs of the town; returns how many conflicts they have."""
     log = folder / "town"
-    subprocess.run(attached(Path("sumo_nets/town/town.sumocfg"), log, "--format", "parquet"), check=True)
+    subprocess.run(attached(Path("sumo_nets/town/town.sumocfg"), log, "--log-format", "parquet"), check=True)
     record = json.loads((log / "run.json").read_text())
-    conflicts = sum(count["count"] for count in record["summary"]["conflicts"])
+    conflicts = int(sum(count["count"] for count in record["summary"]["conflicts"]))
     many = -(-CONFLICTS // conflicts)
     for seed in range(many):
         run = folder / "runs" / f"seed{seed}"
