@@ -40,7 +40,7 @@ def main() -> None:
     """Print the gain of two threads and the price of gzip."""
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory(dir="target") as name:
-        folder = Path(name)
+        folder = Path(name).resolve()
         town = Path("sumo_nets/town/town.sumocfg")
         for scene, config in {"grid": grid(folder), "town": town}.items():
             path = folder / f"{scene}.csv"
