@@ -1,5 +1,6 @@
 //! Reads the conflicts of a log one by one, from CSV or Parquet.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::csv::CsvLog;
@@ -88,7 +89,13 @@ impl ConflictReader {
         let csv = folder.join(CONFLICTS);
         let parquet = folder.join(PARQUET);
         let is_csv = csv.exists() || !parquet.exists();
-        let run = LoggedRun::read(folder).ok();
+        let run = match LoggedRun::read(folder) {
+            Ok(run) => Some(run),
+            Err(Error::File { path, source }) if source.kind() != ErrorKind::NotFound => {
+                return Err(Error::file(&path, source));
+            }
+            Err(_) => None,
+        };
         let has_result = run.as_ref().is_none_or(|run| run.summary.steps > 0);
         let mut file = if is_csv {
             LogFile::Csv(Box::new(CsvLog::open(&csv, !has_result)?))

@@ -1,5 +1,6 @@
 //! A conflict to be played: its row of the log, its clip and the net around it.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashMap;
@@ -102,7 +103,10 @@ pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
         if found.len() == ids.len() {
             break;
         }
-        let line = next_line(&mut file, &TEXT).map_err(|error| Error::line(&path, number, error.to_string()))?;
+        let line = next_line(&mut file, &TEXT).map_err(|error| match error.kind() {
+            ErrorKind::InvalidData => Error::line(&path, number, error.to_string()),
+            _ => Error::file(&path, error),
+        })?;
         let Some(line) = line else { break };
         let begin = line.strip_prefix("{\"conflict\":").and_then(|rest| rest.split_once(','));
         if begin.is_some_and(|(id, _)| id.parse().is_ok_and(|id| ids.contains(&id))) {

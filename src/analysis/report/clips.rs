@@ -14,6 +14,7 @@ use crate::geometry::Point;
 use crate::output::schema::LoggedConflict;
 use crate::traffic::net::Net;
 use crate::util::units::Metre;
+use crate::{Error, Result};
 
 /// This many of the worst conflicts are played.
 const PLAYED: usize = 20;
@@ -23,9 +24,16 @@ const SHOWN: Metre = 50.0;
 const HUNDREDTHS: f64 = 100.0;
 const THOUSANDTHS: f64 = 1000.0;
 
-/// The clips of the worst conflicts that have one, by run and `id`. Clips that cannot be read are a note: the report is whole
-/// without them.
-pub fn of_worst(worst_first: &[RunConflict], logs: &[PathBuf], notes: &mut Vec<String>) -> FxHashMap<(u32, u64), Clip> {
+/// The clips of the worst conflicts that have one, by run and `id`. Clips that are not as a run writes them are a note: the
+/// report is whole without them.
+///
+/// # Errors
+/// [`Error::File`] where a file cannot be read.
+pub fn of_worst(
+    worst_first: &[RunConflict],
+    logs: &[PathBuf],
+    notes: &mut Vec<String>,
+) -> Result<FxHashMap<(u32, u64), Clip>> {
     let worst = &worst_first[..worst_first.len().min(PLAYED)];
     let mut all = FxHashMap::default();
     for (run, log) in (0..).zip(logs) {
@@ -35,10 +43,11 @@ pub fn of_worst(worst_first: &[RunConflict], logs: &[PathBuf], notes: &mut Vec<S
         }
         match clips(log, &ids) {
             Ok(found) => all.extend(found.into_iter().map(|(id, clip)| ((run, id), clip))),
+            Err(error @ Error::File { .. }) => return Err(error),
             Err(error) => notes.push(format!("No playback: {error}.")),
         }
     }
-    all
+    Ok(all)
 }
 
 /// A clip as JSON. Times are in ms, places in cm, headings and times left in hundredths, speeds in cm/s.

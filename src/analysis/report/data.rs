@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::contact::parts;
 use super::movements::Movements;
 use super::{clips, roads};
+use crate::Result;
 use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
 use crate::analysis::statistics::Effects;
@@ -25,9 +26,12 @@ const DID_NOT_YIELD: &str = Cause::DidNotYield.name();
 const NOT_SHOWN: &str = "clearance";
 
 /// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
-pub fn json(found: Conflicts, before: Option<Value>) -> String {
+///
+/// # Errors
+/// Those of reading the clips.
+pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
     let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, filter, .. } = found;
-    let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes);
+    let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
     conflicts.sort_unstable_by_key(key);
@@ -52,7 +56,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> String {
         "before": before,
         "filter": filter,
     });
-    data.to_string().replace('<', "\\u003c")
+    Ok(data.to_string().replace('<', "\\u003c"))
 }
 
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
@@ -244,7 +248,8 @@ mod tests {
                 filter: None,
             },
             None,
-        );
+        )
+        .unwrap();
         assert!(!text.contains('<'));
         let read: Value = serde_json::from_str(&text).unwrap();
         assert_eq!(read["conflicts"]["ids"][0], "</script><script>");

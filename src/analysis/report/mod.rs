@@ -92,7 +92,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         lost.extend(lost_before.into_iter().filter(|rows| !conflicts.lost.contains(rows)));
         Some(data::before(&effects, &read(against, net, filter, progress)?))
     };
-    let page = page(&data::json(conflicts, before));
+    let page = page(&data::json(conflicts, before)?);
     output_file::write(out, page.as_bytes())?;
     Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
 }
