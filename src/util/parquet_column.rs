@@ -1,10 +1,13 @@
 //! A column of a Parquet file, batch by batch.
 
+use std::fs::File;
 use std::path::Path;
 
+use parquet::basic::Compression;
 use parquet::column::reader::ColumnReaderImpl;
 use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use crate::Error;
 use crate::util::panics::{self, caught};
@@ -50,6 +53,27 @@ pub fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, ParquetError>) -
     match caught(read) {
         Ok(read) => read.map_err(|error| unreadable(path, &error)),
         Err(_) => Err(Error::content(path, format!("it is damaged: {}", panics::last()))),
+    }
+}
+
+/// Opens a Parquet file.
+///
+/// # Errors
+/// [`Error::Content`] where it is none, or compressed in a way that cannot be read.
+pub fn open(path: &Path, file: File) -> crate::Result<SerializedFileReader<File>> {
+    let file = guarded(path, || SerializedFileReader::new(file))?;
+    let columns = file.metadata().row_groups().iter().flat_map(|group| group.columns());
+    let is_read =
+        |it: &Compression| matches!(it, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::GZIP(_));
+    match columns.map(|column| column.compression()).find(|compression| !is_read(compression)) {
+        Some(compression) => {
+            let message = format!(
+                "it is compressed by {compression}; closecall reads Parquet without compression, or with snappy or gzip \
+                 (of SUMO: --output.compression)"
+            );
+            Err(Error::content(path, message.to_lowercase().replace("sumo", "SUMO")))
+        }
+        None => Ok(file),
     }
 }
 

@@ -204,3 +204,13 @@ def test_inspect_guesses_the_columns_of_an_unknown_table(tmp_path: Path) -> None
     layouts.write(tmp_path / "odd.csv", "a,b", [(1, 2)])
     told = closecall("inspect", tmp_path / "odd.csv")
     assert "missing: id, frame, x, y" in told.stdout
+
+
+def test_parquet_that_is_compressed_otherwise_is_refused_in_a_line(tmp_path: Path) -> None:
+    frame = pytest.importorskip("polars").DataFrame({"id": ["a"], "time": [0.0], "x": [1.0], "y": [2.0]})
+    frame.write_parquet(tmp_path / "tracks.parquet", compression="zstd")
+    columns = ("--columns", "id=id,time=time,x=x,y=y", "--path", "arc")
+    for words in (("inspect",), ("replay", *columns, "--out", tmp_path / "log")):
+        done = closecall(words[0], tmp_path / "tracks.parquet", *words[1:])
+        assert done.returncode == 2 and is_one_message(done.stderr), done.stderr
+        assert "tracks.parquet: it is compressed by zstd" in done.stderr

@@ -16,7 +16,7 @@ use crate::output::input_hash::Hasher;
 use crate::output::parquet_columns::physical;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use crate::util::input_file;
-use crate::util::parquet_column::{Batch, guarded};
+use crate::util::parquet_column::{self, Batch, guarded};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -291,5 +291,5 @@ impl ColumnBatch {
 
 fn open(path: &Path) -> Result<SerializedFileReader<File>> {
     let file = input_file::file(path)?;
-    guarded(path, || SerializedFileReader::new(file))
+    parquet_column::open(path, file)
 }

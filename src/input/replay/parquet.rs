@@ -3,7 +3,6 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use parquet::basic::Compression;
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::{ByteArrayType, DoubleType, FloatType};
 use parquet::errors::ParquetError;
@@ -13,7 +12,7 @@ use super::clock;
 use super::columns::{Columns, NamedColumn};
 use super::names::Users;
 use super::rows::{Fields, RecordedStep, Scope, in_order};
-use crate::util::parquet_column::{Batch, guarded};
+use crate::util::parquet_column::{self, Batch, guarded};
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -41,21 +40,11 @@ pub(super) struct ParquetRecording {
 
 impl ParquetRecording {
     pub fn new(path: &Path, file: File, scope: Scope) -> Result<Self> {
-        let file = guarded(path, || SerializedFileReader::new(file))?;
+        let file = parquet_column::open(path, file)?;
         let schema = file.metadata().file_metadata().schema_descr();
         let names = schema.columns().iter().map(|column| column.name().to_owned()).collect::<Vec<_>>();
         let mut columns = Columns::of(path, &names, scope)?;
         columns.named.retain(|column| column.attribute.is_some());
-        let compressions = file.metadata().row_groups().iter().flat_map(|group| group.columns());
-        for compression in compressions.map(|column| column.compression()) {
-            if !matches!(compression, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::GZIP(_)) {
-                let message = format!(
-                    "it is compressed by {compression}; closecall reads Parquet without compression, or with snappy or gzip \
-                     (--output.compression)"
-                );
-                return Err(Error::content(path, message.to_lowercase()));
-            }
-        }
         Ok(Self {
             path: path.to_owned(),
             file,

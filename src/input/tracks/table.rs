@@ -12,7 +12,7 @@ use parquet::record::Field;
 use crate::util::input_file::{self, ShortRows, longer};
 use crate::util::limits::LINE;
 #[cfg(feature = "parquet")]
-use crate::util::parquet_column::guarded;
+use crate::util::parquet_column::{self, guarded};
 use crate::{Error, Result};
 
 /// What may stand between values, in the order in which it is looked for.
@@ -141,7 +141,7 @@ fn parquet_of(path: &Path) -> Result<Option<SerializedFileReader<std::fs::File>>
     let mut file = input_file::file(path)?;
     let mut first = [0; PARQUET.len()];
     let is_one = file.read(&mut first).map_err(|source| Error::file(path, source))? == first.len() && first == *PARQUET;
-    if is_one { guarded(path, || SerializedFileReader::new(file)).map(Some) } else { Ok(None) }
+    if is_one { parquet_column::open(path, file).map(Some) } else { Ok(None) }
 }
 
 #[cfg(feature = "parquet")]
