@@ -3,8 +3,8 @@
     python benches/unasked.py FCD.csv STEP_LENGTH
 
 Counted in every fifth step of an fcd-output with all road users. A road user reaches as far as it drives until it
-stands, after a response of 1 s and with 4.5 m/s², and what it can gain in a step. With clips, everything within 50 m of a
-conflict in the 5 s before it is recorded too. Two persons are never a pair.
+stands, after a response of 1 s and with 4.5 m/s², and what it can gain in a step. With clips, everything within 50 m of
+a conflict in the 5 s before it is recorded too. Two persons are never a pair.
 """
 
 from __future__ import annotations
