@@ -130,6 +130,18 @@ def peaks(lines: Lines) -> dict[str, float]:
     return {form: lines("peak", sizes[-1], form) / lines("peak", sizes[0], form) for form in ("CSV", "XML")}
 
 
+def of_statistics(name: str, what: str, at_most: float, form: str) -> Goal:
+    """A row on `closecall stats`, beside two libraries that compute the same."""
+    methods = {"by kind": "closecall", "by edge": "closecall --by edge"}
+    return Goal(
+        name,
+        lambda lines: {by: lines(what, "town", method) for by, method in methods.items()},
+        at_most=at_most,
+        form=form,
+        beside=lambda lines: ", ".join(f"{it} {lines(what, 'town', it):{form}}" for it in ("DuckDB", "Polars")),
+    )
+
+
 GOALS = [
     Goal(
         "attached run over plain SUMO, both through libsumo",
@@ -216,28 +228,8 @@ GOALS = [
         lambda lines: {scene: lines("gzipped over plain", scene, "replay") for scene in ("grid", "town")},
         at_least=0.8,
     ),
-    Goal(
-        "statistics of 10⁷ conflicts in Parquet, s",
-        lambda lines: {
-            "by kind": lines("statistics", "town", "closecall"),
-            "by edge": lines("statistics", "town", "closecall --by edge"),
-        },
-        at_most=5,
-        form=".1f",
-        beside=lambda lines: ", ".join(f"{it} {lines('statistics', 'town', it):.1f}" for it in ("DuckDB", "Polars")),
-    ),
-    Goal(
-        "their memory, MB",
-        lambda lines: {
-            "by kind": lines("statistics memory", "town", "closecall"),
-            "by edge": lines("statistics memory", "town", "closecall --by edge"),
-        },
-        at_most=500,
-        form=".0f",
-        beside=lambda lines: ", ".join(
-            f"{it} {lines('statistics memory', 'town', it):.0f}" for it in ("DuckDB", "Polars")
-        ),
-    ),
+    of_statistics("statistics of 10⁷ conflicts in Parquet, s", "statistics", at_most=5, form=".1f"),
+    of_statistics("their memory, MB", "statistics memory", at_most=500, form=".0f"),
     Goal("memory of a replay of a file 100 times larger over that of the small file", peaks, at_most=1.05),
     Goal(
         "bytes per road user, in addition to SUMO's",

@@ -46,7 +46,7 @@ pub struct ReplayArgs {
     #[arg(long)]
     sublane: bool,
     /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
-    /// reads ahead either.
+    /// reads the steps ahead.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]

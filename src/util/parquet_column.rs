@@ -59,7 +59,7 @@ pub fn guarded<T>(path: &Path, read: impl FnOnce() -> Result<T, ParquetError>) -
 /// Opens a Parquet file.
 ///
 /// # Errors
-/// [`Error::Content`] where it is none, or compressed in a way that cannot be read.
+/// [`Error::Content`] where the file is not Parquet, or is compressed in a way that cannot be read.
 pub fn open(path: &Path, file: File) -> crate::Result<SerializedFileReader<File>> {
     let file = guarded(path, || SerializedFileReader::new(file))?;
     let columns = file.metadata().row_groups().iter().flat_map(|group| group.columns());
@@ -67,11 +67,12 @@ pub fn open(path: &Path, file: File) -> crate::Result<SerializedFileReader<File>
         |it: &Compression| matches!(it, Compression::UNCOMPRESSED | Compression::SNAPPY | Compression::GZIP(_));
     match columns.map(|column| column.compression()).find(|compression| !is_read(compression)) {
         Some(compression) => {
+            let compression = compression.to_string().to_lowercase();
             let message = format!(
                 "it is compressed by {compression}; closecall reads Parquet without compression, or with snappy or gzip \
                  (of SUMO: --output.compression)"
             );
-            Err(Error::content(path, message.to_lowercase().replace("sumo", "SUMO")))
+            Err(Error::content(path, message))
         }
         None => Ok(file),
     }

@@ -104,7 +104,7 @@ impl StepsAhead {
     fn new(mut recording: Recording) -> Result<Self> {
         let (sender, batches) = sync_channel(WAITING);
         let [types, lanes] = [&recording.users.types, &recording.users.lanes].map(|names| names.after(0).to_vec());
-        let ids = recording.users.all().map(|(_, id)| id.to_owned()).collect();
+        let ids = recording.users.ids().map(str::to_owned).collect();
         let mut known = [types.len(), lanes.len()];
         let read = move || {
             loop {

@@ -97,9 +97,9 @@ impl Users {
         self.entered.iter().map(|user| (*user, self.id(*user)))
     }
 
-    /// The numbers that are in use or were, with the ids that they stand for.
-    pub fn all(&self) -> impl Iterator<Item = (u32, &str)> {
-        (0..).zip(&self.users).map(|(number, user)| (number, &*user.id))
+    /// The ids that the numbers from 0 on stand for, or stood for last.
+    pub fn ids(&self) -> impl Iterator<Item = &str> {
+        self.users.iter().map(|user| &*user.id)
     }
 
     /// Begins a step. The numbers of road users that were not in the previous one become free only now.
