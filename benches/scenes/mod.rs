@@ -17,15 +17,15 @@ pub fn car() -> Profile {
     Profile::vehicle(&SumoType::car("car"), &Options::default())
 }
 
-/// Writes the rectangles (centre, heading in rad, length, width) as input for other programs.
+/// Writes the rectangles (centre, heading in rad, length, width) and their speeds as input for other programs.
 pub fn write(cars: &[State], path: &Path) -> std::io::Result<()> {
     let car = car();
     let mut file = std::io::BufWriter::new(std::fs::File::create(path)?);
-    writeln!(file, "x,y,heading,length,width")?;
-    for State { x, y, heading, .. } in cars {
+    writeln!(file, "x,y,heading,length,width,speed")?;
+    for State { x, y, heading, speed, .. } in cars {
         let (sine, cosine) = heading.sin_cos();
         let (x, y) = (x - cosine * car.length / 2.0, y - sine * car.length / 2.0);
-        writeln!(file, "{x},{y},{heading},{},{}", car.length, car.width)?;
+        writeln!(file, "{x},{y},{heading},{},{},{speed}", car.length, car.width)?;
     }
     file.flush()
 }

@@ -39,6 +39,14 @@ impl<T: DataType> Batch<T> {
         Ok(read)
     }
 
+    /// Passes over the next rows; returns over how many.
+    ///
+    /// # Errors
+    /// Those of the reader.
+    pub fn skip(&mut self, rows: usize) -> Result<usize, ParquetError> {
+        self.reader.skip_records(rows)
+    }
+
     /// The value in a row of the batch.
     pub fn get(&self, row: usize) -> Option<&T::T> {
         self.values.get(row)?.as_ref()

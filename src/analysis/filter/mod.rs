@@ -86,6 +86,26 @@ impl ConflictFilter {
             && any(&self.places, |place| place.holds(conflict))
     }
 
+    /// The columns that it needs.
+    pub fn columns(&self) -> Vec<&'static str> {
+        let parts: [(bool, &[&str]); 6] = [
+            (self.has_period(), &["time"]),
+            (!self.kinds.is_empty(), &["kind"]),
+            (!self.severities.is_empty(), &["severity"]),
+            (!self.manoeuvres.is_empty(), &["manoeuvre"]),
+            (!self.causes.is_empty(), &["cause"]),
+            (!self.types.is_empty(), &["ego_type", "foe_type"]),
+        ];
+        let places = self.places.iter().flat_map(Place::columns);
+        parts
+            .into_iter()
+            .filter(|(is_used, _)| *is_used)
+            .flat_map(|(_, columns)| columns)
+            .chain(places)
+            .copied()
+            .collect()
+    }
+
     /// Whether it selects a period.
     pub fn has_period(&self) -> bool {
         self.from.is_some() || self.to.is_some()

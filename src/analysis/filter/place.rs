@@ -58,6 +58,14 @@ impl Part {
 }
 
 impl Place {
+    /// The columns that it needs.
+    pub fn columns(&self) -> &'static [&'static str] {
+        match self {
+            Self::Circle { .. } => &["x", "y"],
+            Self::Named { .. } => &["lane"],
+        }
+    }
+
     /// Whether the conflict point is there.
     pub fn holds(&self, conflict: &LoggedConflict) -> bool {
         match self {

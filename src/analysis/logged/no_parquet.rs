@@ -32,6 +32,14 @@ impl ParquetLog {
         match *self {}
     }
 
+    pub fn read_only(&mut self, _: &[&str]) {
+        match *self {}
+    }
+
+    pub fn whole(&mut self) -> Result<LoggedConflict> {
+        match *self {}
+    }
+
     pub fn is_changed(&self) -> bool {
         match *self {}
     }

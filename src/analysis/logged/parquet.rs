@@ -2,19 +2,20 @@
 
 use std::fs::File;
 use std::io::Read;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use parquet::basic::Type as Physical;
 use parquet::column::reader::ColumnReader;
 use parquet::data_type::{BoolType, ByteArrayType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use serde::{Deserialize, Serialize};
 
 use super::possible::PossibleRows;
 use crate::output::input_hash::Hasher;
 use crate::output::parquet_columns::physical;
-use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
+use crate::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use crate::util::input_file;
 use crate::util::parquet_column::{self, Batch, guarded};
 use crate::util::units::Second;
@@ -36,15 +37,15 @@ pub(super) fn digest(bytes: usize, mut rows: Hasher, metadata: [&str; 3]) -> Str
     format!("{bytes} {}", rows.digits())
 }
 
-/// Whether the file is not as it was written.
-fn is_changed(path: &Path, file: &SerializedFileReader<File>) -> Result<bool> {
-    let Some(known) = value(file, DIGEST_KEY) else { return Ok(false) };
+/// Whether the file is as it was written; none where it does not tell.
+fn is_as_written(path: &Path, file: &SerializedFileReader<File>) -> Result<Option<bool>> {
+    let Some(known) = value(file, DIGEST_KEY) else { return Ok(None) };
     let bytes = known.split(' ').next().and_then(|bytes| bytes.parse::<u64>().ok()).unwrap_or_default();
     let mut rows = Hasher::default();
     let copied = std::io::copy(&mut input_file::file(path)?.take(bytes), &mut rows);
     copied.map_err(|source| Error::file(path, source))?;
     let metadata = [RECORD_KEY, FINGERPRINT_KEY, RUN_TIME_KEY].map(|key| value(file, key).unwrap_or_default());
-    Ok(digest(bytes as usize, rows, metadata.each_ref().map(String::as_str)) != known)
+    Ok(Some(digest(bytes as usize, rows, metadata.each_ref().map(String::as_str)) == known))
 }
 
 /// The value of a key in the file's metadata.
@@ -117,20 +118,22 @@ pub struct ParquetLog {
     file: SerializedFileReader<File>,
     /// Where in the file each of the [`COLUMNS`] is; none where the file lacks it.
     places: [Option<usize>; COLUMNS.len()],
-    with_snapshots: bool,
+    /// Which of the [`COLUMNS`] are read with each batch.
+    wanted: [bool; COLUMNS.len()],
     next_group: usize,
-    /// The columns that are read, in the order of [`COLUMNS`]; none where the file lacks one or it is not to be read.
-    columns: Vec<Option<ColumnBatch>>,
-    /// Rows of the group that are not read yet.
-    left: usize,
-    /// Rows of the batch.
-    batch: usize,
-    /// How many of them were returned.
-    returned: usize,
+    /// Each of the [`COLUMNS`] in the group; none where the file lacks it.
+    columns: Vec<Option<GroupColumn>>,
+    /// Rows of the group.
+    group: usize,
+    /// The batch: rows of the group.
+    batch: Range<usize>,
+    /// The row of the group that is returned next.
+    next: usize,
     /// How many rows were returned in all.
     rows: u64,
     possible: PossibleRows,
-    is_changed: bool,
+    /// Whether the file is as it was written; none where it does not tell.
+    is_as_written: Option<bool>,
 }
 
 impl std::fmt::Debug for ParquetLog {
@@ -157,27 +160,34 @@ impl ParquetLog {
         Ok(Self {
             path: path.to_owned(),
             places,
-            with_snapshots: false,
+            wanted: COLUMNS.map(|column| column.presence != Presence::Snapshot),
             next_group: 0,
             columns: Vec::new(),
-            left: 0,
-            batch: 0,
-            returned: 0,
+            group: 0,
+            batch: 0..0,
+            next: 0,
             rows: 0,
             possible: PossibleRows::default(),
-            is_changed: is_changed(path, &file)?,
+            is_as_written: is_as_written(path, &file)?,
             file,
         })
     }
 
     /// Reads the snapshots as well, where the file has them.
     pub fn read_snapshots(&mut self) {
-        self.with_snapshots = true;
+        self.wanted = [true; COLUMNS.len()];
+    }
+
+    /// Reads these columns alone, if the file is known to be as it was written: its rows were checked then.
+    pub fn read_only(&mut self, columns: &[&str]) {
+        if self.is_as_written == Some(true) {
+            self.wanted = COLUMNS.map(|column| columns.contains(&column.name));
+        }
     }
 
     /// Whether the file is not as its run wrote it.
     pub fn is_changed(&self) -> bool {
-        self.is_changed
+        self.is_as_written == Some(false)
     }
 
     /// Demands that the margins are below 0, as a run logs them unless its options say otherwise.
@@ -198,54 +208,114 @@ impl ParquetLog {
 
     /// The next conflict; none after the last.
     pub fn read(&mut self) -> Result<Option<LoggedConflict>> {
-        while self.returned == self.batch {
-            if self.left == 0 && !self.open_group()? {
+        while self.next == self.batch.end {
+            if self.batch.end == self.group && !self.open_group()? {
                 return Ok(None);
             }
-            self.read_batch()?;
+            self.batch = self.batch.end..self.group.min(self.batch.end + BATCH);
+            self.read_batch(self.wanted)?;
         }
-        let row = self.returned;
-        self.returned += 1;
-        let cell = |column: usize| self.columns[column].as_ref().map_or(Ok(Value::Missing), |batch| batch.value(row));
-        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.possible.check(&row).map(|()| Some(row)));
+        self.next += 1;
         self.rows += 1;
-        checked.map_err(|message| Error::content(&self.path, format!("row {}: {message}", self.rows)))
+        let conflict = self.row(self.wanted)?;
+        if self.is_as_written != Some(true) {
+            self.possible.check(&conflict).map_err(|message| self.unfit(&message))?;
+        }
+        Ok(Some(conflict))
     }
 
-    /// Opens the columns of the next row group; whether there is one.
+    /// The conflict that was read last, with all columns but the snapshots.
+    pub fn whole(&mut self) -> Result<LoggedConflict> {
+        let all = COLUMNS.map(|column| column.presence != Presence::Snapshot);
+        self.read_batch(all)?;
+        self.row(all)
+    }
+
+    /// The conflict that was read last, with the columns that are wanted.
+    fn row(&self, wanted: [bool; COLUMNS.len()]) -> Result<LoggedConflict> {
+        let row = self.next - 1 - self.batch.start;
+        let cell = |column: usize| match &self.columns[column] {
+            Some(read) if wanted[column] => read.value(row),
+            _ => Ok(unread(&COLUMNS[column])),
+        };
+        LoggedConflict::from_cells(cell).map_err(|message| self.unfit(&message))
+    }
+
+    /// The error that the row that was read last is not one of a log.
+    fn unfit(&self, message: &str) -> Error {
+        Error::content(&self.path, format!("row {}: {message}", self.rows))
+    }
+
+    /// Begins the next row group; whether there is one.
     fn open_group(&mut self) -> Result<bool> {
         if self.next_group == self.file.num_row_groups() {
             return Ok(false);
         }
-        (self.left, self.columns) = guarded(&self.path, || {
-            let group = self.file.get_row_group(self.next_group)?;
-            let open = |(column, place): (&Column, Option<usize>)| {
-                let is_wanted = self.with_snapshots || column.presence != Presence::Snapshot;
-                let reader = place.filter(|_| is_wanted).map(|place| group.get_column_reader(place)).transpose();
-                reader.and_then(|reader| reader.map(ColumnBatch::new).transpose())
-            };
-            let columns = COLUMNS.iter().zip(self.places).map(open).collect::<std::result::Result<_, _>>()?;
-            Ok((usize::try_from(group.metadata().num_rows()).unwrap_or_default(), columns))
-        })?;
+        self.columns = self.places.map(|place| place.map(GroupColumn::new)).into();
+        let rows = self.file.metadata().row_group(self.next_group).num_rows();
+        (self.group, self.batch, self.next) = (usize::try_from(rows).unwrap_or_default(), 0..0, 0);
         self.next_group += 1;
         Ok(true)
     }
 
-    fn read_batch(&mut self) -> Result<()> {
-        self.batch = self.left.min(BATCH);
-        self.returned = 0;
-        self.left -= self.batch;
-        for column in self.columns.iter_mut().flatten() {
-            let read = guarded(&self.path, || column.read(self.batch))?;
-            if read != self.batch {
-                return Err(Error::content(&self.path, "its columns differ in length"));
-            }
-        }
-        Ok(())
+    /// Reads the wanted columns of the batch.
+    fn read_batch(&mut self, wanted: [bool; COLUMNS.len()]) -> Result<()> {
+        guarded(&self.path, || {
+            let group = self.file.get_row_group(self.next_group - 1)?;
+            let columns = self.columns.iter_mut().zip(wanted).filter(|(_, is_wanted)| *is_wanted);
+            columns.filter_map(|(column, _)| column.as_mut()).try_for_each(|column| column.read(&*group, &self.batch))
+        })
     }
 }
 
-/// A column of a row group, and its values in the batch.
+/// What stands in a row for a column that is not read.
+fn unread(column: &Column) -> Value<'static> {
+    match (column.presence, column.column_type) {
+        (Presence::Required, ColumnType::Number) => Value::Number(f64::NAN),
+        (Presence::Required, ColumnType::Count) => Value::Count(0),
+        (Presence::Required, ColumnType::Flag) => Value::Flag(false),
+        _ => Value::Missing,
+    }
+}
+
+/// A column of a row group.
+struct GroupColumn {
+    place: usize,
+    /// What was read last; none before its first rows.
+    batch: Option<ColumnBatch>,
+    /// Rows of the group that were read or passed over.
+    rows: usize,
+}
+
+impl GroupColumn {
+    fn new(place: usize) -> Self {
+        Self { place, batch: None, rows: 0 }
+    }
+
+    /// Reads these rows of the group, unless they are those that were read last.
+    fn read(&mut self, group: &dyn RowGroupReader, rows: &Range<usize>) -> std::result::Result<(), ParquetError> {
+        let batch = match &mut self.batch {
+            Some(batch) => batch,
+            none => none.insert(ColumnBatch::new(group.get_column_reader(self.place)?)?),
+        };
+        if self.rows == rows.end {
+            return Ok(());
+        }
+        let (before, wanted) = (rows.start - self.rows, rows.len());
+        self.rows = rows.end;
+        if batch.skip(before)? != before || batch.read(wanted)? != wanted {
+            return Err(ParquetError::General("its columns differ in length".to_owned()));
+        }
+        Ok(())
+    }
+
+    /// The value in a row of the batch.
+    fn value(&self, row: usize) -> std::result::Result<Value<'_>, String> {
+        self.batch.as_ref().map_or(Ok(Value::Missing), |batch| batch.value(row))
+    }
+}
+
+/// The reader of a column, and its values in the batch.
 enum ColumnBatch {
     Count(Batch<Int64Type>),
     Text(Batch<ByteArrayType>),
@@ -262,6 +332,15 @@ impl ColumnBatch {
             ColumnReader::BoolColumnReader(reader) => Self::Flag(Batch::new(reader)),
             _ => return Err(ParquetError::General("a column has another type than that of a log".to_owned())),
         })
+    }
+
+    fn skip(&mut self, rows: usize) -> std::result::Result<usize, ParquetError> {
+        match self {
+            Self::Count(batch) => batch.skip(rows),
+            Self::Text(batch) => batch.skip(rows),
+            Self::Number(batch) => batch.skip(rows),
+            Self::Flag(batch) => batch.skip(rows),
+        }
     }
 
     fn read(&mut self, rows: usize) -> std::result::Result<usize, ParquetError> {

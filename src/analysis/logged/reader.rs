@@ -142,6 +142,27 @@ impl ConflictReader {
         self
     }
 
+    /// Reads these columns alone where that is enough: in a Parquet file that is known to be as it was written. The others of
+    /// a row are missing then, or not a number.
+    #[must_use]
+    pub fn only(mut self, columns: &[&str]) -> Self {
+        if let LogFile::Parquet(log) = &mut self.file {
+            log.read_only(columns);
+        }
+        self
+    }
+
+    /// The conflict that was returned last, with all columns but the snapshots.
+    ///
+    /// # Errors
+    /// As those of the iterator.
+    pub fn whole(&mut self, returned: LoggedConflict) -> Result<LoggedConflict> {
+        match &mut self.file {
+            LogFile::Csv(_) => Ok(returned),
+            LogFile::Parquet(log) => log.whole(),
+        }
+    }
+
     /// The columns of the file, without the labels of a sweep.
     pub fn columns(&self) -> Vec<String> {
         match &self.file {

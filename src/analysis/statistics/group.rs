@@ -34,13 +34,16 @@ pub enum By {
 const NOWHERE: &str = "(none)";
 
 impl By {
-    /// The column that it needs, if logs of earlier versions lack it.
-    pub fn needs(self) -> Option<&'static str> {
+    /// The columns that it needs; logs of earlier versions may lack them.
+    pub fn columns(self) -> &'static [&'static str] {
         match self {
-            Self::Type => Some("ego_type"),
-            Self::Manoeuvre => Some("manoeuvre"),
-            Self::Cause => Some("cause"),
-            Self::Kind | Self::Severity | Self::Edge | Self::Junction | Self::Hour => None,
+            Self::Kind => &["kind"],
+            Self::Severity => &["severity"],
+            Self::Edge | Self::Junction => &["lane"],
+            Self::Type => &["ego_type", "foe_type"],
+            Self::Manoeuvre => &["manoeuvre"],
+            Self::Cause => &["cause"],
+            Self::Hour => &["time"],
         }
     }
 

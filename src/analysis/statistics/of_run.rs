@@ -18,6 +18,23 @@ use crate::{Error, Result};
 /// After this many conflicts the reader reports how far it is.
 const EVERY: u64 = 4096;
 
+/// The columns that are counted, whatever the groups and the filter.
+const COUNTED: [&str; 13] = [
+    "id",
+    "kind",
+    "severity",
+    "gap",
+    "mu",
+    "margin",
+    "ttc",
+    "pet",
+    "ego_delta_v",
+    "foe_delta_v",
+    "lane",
+    "collision",
+    "crash_probability",
+];
+
 /// What one run adds.
 #[derive(Debug)]
 pub struct OfRun {
@@ -59,9 +76,10 @@ impl OfRun {
         worst: usize,
         progress: &mut dyn FnMut(u64),
     ) -> Result<Self> {
-        let mut reader = ConflictReader::open(folder)?;
+        let counted = [&COUNTED[..], by.columns(), &filter.columns()].concat();
+        let mut reader = ConflictReader::open(folder)?.only(&counted);
         let columns = reader.columns();
-        if let Some(needed) = by.needs().filter(|needed| !columns.iter().any(|column| column == needed)) {
+        if let Some(needed) = by.columns().iter().find(|needed| !columns.iter().any(|column| column == *needed)) {
             let message = format!("the column \"{needed}\" is missing: logs of earlier versions do not have it");
             return Err(Error::line(reader.path(), 1, message));
         }
@@ -79,14 +97,16 @@ impl OfRun {
             worst: WorstOf::new(worst),
             tails: Tails::default(),
         };
-        for conflict in &mut reader {
-            let conflict = conflict?;
+        while let Some(conflict) = reader.next().transpose()? {
             found.read += 1;
             if found.read.is_multiple_of(EVERY) {
                 progress(EVERY);
             }
             if filter.passes(&conflict) {
-                found.add((run, folder), &conflict, by);
+                found.add(run, &conflict, by);
+                if found.worst.takes(run, &conflict) {
+                    found.worst.add(run, folder, reader.whole(conflict)?);
+                }
             }
         }
         progress(found.read % EVERY);
@@ -100,7 +120,7 @@ impl OfRun {
         Ok(found)
     }
 
-    fn add(&mut self, (run, folder): (usize, &Arc<Path>), conflict: &LoggedConflict, by: By) {
+    fn add(&mut self, run: usize, conflict: &LoggedConflict, by: By) {
         self.passed += 1;
         update(&mut self.groups, &by.group(conflict), |group| {
             group.counts.add(run);
@@ -121,7 +141,6 @@ impl OfRun {
                 });
             }
         }
-        self.worst.take(run, folder, conflict);
         self.tails.take(conflict);
     }
 }
@@ -138,5 +157,82 @@ fn update<T: Default>(map: &mut FxHashMap<String, T>, name: &str, change: impl F
         let mut new = T::default();
         change(&mut new);
         map.insert(name.to_owned(), new);
+    }
+}
+
+#[cfg(all(test, feature = "parquet"))]
+mod tests {
+    use std::fs;
+
+    use clap::{Parser, ValueEnum};
+
+    use crate::analysis::logged::{PARQUET, pack_in_place};
+    use crate::analysis::statistics::of_run::*;
+    use crate::output::log::{CONFLICTS, RUN};
+    use crate::output::sample::sample;
+    use crate::output::schema::COLUMNS;
+
+    #[derive(Parser)]
+    struct Words {
+        #[command(flatten)]
+        filter: ConflictFilter,
+    }
+
+    /// The texts of a row: each column that is counted, grouped by or filtered by differs from row to row.
+    fn row(id: usize, random: &mut fastrand::Rng) -> String {
+        let mut one_of = |texts: &[&str]| texts[random.usize(..texts.len())].to_owned();
+        let values = [
+            ("id", id.to_string()),
+            ("kind", one_of(&["side", "frontal", "rear_end"])),
+            ("severity", one_of(&["caution", "serious", "critical"])),
+            ("time", one_of(&["1", "4000"])),
+            ("end", "5000".to_owned()),
+            ("gap", one_of(&["1", "2"])),
+            ("mu", one_of(&["3", "4"])),
+            ("margin", one_of(&["-1", "-2", "-3"])),
+            ("ttc", one_of(&["", "0.5", "1.5"])),
+            ("pet", one_of(&["", "0.25", "2"])),
+            ("ego_delta_v", one_of(&["1", "5"])),
+            ("foe_delta_v", one_of(&["", "4"])),
+            ("lane", one_of(&["", "a_0", ":J_1_0"])),
+            ("collision", one_of(&["true", "false"])),
+            ("crash_probability", one_of(&["", "0.125", "0.5"])),
+            ("x", one_of(&["0", "100"])),
+            ("ego_type", one_of(&["car", "bus"])),
+            ("manoeuvre", one_of(&["", "crossing", "merge"])),
+            ("cause", one_of(&["", "ran_red too_fast", "too_close"])),
+            ("ego_path", String::new()),
+            ("foe_path", String::new()),
+        ];
+        let conflict = sample(&values.each_ref().map(|(name, text)| (*name, text.as_str())));
+        let cells = COLUMNS.map(|column| (column.get)(&conflict).text(&mut String::new()).to_owned());
+        cells.join(",") + "\n"
+    }
+
+    #[test]
+    fn parquet_counts_as_csv_by_every_group_and_filter() {
+        let folder = tempfile::tempdir().unwrap();
+        let [csv, packed]: [Arc<Path>; 2] = ["csv", "packed"].map(|name| folder.path().join(name).into());
+        let mut random = fastrand::Rng::with_seed(1);
+        let rows = (1..=700).map(|id| row(id, &mut random)).collect::<String>();
+        for log in [&csv, &packed] {
+            fs::create_dir(log).unwrap();
+            fs::write(log.join(CONFLICTS), COLUMNS.map(|column| column.name).join(",") + "\n" + &rows).unwrap();
+            fs::write(log.join(RUN), "{}\n").unwrap();
+        }
+        pack_in_place(&packed).unwrap();
+        let count = |log: &Arc<Path>, by: By, words: &str| {
+            let filter = Words::parse_from(["closecall"].into_iter().chain(words.split_whitespace())).filter;
+            let of_run = OfRun::read((0, log), by, &filter, 5, &mut |_| ()).unwrap();
+            assert!(of_run.passed > 0, "{words}");
+            format!("{of_run:?}").replace(&*log.to_string_lossy(), "log").replace(CONFLICTS, PARQUET)
+        };
+        let filters = ["", "--from 100", "--to 100", "--kind side", "--severity serious", "--manoeuvre merge"];
+        let others = ["--cause too_fast", "--type bus", "--where J", "--where 0,0,50"];
+        for words in filters.into_iter().chain(others) {
+            for by in By::value_variants() {
+                assert_eq!(count(&csv, *by, words), count(&packed, *by, words), "{by:?} {words}");
+            }
+        }
     }
 }

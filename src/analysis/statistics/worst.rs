@@ -81,21 +81,16 @@ impl WorstOf {
         Self { wanted, kept: BinaryHeap::new() }
     }
 
-    /// Adds a conflict of the run with this number.
-    pub fn take(&mut self, run: usize, folder: &Arc<Path>, conflict: &LoggedConflict) {
-        if self.wanted == 0 || (self.kept.len() == self.wanted && self.is_milder(run, conflict)) {
-            return;
-        }
-        let worst = RankedConflict {
-            folder: folder.clone(),
-            variant: None,
-            seed: None,
-            edge: conflict.edge().to_owned(),
-            conflict: conflict.clone(),
-            command: None,
-            run,
-        };
-        self.keep(MildestFirst(worst));
+    /// Whether a conflict of the run with this number may be among the worst. False for nearly all.
+    pub fn takes(&self, run: usize, conflict: &LoggedConflict) -> bool {
+        self.wanted > 0 && !(self.kept.len() == self.wanted && self.is_milder(run, conflict))
+    }
+
+    /// Adds a conflict.
+    pub fn add(&mut self, run: usize, folder: &Arc<Path>, conflict: LoggedConflict) {
+        let edge = conflict.edge().to_owned();
+        let (folder, variant, seed, command) = (folder.clone(), None, None, None);
+        self.keep(MildestFirst(RankedConflict { folder, variant, seed, edge, conflict, command, run }));
     }
 
     /// Adds the worst of other runs.
@@ -110,7 +105,7 @@ impl WorstOf {
         }
     }
 
-    /// Whether this conflict is certainly not among the worst. True for nearly all, which are then not copied.
+    /// Whether this conflict is certainly not among the worst.
     fn is_milder(&self, run: usize, conflict: &LoggedConflict) -> bool {
         let Some(MildestFirst(mildest)) = self.kept.peek() else { return false };
         let (rank, least) = (Rank::from(conflict), Rank::from(&mildest.conflict));

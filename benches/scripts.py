@@ -1,0 +1,92 @@
+"""What the checker costs a script of one's own: with plain frames, and with traci over its socket.
+
+    python benches/scripts.py FOLDER
+
+FOLDER contains the scenes of benches/detector.rs (`cargo bench --bench detector -- --scenes FOLDER`), whose road users
+go to and fro in the same steps here. A figure is the median of the steps. traci's scripts run to the end of the grid and
+of the town, with a checker and without, three times each in turns; a figure is the median of the pairs' ratios.
+"""
+
+from __future__ import annotations
+
+import csv
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import closecall
+import numpy as np
+from scenarios import end, grid
+
+TIMES = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1]
+"""Times of the steps in s, to and fro, as in benches/scenes/mod.rs."""
+ROUNDS = 10
+PAIRS = 3
+
+TRACI = """
+import sys, traci
+from sumo import SUMO_HOME
+end, checked, *words = sys.argv[1:]
+traci.start([f"{SUMO_HOME}/bin/sumo", *words, "--no-step-log", "--no-warnings"], stdout=open("/dev/null", "w"))
+if checked == "checked":
+    import closecall
+    checker = closecall.Checker(traci)
+    traci.addStepListener(checker)
+while traci.simulation.getTime() < float(end) and traci.simulation.getMinExpectedNumber() > 0:
+    traci.simulationStep()
+traci.close()
+"""
+
+
+def frames(path: Path) -> float:
+    """The time of a step with a frame, in s."""
+    with path.open() as file:
+        rows = list(csv.DictReader(file))
+    x, y, heading, length, speed = (
+        np.array([float(row[name]) for row in rows]) for name in ("x", "y", "heading", "length", "speed")
+    )
+    ahead = np.cos(heading), np.sin(heading)
+    x, y = x + ahead[0] * length / 2, y + ahead[1] * length / 2
+    ids = [str(number) for number in range(len(rows))]
+    times = []
+    checker = closecall.Checker(keep=0, threads=1)
+    for number, moved in enumerate(TIMES * ROUNDS):
+        frame = {
+            "id": ids,
+            "x": x + ahead[0] * speed * moved,
+            "y": y + ahead[1] * speed * moved,
+            "heading": heading,
+            "speed": speed,
+        }
+        started = time.perf_counter()
+        checker.step(number * 0.1, frame)
+        times.append(time.perf_counter() - started)
+    checker.close()
+    return statistics.median(times)
+
+
+def seconds(config: Path, how: str) -> float:
+    """The wall time of traci's script."""
+    started = time.perf_counter()
+    subprocess.run([sys.executable, "-c", TRACI, end(config), how, "-c", str(config)], check=True)
+    return time.perf_counter() - started
+
+
+def main() -> None:
+    """Print a line per scene."""
+    print("what,scene,method,size,value,unit")
+    for path in sorted(Path(sys.argv[1]).glob("*-*.csv")):
+        scene, size = path.stem.split("-")
+        print(f"step,{scene},frames,{size},{frames(path) / int(size) * 1e9:.1f},ns per road user", flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        for scene, config in {"grid": grid(Path(folder)), "town": Path("sumo_nets/town/town.sumocfg")}.items():
+            pairs = [(seconds(config, "alone"), seconds(config, "checked")) for _ in range(PAIRS)]
+            ratio = statistics.median(checked / alone for alone, checked in pairs)
+            print(f"over plain,{scene},traci,{end(config)},{ratio:.3f},times", flush=True)
+
+
+if __name__ == "__main__":
+    main()
