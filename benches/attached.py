@@ -77,7 +77,7 @@ def in_turns(*commands: list[str]) -> list[float]:
 def main() -> None:
     """Print one line per scenario and comparison."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--runs", type=int, default=9)
+    parser.add_argument("--runs", type=int, default=5)
     parser.add_argument(
         "configs", metavar="CONFIG", nargs="*", type=Path, help="SUMO configurations to measure instead of the bench's"
     )

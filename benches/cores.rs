@@ -21,7 +21,7 @@ use scenes::{Scene, TIMES, detector, wake};
 const LONG_ENOUGH: Duration = Duration::from_millis(700);
 
 /// At least this many steps are measured.
-const FEWEST: usize = 5;
+const FEWEST: usize = 3;
 
 /// With more road users than this, not many detectors are run at once.
 const LARGE: usize = 100_000;

@@ -27,7 +27,10 @@ const LARGE: usize = 100_000;
 
 /// Turns of each method. Other load on the machine comes and goes for seconds at a time, so a time is the least of all
 /// turns, and a ratio the median of those within a turn.
-const TURNS: usize = 9;
+const TURNS: usize = 5;
+
+/// The same with more than [`LARGE`] road users.
+const TURNS_OF_LARGE: usize = 2;
 
 /// The cores are kept busy for this long before each turn, in s.
 const WAKING: f64 = 0.5;
@@ -174,7 +177,8 @@ fn measure(name: &str, start: Vec<State>) {
     let mut circles = Rival::new("all pairs", |cars: &[State], car| circles.contacts(cars, car, options.epsilon));
     let mut tested = Rival::new("all tested", |cars: &[State], car| tested.contacts(cars, car, options.epsilon));
     let steps = TIMES.repeat((500_000 / TURNS / count).clamp(1, 16));
-    for number in 0..TURNS {
+    let turns = if count > LARGE { TURNS_OF_LARGE } else { TURNS };
+    for number in 0..turns {
         let mut turn = |look: &mut dyn Look, steps: &[f64]| {
             for time in steps {
                 scene.advance(*time);

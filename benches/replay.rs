@@ -25,7 +25,7 @@ const SPEED: f64 = 13.89;
 const STEPS: usize = 200;
 
 /// Rounds per recording; the fastest counts.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 3;
 
 fn main() {
     let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
@@ -69,7 +69,7 @@ fn all(large: f64) {
     }
 }
 
-/// Replays a recording of about this size in nine processes and prints the least of their peak memories: that of one
+/// Replays a recording of about this size in five processes and prints the least of their peak memories: that of one
 /// recording varies by 0.5 MB.
 fn peak(net: &Path, path: &Path, megabytes: f64) {
     write_recording(path, 100.0, 10, false);
@@ -83,7 +83,7 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
         assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
         String::from_utf8(ended.stdout).unwrap().trim().parse::<f64>().unwrap()
     };
-    let least = (0..9).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
+    let least = (0..5).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
     println!("peak,{megabytes} MB,{},,{:.2},MB", name(path), least / 1e3);
     std::fs::remove_file(path).unwrap();
 }

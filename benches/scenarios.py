@@ -1,4 +1,5 @@
-"""The simulations of the benches for attached runs, and the commands that run them with the checker and without.
+"""The simulations of the benches for attached runs, the commands that run them with the checker and without, and what
+those take.
 
 grid: 10 by 10 signalised junctions with up to 1,700 vehicles. town: sumo_nets/town. motorway: SUMO's A10, with its own
 configuration, which disables teleporting. The town ends after 300 s, because device.ssm is slow there.
@@ -10,6 +11,7 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -85,3 +87,13 @@ def ssm(config: Path, out: Path) -> list[str]:
     """SUMO with device.ssm on all vehicles, for TTC alone."""
     device = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC", "--device.ssm.file", str(out)]
     return [*plain(config), *device]
+
+
+def measured(command: list[str]) -> tuple[float, float]:
+    """The time of a command in s and its memory in MB."""
+    started = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    if status:
+        sys.exit(f"{command}: status {status}")
+    return time.perf_counter() - started, usage.ru_maxrss / 1000

@@ -3,8 +3,8 @@
     python benches/scripts.py FOLDER
 
 FOLDER contains the scenes of benches/detector.rs (`cargo bench --bench detector -- --scenes FOLDER`), whose road users
-go to and fro in the same steps here. A figure is the median of the steps. traci's scripts run to the end of the grid and
-of the town, with a checker and without, three times each in turns; a figure is the median of the pairs' ratios.
+go to and fro in the same steps here. A figure is the median of the steps. traci's scripts run to the end of the grid
+and of the town, with a checker and without, three times each in turns; a figure is the median of the pairs' ratios.
 """
 
 from __future__ import annotations

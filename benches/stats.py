@@ -3,7 +3,7 @@
     python benches/stats.py
 
 The conflicts are those of the town, in as many runs as it takes; the files are links to one. Times are those of whole
-processes, the best of three; memory is the largest of each.
+processes, the better of two; memory is the largest of each.
 """
 
 from __future__ import annotations
@@ -13,13 +13,12 @@ import os
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 
-from scenarios import BIN, attached
+from scenarios import BIN, attached, measured
 
 CONFLICTS = 10**7
-ROUNDS = 3
+ROUNDS = 2
 MEASURES = ["ttc", "pet", "margin", "greatest(ego_delta_v, foe_delta_v)"]
 
 DUCKDB = """
@@ -65,16 +64,6 @@ def runs(folder: Path) -> int:
         os.link(log / "conflicts.parquet", run / "conflicts.parquet")
         (run / "run.json").write_text(json.dumps({**record, "seed": str(seed)}))
     return many * conflicts
-
-
-def measured(command: list[str]) -> tuple[float, float]:
-    """The time of a command in s and its memory in MB."""
-    started = time.perf_counter()
-    process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    _, status, usage = os.wait4(process.pid, 0)
-    if status:
-        sys.exit(f"{command}: status {status}")
-    return time.perf_counter() - started, usage.ru_maxrss / 1000
 
 
 def main() -> None:

@@ -61,6 +61,7 @@ macro_rules! columns {
                 column_type: <$type as Field>::TYPE,
                 rust_type: stringify!($type),
                 get: |conflict| conflict.$name.value(),
+                set: |conflict, value| conflict.$name.set(value),
             },
         )+];
 
@@ -308,6 +309,8 @@ pub struct Column {
     rust_type: &'static str,
     /// Its value in a conflict.
     pub get: fn(&LoggedConflict) -> Value,
+    /// Changes its value in a conflict; an error where it does not fit.
+    pub set: fn(&mut LoggedConflict, Value) -> Result<(), String>,
 }
 
 /// Which logs have a column, and when it is read.

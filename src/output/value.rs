@@ -86,6 +86,11 @@ pub(super) trait Field: Sized {
 
     /// The field with this value; an error where it has to have one, or one of another type.
     fn from_value(value: Value) -> Result<Self, String>;
+
+    fn set(&mut self, value: Value) -> Result<(), String> {
+        *self = Self::from_value(value)?;
+        Ok(())
+    }
 }
 
 impl Field for u64 {
@@ -113,6 +118,17 @@ impl Field for String {
             Value::Missing => Ok(Self::new()),
             _ => Err(value.unfit("a text")),
         }
+    }
+
+    /// Keeps the memory that it has.
+    fn set(&mut self, value: Value) -> Result<(), String> {
+        self.clear();
+        match value {
+            Value::Text(text) => self.push_str(text),
+            Value::Missing => {}
+            _ => return Err(value.unfit("a text")),
+        }
+        Ok(())
     }
 }
 

@@ -36,6 +36,10 @@ impl ParquetLog {
         match *self {}
     }
 
+    pub fn read_into(&mut self, _: &mut Option<LoggedConflict>) -> Result<bool> {
+        match *self {}
+    }
+
     pub fn whole(&mut self) -> Result<LoggedConflict> {
         match *self {}
     }

@@ -21,6 +21,8 @@ pub struct ConflictReader {
     /// The SHA-256 of what the run wrote.
     digest: Option<String>,
     failed: bool,
+    /// The conflict that [`ConflictReader::next_row`] returned last.
+    row: Option<LoggedConflict>,
 }
 
 /// A file that has not the rows that its run wrote.
@@ -114,7 +116,7 @@ impl ConflictReader {
         let run = run.filter(|_| has_result);
         let counted = run.as_ref().map(LoggedRun::conflicts);
         let digest = run.and_then(|run| run.conflicts_sha256);
-        Ok(Self { file, read: 0, counted, digest, failed: false })
+        Ok(Self { file, read: 0, counted, digest, failed: false, row: None })
     }
 
     /// What is wrong with the rows as a whole, once all were read; none where they are those that the run wrote, and where
@@ -152,14 +154,30 @@ impl ConflictReader {
         self
     }
 
-    /// The conflict that was returned last, with all columns but the snapshots.
+    /// The next conflict, in the memory of the last one; none after the last.
     ///
     /// # Errors
     /// As those of the iterator.
-    pub fn whole(&mut self, returned: LoggedConflict) -> Result<LoggedConflict> {
+    pub fn next_row(&mut self) -> Result<Option<&LoggedConflict>> {
+        let is_there = match &mut self.file {
+            LogFile::Csv(log) => {
+                self.row = log.read()?;
+                self.row.is_some()
+            }
+            LogFile::Parquet(log) => log.read_into(&mut self.row)?,
+        };
+        self.read += u64::from(is_there);
+        Ok(self.row.as_ref().filter(|_| is_there))
+    }
+
+    /// The conflict that [`next_row`](Self::next_row) returned last, with all columns but the snapshots.
+    ///
+    /// # Errors
+    /// As those of the iterator.
+    pub fn whole_row(&mut self) -> Result<Option<LoggedConflict>> {
         match &mut self.file {
-            LogFile::Csv(_) => Ok(returned),
-            LogFile::Parquet(log) => log.whole(),
+            LogFile::Csv(_) => Ok(self.row.clone()),
+            LogFile::Parquet(log) => log.whole().map(Some),
         }
     }
 

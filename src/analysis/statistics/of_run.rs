@@ -97,15 +97,16 @@ impl OfRun {
             worst: WorstOf::new(worst),
             tails: Tails::default(),
         };
-        while let Some(conflict) = reader.next().transpose()? {
+        while let Some(conflict) = reader.next_row()? {
             found.read += 1;
             if found.read.is_multiple_of(EVERY) {
                 progress(EVERY);
             }
-            if filter.passes(&conflict) {
-                found.add(run, &conflict, by);
-                if found.worst.takes(run, &conflict) {
-                    found.worst.add(run, folder, reader.whole(conflict)?);
+            if filter.passes(conflict) {
+                found.add(run, conflict, by);
+                if found.worst.takes(run, conflict) {
+                    let whole = reader.whole_row()?;
+                    whole.into_iter().for_each(|conflict| found.worst.add(run, folder, conflict));
                 }
             }
         }
