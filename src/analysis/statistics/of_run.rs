@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::counts::{ConflictGroup, Counts, MEASURES, Spot, measures};
 use super::extremes::Tails;
 use super::group::By;
-use super::quantiles::quantile;
+use super::quantiles::select;
 use super::worst::WorstOf;
 use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{ConflictReader, LoggedConflict, LostRows};
@@ -114,9 +114,7 @@ impl OfRun {
         found.lost = reader.lost();
         found.medians = std::array::from_fn(|measure| {
             let values = found.groups.values().flat_map(|group| &group.columns[measure]);
-            let mut values = values.copied().collect::<Vec<_>>();
-            values.sort_unstable_by(f64::total_cmp);
-            quantile(&values, 0.5)
+            select(&mut values.copied().collect::<Vec<_>>(), 0.5)
         });
         Ok(found)
     }

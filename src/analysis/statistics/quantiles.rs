@@ -22,10 +22,11 @@ pub struct Quantiles {
 }
 
 impl Quantiles {
-    /// The quantiles of values in ascending order.
-    pub fn of_sorted(sorted: &[f64]) -> Self {
-        let at = |share| quantile(sorted, share);
-        Self { count: sorted.len() as u64, q05: at(0.05), q25: at(0.25), q50: at(0.5), q75: at(0.75), q95: at(0.95) }
+    /// The quantiles of values, whose order changes.
+    pub fn of(values: &mut [f64]) -> Self {
+        let mut at = |share| select(values, share);
+        let [q05, q25, q50, q75, q95] = [0.05, 0.25, 0.5, 0.75, 0.95].map(&mut at);
+        Self { count: values.len() as u64, q05, q25, q50, q75, q95 }
     }
 }
 
@@ -35,6 +36,14 @@ pub fn quantile(sorted: &[f64], share: f64) -> Option<f64> {
     let low = sorted[place.floor() as usize];
     let high = sorted[place.ceil() as usize];
     Some(low + (high - low) * place.fract())
+}
+
+/// A quantile of values in any order, which changes; none without values. Faster than sorting them.
+pub fn select(values: &mut [f64], share: f64) -> Option<f64> {
+    let place = share * (values.len().checked_sub(1)? as f64);
+    let (_, low, above) = values.select_nth_unstable_by(place.floor() as usize, f64::total_cmp);
+    let high = above.iter().copied().min_by(f64::total_cmp).unwrap_or(*low);
+    Some(*low + (high - *low) * place.fract())
 }
 
 /// Cliff's delta of two samples in ascending order: P(a > b) − P(a < b), from −1 to 1 (Cliff 1993).
@@ -63,10 +72,22 @@ mod tests {
 
     #[test]
     fn quantiles_lie_between_order_statistics() {
-        let found = Quantiles::of_sorted(&[1.0, 2.0, 3.0, 4.0]);
+        let found = Quantiles::of(&mut [3.0, 1.0, 4.0, 2.0]);
         assert_eq!((found.q25, found.q50, found.q95), (Some(1.75), Some(2.5), Some(3.8499999999999996)));
-        assert_eq!(Quantiles::of_sorted(&[]), Quantiles::default());
+        assert_eq!(Quantiles::of(&mut []), Quantiles::default());
         assert_eq!(quantile(&[7.0], 0.95), Some(7.0));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn selected_quantiles_are_those_of_sorted_values(
+            mut values in proptest::collection::vec(-5.0..5.0_f64, 0..40),
+            share in 0.0..=1.0_f64,
+        ) {
+            let selected = select(&mut values, share);
+            values.sort_unstable_by(f64::total_cmp);
+            proptest::prop_assert_eq!(selected, quantile(&values, share));
+        }
     }
 
     #[test]

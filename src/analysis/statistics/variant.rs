@@ -132,14 +132,9 @@ pub(super) fn groups(set: &mut Collection, by: By) -> Vec<GroupStatistics> {
 fn of_all(groups: &FxHashMap<String, ConflictGroup>, measure: usize) -> Quantiles {
     let mut values = Vec::with_capacity(groups.values().map(|group| group.columns[measure].len()).sum());
     groups.values().for_each(|group| values.extend_from_slice(&group.columns[measure]));
-    values.sort_unstable_by(f64::total_cmp);
-    Quantiles::of_sorted(&values)
+    Quantiles::of(&mut values)
 }
 
 fn quantiles(columns: &mut Columns) -> Vec<Quantiles> {
-    let sorted = columns.iter_mut().map(|values| {
-        values.sort_unstable_by(f64::total_cmp);
-        Quantiles::of_sorted(values)
-    });
-    sorted.collect()
+    columns.iter_mut().map(|values| Quantiles::of(values)).collect()
 }

@@ -1,0 +1,93 @@
+"""What a user pays for what closecall does, from the lines of the benches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from goals import DENSE, SCENARIOS, Lines
+
+
+def between(values: list[float], form: str = ".2f") -> str:
+    """The least and the largest of the values."""
+    return f"{min(values):{form}} to {max(values):{form}}"
+
+
+def runs(lines: Lines, what: str, method: str) -> str:
+    """The ratios of the bench's simulations."""
+    return between([lines(what, scene, method) for scene in SCENARIOS])
+
+
+def attached(lines: Lines) -> str:
+    """What attached runs take."""
+    over, program = runs(lines, "over plain", "closecall"), runs(lines, "over program", "closecall")
+    return f"{over} times plain SUMO through libsumo, {program} times the program `sumo`"
+
+
+def frames(lines: Lines) -> str:
+    """What a step with a frame takes, and how much of it is the detector's."""
+    step, detector = (
+        between([lines("step", scene, method, 10**4) / 1e3 for scene in DENSE]) for method in ("frames", "closecall")
+    )
+    return f"{step} µs per road user and step in dense traffic, of which {detector} are the detector's"
+
+
+def replay(lines: Lines) -> str:
+    """The speed of a replay."""
+    csv, xml = (
+        between([lines("replay", scene, form) / 1e6 for scene in ("sparse", "platoons")], ".1f")
+        for form in ("CSV", "XML")
+    )
+    gain = between([lines("gain of two threads", scene, "replay") for scene in ("grid", "town")])
+    return (
+        f"{csv} (CSV) and {xml} (XML) million vehicle-steps per second on one core; two cores are {gain} times as fast"
+    )
+
+
+def statistics(lines: Lines) -> str:
+    """What the statistics of many conflicts take."""
+    seconds, memory = (lines(what, "town", "closecall") for what in ("statistics", "statistics memory"))
+    return f"{seconds:.0f} s, {memory:.0f} MB"
+
+
+def sweep(lines: Lines) -> str:
+    """What a sweep adds to its runs."""
+    overhead, gain = (lines(what, "left_turn", "sweep") for what in ("overhead of a run", "gain of two workers"))
+    return f"{overhead:.0f} ms per run more than the runs alone; two workers are {gain:.2f} times as fast as one"
+
+
+def net(lines: Lines) -> str:
+    """What a large net takes."""
+    time, memory = (
+        [lines(what, "big net", method) for method in ("SUMO", "closecall")] for what in ("loading", "memory")
+    )
+    return (
+        f"{time[1] - time[0]:.0f} s more than SUMO's {time[0]:.0f} s, "
+        f"{(memory[1] - memory[0]) / 1e3:.1f} GB more than SUMO's {memory[0] / 1e3:.1f} GB"
+    )
+
+
+PAID: list[tuple[str, Callable[[Lines], str]]] = [
+    ("`closecall run`, or your script with libsumo", attached),
+    (
+        "for comparison: SUMO's `device.ssm`, TTC alone",
+        lambda lines: f"{runs(lines, 'over plain', 'device.ssm')} times plain SUMO",
+    ),
+    (
+        "your script with traci",
+        lambda lines: (
+            f"{between([lines('over plain', scene, 'traci') for scene in ('grid', 'town')])} times the script alone"
+        ),
+    ),
+    ("frames from Python", frames),
+    ("`closecall replay`", replay),
+    ("`closecall stats` of ten million conflicts in Parquet", statistics),
+    ("`closecall sweep`", sweep),
+    (
+        "memory of an attached run",
+        lambda lines: (
+            f"{between([lines('held', scene, 'closecall') for scene in SCENARIOS], '.0f')} bytes per road user in the "
+            "scene; no more after a day than after an hour"
+        ),
+    ),
+    ("a net of a million lanes", net),
+]
