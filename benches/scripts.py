@@ -52,7 +52,7 @@ def frames(path: Path) -> float:
     x, y = x + ahead[0] * length / 2, y + ahead[1] * length / 2
     ids = [str(number) for number in range(len(rows))]
     times = []
-    checker = closecall.Checker(keep=0, threads=1)
+    checker = closecall.Checker(keep=0)
     for number, moved in enumerate(TIMES * ROUNDS):
         frame = {
             "id": ids,

@@ -14,11 +14,19 @@ use crate::rows::{Rows, Sort};
 /// The road users in the scene.
 pub struct Frames {
     options: Options,
-    /// Each road user by its id, and the last step that it was in.
-    live: FxHashMap<String, (UserIndex, u64)>,
+    /// Each road user by its id.
+    live: FxHashMap<String, LiveUser>,
     /// The types of the persons in the first step, whose length is not known before the second.
     early_persons: Vec<ProfileIndex>,
-    steps: u64,
+    /// The number of this frame; those that are refused count.
+    number: u64,
+}
+
+/// A road user in the scene.
+struct LiveUser {
+    user: UserIndex,
+    /// The number of the last frame that it was in.
+    frame: u64,
 }
 
 /// The road user of a row.
@@ -30,7 +38,7 @@ enum Entry {
 
 impl Frames {
     pub fn new(options: &Options) -> Self {
-        Self { options: options.clone(), live: FxHashMap::default(), early_persons: Vec::new(), steps: 0 }
+        Self { options: options.clone(), live: FxHashMap::default(), early_persons: Vec::new(), number: 0 }
     }
 
     /// Begins a step with the rows of a frame.
@@ -41,7 +49,6 @@ impl Frames {
         }
         let entries = self.entries(run, time, rows)?;
         run.begin_step(time);
-        self.steps += 1;
         if let Some(length) = run.step_length() {
             self.early_persons.drain(..).for_each(|persons| run.roster.set_response(persons, length));
         }
@@ -54,36 +61,47 @@ impl Frames {
                     if is_person && run.step_length().is_none() {
                         self.early_persons.push(profile);
                     }
-                    run.enter(id, profile)
+                    self.enter(id, run.enter(id, profile))
                 }
-                Entry::Obstacle(outline) => run.enter_shape(id, "obstacle", &outline).map_err(exception)?,
+                Entry::Obstacle(outline) => {
+                    self.enter(id, run.enter_shape(id, "obstacle", &outline).map_err(exception)?)
+                }
             };
-            self.live.insert(id.clone(), (user, self.steps));
             let stands = run.roster.profile_of(user).category == Category::Obstacle;
             run.frame.push(user, if stands { State { speed: 0.0, ..*state } } else { *state });
         }
-        let steps = self.steps;
-        self.live.retain(|_, (user, seen)| {
-            if *seen != steps {
+        self.live.retain(|_, LiveUser { user, frame }| {
+            let is_there = *frame == self.number;
+            if !is_there {
                 run.leave(*user);
             }
-            *seen == steps
+            is_there
         });
         Ok(())
     }
 
-    /// The road user of each row; nothing is changed yet.
-    fn entries(&self, run: &Run, time: f64, rows: &Rows) -> PyResult<Vec<Entry>> {
-        let mut seen = FxHashSet::default();
+    fn enter(&mut self, id: &str, user: UserIndex) -> UserIndex {
+        self.live.insert(id.to_owned(), LiveUser { user, frame: self.number });
+        user
+    }
+
+    /// The road user of each row; the scene is not changed yet.
+    fn entries(&mut self, run: &Run, time: f64, rows: &Rows) -> PyResult<Vec<Entry>> {
+        self.number += 1;
+        let mut new = FxHashSet::default();
         let step_length = run.step_length().or_else(|| Some(time - run.time()?));
         let mut entries = Vec::with_capacity(rows.ids.len());
         for (row, id) in rows.ids.iter().enumerate() {
-            if !seen.insert(id) {
+            let (known, is_new_here) = match self.live.get_mut(&**id) {
+                Some(known) => (Some(known.user), std::mem::replace(&mut known.frame, self.number) != self.number),
+                None => (None, new.insert(&**id)),
+            };
+            if !is_new_here {
                 return Err(PyValueError::new_err(format!("\"{id}\" is there twice")));
             }
             rows.states[row].check().map_err(|why| PyValueError::new_err(format!("\"{id}\": {why}")))?;
-            entries.push(match self.live.get(id) {
-                Some((user, _)) => Entry::Known(*user),
+            entries.push(match known {
+                Some(user) => Entry::Known(user),
                 None => self.new_entry(rows, row, step_length)?,
             });
         }

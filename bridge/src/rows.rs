@@ -4,6 +4,7 @@ use closecall::State;
 use numpy::ndarray::Ix1;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedStr;
 
 use crate::numbers::{numbers, refuse_masked};
 
@@ -24,7 +25,7 @@ const SORTS: [(&str, Sort); 4] =
 
 /// The rows of a frame.
 pub struct Rows {
-    pub ids: Vec<String>,
+    pub ids: Vec<PyBackedStr>,
     pub sorts: Vec<Sort>,
     pub states: Vec<State>,
     /// None where the frame lacks the column.
@@ -69,7 +70,7 @@ impl Rows {
 struct Columns<'py> {
     states: Bound<'py, PyAny>,
     /// None where the mapping does not tell.
-    names: Option<Vec<String>>,
+    names: Option<Vec<PyBackedStr>>,
     length: usize,
     read: Vec<(&'static str, Bound<'py, PyAny>)>,
 }
@@ -77,7 +78,7 @@ struct Columns<'py> {
 impl<'py> Columns<'py> {
     fn has(&self, name: &str) -> PyResult<bool> {
         match &self.names {
-            Some(names) => Ok(names.iter().any(|known| known == name)),
+            Some(names) => Ok(names.iter().any(|known| **known == *name)),
             None => self.states.contains(name),
         }
     }
@@ -124,14 +125,14 @@ impl<'py> Columns<'py> {
     }
 }
 
-/// The values of a column as texts.
-fn texts(column: &Bound<PyAny>) -> PyResult<Vec<String>> {
-    column.try_iter()?.map(|text| Ok(text?.str()?.to_string())).collect()
+/// The values of a column as texts, which stay in Python's memory.
+fn texts(column: &Bound<PyAny>) -> PyResult<Vec<PyBackedStr>> {
+    column.try_iter()?.map(|text| text?.str()?.try_into()).collect()
 }
 
 fn sorts(column: &Bound<PyAny>) -> PyResult<Vec<Sort>> {
-    let sort = |text: &String| {
-        let known = SORTS.iter().find(|(name, _)| name == text).map(|(_, sort)| *sort);
+    let sort = |text: &PyBackedStr| {
+        let known = SORTS.iter().find(|(name, _)| **text == **name).map(|(_, sort)| *sort);
         let message = || format!("category is \"{text}\": vehicle, bicycle, person or obstacle");
         known.ok_or_else(|| PyValueError::new_err(message()))
     };
@@ -139,7 +140,7 @@ fn sorts(column: &Bound<PyAny>) -> PyResult<Vec<Sort>> {
 }
 
 /// The names of the columns, if the mapping tells them; one that is not known is refused, as it is most likely misspelt.
-fn names(states: &Bound<PyAny>) -> PyResult<Option<Vec<String>>> {
+fn names(states: &Bound<PyAny>) -> PyResult<Option<Vec<PyBackedStr>>> {
     // A mapping and a table of pandas have keys, a table of Polars has columns, an array of NumPy's structures neither.
     let names = match (states.getattr_opt("keys")?, states.getattr_opt("columns")?, states.getattr_opt("dtype")?) {
         (Some(keys), ..) => keys.call0()?,
@@ -149,7 +150,7 @@ fn names(states: &Bound<PyAny>) -> PyResult<Option<Vec<String>>> {
     };
     let names = texts(&names)?;
     for name in &names {
-        if !COLUMNS.contains(&name.as_str()) {
+        if !COLUMNS.contains(&&**name) {
             let alike = |known: &&str| strsim::jaro_winkler(known, name);
             let nearest = COLUMNS.iter().max_by(|a, b| alike(a).total_cmp(&alike(b)));
             let message = format!("unknown column \"{name}\"; did you mean \"{}\"?", nearest.unwrap_or(&"id"));
