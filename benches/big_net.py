@@ -2,8 +2,9 @@
 
     python benches/big_net.py [--junctions N]
 
-netgenerate makes a grid of N by N junctions with two lanes per direction; 178 by 178 have over a million lanes, those within
-junctions included. One car drives for ten steps, so that nearly all of the time is the loading of the net.
+netgenerate makes a grid of N by N junctions with two lanes per direction: 57 by 57 have 100,000 lanes, those within
+junctions included; 178 by 178 have a million. One car drives for ten steps, so that nearly all of the time is the
+loading of the net.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ FIRST_EDGE = re.compile(r'<edge id="([^:"]+)"')
 def main() -> None:
     """Print time and memory of both."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--junctions", type=int, default=178)
+    parser.add_argument("--junctions", type=int, default=57)
     junctions = parser.parse_args().junctions
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory(dir="target") as name:

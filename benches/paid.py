@@ -61,8 +61,8 @@ def net(lines: Lines) -> str:
         [lines(what, "big net", method) for method in ("SUMO", "closecall")] for what in ("loading", "memory")
     )
     return (
-        f"{time[1] - time[0]:.0f} s more than SUMO's {time[0]:.0f} s, "
-        f"{(memory[1] - memory[0]) / 1e3:.1f} GB more than SUMO's {memory[0] / 1e3:.1f} GB"
+        f"{time[1] - time[0]:.1f} s more than SUMO's {time[0]:.1f} s, "
+        f"{memory[1] - memory[0]:.0f} MB more than SUMO's {memory[0]:.0f} MB"
     )
 
 
@@ -89,5 +89,5 @@ PAID: list[tuple[str, Callable[[Lines], str]]] = [
             "scene; no more after a day than after an hour"
         ),
     ),
-    ("a net of a million lanes", net),
+    ("a net of 100,000 lanes", net),
 ]
