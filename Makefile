@@ -97,6 +97,9 @@ bench: $(VENV)/wheel $(VENV)/benches ## what the checker costs: each goal with i
 	cargo bench --bench replay > $(PARTS)/replay.csv
 	$(BIN)/python benches/threads.py > $(PARTS)/threads.csv
 	$(BIN)/python benches/stats.py > $(PARTS)/stats.csv
+	$(BIN)/python benches/scripts.py target/bench/scenes > $(PARTS)/scripts.csv
+	$(BIN)/python benches/sweeps.py > $(PARTS)/sweeps.csv
+	$(BIN)/python benches/big_net.py > $(PARTS)/big_net.csv
 	$(BIN)/python benches/memory.py > $(PARTS)/attached_memory.csv
 	cargo bench --bench memory > $(PARTS)/day.csv
 	$(BIN)/python benches/table.py target/bench $(BENCH)
