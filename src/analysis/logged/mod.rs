@@ -6,12 +6,18 @@
 mod csv;
 mod folders;
 #[cfg(feature = "parquet")]
+mod group_column;
+#[cfg(feature = "parquet")]
 mod pack;
+#[cfg(feature = "parquet")]
+mod packed;
 #[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(not(feature = "parquet"))]
 #[path = "no_parquet.rs"]
 mod parquet;
+#[cfg(not(feature = "parquet"))]
+use parquet as packed;
 mod possible;
 mod reader;
 mod reading;
@@ -22,7 +28,7 @@ pub use folders::{PARQUET, SUMMARY, check_keeps_logs, log_folders};
 #[cfg(feature = "parquet")]
 pub use pack::{Label, LabelValue, pack, pack_in_place};
 #[cfg(feature = "parquet")]
-pub use parquet::{Packed, RunTime};
+pub use packed::{Packed, RunTime};
 pub use reader::{ConflictReader, LostRows, check_none_lost};
 pub use reading::{Progress, Reading};
 pub use run::{LoggedRun, record};

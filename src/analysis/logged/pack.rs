@@ -11,7 +11,7 @@ use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::TypePtr;
 use serde::{Deserialize, Serialize};
 
-use super::parquet::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest};
+use super::packed::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest};
 use super::reader::{self, ConflictReader};
 use super::run::record;
 use crate::output::input_hash::Hasher;

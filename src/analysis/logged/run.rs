@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use super::folders::PARQUET;
-use super::parquet::Packed;
+use super::packed::Packed;
 use crate::output::input_hash::Input;
 use crate::output::log::RUN;
 use crate::output::summary::Summary;
