@@ -7,7 +7,7 @@ faster than libsumo.
 
 Times are those of whole processes, start-up included. Each run is compared with a plain run beside it: the two run in
 alternate slices of 50 ms, so that whatever slows the machine down slows both. The figure is the median over N pairs,
-over half as many for the program, and over a third for the slow device.ssm. In twelve pairs of plain runs the two
+over a third as many for the program and for the slow device.ssm. In twelve pairs of plain runs the two
 differed by 2 % in the median and 13 % at worst.
 """
 
@@ -77,7 +77,7 @@ def in_turns(*commands: list[str]) -> list[float]:
 def main() -> None:
     """Print one line per scenario and comparison."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--runs", type=int, default=5)
+    parser.add_argument("--runs", type=int, default=3)
     parser.add_argument(
         "configs", metavar="CONFIG", nargs="*", type=Path, help="SUMO configurations to measure instead of the bench's"
     )
@@ -91,7 +91,7 @@ def main() -> None:
             alone, checked = plain(config), attached(config, folder / "out")
             comparisons = [
                 ("over plain", "closecall", alone, checked, runs),
-                ("over program", "closecall", program(config), checked, (runs + 1) // 2),
+                ("over program", "closecall", program(config), checked, (runs + 2) // 3),
                 ("over plain", "device.ssm", alone, ssm(config, folder / "ssm.xml"), (runs + 2) // 3),
             ]
             for what, method, base, command, turns in comparisons:

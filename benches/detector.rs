@@ -27,16 +27,16 @@ const LARGE: usize = 100_000;
 
 /// Turns of each method. Other load on the machine comes and goes for seconds at a time, so a time is the least of all
 /// turns, and a ratio the median of those within a turn.
-const TURNS: usize = 5;
+const TURNS: usize = 3;
 
 /// The same with more than [`LARGE`] road users.
-const TURNS_OF_LARGE: usize = 2;
+const TURNS_OF_LARGE: usize = 1;
 
 /// The cores are kept busy for this long before each turn, in s.
 const WAKING: f64 = 0.5;
 
 /// All pairs take long, so they take part in the first turns only.
-const TURNS_OF_ALL_PAIRS: usize = 3;
+const TURNS_OF_ALL_PAIRS: usize = 1;
 
 /// The times of one method, in s.
 struct Times {

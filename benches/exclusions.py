@@ -51,8 +51,8 @@ def main() -> None:
     """Print a row per exclusion and scene."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--runs", type=int, default=2)
-    parser.add_argument("--town", type=float, default=60, help="end of the town, in s")
-    parser.add_argument("--motorway", type=float, default=120, help="end of the motorway, in s")
+    parser.add_argument("--town", type=float, default=40, help="end of the town, in s")
+    parser.add_argument("--motorway", type=float, default=60, help="end of the motorway, in s")
     options = parser.parse_args()
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory() as name:

@@ -104,6 +104,12 @@ def cheaper(lines: Lines, scenario: str) -> float:
     return ssm / closecall if closecall > 0 else math.inf
 
 
+def reading(lines: Lines, scene: str) -> float:
+    """The time of a step with a frame over the same time without reading the frame."""
+    step, read = (lines("step", scene, method, 10**4) for method in ("frames", "frames read"))
+    return step / (step - read)
+
+
 def peaks(lines: Lines) -> dict[str, float]:
     """The peak memory of the replay of the largest recording over that of the smallest."""
     sizes = sorted(
@@ -210,10 +216,8 @@ GOALS = [
         at_least=0.8,
     ),
     Goal(
-        "frames from Python over the detector alone, 10⁴ road users",
-        lambda lines: {
-            scene: lines("step", scene, "frames", 10**4) / lines("step", scene, "closecall", 10**4) for scene in SCENES
-        },
+        "step with a frame from Python over the same without reading the frame, 10⁴ road users",
+        lambda lines: {scene: reading(lines, scene) for scene in SCENES},
         at_most=1.5,
     ),
     of_statistics("statistics of 10⁷ conflicts in Parquet, s", "statistics", at_most=5, form=".1f"),

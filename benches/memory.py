@@ -4,9 +4,9 @@
 
 Before every step of the same simulation, with the checker and without, the system's allocator reports the bytes in use.
 The figure is the growth of the difference, per road user, from the first step with a tenth of the maximal number of
-road users to the step with the maximum, so that the program and the net cancel out. Both simulations run five times and
-the median counts, because SUMO alone holds up to 50 kB less with other addresses. Python's allocator is off, so that
-its blocks count too, and so is glibc's per-thread cache, whose free blocks would count as in use. Needs glibc.
+road users to the step with the maximum, so that the program and the net cancel out. Both simulations run three times
+and the median counts, because SUMO alone holds up to 50 kB less with other addresses. Python's allocator is off, so
+that its blocks count too, and so is glibc's per-thread cache, whose free blocks would count as in use. Needs glibc.
 """
 
 from __future__ import annotations
@@ -48,8 +48,8 @@ def sample() -> None:
 
 
 def median(command: list[str], folder: Path) -> list[tuple[int, float]]:
-    """Road users and bytes before every step: the median of five runs."""
-    runs = [samples(command, folder) for _ in range(5)]
+    """Road users and bytes before every step: the median of three runs."""
+    runs = [samples(command, folder) for _ in range(3)]
     return [(step[0][0], statistics.median(held for _, held in step)) for step in zip(*runs)]
 
 

@@ -69,7 +69,7 @@ fn all(large: f64) {
     }
 }
 
-/// Replays a recording of about this size in five processes and prints the least of their peak memories: that of one
+/// Replays a recording of about this size in three processes and prints the least of their peak memories: that of one
 /// recording varies by 0.5 MB.
 fn peak(net: &Path, path: &Path, megabytes: f64) {
     write_recording(path, 100.0, 10, false);
@@ -83,7 +83,7 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
         assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
         String::from_utf8(ended.stdout).unwrap().trim().parse::<f64>().unwrap()
     };
-    let least = (0..5).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
+    let least = (0..3).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
     println!("peak,{megabytes} MB,{},,{:.2},MB", name(path), least / 1e3);
     std::fs::remove_file(path).unwrap();
 }

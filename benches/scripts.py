@@ -3,8 +3,8 @@
     python benches/scripts.py FOLDER
 
 FOLDER contains the scenes of benches/detector.rs (`cargo bench --bench detector -- --scenes FOLDER`), whose road users
-go to and fro in the same steps here. A figure is the median of the steps. traci's scripts run to the end of the grid
-and of the town, with a checker and without, three times each in turns; a figure is the median of the pairs' ratios.
+go to and fro in the same steps here. A figure is the median of the steps. Reading a frame is what one takes that is
+refused at its last row. traci's scripts run to the end of the grid and of the town, with a checker and without.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import closecall
@@ -24,7 +25,6 @@ from scenarios import end, grid
 TIMES = [0.0, 0.1, 0.2, 0.3, 0.2, 0.1]
 """Times of the steps in s, to and fro, as in benches/scenes/mod.rs."""
 ROUNDS = 10
-PAIRS = 3
 
 TRACI = """
 import sys, traci
@@ -41,8 +41,8 @@ traci.close()
 """
 
 
-def frames(path: Path) -> float:
-    """The time of a step with a frame, in s."""
+def frames(path: Path) -> tuple[float, float]:
+    """The time of a step with a frame, and of reading the frame alone, in s."""
     with path.open() as file:
         rows = list(csv.DictReader(file))
     x, y, heading, length, speed = (
@@ -51,7 +51,7 @@ def frames(path: Path) -> float:
     ahead = np.cos(heading), np.sin(heading)
     x, y = x + ahead[0] * length / 2, y + ahead[1] * length / 2
     ids = [str(number) for number in range(len(rows))]
-    times = []
+    steps, refusals = [], []
     checker = closecall.Checker(keep=0)
     for number, moved in enumerate(TIMES * ROUNDS):
         frame = {
@@ -63,9 +63,13 @@ def frames(path: Path) -> float:
         }
         started = time.perf_counter()
         checker.step(number * 0.1, frame)
-        times.append(time.perf_counter() - started)
+        ended = time.perf_counter()
+        with suppress(ValueError):
+            checker.step(number * 0.1 + 0.01, {**frame, "id": [*ids[:-1], ids[0]]})
+        steps.append(ended - started)
+        refusals.append(time.perf_counter() - ended)
     checker.close()
-    return statistics.median(times)
+    return statistics.median(steps), statistics.median(refusals)
 
 
 def seconds(config: Path, how: str) -> float:
@@ -80,11 +84,11 @@ def main() -> None:
     print("what,scene,method,size,value,unit")
     for path in sorted(Path(sys.argv[1]).glob("*-*.csv")):
         scene, size = path.stem.split("-")
-        print(f"step,{scene},frames,{size},{frames(path) / int(size) * 1e9:.1f},ns per road user", flush=True)
+        for method, taken in zip(("frames", "frames read"), frames(path)):
+            print(f"step,{scene},{method},{size},{taken / int(size) * 1e9:.1f},ns per road user", flush=True)
     with tempfile.TemporaryDirectory() as folder:
         for scene, config in {"grid": grid(Path(folder)), "town": Path("sumo_nets/town/town.sumocfg")}.items():
-            pairs = [(seconds(config, "alone"), seconds(config, "checked")) for _ in range(PAIRS)]
-            ratio = statistics.median(checked / alone for alone, checked in pairs)
+            ratio = seconds(config, "checked") / seconds(config, "alone")
             print(f"over plain,{scene},traci,{end(config)},{ratio:.3f},times", flush=True)
 
 

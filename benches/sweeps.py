@@ -32,7 +32,7 @@ def seconds(*words: str) -> float:
 def main() -> None:
     """Print the overhead of a run and the gain of two workers."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--runs", type=int, default=60)
+    parser.add_argument("--runs", type=int, default=40)
     runs = parser.parse_args().runs
     print("what,scene,method,size,value,unit")
     with tempfile.TemporaryDirectory() as name:

@@ -2,7 +2,7 @@
 
     python benches/threads.py
 
-Wall times of `closecall replay` on recordings of the town and of the grid, in turns; the best of three.
+Wall times of `closecall replay` on recordings of the town and of the grid, in turns; the better of two.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from pathlib import Path
 import sumo
 from scenarios import BIN, end, grid
 
-ROUNDS = 3
+ROUNDS = 2
 
 
 def recording(config: Path, path: Path) -> None:
