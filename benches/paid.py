@@ -50,9 +50,13 @@ def statistics(lines: Lines) -> str:
 
 
 def sweep(lines: Lines) -> str:
-    """What a sweep adds to its runs."""
-    overhead, gain = (lines(what, "left_turn", "sweep") for what in ("overhead of a run", "gain of two workers"))
-    return f"{overhead:.0f} ms per run more than the runs alone; two workers are {gain:.2f} times as fast as one"
+    """What a run takes alone and in a sweep."""
+    what = ("run alone", "overhead of a run", "gain of two workers")
+    alone, overhead, gain = (lines(each, "left_turn", "sweep") for each in what)
+    return (
+        f"a run of {alone:.0f} ms takes {alone + overhead:.0f} ms in a sweep with one worker; "
+        f"two workers are {gain:.2f} times as fast as one"
+    )
 
 
 def net(lines: Lines) -> str:
