@@ -10,12 +10,10 @@ from __future__ import annotations
 
 import argparse
 import statistics
-import subprocess
 import tempfile
-import time
 from pathlib import Path
 
-from scenarios import BIN
+from scenarios import BIN, measured
 
 CONFIG = "sumo_nets/left_turn/left_turn.sumocfg"
 END = ["--end", "60"]
@@ -24,9 +22,7 @@ ALONE = 15
 
 def seconds(*words: str) -> float:
     """The wall time of a command of closecall."""
-    started = time.perf_counter()
-    subprocess.run([str(BIN / "closecall"), *words], check=True, stdout=subprocess.DEVNULL)
-    return time.perf_counter() - started
+    return measured([str(BIN / "closecall"), *words])[0]
 
 
 def main() -> None:

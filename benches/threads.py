@@ -11,11 +11,10 @@ import gzip
 import shutil
 import subprocess
 import tempfile
-import time
 from pathlib import Path
 
 import sumo
-from scenarios import BIN, end, grid
+from scenarios import BIN, end, grid, measured
 
 ROUNDS = 2
 
@@ -27,13 +26,6 @@ def recording(config: Path, path: Path) -> None:
     subprocess.run([program, *words, "--fcd-output", str(path)], check=True)
     with path.open("rb") as plain, gzip.open(f"{path}.gz", "wb", compresslevel=6) as packed:
         shutil.copyfileobj(plain, packed)
-
-
-def seconds(command: list[str]) -> float:
-    """The wall time of a command."""
-    started = time.perf_counter()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    return time.perf_counter() - started
 
 
 def main() -> None:
@@ -55,7 +47,7 @@ def main() -> None:
             }
             best = dict.fromkeys(commands, float("inf"))
             for _ in range(ROUNDS):
-                best = {method: min(best[method], seconds(command)) for method, command in commands.items()}
+                best = {method: min(best[method], measured(command)[0]) for method, command in commands.items()}
             gain, packed = (best["1 thread"] / best["2 threads"], best["2 threads"] / best["2 threads, gzipped"])
             print(f"gain of two threads,{scene},replay,,{gain:.3f},times")
             print(f"gzipped over plain,{scene},replay,,{packed:.3f},times", flush=True)

@@ -92,14 +92,14 @@ def test_columns_tell_what_a_table_of_no_layout_holds(kind: str, tmp_path: Path)
         )
         for row in reversed(scene)
     ]
-    names = "who,when,east,north,compass,kmh,l,w,what"
+    names = "name,when,east,north,compass,kmh,l,w,what"
     file = tmp_path / "own.csv"
     layouts.write(file, names, cells)
     if kind == "parquet":
         polars = pytest.importorskip("polars")
         file = tmp_path / "own.parquet"
         polars.read_csv(tmp_path / "own.csv").write_parquet(file, compression="snappy")
-    columns = "id=who,time=when,x=east,y=north,heading=compass[north],speed=kmh[km/h],length=l,width=w,class=what"
+    columns = "id=name,time=when,x=east,y=north,heading=compass[north],speed=kmh[km/h],length=l,width=w,class=what"
     same(replayed(file, tmp_path / "out", "--columns", columns, "--origin", "front"), expected, 1e-4)
 
 
