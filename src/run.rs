@@ -72,6 +72,7 @@ pub struct Run {
     /// Placements asked for so far.
     lane_lookups: u64,
     contact_tolerance: Metre,
+    counts_artefacts: bool,
     /// Settings of single types: as the options name the type, and as the roster does.
     type_settings: Vec<(String, String)>,
     /// How long a step lasts: as the source says, or else the time between the first two steps.
@@ -115,6 +116,7 @@ impl Run {
             collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
             contact_tolerance: options.contact_tolerance,
+            counts_artefacts: options.artefacts,
             type_settings: type_settings(options),
             step_length: None,
             summary: Summary::default(),

@@ -38,7 +38,7 @@ impl LaneChange {
 }
 
 /// The lanes of a road user from behind its rear to beyond where it can stop, and how it drives along them.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Course {
     /// The lanes in driving order; empty where they are not known.
     pub stretches: SmallVec<[Stretch; 6]>,
@@ -52,6 +52,22 @@ pub struct Course {
     pub lateral_speed: MetrePerSecond,
     /// How hard it brakes now; 0 or more.
     pub deceleration: MetrePerSecondSquared,
+    /// How long ago its speed fell by more than brakes can do within a step; infinite where it never did.
+    pub since_impossible_stop: Second,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Self {
+            stretches: SmallVec::new(),
+            is_against: false,
+            has_jumped: false,
+            change: None,
+            lateral_speed: 0.0,
+            deceleration: 0.0,
+            since_impossible_stop: Second::INFINITY,
+        }
+    }
 }
 
 impl Course {

@@ -1,6 +1,7 @@
 //! The result of the detector in one step: pairs with a conflict point, and their measures.
 
-use super::kind::{Kind, Severity};
+use super::kind::Kind;
+use super::severity::Assessment;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
@@ -71,8 +72,8 @@ pub struct Nearness {
     pub crash_probability_braking: f64,
     /// The larger ΔV of both if each brakes until they touch; none if the two would not touch.
     pub extended_delta_v: Option<MetrePerSecond>,
-    /// Severity by the values above.
-    pub severity: Severity,
+    /// How severe it is by the values above, and by how the two brake.
+    pub assessment: Assessment,
 }
 
 impl Encounter {

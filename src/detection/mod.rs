@@ -12,4 +12,5 @@ pub mod kind;
 pub mod measures;
 pub mod narrow_phase;
 pub mod path;
+pub mod severity;
 mod step_values;

@@ -1,5 +1,6 @@
 //! An open conflict in its last step.
 
+use super::why::Artefact;
 use crate::detection::encounter::Nearness;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
@@ -24,6 +25,8 @@ pub struct Alarm {
     pub foe: UserIndex,
     /// The severity in that step.
     pub severity: Severity,
+    /// What the conflict is so far, if it is none of traffic's.
+    pub artefact: Option<Artefact>,
     /// The kind in that step.
     pub kind: Kind,
     /// The ego's front at the conflict point of that step, or that of its carriage that touches.

@@ -66,8 +66,8 @@ pub(super) struct FirstContact {
     pub time: Second,
     pub fronts: [Point; 2],
     pub speeds: [MetrePerSecond; 2],
-    /// The larger ΔV of both.
-    pub delta_v: MetrePerSecond,
+    /// The ΔV of both.
+    pub delta_v: [MetrePerSecond; 2],
 }
 
 impl Between<'_> {
@@ -146,9 +146,13 @@ impl<'a> Leg<'a> {
         let rectangles = [0, 1].map(|one| self.rectangle(one, part));
         let angle = angle_between(&rectangles[0].axis, &rectangles[1].axis);
         let [one, other] = [0, 1].map(|one| (speeds[one], self.profiles[one].mass));
-        let [ego, foe] = measures::delta_v(one, other, angle);
         let fronts = rectangles.map(|rectangle| rectangle.centre + rectangle.axis * rectangle.half_length);
-        FirstContact { time: between([self.from.0, self.to.0], part), fronts, speeds, delta_v: ego.max(foe) }
+        FirstContact {
+            time: between([self.from.0, self.to.0], part),
+            fronts,
+            speeds,
+            delta_v: measures::delta_v(one, other, angle),
+        }
     }
 
     /// By how much their distance can change.
@@ -227,7 +231,7 @@ mod tests {
         // The second's front reaches y = −1 at 0.55 s; 10 cm of overlap take another 5 ms.
         assert!((time - 10.555).abs() < 1e-4, "{time}");
         assert!((fronts[0].x - 1.1).abs() < 1e-3 && speeds == [20.0, 20.0]);
-        assert!((delta_v - 20.0 / 2.0_f64.sqrt()).abs() < 1e-6 && found.clearance == 0.0 && found.overlap > 1.0);
+        assert!((delta_v[0] - 20.0 / 2.0_f64.sqrt()).abs() < 1e-6 && found.clearance == 0.0 && found.overlap > 1.0);
     }
 
     #[test]

@@ -6,12 +6,14 @@ use serde::Serialize;
 use super::Snapshot;
 use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
-use super::why::{Causes, Manoeuvre, Why};
+use super::why::{Artefact, Causes, Manoeuvre, Why};
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::Pet;
+use crate::detection::severity::{Assessment, Consequence, LIKELY_CLEARANCE, LIKELY_PET, NearnessLevel};
 use crate::options::measures::{ChosenMeasure, ChosenValues};
+use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -38,6 +40,12 @@ pub struct Conflict {
     pub kind: Kind,
     /// The worst over the event.
     pub severity: Severity,
+    /// How near to a crash it was, where it was most severe.
+    pub nearness: NearnessLevel,
+    /// What a crash would have meant there.
+    pub consequence: Consequence,
+    /// What it is if it is none of traffic's; none where it is.
+    pub artefact: Option<Artefact>,
     /// First step that meets the log's condition, in s.
     pub begin: Second,
     /// Last step that meets it, in s.
@@ -125,11 +133,15 @@ pub struct Conflict {
 
 impl Conflict {
     /// The event so far, of two road users that are still in the roster, and its PET.
-    pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster) -> Self {
+    pub(super) fn of(extremes: &Extremes, pet: Option<Pet>, roster: &Roster, rule: SeverityThresholds) -> Self {
         let Extremes {
             begin,
             end,
-            severity,
+            last: _,
+            assessed: _,
+            of_traffic: _,
+            artefact: _,
+            passed_at,
             collision,
             collision_sumo,
             overlap,
@@ -157,6 +169,13 @@ impl Conflict {
             measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle);
         let injury_probability =
             injury_probability(kind, Body::of(ego_type, ego_delta_v), Body::of(foe_type, foe_delta_v));
+        let (mut assessment, artefact) = extremes.verdict();
+        let crosses = !matches!(manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
+        if kind == Kind::Side && crosses && artefact.is_none() {
+            let is_near = pet.is_some_and(|pet| pet.lasts < LIKELY_PET) || passed_at < LIKELY_CLEARANCE;
+            assessment = if is_near { assessment.at_least(NearnessLevel::Likely, rule) } else { assessment };
+        }
+        let Assessment { severity, nearness, consequence } = assessment;
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),
@@ -165,6 +184,9 @@ impl Conflict {
             foe_profile: roster.type_of(foe),
             kind,
             severity,
+            nearness,
+            consequence,
+            artefact,
             begin,
             end,
             time,

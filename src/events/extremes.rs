@@ -1,14 +1,18 @@
 //! The state of an event: the step with the smallest margin, and the extremes of all steps so far.
 
+use std::cell::LazyCell;
+
 use super::between::{Closest, FirstContact};
 use super::chosen_measures::{ChosenMeasures, Step};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
-use super::why::{STANDS, Surroundings, Why};
+use super::why::{Artefact, Pair, STANDS, Surroundings, Why, one_will_wait};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
+use crate::detection::severity::{AT_SPEED, Assessment, Consequence, NearnessLevel};
 use crate::options::measures::ChosenValues;
+use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::profile::Category;
@@ -17,6 +21,11 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
 const SAME_MARGIN: Metre = 1e-9;
+
+/// A slower vehicle does not pass another, it creeps, in m/s.
+const DRIVES: MetrePerSecond = 3.0;
+/// A slower person stands and waits, in m/s.
+const WALKS: MetrePerSecond = 0.5;
 
 /// One step of a pair.
 #[derive(Clone, Copy)]
@@ -30,6 +39,7 @@ pub(super) struct Observation<'a> {
     pub lasted: Second,
     pub around: Surroundings<'a>,
     pub past: &'a Past,
+    pub rule: SeverityThresholds,
 }
 
 /// The extremes so far; [`super::Conflict`] describes the values.
@@ -37,12 +47,21 @@ pub(super) struct Observation<'a> {
 pub(super) struct Extremes {
     pub begin: Second,
     pub end: Second,
-    pub severity: Severity,
+    /// The last step.
+    pub last: Assessment,
+    /// The worst of all steps.
+    pub assessed: Assessment,
+    /// The worst of the steps that are traffic; none where none is.
+    pub of_traffic: Option<Assessment>,
+    /// What the worst of the other steps is.
+    pub artefact: Option<Artefact>,
     pub collision: bool,
     pub overlap: Metre,
     /// Whether SUMO reported a collision of the two; none where it is not known what SUMO reports.
     pub collision_sumo: Option<bool>,
     pub clearance: Metre,
+    /// The smallest clearance in steps in which both cross each other's path at speed; infinite where there is none.
+    pub passed_at: Metre,
     pub ttc: Option<Second>,
     pub drac: Option<MetrePerSecondSquared>,
     pub unavoidable: bool,
@@ -83,9 +102,37 @@ pub(super) struct WorstStep {
 }
 
 impl Observation<'_> {
-    /// The severity of this step.
-    pub fn severity(&self) -> Severity {
-        self.found.nearness.map_or(Severity::Caution, |near| near.severity)
+    /// How severe this step is, in which one of the two may have to wait.
+    fn assessment(&self, pair: &Pair) -> Assessment {
+        let foreseen = self.foreseen();
+        let waits = foreseen.nearness > NearnessLevel::Possible && !self.found.collision && one_will_wait(pair);
+        if waits { foreseen.of_one_that_waits(self.rule) } else { foreseen }
+    }
+
+    /// How severe this step is as both drive now.
+    fn foreseen(&self) -> Assessment {
+        const NONE: Assessment = Assessment {
+            severity: Severity::Caution,
+            nearness: NearnessLevel::Possible,
+            consequence: Consequence::Minor,
+        };
+        self.found.nearness.map_or(NONE, |near| near.assessment)
+    }
+
+    /// The clearance, if both cross each other's path at speed.
+    fn passed_at(&self) -> Metre {
+        let speeds = [self.found.ego_row, self.found.foe_row].map(|row| self.frame.state(row).speed);
+        let both_move = [self.found.ego, self.found.foe].into_iter().zip(speeds).all(|(user, speed)| {
+            let is_vehicle = self.roster.profile_of(user).category == Category::Vehicle;
+            speed >= if is_vehicle { DRIVES } else { WALKS }
+        });
+        let (sin, cos) = self.found.angle.sin_cos();
+        let relative = (speeds[0] - speeds[1] * cos).hypot(speeds[1] * sin);
+        if self.found.kind == Kind::Side && both_move && relative >= AT_SPEED {
+            self.clearance()
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn clearance(&self) -> Metre {
@@ -128,8 +175,8 @@ impl Observation<'_> {
         self.chosen.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
     }
 
-    fn why(&self) -> Why {
-        Why::of((self.frame, self.roster, self.found), self.around, self.past)
+    fn pair(&self) -> Pair<'_> {
+        Pair::of((self.frame, self.roster, self.found), self.around, self.past)
     }
 
     /// The vehicles that stand and of which a stop would be a cause: of one that is followed it is its own.
@@ -164,14 +211,21 @@ impl Extremes {
     /// Those of a first step, with the paths of both or without.
     pub fn of(seen: &Observation, has_paths: bool) -> Self {
         let moment = |_| seen.moment();
+        let pair = seen.pair();
+        let assessed = seen.assessment(&pair);
+        let artefact = Artefact::of(&pair);
         Self {
             begin: seen.frame.time,
             end: seen.frame.time,
-            severity: seen.severity(),
+            last: assessed,
+            assessed,
+            of_traffic: Some(assessed).filter(|_| artefact.is_none()),
+            artefact,
             collision: seen.found.collision,
             overlap: seen.found.overlap,
             collision_sumo: None,
             clearance: seen.clearance(),
+            passed_at: seen.passed_at(),
             ttc: seen.ttc(),
             drac: seen.drac(),
             unavoidable: seen.is_unavoidable(),
@@ -183,29 +237,34 @@ impl Extremes {
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, has_paths),
             chosen: seen.chosen_step().map(|step| Box::new(ChosenMeasures::of(&step))),
-            why: seen.why(),
+            why: Why::of(&pair),
             standing: seen.standing(),
         }
     }
 
     /// Adds a later step of the same event.
     pub fn take(&mut self, seen: &Observation) {
+        let pair = LazyCell::new(|| seen.pair());
         // Of margins that differ by rounding only, the first is kept.
         let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN;
         if is_worst {
             self.worst = WorstStep::of(seen, true);
-            self.why = self.why.then(seen.why());
+            self.why = self.why.then(Why::of(&pair));
         } else if seen.found.kind != Kind::RearEnd {
             // Who enters a junction first, and on what light, may show only after the smallest margin.
-            self.why.causes.add(seen.why().causes.at_the_entry());
+            self.why.causes.add(Why::of(&pair).causes.at_the_entry());
         }
         if let (Some(chosen), Some(step)) = (&mut self.chosen, seen.chosen_step()) {
             chosen.take(&step, is_worst);
         }
         self.end = seen.frame.time;
         self.standing = seen.standing();
-        self.severity = self.severity.max(seen.severity());
+        let foreseen = seen.foreseen();
+        let now = if foreseen.nearness > NearnessLevel::Possible { seen.assessment(&pair) } else { foreseen };
+        self.last = now;
+        self.assess(now, || Artefact::of(&pair));
         self.clearance = self.clearance.min(seen.clearance());
+        self.passed_at = self.passed_at.min(seen.passed_at());
         self.collision |= seen.found.collision;
         self.overlap = self.overlap.max(seen.found.overlap);
         self.unavoidable |= seen.is_unavoidable();
@@ -229,17 +288,44 @@ impl Extremes {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
     }
 
-    /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair.
-    pub fn come_closer(&mut self, closest: &Closest, ego: usize) {
+    /// Takes how severe a step is, and what it is if it is none of traffic's: that is asked only where it matters.
+    fn assess(&mut self, now: Assessment, artefact: impl FnOnce() -> Option<Artefact>) {
+        if self.of_traffic.is_none_or(|known| now > known) {
+            match artefact() {
+                None => self.of_traffic = Some(now),
+                Some(artefact) if self.artefact.is_none() || now > self.assessed => self.artefact = Some(artefact),
+                Some(_) => {}
+            }
+        }
+        self.assessed = self.assessed.max(now);
+    }
+
+    /// How severe the event is, and what it is if it is none of traffic's. Of an event with steps of either kind those of
+    /// traffic count, if they are as severe as the others, or serious.
+    pub fn verdict(&self) -> (Assessment, Option<Artefact>) {
+        let counts = |of: &Assessment| of.severity >= self.assessed.severity.min(Severity::Serious);
+        match self.of_traffic.filter(counts) {
+            Some(assessment) => (assessment, None),
+            // A crash that SUMO reports is a crash.
+            None if self.collision_sumo == Some(true) => (self.assessed, None),
+            None => (self.assessed, self.artefact),
+        }
+    }
+
+    /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair, `assessed` how severe a
+    /// contact was, and what it is if it is none of traffic's.
+    pub fn come_closer(&mut self, closest: &Closest, ego: usize, assessed: Option<(Assessment, Option<Artefact>)>) {
         self.clearance = self.clearance.min(closest.clearance);
         self.overlap = self.overlap.max(closest.overlap);
         let Some(FirstContact { time, fronts, speeds, delta_v }) = closest.contact else { return };
         self.collision = true;
-        self.severity = Severity::Critical;
+        if let Some((assessment, artefact)) = assessed {
+            self.assess(assessment, || artefact);
+        }
         self.response_left = Some(0.0);
         self.ttb = Some(0.0);
         (self.crash_probability, self.crash_probability_braking) = (1.0, 1.0);
-        take_if(&mut self.extended_delta_v, Some(delta_v), f64::gt);
+        take_if(&mut self.extended_delta_v, Some(delta_v[0].max(delta_v[1])), f64::gt);
         if take_if(&mut self.ttc, Some(0.0), f64::lt) {
             self.found[0] = Some(Moment { time, x: fronts[ego].x, y: fronts[ego].y, speed: speeds[ego] });
         }

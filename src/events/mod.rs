@@ -28,4 +28,4 @@ pub use moment::Moment;
 pub use snapshot::Snapshot;
 pub use tracker::Tracker;
 pub use under_way::CLOSES_AFTER;
-pub use why::{Cause, Causes, Manoeuvre, Surroundings};
+pub use why::{Artefact, Cause, Causes, Manoeuvre, Surroundings};

@@ -3,6 +3,7 @@
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
 use crate::detection::measures::pet::Pet;
+use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::roster::Roster;
 use crate::util::units::Second;
 
@@ -46,11 +47,12 @@ impl Span {
     }
 
     /// The conflict so far, with the PET of its event.
-    pub fn conflict(&self, pet: Option<Pet>, roster: &Roster) -> Conflict {
-        Conflict { steps: self.steps.clone().unwrap_or_default(), ..Conflict::of(&self.extremes, pet, roster) }
+    pub fn conflict(&self, pet: Option<Pet>, roster: &Roster, rule: SeverityThresholds) -> Conflict {
+        Conflict { steps: self.steps.clone().unwrap_or_default(), ..Conflict::of(&self.extremes, pet, roster, rule) }
     }
 }
 
 fn step(seen: &Observation) -> Conflict {
-    Conflict::of(&Extremes::of(seen, false), None, seen.roster)
+    // What is seen of a passing is known only at its end.
+    Conflict::of(&Extremes::of(seen, false), None, seen.roster, SeverityThresholds::Levels)
 }

@@ -6,7 +6,7 @@ use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
-use super::under_way::{Event, Keeps, Pair, SevereEvent};
+use super::under_way::{Event, Keeps, Pair, Rules, SevereEvent};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Severity;
@@ -15,7 +15,7 @@ use crate::geometry::bisection::Bisection;
 use crate::options::Options;
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Metre, Radian, Second};
+use crate::util::units::{Radian, Second};
 
 /// Follows the pairs that meet the log's condition over the steps.
 #[derive(Debug)]
@@ -23,8 +23,7 @@ pub struct Tracker {
     /// Paths that meet at a smaller angle do not cross.
     crossing: Radian,
     keeps: Keeps,
-    /// Deeper overlaps are collisions.
-    contact_tolerance: Metre,
+    rules: Rules,
     past: Past,
     /// The time of the last step; not a number before the first.
     last_time: Second,
@@ -43,7 +42,11 @@ impl Tracker {
         Self {
             crossing: options.kind_bounds().rear_end_below,
             keeps: Keeps { met: options.log.needs_pet(), steps: options.series_file().is_some() },
-            contact_tolerance: options.contact_tolerance,
+            rules: Rules {
+                contact_tolerance: options.contact_tolerance,
+                severity: options.severity_thresholds(),
+                counts_artefacts: options.artefacts,
+            },
             past: Past::default(),
             last_time: Second::NAN,
             events: Vec::new(),
@@ -74,7 +77,8 @@ impl Tracker {
             for found in encounters.filter(|found| found.may_be_logged()) {
                 let chosen = (around.chosen)(found);
                 let chosen = chosen.as_deref();
-                self.take(&Observation { frame, roster, found, chosen, lasted, around, past: &past });
+                let rule = self.rules.severity;
+                self.take(&Observation { frame, roster, found, chosen, lasted, around, past: &past, rule });
             }
             self.past = past;
             if let Some(collided) = collided {
@@ -119,12 +123,18 @@ impl Tracker {
 
     /// The open conflicts, in no particular order; without pairs that are only followed for their PET.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
-        self.events.iter().filter_map(|event| event.alarm)
+        self.alarms_of(&self.events)
     }
 
     /// The conflicts that are over and wait for their PET, as in their last step, in no particular order.
     pub fn waiting(&self) -> impl Iterator<Item = Alarm> {
-        self.waiting.iter().filter_map(|event| event.alarm)
+        self.alarms_of(&self.waiting)
+    }
+
+    #[expect(clippy::vec_box, reason = "as above")]
+    fn alarms_of<'a>(&'a self, events: &'a Vec<Box<Event>>) -> impl Iterator<Item = Alarm> + 'a {
+        let alarms = events.iter().filter_map(|event| event.alarm);
+        alarms.filter(|alarm| alarm.artefact.is_none() || self.rules.counts_artefacts)
     }
 
     /// The PET of an open or waiting conflict, or its lower bound so far; `ahead` has the poses that a road user will go through.
@@ -137,13 +147,13 @@ impl Tracker {
     /// The events that are not settled yet and of which a part is at least this severe.
     pub(super) fn severe(&self, least: Severity) -> impl Iterator<Item = SevereEvent> {
         let events = self.events.iter().chain(&self.waiting);
-        events.map(move |event| event.severe(least)).filter(|event| !event.worst.is_empty())
+        events.map(move |event| event.severe(least, self.rules)).filter(|event| !event.worst.is_empty())
     }
 
     /// The conflicts that are open or wait for their PET, as they are now, in the order of their begin and ids.
     pub fn open(&self, roster: &Roster) -> Vec<Conflict> {
         let events = self.events.iter().chain(&self.waiting);
-        let mut open = events.flat_map(|event| event.conflicts(roster)).collect::<Vec<_>>();
+        let mut open = events.flat_map(|event| event.conflicts(roster, self.rules.severity)).collect::<Vec<_>>();
         sort(&mut open);
         open
     }
@@ -170,9 +180,10 @@ impl Tracker {
             let course = frame.row_of(user).map(around.course);
             course.is_some_and(|course| course.has_jumped || course.change.is_some_and(|change| change.time >= before))
         };
-        for event in &mut self.events {
+        let Self { events, rules, past, .. } = self;
+        for event in events {
             let is_seen = collisions.contains(&event.pair());
-            event.come_closest((frame, roster, before), self.contact_tolerance, is_seen, has_jumped);
+            event.come_closest((frame, roster, before), *rules, is_seen, (around, past), has_jumped);
         }
     }
 
@@ -188,8 +199,9 @@ impl Tracker {
     fn settle(&mut self, time: Second, roster: &Roster) {
         // One for the step, not kept: a long wait in small steps would otherwise hold its memory for the rest of the run.
         let mut halves = Bisection::default();
+        let rule = self.rules.severity;
         let settled = self.waiting.extract_if(.., |event| event.settles(time, &mut halves, self.crossing));
-        self.closed.extend(settled.flat_map(|event| event.conflicts(roster).collect::<Vec<_>>()));
+        self.closed.extend(settled.flat_map(|event| event.conflicts(roster, rule).collect::<Vec<_>>()));
         sort(&mut self.closed);
     }
 }
@@ -222,6 +234,7 @@ mod tests {
             std::sync::LazyLock::new(Default::default);
         Surroundings {
             net: None,
+            step: 0.5,
             signals: &SIGNALS,
             stopped: &[],
             path: &|_| Vec::new(),

@@ -3,17 +3,22 @@
 use smallvec::SmallVec;
 
 use super::alarm::{Alarm, PetSoFar};
-use super::between::{Between, Both, Moment};
+use super::between::{Between, Both, Closest, FirstContact, Moment};
 use super::event::Conflict;
-use super::extremes::{Extremes, Observation};
+use super::extremes::{Extremes, Observation, WorstStep};
+use super::past::Past;
 use super::span::Span;
+use super::why::{self, Artefact, Surroundings};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::driven_path::DrivenPath;
+use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::{self, Pet};
 use crate::detection::path::Pose;
+use crate::detection::severity::{Assessment, SeverityInputs};
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
+use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::frame::Frame;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{Roster, UserIndex};
@@ -67,6 +72,16 @@ pub(super) struct SevereEvent {
     pub worst: SmallVec<[(Second, Point); 2]>,
 }
 
+/// By which rules events are judged.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rules {
+    /// Deeper overlaps are collisions.
+    pub contact_tolerance: Metre,
+    pub severity: SeverityThresholds,
+    /// Whether artefacts count.
+    pub counts_artefacts: bool,
+}
+
 /// What an event keeps of its steps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Keeps {
@@ -97,8 +112,9 @@ impl Event {
     fn note(&mut self, seen: &Observation, keeps: Keeps) {
         let Encounter { ego, foe, kind, x, y, margin, nearness, pet_below, .. } = *seen.found;
         if seen.found.is_logged() {
-            let (severity, time, at) = (seen.severity(), seen.frame.time, Point::new(x, y));
-            self.alarm = Some(Alarm { ego, foe, severity, kind, at, time, margin, nearness });
+            let (severity, time, at) = (self.followed.extremes.last.severity, seen.frame.time, Point::new(x, y));
+            let (_, artefact) = self.followed.extremes.verdict();
+            self.alarm = Some(Alarm { ego, foe, severity, artefact, kind, at, time, margin, nearness });
         }
         if let Some(met) = &mut self.met {
             if !seen.found.is_logged() {
@@ -120,32 +136,36 @@ impl Event {
         self.pair
     }
 
-    /// Its parts that are at least this severe.
-    pub fn severe(&self, least: Severity) -> SevereEvent {
+    /// Its parts that are at least this severe, and count.
+    pub fn severe(&self, least: Severity, rules: Rules) -> SevereEvent {
         let spans = [&self.followed].into_iter().chain(self.met.iter().flatten());
-        let severe = spans.map(|span| &span.extremes).filter(|extremes| extremes.severity >= least);
+        let severe = spans.map(|span| &span.extremes).filter(|extremes| {
+            let (assessment, artefact) = extremes.verdict();
+            assessment.severity >= least && (artefact.is_none() || rules.counts_artefacts)
+        });
         let worst = severe.map(|extremes| (extremes.worst.time, Point::new(extremes.worst.x, extremes.worst.y)));
         SevereEvent { pair: self.pair, worst: worst.collect() }
     }
 
     /// The conflicts that it is, by the PET so far.
-    pub fn conflicts(&self, roster: &Roster) -> impl Iterator<Item = Conflict> {
+    pub fn conflicts(&self, roster: &Roster, rule: SeverityThresholds) -> impl Iterator<Item = Conflict> {
         let pet = self.driven.as_ref().and_then(|driven| driven.pet);
         let spans = match &self.met {
             Some(met) if pet.is_none_or(|pet| pet.lasts >= self.pet_below) => &met[..],
             _ => std::slice::from_ref(&self.followed),
         };
-        spans.iter().map(move |span| span.conflict(pet, roster))
+        spans.iter().map(move |span| span.conflict(pet, roster, rule))
     }
 
     /// Takes how close the two came since the step before, if that met the condition. They collide where they overlap by
-    /// more than `tolerance`, and `is_seen` where they do now. `has_jumped` says whether one of them has meanwhile
+    /// more than its tolerance, and `is_seen` where they do now. `has_jumped` says whether one of them has meanwhile
     /// changed lanes, which SUMO does at once: it did not drive across.
     pub fn come_closest(
         &mut self,
         (frame, roster, before): (&Frame, &Roster, Second),
-        tolerance: Metre,
+        rules: Rules,
         is_seen: bool,
+        (around, past): (Surroundings, &Past),
         has_jumped: impl Fn(UserIndex) -> bool,
     ) {
         let Some(now) = Seen::of(frame, &self.pair) else { return };
@@ -162,12 +182,21 @@ impl Event {
         }
         moments.push((frame.time, now.states));
         let step = Between { moments: &moments, profiles };
-        let Some(closest) = step.closest(tolerance, is_seen) else { return };
+        let Some(closest) = step.closest(rules.contact_tolerance, is_seen) else { return };
         if self.followed.extremes.is_closer(&closest) && !self.pair.into_iter().any(has_jumped) {
             let ego = usize::from(self.pair[1] == self.followed.extremes.worst.ego);
             let met = self.met.as_mut().and_then(|met| met.last_mut());
             let met = met.filter(|met| met.extremes.end == before);
-            [&mut self.followed].into_iter().chain(met).for_each(|span| span.extremes.come_closer(&closest, ego));
+            let extremes = &self.followed.extremes;
+            let found = closest.contact.as_ref().and_then(|contact| {
+                let found = contact_of(extremes, &closest, contact.fronts[ego], frame)?;
+                let pair = why::Pair::of((frame, roster, &found), around, past);
+                Some((assessed(contact, ego, extremes.worst.kind, profiles, rules.severity), Artefact::of(&pair)))
+            });
+            [&mut self.followed]
+                .into_iter()
+                .chain(met)
+                .for_each(|span| span.extremes.come_closer(&closest, ego, found));
         }
     }
 
@@ -259,6 +288,54 @@ impl Event {
         *pet = pet::post_encroachment_time(halves, &paths[0], &paths[1], crossing);
         last_call || pet.is_some_and(|pet| pet.is_final)
     }
+}
+
+/// The contact of the two between two steps as an encounter of the second.
+fn contact_of(of: &Extremes, closest: &Closest, at: Point, frame: &Frame) -> Option<Encounter> {
+    let WorstStep { ego, foe, kind, angle, mu, .. } = of.worst;
+    Some(Encounter {
+        ego,
+        foe,
+        ego_row: frame.row_of(ego)?,
+        foe_row: frame.row_of(foe)?,
+        kind,
+        angle,
+        gap: 0.0,
+        mu,
+        margin: -mu,
+        ego_distance: 0.0,
+        foe_distance: 0.0,
+        x: at.x,
+        y: at.y,
+        lane: None,
+        overlap: closest.overlap,
+        collision: true,
+        nearness: None,
+        pet_below: Second::INFINITY,
+    })
+}
+
+/// How severe a contact is; `ego` is the place of the ego in the pair.
+fn assessed(
+    contact: &FirstContact,
+    ego: usize,
+    kind: Kind,
+    profiles: [&Profile; 2],
+    rule: SeverityThresholds,
+) -> Assessment {
+    let [of_ego, of_foe] = [ego, 1 - ego].map(|one| Body::of(profiles[one], contact.delta_v[one]));
+    let inputs = SeverityInputs {
+        ttc: Some(0.0),
+        drac: None,
+        ego_deceleration: profiles[ego].brakes.deceleration,
+        ttb: Some(0.0),
+        crash_probability: 1.0,
+        braking: 0.0,
+        delta_v: of_ego.delta_v.max(of_foe.delta_v),
+        injury_probability: injury_probability(kind, of_ego, of_foe),
+        collision: true,
+    };
+    Assessment::of(&inputs, rule)
 }
 
 /// The path of a road user in the seconds before a step.

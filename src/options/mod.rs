@@ -92,22 +92,26 @@ pub struct Options {
     /// A conflict is frontal if the angle at the conflict point is above this, in rad (default 150°).
     #[cfg_attr(feature = "cli", arg(long, value_name = "RAD", default_value_t = FRONTAL_ABOVE, value_parser = angle))]
     pub frontal_above: Radian,
-    /// Rule of the severity: time left and crash probability, or thresholds of TTC and DRAC.
-    #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
-    pub severity: SeverityRule,
-    /// With `--severity time-left`, a conflict is serious from this crash probability on.
+    /// Rule of the severity: nearness and consequence, time left and crash probability, or thresholds of TTC and DRAC.
+    #[cfg_attr(feature = "cli", arg(long, alias = "severity", value_enum, default_value_t))]
+    pub severity_rule: SeverityRule,
+    /// With `--severity-rule time-left`, a conflict is serious from this crash probability on.
     #[cfg_attr(feature = "cli", arg(long, value_name = "P", default_value_t = SERIOUS_PROBABILITY, value_parser = probability))]
     pub serious_probability: f64,
-    /// With `--severity time-left`, a conflict is serious only if the two, colliding at their present speeds, would change
+    /// With `--severity-rule time-left`, a conflict is serious only if the two, colliding at their present speeds, would change
     /// the velocity of one of them by at least this, in m/s (default 10 km/h).
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S", default_value_t = SERIOUS_DELTA_V, value_parser = speed))]
     pub serious_delta_v: MetrePerSecond,
-    /// With `--severity fhwa`, a conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
+    /// With `--severity-rule fhwa`, a conflict is serious if its TTC is below this, in s (FHWA-HRT-08-051).
     #[cfg_attr(feature = "cli", arg(long, value_name = "S", default_value_t = SERIOUS_TTC, value_parser = duration))]
     pub serious_ttc: Second,
-    /// With `--severity fhwa`, a conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
+    /// With `--severity-rule fhwa`, a conflict is serious if its DRAC is above this, in m/s² (Archer 2005).
     #[cfg_attr(feature = "cli", arg(long, value_name = "M/S²", default_value_t = SERIOUS_DRAC, value_parser = deceleration_threshold))]
     pub serious_drac: MetrePerSecondSquared,
+    /// Count conflicts that are SUMO's or a tracker's making, not traffic's; else they are only logged.
+    #[cfg_attr(feature = "cli", arg(long))]
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub artefacts: bool,
     /// Driver that crash probabilities assume.
     #[cfg_attr(feature = "cli", arg(long, value_enum, default_value_t))]
     pub driver: DriverModel,
@@ -177,11 +181,12 @@ impl Default for Options {
             contact_tolerance: CONTACT_TOLERANCE,
             rear_end_below: REAR_END_BELOW,
             frontal_above: FRONTAL_ABOVE,
-            severity: SeverityRule::default(),
+            severity_rule: SeverityRule::default(),
             serious_probability: SERIOUS_PROBABILITY,
             serious_delta_v: SERIOUS_DELTA_V,
             serious_ttc: SERIOUS_TTC,
             serious_drac: SERIOUS_DRAC,
+            artefacts: false,
             driver: DriverModel::default(),
             align: Align::default(),
             obstacles: Vec::new(),

@@ -25,7 +25,7 @@ impl Options {
         let mut given = Vec::new();
         for (name, value) in settings {
             let option = name.replace('_', "-");
-            if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
+            if !is_option(&command, &option) {
                 let similar = command.try_get_matches_from_mut([format!("--{option}")]).err();
                 let similar = similar.and_then(|error| text(&error, ContextKind::SuggestedArg));
                 let similar = similar.map(|similar| format!("; did you mean \"{}\"?", name_of(&similar)));
@@ -45,12 +45,20 @@ impl Options {
     pub fn check_setting(name: &str, value: &str) -> std::result::Result<(), String> {
         let mut command = SettingsParser::command();
         let option = name.replace('_', "-");
-        if !command.get_arguments().any(|known| known.get_long() == Some(&option)) {
+        if !is_option(&command, &option) {
             return Ok(());
         }
         let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
         checked.map_err(|error| plain(&error).to_string())
     }
+}
+
+/// Whether this is a long option, or the former name of one.
+fn is_option(command: &clap::Command, option: &str) -> bool {
+    let is_this = |known: &clap::Arg| {
+        known.get_long() == Some(option) || known.get_all_aliases().is_some_and(|former| former.contains(&option))
+    };
+    command.get_arguments().any(is_this)
 }
 
 /// clap's message as one line that names the setting, not the long option.

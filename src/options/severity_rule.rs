@@ -8,8 +8,10 @@ use serde::Serialize;
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum SeverityRule {
-    /// By the time that is left and the probability of a crash.
+    /// By a table of how near a crash was and what it would have meant.
     #[default]
+    Levels,
+    /// By the time that is left and the probability of a crash, with settable thresholds.
     TimeLeft,
     /// By TTC (FHWA-HRT-08-051) and DRAC (Archer 2005), with settable thresholds.
     Fhwa,

@@ -16,6 +16,8 @@ pub struct KindBounds {
 /// When a conflict is serious or critical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SeverityThresholds {
+    /// By the table of nearness and consequence: `detection::severity`.
+    Levels,
     /// Serious if both are reached; critical if even braking at once is too late.
     TimeLeft {
         /// The crash probability.
@@ -40,7 +42,8 @@ impl Options {
 
     /// The thresholds of severity.
     pub fn severity_thresholds(&self) -> SeverityThresholds {
-        match self.severity {
+        match self.severity_rule {
+            SeverityRule::Levels => SeverityThresholds::Levels,
             SeverityRule::TimeLeft => {
                 SeverityThresholds::TimeLeft { probability: self.serious_probability, delta_v: self.serious_delta_v }
             }

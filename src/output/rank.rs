@@ -7,10 +7,11 @@ use crate::detection::kind::Severity;
 use crate::events::Conflict;
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
-/// How bad a conflict is; the larger, the worse. A collision is worst; of two, the one with the larger ΔV. Of others the
+/// How bad a conflict is; the larger, the worse. One that is none of traffic's is least. A collision is worst; of two, the one with the larger ΔV. Of others the
 /// severity decides, then the crash probability, then the TTC, then the margin.
 #[derive(Clone, Copy, Debug)]
 pub struct Rank {
+    is_traffic: bool,
     collision: bool,
     severity: Severity,
     /// The larger of both in a collision, otherwise 0.
@@ -24,21 +25,29 @@ pub struct Rank {
 
 impl Rank {
     fn new(
-        (collision, severity): (bool, Severity),
+        (is_traffic, collision, severity): (bool, bool, Severity),
         delta_v: MetrePerSecond,
         crash_probability: f64,
         ttc: Option<Second>,
         margin: Metre,
     ) -> Self {
         let delta_v = if collision { delta_v } else { 0.0 };
-        Self { collision, severity, delta_v, crash_probability, ttc: ttc.unwrap_or(Second::INFINITY), margin }
+        Self {
+            is_traffic,
+            collision,
+            severity,
+            delta_v,
+            crash_probability,
+            ttc: ttc.unwrap_or(Second::INFINITY),
+            margin,
+        }
     }
 }
 
 impl Ord for Rank {
     fn cmp(&self, other: &Self) -> Ordering {
-        (self.collision, self.severity)
-            .cmp(&(other.collision, other.severity))
+        (self.is_traffic, self.collision, self.severity)
+            .cmp(&(other.is_traffic, other.collision, other.severity))
             .then_with(|| self.delta_v.total_cmp(&other.delta_v))
             .then_with(|| self.crash_probability.total_cmp(&other.crash_probability))
             .then_with(|| other.ttc.total_cmp(&self.ttc))
@@ -63,14 +72,22 @@ impl Eq for Rank {}
 impl From<&Conflict> for Rank {
     fn from(conflict: &Conflict) -> Self {
         let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, crash_probability, .. } = *conflict;
-        Self::new((collision, severity), ego_delta_v.max(foe_delta_v), crash_probability, ttc, margin)
+        let is_traffic = conflict.artefact.is_none();
+        Self::new((is_traffic, collision, severity), ego_delta_v.max(foe_delta_v), crash_probability, ttc, margin)
     }
 }
 
 impl From<&LoggedConflict> for Rank {
     fn from(conflict: &LoggedConflict) -> Self {
         let LoggedConflict { collision, severity, ttc, margin, crash_probability, .. } = *conflict;
-        Self::new((collision, severity), conflict.delta_v(), crash_probability.unwrap_or_default(), ttc, margin)
+        let is_traffic = conflict.artefact.is_empty();
+        Self::new(
+            (is_traffic, collision, severity),
+            conflict.delta_v(),
+            crash_probability.unwrap_or_default(),
+            ttc,
+            margin,
+        )
     }
 }
 
@@ -80,9 +97,10 @@ mod tests {
 
     #[test]
     fn collisions_are_worst_then_severity_then_probability_then_ttc() {
-        let [caution, serious, critical] = Severity::ALL.map(|severity| (false, severity));
-        let collision = (true, Severity::Critical);
+        let [caution, serious, critical] = Severity::ALL.map(|severity| (true, false, severity));
+        let collision = (true, true, Severity::Critical);
         let milder_first = [
+            Rank::new((false, true, Severity::Critical), 9.0, 1.0, Some(0.0), -9.0),
             Rank::new(caution, 9.0, 0.0, None, -9.0),
             Rank::new(serious, 9.0, 0.2, Some(1.0), -1.0),
             Rank::new(serious, 1.0, 0.2, Some(0.5), -1.0),

@@ -11,7 +11,7 @@ use super::place::{edge_of, junction_of, on_lane};
 use super::value::Field;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::headway::headway;
-use crate::events::{Conflict, Manoeuvre, Snapshot};
+use crate::events::{Artefact, Conflict, Manoeuvre, Snapshot};
 use crate::geometry::Point;
 use crate::options::measures::{ChosenMeasure, Measures};
 use crate::traffic::lane_change::LaneChangeReason;
@@ -92,9 +92,15 @@ columns! { |conflict, context|
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `critical`: a collision, or even braking fully at once is too late; `serious`: `crash_probability` of at least
-    /// 0.5 where a collision would change a velocity by 10 km/h or more; `caution`: neither; the worst of all steps ([other rules](model.md#kind-and-severity))
+    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all steps
     [Required] severity: Severity = conflict.severity;
+    /// how near to a crash it was: `possible`, `likely`, `near_certain`
+    [Optional] nearness: OptionalText = conflict.nearness.name().to_owned();
+    /// what a crash would have meant: `minor`, `moderate`, `severe`
+    [Optional] consequence: OptionalText = conflict.consequence.name().to_owned();
+    /// why it is SUMO's or a tracker's making, not traffic's, and is not counted: `drawn_overlap`, `appeared`, `stopped_at_once`,
+    /// `jumped`, `tracking` ([rules](artefacts.md)); empty for the rest
+    [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().to_owned();
     /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
     /// last step that meets the log's condition

@@ -22,8 +22,11 @@ pub struct Summary {
     pub end: Second,
     /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,
-    /// Conflicts by kind and severity.
+    /// Conflicts by kind and severity; without those that are set aside.
     pub conflicts: Vec<Count>,
+    /// Logged conflicts that are not traffic's, and so are not counted.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub set_aside: BTreeMap<String, u64>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
     /// The sum of all crash probabilities: an index for comparing plans, not a forecast.
@@ -178,8 +181,12 @@ impl fmt::Display for Skipped {
 }
 
 impl Summary {
-    /// Counts a conflict.
-    pub fn add(&mut self, conflict: &Conflict) {
+    /// Counts a conflict; one that is none of traffic's only with `counts_artefacts`.
+    pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
+        if let Some(artefact) = conflict.artefact.filter(|_| !counts_artefacts) {
+            *self.set_aside.entry(artefact.name().to_owned()).or_default() += 1;
+            return;
+        }
         self.collisions += u64::from(conflict.collision);
         self.expected_crashes += conflict.crash_probability;
         if let Some(of_sumo) = &mut self.collisions_sumo {
@@ -195,8 +202,13 @@ impl Summary {
             }
         }
         if self.worst.as_ref().is_none_or(|worst| worst.rank < conflict.into()) {
-            self.worst = Some(WorstConflict::of(conflict, self.count(None, None)));
+            self.worst = Some(WorstConflict::of(conflict, self.logged()));
         }
+    }
+
+    /// The number of conflicts that are logged, with those that are set aside.
+    pub fn logged(&self) -> u64 {
+        self.count(None, None) + self.set_aside.values().sum::<u64>()
     }
 
     /// The number of conflicts of a kind, of a severity, or of both; of all where neither is given.
@@ -205,6 +217,16 @@ impl Summary {
             kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)
         };
         self.conflicts.iter().filter(wanted).map(|count| count.count).sum()
+    }
+}
+
+impl Summary {
+    /// How many conflicts are set aside, and why; none where none is.
+    pub fn set_aside_in_words(&self) -> Option<String> {
+        let reasons = self.set_aside.iter().map(|(artefact, count)| format!("{count} {artefact}"));
+        let reasons = reasons.collect::<Vec<_>>().join(", ");
+        let all = self.set_aside.values().sum::<u64>();
+        (all > 0).then(|| format!("set aside {all} that are not traffic's: {reasons} (docs/artefacts.md)"))
     }
 }
 
@@ -222,6 +244,9 @@ impl fmt::Display for Summary {
                 write!(f, "{:>10}", self.count(kind, Some(severity)))?;
             }
             writeln!(f, "{:>10}", self.count(kind, None))?;
+        }
+        if let Some(set_aside) = self.set_aside_in_words() {
+            writeln!(f, "{set_aside}")?;
         }
         writeln!(
             f,

@@ -1,9 +1,8 @@
-//! Conflicts that the simulation itself makes of ordinary driving: of how closely its drivers follow, of how hard they can
-//! brake, and of persons that they do not see.
+//! Conflicts that the simulation itself makes of ordinary driving: of how closely its drivers follow, and of how hard they can
+//! brake.
 
-use crate::detection::kind::{Kind, Severity};
+use crate::detection::kind::Kind;
 use crate::events::Conflict;
-use crate::traffic::net::Net;
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::MetrePerSecondSquared;
@@ -20,15 +19,11 @@ pub(super) struct OrdinaryDriving {
     conflicts: u64,
     following: Vec<u64>,
     braking: Vec<u64>,
-    critical: u64,
-    /// Critical ones with a person on or beside a walking area.
-    unseen: u64,
 }
 
 impl OrdinaryDriving {
-    /// Counts a conflict: the ego follows as usual, or the foe brakes harder than any car, or one of the two is a person on or
-    /// beside a walking area.
-    pub fn count(&mut self, conflict: &Conflict, roster: &Roster, net: Option<&Net>) {
+    /// Counts a conflict: the ego follows as usual, or the foe brakes harder than any car.
+    pub fn count(&mut self, conflict: &Conflict, roster: &Roster) {
         self.conflicts += 1;
         let ego = roster.profile_at(conflict.ego_profile);
         if conflict.kind == Kind::RearEnd && conflict.ego_speed >= ego.tailgates_from {
@@ -37,14 +32,6 @@ impl OrdinaryDriving {
         let foe = roster.profile_at(conflict.foe_profile);
         if foe.category == Category::Vehicle && foe.brakes.deceleration > HARDEST {
             add_one(&mut self.braking, conflict.foe_profile);
-        }
-        if let (Severity::Critical, Some(net)) = (conflict.severity, net) {
-            let sides = [(ego, &conflict.ego_snapshot), (foe, &conflict.foe_snapshot)];
-            let is_unseen = sides.into_iter().any(|(profile, snapshot)| {
-                profile.category == Category::Person && net.has_walking_area_at(snapshot.front)
-            });
-            self.critical += 1;
-            self.unseen += u64::from(is_unseen);
         }
     }
 
@@ -64,14 +51,7 @@ impl OrdinaryDriving {
                 "{count} of {all} conflicts have a foe that brakes harder than {HARDEST} m/s² (emergencyDecel: {types})"
             )
         });
-        let unseen = (self.unseen > 0).then(|| {
-            format!(
-                "{} of {} critical conflicts are with persons on or beside a walking area, where SUMO's drivers see only \
-                 those on a crossing",
-                self.unseen, self.critical
-            )
-        });
-        following.into_iter().chain(braking).chain(unseen).collect()
+        following.into_iter().chain(braking).collect()
     }
 }
 
@@ -98,13 +78,9 @@ fn types(counts: &[u64], roster: &Roster, text: &dyn Fn(&Profile) -> String) -> 
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-    use std::sync::Arc;
-
-    use crate::options::{Options, PathModel};
+    use crate::options::Options;
     use crate::run::Run;
     use crate::traffic::frame::State;
-    use crate::traffic::net::Net;
     use crate::traffic::profile::Profile;
     use crate::traffic::sumo_type::SumoType;
     use crate::{Error, Result};
@@ -151,29 +127,6 @@ mod tests {
             found,
             ["1 of 1 conflicts have a foe that brakes harder than 9 m/s² (emergencyDecel: strong with 10 m/s²)"]
         );
-    }
-
-    #[test]
-    fn persons_on_a_walking_area_are_named() {
-        let text = r#"<net><edge id=":j_w0" function="walkingarea">
-            <lane id=":j_w0_0" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge></net>"#;
-        let net = Net::parse(Path::new("net"), text.to_owned()).unwrap();
-        let options = Options { path: PathModel::Straight, ..Options::default() };
-        for (x, said) in [(5.0, true), (19.0, false)] {
-            let mut run = Run::new(&options, Some(Arc::new(net.clone()))).unwrap();
-            let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
-            let person = run.roster.profile(Profile::person(&SumoType::car("person"), &options, 0.1)).unwrap();
-            let users = [run.enter("car", car), run.enter("person", person)];
-            run.begin_step(0.0);
-            for (user, (x, speed)) in users.into_iter().zip([(x, 5.0), (x - 1.0, 0.0)]) {
-                run.frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
-            }
-            let stepped: Result<()> = run.step(|_, _| Ok::<_, Error>(()));
-            stepped.unwrap();
-            let remarks = run.finish().unwrap().remarks;
-            let line = "1 of 1 critical conflicts are with persons on or beside a walking area, ";
-            assert_eq!(remarks.iter().any(|remark| remark.starts_with(line)), said, "{remarks:?}");
-        }
     }
 
     #[test]

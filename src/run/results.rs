@@ -66,14 +66,14 @@ impl Run {
     pub fn summary(&self) -> Summary {
         let mut summary = self.summary.clone();
         for conflict in self.tracker.open(&self.roster) {
-            summary.add(&conflict);
+            summary.add(&conflict, self.counts_artefacts);
         }
         summary
     }
 
     /// The number of conflicts that have closed so far.
     pub fn closed_conflicts(&self) -> u64 {
-        self.summary.count(None, None)
+        self.summary.logged()
     }
 
     /// Closes the open conflicts and writes them; returns the summary.
@@ -86,8 +86,8 @@ impl Run {
         let closed = self.tracker.finish(&self.roster);
         let clips = self.clips.as_mut().map_or_else(Vec::new, |clips| clips.finish(closed, first));
         let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
-        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, &self.roster, self.net.as_deref()));
+        count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
+        closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, &self.roster));
         self.summary.entered = self.net.as_deref().map(|net| self.entering.by_junction(net)).unwrap_or_default();
         self.summary.left_out = self.detector.left_out();
         self.summary.skipped = Skipped::of(&self.detector.work(), self.lane_lookups);
@@ -100,9 +100,15 @@ impl Run {
 }
 
 /// Counts closed conflicts, and keeps the latest `most` of them.
-pub(super) fn count(closed: &[Conflict], summary: &mut Summary, kept: &mut VecDeque<Conflict>, most: usize) {
+pub(super) fn count(
+    closed: &[Conflict],
+    counts_artefacts: bool,
+    summary: &mut Summary,
+    kept: &mut VecDeque<Conflict>,
+    most: usize,
+) {
     for conflict in closed {
-        summary.add(conflict);
+        summary.add(conflict, counts_artefacts);
     }
     let new = &closed[closed.len().saturating_sub(most)..];
     kept.drain(..(kept.len() + new.len()).saturating_sub(most).min(kept.len()));

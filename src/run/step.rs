@@ -116,11 +116,12 @@ impl Run {
         let chosen = |found: &Encounter| detector.chosen(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
         let net = self.net.as_deref();
-        let (signals, stopped) = (&self.signals, &self.stopped);
-        let around = Surroundings { net, signals, stopped, path: &path, course: &course, chosen: &chosen, tadv: &tadv };
+        let (signals, stopped, step) = (&self.signals, &self.stopped, self.step_length.unwrap_or_default());
+        let around =
+            Surroundings { net, step, signals, stopped, path: &path, course: &course, chosen: &chosen, tadv: &tadv };
         let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());
-        count(closed, &mut self.summary, &mut self.conflicts, self.most_conflicts);
-        closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster, self.net.as_deref()));
+        count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
+        closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster));
     }
 
     /// Writes the log and the other files, and ends the step.
@@ -131,7 +132,7 @@ impl Run {
         let (roster, net, closed) = (&self.roster, self.net.as_deref(), self.tracker.closed());
         let clips = match &mut self.clips {
             Some(clips) => {
-                let first = self.summary.count(None, None) + 1 - closed.len() as u64;
+                let first = self.summary.logged() + 1 - closed.len() as u64;
                 let (frame, signals, tracker) = (&self.frame, &self.signals, &self.tracker);
                 clips.step(Scene { frame, roster, net, signals, tracker }, closed, first)
             }

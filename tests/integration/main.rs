@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
 mod align;
+mod artefacts;
 mod articulated;
 mod bisection;
 mod clips;

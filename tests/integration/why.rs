@@ -10,20 +10,20 @@ use closecall::{Category, Conflict, Net, Options, Placement, Profile, Run, State
 const STEP: f64 = 0.1;
 
 /// A car, or a person, that goes along these lanes from a place on the first.
-struct Drive {
-    lanes: Vec<&'static str>,
+pub(crate) struct Drive {
+    pub(crate) lanes: Vec<&'static str>,
     /// Its front on the first lane, in m.
-    start: f64,
+    pub(crate) start: f64,
     /// Its speed by time.
-    speed: fn(f64) -> f64,
+    pub(crate) speed: fn(f64) -> f64,
     /// The number of a lane of the first lane's edge that it moves to, and when.
-    change: Option<(f64, &'static str)>,
-    category: Category,
+    pub(crate) change: Option<(f64, &'static str)>,
+    pub(crate) category: Category,
     /// When it enters the scene.
-    enters: f64,
+    pub(crate) enters: f64,
 }
 
-fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
+pub(crate) fn drive(lanes: &[&'static str], start: f64, speed: fn(f64) -> f64) -> Drive {
     Drive { lanes: lanes.to_vec(), start, speed, change: None, category: Category::Vehicle, enters: 0.0 }
 }
 
@@ -37,7 +37,7 @@ fn logged(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> V
 
 /// The conflicts of a run of some seconds. SUMO is taken to move cars to lane 1 for the sake of their route, and back to keep
 /// right.
-fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<Conflict> {
+pub(crate) fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], lasts: f64) -> Vec<Conflict> {
     conflicts_with(net, drives, signals, &[], lasts)
 }
 
@@ -122,12 +122,12 @@ fn place(net: &Net, lane: closecall::LaneIndex, position: f64) -> ([f64; 2], f64
     unreachable!("a lane has two points")
 }
 
-fn net_of(scene: &str) -> Net {
+pub(crate) fn net_of(scene: &str) -> Net {
     Net::read(Path::new(&format!("sumo_nets/{scene}/{scene}.net.xml"))).unwrap()
 }
 
 /// A road of two lanes with a limit of 30 m/s.
-fn road() -> Net {
+pub(crate) fn road() -> Net {
     road_of(r#"from="w" to="e""#, 1.6)
 }
 
@@ -142,8 +142,8 @@ fn road_of(edge: &str, beside: f64) -> Net {
     Net::parse(Path::new("road.net.xml"), text).unwrap()
 }
 
-const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0", "to_west_1"];
-const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south_0"];
+pub(crate) const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0", "to_west_1"];
+pub(crate) const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south_0"];
 
 /// Two cars on the crossing of `left_turn`, each at a distance before the junction, in m, and with a speed, in m/s.
 fn at_the_crossing(ways: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {

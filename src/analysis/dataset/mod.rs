@@ -6,7 +6,7 @@ pub(crate) mod nets;
 
 use std::path::{Path, PathBuf};
 
-use super::filter::ConflictFilter;
+use super::filter::{ConflictFilter, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
 use super::variants::{Variant, Variants};
 use crate::Result;
@@ -61,12 +61,16 @@ pub fn read(
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
     let mut lost = Vec::new();
-    let mut all = 0_u64;
+    let (mut all, mut set_aside) = (0_u64, 0_u64);
     for (run, log) in (0..).zip(&logs) {
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
         for conflict in &mut conflicts {
             let conflict = conflict?;
             reading.count(1);
+            if !filter.counts(&conflict) {
+                set_aside += 1;
+                continue;
+            }
             all += 1;
             if filter.passes(&conflict) {
                 worst.push(RunConflict { run, conflict });
@@ -97,6 +101,9 @@ pub fn read(
     }
     ground.notes.append(&mut variants.notes);
     ground.notes.extend(lost.iter().map(ToString::to_string));
+    if set_aside > 0 {
+        ground.notes.push(format!("{}.", set_aside_in_words(set_aside)));
+    }
     let seen = worst.seen();
     if !filter.is_empty() {
         let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };

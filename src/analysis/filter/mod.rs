@@ -8,7 +8,7 @@ use super::logged::{LoggedConflict, LoggedRun};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::{Cause, Manoeuvre};
 use crate::output::summary::Exposure;
-use crate::util::units::Second;
+use crate::util::units::{Second, counted};
 use crate::{Error, Result};
 
 pub use place::Place;
@@ -42,10 +42,18 @@ pub struct ConflictFilter {
     /// May be given several times.
     #[arg(long = "where", value_name = "PLACE")]
     pub places: Vec<Place>,
+    /// Also those that are SUMO's or a tracker's making, not traffic's.
+    #[arg(long)]
+    pub artefacts: bool,
 }
 
 fn time(text: &str) -> std::result::Result<Second, String> {
     text.parse::<Second>().ok().filter(|time| time.is_finite()).ok_or_else(|| "it must be a time in s".to_owned())
+}
+
+/// How many conflicts are not counted.
+pub fn set_aside_in_words(count: u64) -> String {
+    format!("{} set aside that are not traffic's (--artefacts counts them in)", counted(count, "conflict"))
 }
 
 /// Whether one of these is met, or there are none.
@@ -72,11 +80,17 @@ impl ConflictFilter {
         *self == Self::default()
     }
 
+    /// Whether a conflict is traffic's, or others count, too: no other is among those that the rest of the filter sees.
+    pub fn counts(&self, conflict: &LoggedConflict) -> bool {
+        self.artefacts || conflict.artefact.is_empty()
+    }
+
     /// Whether a conflict counts.
     pub fn passes(&self, conflict: &LoggedConflict) -> bool {
         let is_of = |known: &str, wanted: &str| known == wanted || known.split('@').next() == Some(wanted);
         let types = [&conflict.ego_type, &conflict.foe_type];
-        self.from.is_none_or(|from| conflict.time >= from)
+        self.counts(conflict)
+            && self.from.is_none_or(|from| conflict.time >= from)
             && self.to.is_none_or(|to| conflict.time <= to)
             && any(&self.kinds, |kind| *kind == conflict.kind)
             && any(&self.severities, |severity| *severity == conflict.severity)
@@ -88,7 +102,8 @@ impl ConflictFilter {
 
     /// The columns that it needs.
     pub fn columns(&self) -> Vec<&'static str> {
-        let parts: [(bool, &[&str]); 6] = [
+        let parts: [(bool, &[&str]); 7] = [
+            (!self.artefacts, &["artefact"]),
             (self.has_period(), &["time"]),
             (!self.kinds.is_empty(), &["kind"]),
             (!self.severities.is_empty(), &["severity"]),
@@ -140,7 +155,8 @@ impl fmt::Display for ConflictFilter {
         let times = [("from", self.from), ("to", self.to)];
         let times = times.into_iter().filter_map(|(name, time)| Some(format!("--{name} {}", time?)));
         let places = self.places.iter().map(|place| format!("--where {place}"));
-        f.write_str(&lists.chain(times).chain(places).collect::<Vec<_>>().join(" "))
+        let artefacts = self.artefacts.then(|| "--artefacts".to_owned());
+        f.write_str(&lists.chain(times).chain(places).chain(artefacts).collect::<Vec<_>>().join(" "))
     }
 }
 

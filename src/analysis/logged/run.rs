@@ -107,9 +107,9 @@ impl LoggedRun {
         matches!(self.options.get("log").and_then(serde_json::Value::as_str), None | Some("margin < 0" | "paper"))
     }
 
-    /// The number of conflicts that it found.
+    /// The number of conflicts in its log.
     pub fn conflicts(&self) -> u64 {
-        self.summary.count(None, None)
+        self.summary.logged()
     }
 
     /// Simulated hours: from the first step to the end of the last, which lasts as long as the others.

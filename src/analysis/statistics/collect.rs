@@ -17,7 +17,7 @@ use super::extremes::Tails;
 use super::group::By;
 use super::of_run::OfRun;
 use super::worst::WorstOf;
-use crate::analysis::filter::ConflictFilter;
+use crate::analysis::filter::{ConflictFilter, set_aside_in_words};
 use crate::analysis::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
@@ -39,6 +39,8 @@ pub struct Collection {
     pub lost: Vec<LostRows>,
     /// How many conflicts the logs have.
     pub read: u64,
+    /// How many others are none of traffic's.
+    pub set_aside: u64,
     /// How many of them count.
     pub passed: u64,
     /// The conflicts of each variant, by group.
@@ -82,6 +84,7 @@ impl Collection {
             left_out,
             lost: Vec::new(),
             read: 0,
+            set_aside: 0,
             passed: 0,
             tallies: Default::default(),
             edges: FxHashMap::default(),
@@ -120,6 +123,7 @@ impl Collection {
     /// Adds the conflicts of the next run.
     fn append(&mut self, variant: usize, of_run: OfRun) {
         self.read += of_run.read;
+        self.set_aside += of_run.set_aside;
         self.passed += of_run.passed;
         self.lost.extend(of_run.lost);
         self.medians.push(of_run.medians);
@@ -136,17 +140,18 @@ impl Collection {
         self.tails.append(of_run.tails);
     }
 
-    /// What the filter left, in words; none without a filter.
+    /// What was set aside, and what the filter left, in words; none without either.
     pub fn filtered(&self, filter: &ConflictFilter) -> Vec<String> {
+        let set_aside = (self.set_aside > 0).then(|| set_aside_in_words(self.set_aside));
         if filter.is_empty() {
-            return Vec::new();
+            return set_aside.into_iter().collect();
         }
         let counts = match (self.passed, self.read) {
             (0, 1..) => format!("none of {} conflicts passes {filter}", self.read),
             (passed, read) => format!("{passed} of {read} conflicts pass {filter}"),
         };
         let period = "the traffic of the period alone is not known: its rates are per hour only".to_owned();
-        std::iter::once(counts).chain(filter.has_period().then_some(period)).collect()
+        set_aside.into_iter().chain([counts]).chain(filter.has_period().then_some(period)).collect()
     }
 
     /// Checks that the runs have one setting: a comparison tells two settings apart.

@@ -44,7 +44,9 @@ pub struct OfRun {
     pub columns: Vec<String>,
     /// What is wrong with its rows as a whole.
     pub lost: Option<LostRows>,
-    /// How many conflicts the log has.
+    /// How many conflicts of the log are none of traffic's, and are not counted.
+    pub set_aside: u64,
+    /// How many others it has.
     pub read: u64,
     /// How many of them count.
     pub passed: u64,
@@ -87,6 +89,7 @@ impl OfRun {
             path: reader.path().to_owned(),
             columns,
             lost: None,
+            set_aside: 0,
             read: 0,
             passed: 0,
             groups: FxHashMap::default(),
@@ -98,6 +101,10 @@ impl OfRun {
             tails: Tails::default(),
         };
         while let Some(conflict) = reader.next_row()? {
+            if !filter.counts(conflict) {
+                found.set_aside += 1;
+                continue;
+            }
             found.read += 1;
             if found.read.is_multiple_of(EVERY) {
                 progress(EVERY);

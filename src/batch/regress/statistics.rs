@@ -144,7 +144,10 @@ impl RunMeasure {
             }
             Self::VehicleKilometres => Some(seed.exposure.vehicle_kilometres),
             Self::Persons => Some(seed.exposure.persons as f64),
-            Self::Percentile(column, share, _) => percentile(rows.iter().filter_map(|row| row.number(column)), share),
+            Self::Percentile(column, share, _) => {
+                let traffic = rows.iter().filter(|row| row.text("artefact").is_empty());
+                percentile(traffic.filter_map(|row| row.number(column)), share)
+            }
         }
     }
 

@@ -20,14 +20,16 @@ impl Detector {
         // Beyond, how far a path leads depends on when it was last extended.
         let behind = -(profile.length + KEPT_BEHIND);
         let ahead = self.cover().reach(state, profile, self.options.epsilon);
+        let last = self.speeds.get(user.0 as usize).copied().unwrap_or_default();
+        let (deceleration, since_impossible_stop) = (last.deceleration(), last.since_impossible_stop());
+        let mut course = Course { deceleration, since_impossible_stop, ..Course::default() };
         let Some((net, path)) = self.net.as_deref().zip(self.paths.get(user.0 as usize)) else {
-            return Course::default();
+            return course;
         };
-        let deceleration = self.speeds.get(user.0 as usize).map_or(0.0, |last| last.deceleration());
         let is_before_jump = self.jumps.iter().any(|jump| jump.row == row);
         let has_jumped = self.jumped.contains(&user);
         let is_on = || (path.track.point(path.lines(&net.lines)) - state.front()).norm() < ON_THE_PATH;
-        let mut course = Course { has_jumped, deceleration, ..Course::default() };
+        course.has_jumped = has_jumped;
         if !path.track.is_empty() && is_on() {
             path.each_lane(&net.lines, |lane, [begin, end]| {
                 if end > behind && begin <= ahead {

@@ -11,17 +11,20 @@ use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader, MuModel, rss};
 use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
+use crate::detection::measures;
 use crate::detection::measures::accident::BRAKES;
 use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::drac;
+use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
-use crate::detection::measures::{self, SeverityInputs};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::detection::path::Pose;
+use crate::detection::severity::{Assessment, SeverityInputs};
 use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
+use crate::traffic::profile::Category;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 impl StepInputs<'_> {
@@ -147,10 +150,25 @@ impl StepInputs<'_> {
         let [ego, foe] = [&pair[0][0], &pair[1][0]];
         let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
         let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
-        let movements = met.slots.map(|slot| (self.state(self.user(slot)).speed, self.profile(self.user(slot)).mass));
-        let [delta_v, of_foe] = measures::delta_v(movements[0], movements[1], encounter.angle);
-        let delta_v = delta_v.max(of_foe);
-        let inputs = SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, delta_v, collision };
+        let users = met.slots.map(|slot| self.user(slot));
+        let types = users.map(|user| self.profile(user));
+        let movements = [0, 1].map(|one| (self.state(users[one]).speed, types[one].mass));
+        let [of_ego, of_foe] = measures::delta_v(movements[0], movements[1], encounter.angle);
+        let inputs = SeverityInputs {
+            ttc,
+            drac,
+            ego_deceleration,
+            ttb,
+            crash_probability,
+            braking: self.evasive_braking(users, encounter.kind),
+            delta_v: of_ego.max(of_foe),
+            injury_probability: injury_probability(
+                encounter.kind,
+                Body::of(types[0], of_ego),
+                Body::of(types[1], of_foe),
+            ),
+            collision,
+        };
         Nearness {
             clearance,
             ttc,
@@ -162,8 +180,15 @@ impl StepInputs<'_> {
             crash_probability_braking: self.crash_probability_braking([ego, foe], met, encounter),
             extended_delta_v: ttc
                 .map(|left| measures::extended_delta_v(movements[0], movements[1], encounter.angle, left)),
-            severity: measures::severity(&inputs, self.options.severity_thresholds()),
+            assessment: Assessment::of(&inputs, self.options.severity_thresholds()),
         }
+    }
+
+    /// How hard the one brakes that can avoid the collision: the ego, or either where their paths cross. A person stops at once,
+    /// which is no sign of danger.
+    fn evasive_braking(&self, [ego, foe]: [&User; 2], kind: Kind) -> MetrePerSecondSquared {
+        let of = |user: &User| if user.category == Category::Vehicle { self.deceleration(user) } else { 0.0 };
+        if kind == Kind::RearEnd { of(ego) } else { of(ego).max(of(foe)) }
     }
 
     /// The ego's longest response time with which μ still fits into the gap; none if the ego stands, or if a foe that brakes

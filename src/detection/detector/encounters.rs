@@ -53,13 +53,32 @@ impl StepInputs<'_> {
         let sigma = narrow_phase::sigma(angle);
         let gap = narrow_phase::gap(meeting.ego_distance, meeting.foe_distance, sigma);
         let gap = if overlap.collision { 0.0 } else { gap };
-        let how = How { kind: Kind::at(angle, self.options.kind_bounds()), angle, sigma, gap, overlap };
+        let kind = match Kind::at(angle, self.options.kind_bounds()) {
+            Kind::Side if sigma > 0.0 && self.follows(roles.slots, meeting) => Kind::RearEnd,
+            kind => kind,
+        };
+        let how = How { kind, angle, sigma, gap, overlap };
         match how.kind {
             Kind::Frontal => work.frontal += 1,
             Kind::Side => work.side += 1,
             Kind::RearEnd => {}
         }
         self.add(work, found, roles, meeting, how);
+    }
+
+    /// Whether the ego follows the foe on one path of lanes, as through a bend: all that is under the foe is on the ego's way.
+    fn follows(&self, slots: [u32; 2], meeting: &ConflictPoint) -> bool {
+        let [ego, foe] = slots.map(|slot| self.user(slot));
+        if !ego.on_lanes || !foe.on_lanes {
+            return false;
+        }
+        let lanes = |user: &User, from, to| {
+            let path = self.paths.of(user.index);
+            path.map(|path| path.lanes_between(self.paths.of_net(), from, to)).unwrap_or_default()
+        };
+        let length = self.drawn_length(foe);
+        let (under, way) = (lanes(foe, -length, 0.0), lanes(ego, 0.0, meeting.ego_distance + length));
+        !under.is_empty() && under.iter().all(|lane| way.contains(lane))
     }
 
     /// Adds a pair that would meet and measures it. Where a path has to be extended for that, it is measured later.

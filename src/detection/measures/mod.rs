@@ -1,4 +1,4 @@
-//! Surrogate safety measures of a pair in one step: ΔV and severity. The other measures have files of their own.
+//! Surrogate safety measures of a pair in one step: ΔV. The other measures have files of their own.
 
 pub mod accident;
 pub mod advantage;
@@ -23,48 +23,7 @@ pub mod ttc;
 
 pub(crate) use blocked_path::MOST_TIMES;
 
-use super::kind::Severity;
-use crate::options::thresholds::SeverityThresholds;
 use crate::util::units::{Kilogram, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
-
-/// What the severity of a step depends on.
-#[derive(Clone, Copy, Debug)]
-pub struct SeverityInputs {
-    /// Time to collision.
-    pub ttc: Option<Second>,
-    /// Deceleration to avoid the collision.
-    pub drac: Option<MetrePerSecondSquared>,
-    /// The ego's braking deceleration.
-    pub ego_deceleration: MetrePerSecondSquared,
-    /// Time to brake.
-    pub ttb: Option<Second>,
-    /// Probability that the driver does not brake in time.
-    pub crash_probability: f64,
-    /// The larger ΔV of both if they collided at their present speeds.
-    pub delta_v: MetrePerSecond,
-    /// Whether the two collide.
-    pub collision: bool,
-}
-
-/// The severity of a conflict in one step.
-pub fn severity(inputs: &SeverityInputs, thresholds: SeverityThresholds) -> Severity {
-    let SeverityInputs { ttc, drac, ego_deceleration, ttb, crash_probability, delta_v, collision } = *inputs;
-    let (critical, serious) = match thresholds {
-        SeverityThresholds::TimeLeft { probability, delta_v: least_delta_v } => {
-            let is_late = crash_probability > 0.0 && crash_probability >= probability;
-            (ttb == Some(0.0), is_late && delta_v >= least_delta_v)
-        }
-        SeverityThresholds::Measures { ttc: serious_ttc, drac: serious_drac } => (
-            drac.is_some_and(|drac| drac > ego_deceleration),
-            ttc.is_some_and(|ttc| ttc < serious_ttc) || drac.is_some_and(|drac| drac > serious_drac),
-        ),
-    };
-    match (critical || collision, serious) {
-        (true, _) => Severity::Critical,
-        (false, true) => Severity::Serious,
-        (false, false) => Severity::Caution,
-    }
-}
 
 /// ΔV in m/s of the ego and of the foe: the changes of their velocities in a fully inelastic collision of both masses, at
 /// the current speeds and the angle α at the conflict point.
@@ -105,32 +64,6 @@ mod tests {
     fn braking_until_contact_lowers_the_delta_v() {
         let extended = |left| extended_delta_v((20.0, 1500.0), (0.0, 1500.0), 0.0, left);
         assert_eq!([0.0, 1.0, 2.5, 9.0].map(extended), [10.0, 6.0, 0.0, 0.0]);
-    }
-
-    #[test]
-    fn severity_follows_the_rule() {
-        let inputs = SeverityInputs {
-            ttc: Some(1.0),
-            drac: Some(4.0),
-            ego_deceleration: 8.0,
-            ttb: Some(0.9),
-            crash_probability: 0.2,
-            delta_v: 3.0,
-            collision: false,
-        };
-        let fhwa = SeverityThresholds::Measures { ttc: 1.5, drac: 3.4 };
-        let time_left = |probability, delta_v| SeverityThresholds::TimeLeft { probability, delta_v };
-        let with = |(probability, delta_v)| severity(&inputs, time_left(probability, delta_v));
-        assert_eq!(
-            [(0.2, 3.0), (0.21, 3.0), (0.2, 3.1)].map(with),
-            [Severity::Serious, Severity::Caution, Severity::Caution]
-        );
-        assert_eq!(severity(&inputs, fhwa), Severity::Serious);
-        let too_late = SeverityInputs { ttb: Some(0.0), drac: Some(9.0), ..inputs };
-        assert_eq!(severity(&too_late, time_left(1.0, 9.0)), Severity::Critical);
-        assert_eq!(severity(&too_late, fhwa), Severity::Critical);
-        let apart = SeverityInputs { ttc: None, drac: None, ttb: None, crash_probability: 0.0, ..inputs };
-        assert_eq!(severity(&apart, time_left(0.0, 0.0)), Severity::Caution);
     }
 
     #[test]

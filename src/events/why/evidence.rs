@@ -2,7 +2,7 @@
 
 use super::cause::{Cause, Causes};
 use super::manoeuvre::{Manoeuvre, changed_into};
-use super::pair::{BESIDE_A_CROSSING, Pair, Party};
+use super::pair::{BESIDE_A_CROSSING, Pair, Party, STANDS};
 use super::sight::is_behind_curve;
 use crate::detection::kind::Kind;
 use crate::traffic::net::{Net, Passage};
@@ -90,18 +90,21 @@ fn is_late_amber(shown: &Shown) -> bool {
     matches!(shown.letter, b'y' | b'Y') && shown.lasts > SEES_AMBER + shown.speed / (2.0 * COMFORTABLE)
 }
 
-/// Whether a traffic light showed this when a road user passed it, or shows it now to one that can no longer stop.
+/// Whether a traffic light showed this in the step in which a road user came onto the junction, or its crossing: only what it
+/// did tells, as one that cannot stop by its brakes may still do so in SUMO.
 fn entered_on(pair: &Pair, party: &Party, passage: &Passage, is_wrong: fn(&Shown) -> bool) -> bool {
-    let shown = |signal, time: Second| {
-        let (letter, since) = pair.around.signals.at(signal, time)?;
-        Some(Shown { letter, lasts: time - since, speed: party.speed })
+    let is_shown = |signal, time: Second| {
+        let shown = pair.around.signals.at(signal, time);
+        shown.is_some_and(|(letter, since)| is_wrong(&Shown { letter, lasts: time - since, speed: party.speed }))
     };
-    let enters = || match party.category {
-        Category::Person => is_on_a_crossing(pair, party),
-        _ => party.way_to(passage.lanes[0]).is_some_and(|way| party.passes(way)),
+    let has_entered = || match party.category {
+        Category::Person => party.speed >= STANDS && is_on_a_crossing(pair, party),
+        _ => party.way_to(passage.lanes[0]).is_some_and(|way| way < 0.0),
     };
-    let Some(signal) = passage.signal.filter(|_| enters()) else { return false };
-    entered(pair, party, passage).and_then(|time| shown(signal, time)).is_some_and(|shown| is_wrong(&shown))
+    let Some(signal) = passage.signal.filter(|_| has_entered()) else { return false };
+    // Within a step it is not known whether the light or the road user came first.
+    let time = entered(pair, party, passage);
+    time.is_some_and(|time| is_shown(signal, time) && is_shown(signal, (time + pair.around.step).min(pair.time)))
 }
 
 /// When a road user entered its way through a junction, now if it has not yet; none where that is longer ago than is known.
@@ -168,7 +171,7 @@ fn goes_second(pair: &Pair, one: &Party, other: &Party) -> bool {
 }
 
 /// Whether a traffic light left the order to the right of way at a time; false where its state is not known.
-fn is_open(pair: &Pair, passage: &Passage, time: Second) -> bool {
+pub(super) fn is_open(pair: &Pair, passage: &Passage, time: Second) -> bool {
     let Some(signal) = passage.signal else { return true };
     let shown = pair.around.signals.at(signal, time);
     shown.is_some_and(|(letter, _)| !matches!(letter, b'r' | b'u' | b'y' | b'Y'))

@@ -144,7 +144,7 @@ impl Manoeuvre {
 }
 
 /// Whether a person stands, and not on a crossing.
-fn stands_aside(pair: &Pair, party: &Party) -> bool {
+pub(super) fn stands_aside(pair: &Pair, party: &Party) -> bool {
     let is_on_crossing = || pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some());
     party.category == Category::Person && party.speed < STANDS && !is_on_crossing()
 }
@@ -173,6 +173,16 @@ fn in_one_direction(pair: &Pair) -> Manoeuvre {
         () if !shares_a_lane(pair) => Manoeuvre::SideBySide,
         () => Manoeuvre::Following,
     }
+}
+
+/// Whether one of the two changes lanes, or has just done so.
+pub(super) fn changes_lanes(net: &Net, pair: &Pair) -> bool {
+    pair.both().into_iter().any(|(party, _)| {
+        let recent = party.course.change.is_some_and(|change| pair.time - change.time <= LANE_CHANGE);
+        recent
+            || (party.course.lateral_speed.abs() > DRIFT
+                && !party.course.at(0.0).is_some_and(|lane| net.is_internal(lane)))
+    })
 }
 
 /// Since when one is in the lane of the other to which it changed, or changes now; none where it came otherwise, or long ago.

@@ -4,26 +4,25 @@
 //! of the step with the smallest margin; a cause holds for the conflict if it holds in one that was the worst until then, and
 //! how one entered a junction in any step.
 
+mod artefact;
 mod cause;
 mod evidence;
 mod manoeuvre;
 mod pair;
 mod sight;
+mod waiting;
 
+pub use artefact::Artefact;
 pub use cause::{Cause, Causes};
 pub use manoeuvre::Manoeuvre;
-pub(super) use pair::STANDS;
 pub use pair::Surroundings;
+pub(super) use pair::{Pair, STANDS};
+pub(super) use waiting::one_will_wait;
 
-use super::past::Past;
-use crate::detection::encounter::Encounter;
-use crate::traffic::frame::Frame;
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
-use crate::traffic::roster::Roster;
 use evidence::causes_of;
 use manoeuvre::changed_into;
-use pair::Pair;
 
 /// What the two of a conflict were doing, and why it came about.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -39,12 +38,11 @@ pub(super) struct Why {
 
 impl Why {
     /// That of one step.
-    pub fn of(step: (&Frame, &Roster, &Encounter), around: Surroundings, past: &Past) -> Self {
-        let pair = Pair::of(step, around, past);
-        let manoeuvre = Manoeuvre::of(&pair);
+    pub fn of(pair: &Pair) -> Self {
+        let manoeuvre = Manoeuvre::of(pair);
         let lanes = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0));
-        let causes = causes_of(&pair, manoeuvre);
-        let lane_change_reason = if causes.has(Cause::ChangedLane) { lane_change_reason(&pair) } else { None };
+        let causes = causes_of(pair, manoeuvre);
+        let lane_change_reason = if causes.has(Cause::ChangedLane) { lane_change_reason(pair) } else { None };
         Self { manoeuvre, causes, lane_change_reason, lanes }
     }
 

@@ -25,6 +25,8 @@ pub(crate) const STANDS: MetrePerSecond = 0.1;
 pub struct Surroundings<'a> {
     /// The net, if there is one.
     pub net: Option<&'a Net>,
+    /// How long a step lasts, in s; 0 where that is not known.
+    pub step: Second,
     /// What the traffic lights show, where that is known.
     pub signals: &'a Signals,
     /// Those of `Tracker::standing` that stand because of a stop.
@@ -40,10 +42,12 @@ pub struct Surroundings<'a> {
 }
 
 /// One road user of a pair.
-pub(super) struct Party {
+pub(in crate::events) struct Party {
     pub user: UserIndex,
     pub category: Category,
     pub front: Point,
+    pub heading: Radian,
+    pub length: Metre,
     pub speed: MetrePerSecond,
     /// How hard it can brake.
     pub brakes: MetrePerSecondSquared,
@@ -53,7 +57,7 @@ pub(super) struct Party {
 }
 
 /// A pair in a step.
-pub(super) struct Pair<'a> {
+pub(in crate::events) struct Pair<'a> {
     pub ego: Party,
     pub foe: Party,
     pub time: Second,
@@ -72,7 +76,8 @@ impl Party {
     fn of(frame: &Frame, roster: &Roster, (user, row, way): (UserIndex, u32, Metre), course: Course) -> Self {
         let (state, profile) = (frame.state(row), roster.profile_of(user));
         let (category, brakes) = (profile.category, profile.brakes.deceleration);
-        Self { user, category, front: state.front(), speed: state.speed, brakes, way, course }
+        let (heading, length) = (state.heading, profile.length);
+        Self { user, category, front: state.front(), heading, length, speed: state.speed, brakes, way, course }
     }
 
     pub fn is_vehicle(&self) -> bool {

@@ -14,6 +14,7 @@ mod overlaps;
 pub mod projection;
 mod quality;
 mod reader;
+mod relations;
 
 pub use elements::{Direction, EdgeFunction, EdgeIndex, JunctionIndex, Lane, LaneIndex, Link, Passage, Signal};
 pub use network::Net;

@@ -97,6 +97,13 @@ impl Net {
         self.finder.lanes_at(&self.lanes, place, within).find(|lane| self.function(*lane) == of)
     }
 
+    /// Whether a place is on, or within a distance of, a pavement or an area where persons wait: where no vehicle drives.
+    pub fn is_off_the_road(&self, place: Point2<Metre>, within: Metre) -> bool {
+        let is_pavement =
+            |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane.0 as usize].has_vehicles;
+        self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.has_walking_area_at(place)
+    }
+
     /// The lane with this id.
     pub fn lane(&self, id: &str) -> Option<LaneIndex> {
         self.lane_ids.get(id).copied()

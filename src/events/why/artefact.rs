@@ -1,0 +1,136 @@
+//! What is SUMO's or a tracker's making, not traffic's: what would be set aside by someone who watched it.
+//!
+//! SUMO's drivers know distances along their lanes, the links that are foes of theirs, and nothing of how lanes are drawn. So
+//! rectangles may overlap where no driver had to notice anything. What appears, stops or jumps within one step was not driven
+//! either. docs/artefacts.md has the rules.
+
+use serde::Serialize;
+
+use super::manoeuvre::{changes_lanes, stands_aside};
+use super::pair::{Pair, Party, STANDS};
+use crate::geometry::rectangle::direction;
+use crate::geometry::{Point, angle_between};
+use crate::traffic::net::{LaneIndex, Net};
+use crate::traffic::profile::Category;
+use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+
+/// A driver who brakes by less has noticed nothing, in m/s²: less than comfortable braking (ITE 3.05, AASHTO 3.4).
+const UNBRAKED: MetrePerSecondSquared = 2.5;
+/// After another has stopped at once its follower brakes for about this long, in s.
+const AFTER_A_STOP: Second = 2.0;
+/// A road user turns by no more than a radian in this distance, in m: the turning circle of a small car has 9 to 10 m.
+const TURNS_IN: Metre = 2.5;
+/// A smaller turn is no jump, in rad.
+const LEAST_TURN: Radian = 0.35;
+/// A person may be this far beside a pavement or a crossing, in m.
+const BESIDE: Metre = 0.3;
+
+/// Why a conflict is none of traffic's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[serde(rename_all = "snake_case")]
+pub enum Artefact {
+    /// Two overlap, or would, where they are drawn and not where they drive.
+    DrawnOverlap,
+    /// One had just been inserted, or put elsewhere by a teleport.
+    Appeared,
+    /// One stopped faster than any brakes can.
+    StoppedAtOnce,
+    /// One changed lanes, or turned, within one step.
+    Jumped,
+    /// A tracker's error in a recording.
+    Tracking,
+}
+
+impl Artefact {
+    /// All, in the order used in tables.
+    pub const ALL: [Self; 5] = [Self::DrawnOverlap, Self::Appeared, Self::StoppedAtOnce, Self::Jumped, Self::Tracking];
+
+    /// The name in columns and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::DrawnOverlap => "drawn_overlap",
+            Self::Appeared => "appeared",
+            Self::StoppedAtOnce => "stopped_at_once",
+            Self::Jumped => "jumped",
+            Self::Tracking => "tracking",
+        }
+    }
+
+    /// That of a pair in a step; none where it is traffic.
+    pub(in crate::events) fn of(pair: &Pair) -> Option<Self> {
+        let parties = [&pair.ego, &pair.foe];
+        let any = |is: &dyn Fn(&Party) -> bool| parties.into_iter().any(is);
+        let appears = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
+        let stops = |party: &Party| party.is_vehicle() && party.course.since_impossible_stop < AFTER_A_STOP;
+        match () {
+            () if any(&appears) => Some(Self::Appeared),
+            () if any(&stops) => Some(Self::StoppedAtOnce),
+            () if any(&|party| jumps(pair, party)) => Some(Self::Jumped),
+            () if is_drawn(pair) => Some(Self::DrawnOverlap),
+            () => None,
+        }
+    }
+}
+
+/// Whether a vehicle has changed lanes in this step, or turned by more than it can on its way.
+fn jumps(pair: &Pair, party: &Party) -> bool {
+    if !party.is_vehicle() {
+        return false;
+    }
+    let Party { course, front, heading, .. } = party;
+    let turns = || {
+        let (_, from, before) = pair.past.of(party.user, pair.time).last()?;
+        let turn = angle_between(&direction(before), &direction(*heading));
+        Some(turn > LEAST_TURN + (front - from).norm() / TURNS_IN)
+    };
+    course.has_jumped || course.change.is_some_and(|change| change.time >= pair.time) || turns() == Some(true)
+}
+
+/// Whether the two overlap, or would, only as drawn.
+fn is_drawn(pair: &Pair) -> bool {
+    let Some(net) = pair.around.net else { return false };
+    match [&pair.ego, &pair.foe].map(|party| party.category) {
+        [Category::Vehicle, Category::Vehicle] => {
+            pair.both().into_iter().any(|(one, other)| waits_inside(net, one, other)) || are_unrelated(net, pair)
+        }
+        [Category::Person, Category::Vehicle] => is_off_the_road(net, pair, &pair.ego),
+        [Category::Vehicle, Category::Person] => is_off_the_road(net, pair, &pair.foe),
+        _ => false,
+    }
+}
+
+/// Whether the lanes that two take where they would meet are not related, and neither changes lanes.
+fn are_unrelated(net: &Net, pair: &Pair) -> bool {
+    let [ego, foe] = [&pair.ego, &pair.foe];
+    if [ego, foe].into_iter().any(|party| party.course.stretches.is_empty() || party.course.is_against) {
+        return false;
+    }
+    let lanes = |party: &Party, from: Metre| {
+        let stretches = party.course.stretches.iter();
+        let under = stretches.filter(move |stretch| stretch.end > from - party.length && stretch.begin <= party.way);
+        under.map(|stretch| stretch.lane).collect::<Vec<LaneIndex>>()
+    };
+    let (of_ego, of_foe) = (lanes(ego, ego.way), lanes(foe, 0.0));
+    let is_known = !of_ego.is_empty() && !of_foe.is_empty();
+    let relates = |one: LaneIndex, other: LaneIndex| {
+        let is_beside = net.lanes[one.0 as usize].edge == net.lanes[other.0 as usize].edge;
+        net.relates(one, other) || (is_beside && changes_lanes(net, pair))
+    };
+    is_known && !of_ego.iter().any(|one| of_foe.iter().any(|other| relates(*one, *other)))
+}
+
+/// Whether one stands inside a junction and the other, which takes another way, passes it without braking.
+fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
+    let Some(lane) = waits.course.at(0.0).filter(|lane| waits.speed < STANDS && net.is_internal(*lane)) else {
+        return false;
+    };
+    passes.speed >= STANDS && passes.course.deceleration < UNBRAKED && passes.course.of(lane).is_none()
+}
+
+/// Whether a person is where only persons go, and stays there until the two would meet.
+fn is_off_the_road(net: &Net, pair: &Pair, person: &Party) -> bool {
+    let is_off = |place: Point| net.crossing_at(place, 0.0).is_none() && net.is_off_the_road(place, BESIDE);
+    let meets_at = person.front + direction(person.heading) * person.way;
+    is_off(person.front) && (stands_aside(pair, person) || is_off(meets_at))
+}

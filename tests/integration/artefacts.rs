@@ -1,0 +1,119 @@
+//! What is set aside because it is not traffic, and what never is.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use closecall::{Artefact, Category, Error, Net, Options, PathModel, Profile, Result, Run, Severity, State, SumoType};
+
+use crate::why::{Drive, LEFT, ONCOMING, conflicts, drive, net_of, road};
+
+/// What a run of some seconds makes of these: of each conflict why it is set aside, and how severe it is.
+fn set_aside(net: &Net, drives: &[Drive], lasts: f64) -> Vec<(Option<Artefact>, Severity)> {
+    conflicts(net, drives, &[], lasts).iter().map(|conflict| (conflict.artefact, conflict.severity)).collect()
+}
+
+#[test]
+fn one_that_waits_inside_a_junction_is_passed() {
+    let net = net_of("left_turn");
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let waits = || drive(&LEFT[1..], length(LEFT[1]) + 1.5, |_| 0.0);
+    let comes = |speed: fn(f64) -> f64| drive(&ONCOMING, length(ONCOMING[0]) - 30.0, speed);
+    let passed = set_aside(&net, &[waits(), comes(|_| 12.0)], 6.0);
+    assert!(
+        passed.iter().all(|(artefact, _)| *artefact == Some(Artefact::DrawnOverlap)) && !passed.is_empty(),
+        "{passed:?}"
+    );
+    // One that brakes has seen the other.
+    let braked = set_aside(&net, &[waits(), comes(|time| (12.0 - 4.0 * time).max(6.0))], 6.0);
+    assert!(braked.iter().any(|(artefact, _)| artefact.is_none()), "{braked:?}");
+}
+
+#[test]
+fn lanes_that_sumo_does_not_relate_are_only_drawn_there() {
+    let beside = |shape: &str| {
+        let text = format!(
+            r#"<net><edge id="a"><lane id="a_0" length="200" speed="30" shape="0,0 200,0"/></edge>
+            <edge id="b"><lane id="b_0" length="200" speed="30" shape="{shape}"/></edge></net>"#
+        );
+        let net = Net::parse(Path::new("a.net.xml"), text).unwrap();
+        set_aside(&net, &[drive(&["a_0"], 10.0, |_| 15.0), drive(&["b_0"], 10.0, |_| 15.0)], 9.0)
+    };
+    let opposite = beside("220,0.6 20,0.6");
+    assert!(!opposite.is_empty() && opposite.iter().all(|(artefact, _)| *artefact == Some(Artefact::DrawnOverlap)));
+    // One line in both directions.
+    assert!(beside("200,0 0,0").iter().any(|(artefact, _)| artefact.is_none()));
+}
+
+#[test]
+fn foes_of_the_junction_are_traffic() {
+    let net = net_of("left_turn");
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let crash =
+        [drive(&LEFT, length(LEFT[0]) - 15.0, |_| 10.0), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 12.0)];
+    let found = set_aside(&net, &crash, 5.0);
+    assert!(found.contains(&(None, Severity::Critical)), "{found:?}");
+}
+
+#[test]
+fn what_appears_stops_or_jumps_at_once_is_set_aside() {
+    let net = road();
+    let follower = || drive(&["road_0"], 10.0, |_| 20.0);
+    let appears = Drive { enters: 3.0, ..drive(&["road_0"], 76.0, |time| if time < 3.1 { 0.0 } else { 20.0 }) };
+    let stops = drive(&["road_0"], 30.0, |time| if time < 3.0 { 20.0 } else { 0.0 });
+    for (other, artefact) in [(appears, Artefact::Appeared), (stops, Artefact::StoppedAtOnce)] {
+        let found = set_aside(&net, &[follower(), other], 3.4);
+        assert_eq!(found.iter().map(|(found, _)| *found).collect::<Vec<_>>(), [Some(artefact)]);
+    }
+    let jumps = Drive { change: Some((3.0, "road_0")), ..drive(&["road_1"], 12.0, |_| 20.0) };
+    let found = set_aside(&net, &[follower(), jumps], 3.2);
+    assert_eq!(found.iter().map(|(found, _)| *found).collect::<Vec<_>>(), [Some(Artefact::Jumped)]);
+}
+
+#[test]
+fn a_leader_that_brakes_as_cars_do_is_traffic() {
+    let brakes = |time: f64| if time < 3.0 { 20.0 } else { (20.0 - 9.0 * (time - 3.0)).max(0.0) };
+    let found = set_aside(&road(), &[drive(&["road_0"], 10.0, |_| 20.0), drive(&["road_0"], 30.0, brakes)], 5.0);
+    assert_eq!(found, [(None, Severity::Critical)]);
+}
+
+#[test]
+fn a_person_on_the_pavement_is_not_in_the_way() {
+    let text = r#"<net><edge id="a">
+        <lane id="a_0" length="200" speed="1.4" allow="pedestrian" width="2" shape="0,-2.6 200,-2.6"/>
+        <lane id="a_1" length="200" speed="30" shape="0,0 200,0"/></edge></net>"#;
+    let beside = |y: f64| {
+        let shape = format!("0,{y} 200,{y}");
+        let net = Net::parse(Path::new("a.net.xml"), text.replace("0,0 200,0", &shape)).unwrap();
+        let person = Drive { category: Category::Person, ..drive(&["a_0"], 80.0, |_| 0.0) };
+        set_aside(&net, &[drive(&["a_1"], 10.0, |_| 15.0), person], 6.0)
+    };
+    // The car cuts the pavement as drawn.
+    let found = beside(-1.2);
+    assert!(
+        !found.is_empty() && found.iter().all(|(artefact, _)| *artefact == Some(Artefact::DrawnOverlap)),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn a_person_on_a_walking_area_is_not_in_the_way() {
+    let text = r#"<net><edge id=":j_w0" function="walkingarea">
+        <lane id=":j_w0_0" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge></net>"#;
+    let net = Arc::new(Net::parse(Path::new("net"), text.to_owned()).unwrap());
+    let options = Options { path: PathModel::Straight, ..Options::default() };
+    for (x, is_on) in [(5.0, true), (19.0, false)] {
+        let mut run = Run::new(&options, Some(Arc::clone(&net))).unwrap();
+        let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
+        let person = run.roster.profile(Profile::person(&SumoType::car("person"), &options, 0.1)).unwrap();
+        let users = [run.enter("car", car), run.enter("person", person)];
+        run.begin_step(0.0);
+        for (user, (x, speed)) in users.into_iter().zip([(x, 5.0), (x - 1.0, 0.0)]) {
+            run.frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
+        }
+        let stepped: Result<()> = run.step(|_, _| Ok::<_, Error>(()));
+        stepped.unwrap();
+        let summary = run.finish().unwrap();
+        assert_eq!([summary.logged(), summary.collisions], [1, u64::from(!is_on)]);
+        assert_eq!(summary.set_aside.get("drawn_overlap").copied(), is_on.then_some(1));
+    }
+}
