@@ -130,7 +130,7 @@ fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
 
 /// Whether a person is where only persons go, and stays there until the two would meet.
 fn is_off_the_road(net: &Net, pair: &Pair, person: &Party) -> bool {
-    let is_off = |place: Point| net.crossing_at(place, 0.0).is_none() && net.is_off_the_road(place, BESIDE);
+    let is_off = |place: Point| !net.is_on_crossing(place) && net.is_off_the_road(place, BESIDE);
     let meets_at = person.front + direction(person.heading) * person.way;
     is_off(person.front) && (stands_aside(pair, person) || is_off(meets_at))
 }

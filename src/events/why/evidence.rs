@@ -120,7 +120,7 @@ fn entered(pair: &Pair, party: &Party, passage: &Passage) -> Option<Second> {
 }
 
 fn is_on_a_crossing(pair: &Pair, party: &Party) -> bool {
-    pair.around.net.is_some_and(|net| net.crossing_at(party.front, 0.0).is_some())
+    pair.around.net.is_some_and(|net| net.is_on_crossing(party.front))
 }
 
 /// When a vehicle was this far behind where it is now; none where that is longer ago than is known.
@@ -143,7 +143,7 @@ fn passed_before(pair: &Pair, party: &Party, driven: Metre) -> Option<Second> {
 fn entered_crossing(pair: &Pair, party: &Party) -> Option<Second> {
     let net = pair.around.net?;
     let places = pair.past.of(party.user, pair.time).collect::<Vec<_>>();
-    let before = places.iter().rposition(|(_, place, _)| net.crossing_at(*place, 0.0).is_none())?;
+    let before = places.iter().rposition(|(_, place, _)| !net.is_on_crossing(*place))?;
     Some(places.get(before + 1).map_or(pair.time, |(time, ..)| *time))
 }
 

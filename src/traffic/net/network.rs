@@ -9,6 +9,7 @@ use super::elements::{
     Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
 };
 use super::finder::Finder;
+use super::overlaps::distance_beside;
 use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
 use crate::geometry::{Bounds, Point};
@@ -84,6 +85,14 @@ impl Net {
     /// The crossing of persons at a place, within this distance of it.
     pub fn crossing_at(&self, place: Point2<Metre>, within: Metre) -> Option<LaneIndex> {
         self.lane_of_persons_at(place, within, EdgeFunction::Crossing)
+    }
+
+    /// Whether a place is on a crossing of persons, and not before its ends, where they wait.
+    pub fn is_on_crossing(&self, place: Point2<Metre>) -> bool {
+        self.finder.lanes_at(&self.lanes, place, 0.0).any(|lane| {
+            let Lane { shape, width, .. } = &self.lanes[lane.0 as usize];
+            self.function(lane) == EdgeFunction::Crossing && distance_beside(shape, place) <= width / 2.0
+        })
     }
 
     /// Whether persons have a crossing, or the area where they wait for it, at a place or within this distance of it.

@@ -241,7 +241,7 @@ fn cross_each_other(one: &[Point], other: &[Point]) -> bool {
 }
 
 /// The distance of a place from a line, if it is neither before its beginning nor beyond its end.
-fn distance_beside(line: &[Point], place: Point) -> Metre {
+pub(super) fn distance_beside(line: &[Point], place: Point) -> Metre {
     let last = line.len() - 2;
     let pieces = line.windows(2).enumerate().filter_map(|(number, ends)| {
         let along = ends[1] - ends[0];
