@@ -59,7 +59,7 @@ fn on_lanes_half_a_step_back_follows_the_bend() {
     let at = |distance: f64| way.vehicle(&car, distance, 8.0);
     for front in (20..200).map(f64::from) {
         let (found, _) =
-            second_step(&mut aligning(Some(&way)), Some((&way.net, front)), [&[at(front - 8.0)], &[at(front)]]);
+            second_step(&mut aligning(Some(&way)), Some((&way.net, front - 8.0)), [&[at(front - 8.0)], &[at(front)]]);
         let (found, expected) = (found[0], at(front - 4.0));
         assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
         assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");

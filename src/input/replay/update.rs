@@ -16,7 +16,7 @@ use super::rows::{RecordedRow, RecordedStep};
 use crate::geometry::Vector;
 use crate::geometry::rectangle::direction;
 use crate::traffic::net::projection::Projection;
-use crate::util::units::{Metre, MetrePerSecond, Second};
+use crate::util::units::{Metre, Second};
 use crate::{Error, Result};
 
 /// Movements of vehicles that change their speed that are enough to tell.
@@ -124,6 +124,7 @@ fn driven(from: &RecordedRow, to: &RecordedRow) -> Option<Metre> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::util::units::MetrePerSecond;
 
     /// A vehicle on a lane that leads to the north-east; with or without its place on that lane.
     fn row(position: Metre, speed: MetrePerSecond, has_position: bool) -> RecordedRow {
