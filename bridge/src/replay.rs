@@ -110,7 +110,7 @@ fn check(
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), options)?;
     let mut run = Run::new(options, net)?;
     run.set_fixed_routes(true);
-    run.set_averaged_over(if opened.is_measured() { 0.0 } else { replay.averaged_over() });
+    run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
     while replay.next(&mut run)?.is_some() {}
     run.finish()?;
     Ok(run)

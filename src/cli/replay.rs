@@ -80,7 +80,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
         let remarks = run.opening_remarks(Some(replay.step_length()));
         opened.remarks().iter().chain(&remarks).for_each(|remark| eprintln!("closecall: {remark}"));
     }
-    run.set_averaged_over(if opened.is_measured() { 0.0 } else { replay.averaged_over() });
+    run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
     let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
     let mut never = || false;

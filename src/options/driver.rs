@@ -17,12 +17,15 @@ pub enum DriverModel {
     Attentive,
     /// Is surprised: response time 1.5 s (Green 2000), with the same relative SD; decelerations of the attentive driver.
     Distracted,
-    /// The competent and careful driver of UN R157, annex 3: 0.4 s to evaluate the risk and 0.75 s until it brakes; 0.774 g.
+    /// The competent and careful driver of UN R157, annex 3: 0.4 s to evaluate the risk and 0.75 s until it brakes; 0.774 g, which
+    /// 12.65 m/s³ build up in 0.6 s.
     Competent,
-    /// The automated lane keeping system of UN R157, 5.2.5.2: 0.35 s, 6 m/s².
+    /// The automated lane keeping system of UN R157, 5.2.5.2: 0.35 s, then 6 m/s² at once.
     Automated,
 }
 
+/// How fast the competent driver's deceleration rises, in m/s³.
+const COMPETENT_JERK: f64 = 12.65;
 /// Standard gravity.
 const G: MetrePerSecondSquared = 9.806_65;
 
@@ -42,18 +45,22 @@ pub struct DriverOptions {
     pub deceleration_min: Option<MetrePerSecondSquared>,
     /// The largest deceleration in m/s².
     pub deceleration_max: Option<MetrePerSecondSquared>,
+    /// The time in which the deceleration builds up, in s; that of the vehicle's brakes if it is not set.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub build_up: Option<Second>,
 }
 
 impl DriverModel {
     /// Its values, all of them.
     pub fn values(self) -> DriverOptions {
-        let fixed = |response, deceleration| DriverOptions {
+        let fixed = |response, deceleration, build_up| DriverOptions {
             response_mean: Some(response),
             response_sd: Some(0.0),
             deceleration_mean: Some(deceleration),
             deceleration_sd: Some(0.0),
             deceleration_min: Some(deceleration),
             deceleration_max: Some(deceleration),
+            build_up: Some(build_up),
         };
         let attentive = DriverOptions {
             response_mean: Some(0.92),
@@ -62,14 +69,15 @@ impl DriverModel {
             deceleration_sd: Some(1.42),
             deceleration_min: Some(4.23),
             deceleration_max: Some(12.68),
+            build_up: None,
         };
         match self {
             Self::Attentive => attentive,
             Self::Distracted => {
                 DriverOptions { response_mean: Some(1.5), response_sd: Some(1.5 * 0.28 / 0.92), ..attentive }
             }
-            Self::Competent => fixed(0.4 + 0.75, 0.774 * G),
-            Self::Automated => fixed(0.35, 6.0),
+            Self::Competent => fixed(0.4 + 0.75, 0.774 * G, 0.774 * G / COMPETENT_JERK),
+            Self::Automated => fixed(0.35, 6.0, 0.0),
         }
     }
 }
@@ -89,6 +97,7 @@ impl DriverOptions {
             ("deceleration_sd", self.deceleration_sd, &deviation),
             ("deceleration_min", self.deceleration_min, &DECELERATION),
             ("deceleration_max", self.deceleration_max, &DECELERATION),
+            ("build_up", self.build_up, &DURATION),
         ] {
             value.map_or(Ok(0.0), |value| limit.check(name, value))?;
         }

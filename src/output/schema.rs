@@ -190,7 +190,8 @@ columns! { |conflict, context|
     [Optional] crash_probability: Option<Probability> = Some(conflict.crash_probability);
     /// the same if the foe brakes fully now
     [Optional] crash_probability_braking: Option<Probability> = Some(conflict.crash_probability_braking);
-    /// probability of a fatal injury of the one worse off, at `ego_delta_v` and `foe_delta_v`
+    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of those on foot or two wheels at the impact
+    /// speed, `ego_delta_v` + `foe_delta_v`
     [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
     /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
     /// would not touch

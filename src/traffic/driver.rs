@@ -3,6 +3,7 @@
 use std::f64::consts::{SQRT_2, TAU};
 use std::sync::Arc;
 
+use crate::braking::LateBraking;
 use crate::options::{DriverModel, DriverOptions};
 use crate::util::units::{MetrePerSecondSquared, Second};
 
@@ -40,6 +41,8 @@ pub struct Driver {
     braking: [MetrePerSecondSquared; 4],
     /// Decelerations and their weights, whose sum is 1, ascending.
     decelerations: Arc<[Weighted]>,
+    /// The time in which its deceleration builds up; none if that is a matter of the vehicle's brakes.
+    build_up: Option<Second>,
 }
 
 impl Driver {
@@ -61,7 +64,8 @@ impl Driver {
             braking(|of| of.deceleration_min),
             braking(|of| of.deceleration_max),
         ];
-        Self::of([mean.ln() - spread / 2.0, spread.sqrt()], braking)
+        let build_up = of_type.build_up.or(general.build_up).or(preset.build_up);
+        Self { build_up, ..Self::of([mean.ln() - spread / 2.0, spread.sqrt()], braking) }
     }
 
     /// One that stops within a known time at a known deceleration: a person on foot.
@@ -78,13 +82,13 @@ impl Driver {
             // Always the same, or so far in a tail of the distribution that its end says all.
             let only = if least < most { mean.clamp(least, most) } else { mean };
             let decelerations = Arc::new([(only, 1.0)]);
-            return Self { response, responses, braking: [only, 0.0, only, only], decelerations };
+            return Self { response, responses, braking: [only, 0.0, only, only], decelerations, build_up: None };
         }
         let braking = [mean, deviation, low, high];
         let values = weighted(mean, deviation, [low, high]);
         let sum = values.iter().map(|(_, weight)| weight).sum::<f64>();
         let decelerations = values.iter().map(|(value, weight)| (*value, weight / sum)).collect();
-        Self { response, responses, braking, decelerations }
+        Self { response, responses, braking, decelerations, build_up: None }
     }
 
     /// The probability that it responds later than this.
@@ -114,6 +118,11 @@ impl Driver {
             *(if is_too_weak(middle) { &mut weak } else { &mut strong }) = middle;
         }
         self.reaches([least, (weak + strong) / 2.0])
+    }
+
+    /// How it brakes with a deceleration, in a vehicle that brakes like this.
+    pub fn braking_with(&self, deceleration: MetrePerSecondSquared, of_vehicle: &LateBraking) -> LateBraking {
+        LateBraking { deceleration, build_up: self.build_up.unwrap_or(of_vehicle.build_up), ..*of_vehicle }
     }
 
     /// Whether it always responds after the same time.
@@ -192,6 +201,38 @@ mod tests {
         let driver = Driver::new(DriverModel::Competent, &DriverOptions::default(), &DriverOptions::default(), 1.0);
         assert_eq!([1.14, 1.16].map(|time| driver.responds_later_than(time)), [1.0, 0.0]);
         assert_eq!(driver.decelerations(), [(0.774 * 9.806_65, 1.0)]);
+    }
+
+    #[test]
+    fn a_drivers_own_build_up_counts_before_the_vehicles() {
+        let vehicle = LateBraking { speed: 20.0, present: 0.0, build_up: 0.1, deceleration: 9.0 };
+        let none = DriverOptions::default();
+        let set = DriverOptions { build_up: Some(0.3), ..none.clone() };
+        let build_up = |model, general: &DriverOptions, of_type: &DriverOptions| {
+            Driver::new(model, general, of_type, 1.0).braking_with(7.0, &vehicle).build_up
+        };
+        assert_eq!(build_up(DriverModel::Attentive, &none, &none), 0.1);
+        assert_eq!(build_up(DriverModel::Automated, &none, &none), 0.0);
+        assert!((build_up(DriverModel::Competent, &none, &none) - 0.6).abs() < 1e-3, "0.774 g at 12.65 m/s³");
+        assert_eq!(build_up(DriverModel::Competent, &set, &none), 0.3);
+        assert_eq!(build_up(DriverModel::Competent, &none, &set), 0.3);
+    }
+
+    /// The reference model of UN R157 brakes from 20 m/s to a stand within V (t1 + t2) + V t3/2 + V²/(2a) − a t3²/24.
+    #[test]
+    fn the_competent_driver_stops_like_the_reference_model() {
+        let none = DriverOptions::default();
+        let driver = Driver::new(DriverModel::Competent, &none, &none, 1.0);
+        let vehicle = LateBraking { speed: 20.0, present: 0.0, build_up: 0.1, deceleration: 9.0 };
+        let (braking, step) = (driver.braking_with(0.774 * 9.806_65, &vehicle), 1e-4);
+        let (mut speed, mut deceleration, mut way) = (20.0, 0.0, 0.0);
+        while speed > 0.0 {
+            deceleration = f64::min(deceleration + 12.65 * step, 0.774 * 9.806_65);
+            way += speed * step;
+            speed -= deceleration * step;
+        }
+        let wait = braking.longest_wait_at(100.0, way + 20.0 * 1.15);
+        assert!((wait - 1.15).abs() < 1e-3, "{wait}");
     }
 
     #[test]

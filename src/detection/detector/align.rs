@@ -2,26 +2,37 @@
 //!
 //! SUMO's Euler update moves a road user by v(t) Δt in the step that ends at t. Its position at t and its speed v(t) are
 //! those of two moments: v(t) is its mean speed in that step, which it has at t − Δt/2 if it speeds up evenly. There it was
-//! v(t) Δt/2 further back along the path that it drove. A change of lanes is a jump at the step's end, so that it was still on
-//! the lane before. One that enters the scene at the step's end was not there. If it moves, it keeps its distance from the others
-//! by being moved back too, but no overlap is a collision then. If it stands, or was put elsewhere, it meets nothing in that
-//! step.
+//! v(t) Δt/2 further back on its way. That way is known only between the last place that was reported and this one:
+//! - along its path, if both places are on it;
+//! - along its former path, if it was moved to another lane at the step's end ([`super::jump`]);
+//! - else the arc between both poses, on which a vehicle moves that a script steers.
+//!
+//! No place lies outside. One that was not in the last step, or was put elsewhere since, stays where it was reported. Where it
+//! was at the moment of the others is not known, so that it meets nothing in that step.
 
 use super::Detector;
-use super::jump::Jump;
 use super::last_speed::LastSpeed;
 use super::paths::lines_of;
 use crate::detection::path::turn;
+use crate::geometry::Vector;
+use crate::geometry::bow::Bow;
 use crate::geometry::rectangle::direction;
 use crate::options::Align;
 use crate::traffic::frame::{Frame, State};
+use crate::traffic::profile::Profile;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Metre, Second};
+use crate::util::units::{Metre, Radian, Second};
 
-/// A road user that is further beside its path has jumped to another lane, in m; SUMO's narrowest lanes are wider.
-const LEAST_JUMP: Metre = 0.5;
-/// One that is further beside it was put elsewhere (SUMO's teleports, scripts), in m; no lane of a street is wider.
-const MOST_JUMP: Metre = 10.0;
+/// A road user that is further beside its path has not come along it, in m; SUMO's narrowest lanes are wider.
+pub(super) const BESIDE: Metre = 0.5;
+/// One that came along its path heads along it, or went at least this part of the straight way along it, less [`ROUNDED`].
+const ALONG: f64 = 0.95;
+/// By how much recorded places are rounded, in m.
+const ROUNDED: Metre = 0.02;
+/// One whose heading differs by more from that of its path does not follow it, in rad: a script steers it.
+const ASKEW: Radian = 0.3;
+/// One that turns by more in a step has not driven an arc, in rad: a person turns where it stands.
+const MOST_TURN: Radian = 1.0;
 
 impl Detector {
     /// States over which share of a step, up to its end, a road user's speed is the mean: 1 for SUMO's Euler update, 0 for its
@@ -51,93 +62,105 @@ impl Detector {
     /// Moves all road users back to the moment of their speeds, if that is wanted. Call it after [`Detector::track_paths`] and the placements.
     pub fn align(&mut self, frame: &mut Frame, roster: &Roster) {
         let behind = self.behind();
-        if behind == 0.0 {
-            return;
+        if behind > 0.0 {
+            frame.begin_to_move_back(behind);
+            self.move_all_back(frame, roster);
         }
-        frame.begin_to_move_back(behind);
-        // What has jumped was not on its path then.
-        for jump in &self.jumps {
-            self.on_lanes[jump.row as usize] = false;
-        }
-        for row in 0..frame.len() as u32 {
-            let user = frame.user(row);
-            let state = frame.state_mut(row);
-            let driven = state.speed * behind;
-            if driven > 0.0 {
-                self.move_back(user, self.on_lanes[row as usize], roster.profile_of(user).chord, state, driven);
+        if self.aligns() {
+            self.reported.resize(self.paths.len(), State::NOWHERE);
+            for row in 0..frame.len() as u32 {
+                self.reported[frame.user(row).0 as usize] = *frame.reported(row);
             }
         }
-        self.undo_jumps(frame, roster);
     }
 
-    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. One that was put
-    /// elsewhere is as if it had just entered the scene.
-    pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, state: &State) {
-        let path = &self.paths[user.0 as usize];
-        if self.behind() == 0.0 || path.track.is_empty() {
-            return;
+    fn move_all_back(&mut self, frame: &mut Frame, roster: &Roster) {
+        let mut jumps = std::mem::take(&mut self.jumps);
+        let mut jumped = jumps.iter_mut().peekable();
+        for row in 0..frame.len() as u32 {
+            let (user, state) = (frame.user(row), frame.state_mut(row));
+            let profile = roster.profile_of(user);
+            if let Some(jump) = jumped.next_if(|jump| jump.row == row) {
+                self.undo_jump(jump, profile, state);
+            } else if state.moves()
+                && let Some(last) = self.last_reported(user)
+            {
+                self.move_back(row, user, profile, &last, state);
+            }
         }
-        let of_net = lines_of(self.net.as_deref());
-        let (point, direction) = path.track.ahead_at(path.lines(of_net), state.speed * self.step);
-        let (off, direction) = (state.front() - point, direction.normalize());
-        let along = off.dot(&direction);
-        let aside = off - direction * along;
-        if off.norm() >= MOST_JUMP {
-            self.speeds[user.0 as usize] = LastSpeed::default();
-            self.put_elsewhere.push(user);
-        } else if aside.norm() >= LEAST_JUMP {
-            let mut path = path.clone();
-            path.move_on(of_net, state.speed * (self.step - self.behind()));
-            self.jumps.push(Jump { row, user, path });
-        }
+        self.jumps = jumps;
     }
 
-    /// Puts those that have jumped back on their former paths, for this step.
-    fn undo_jumps(&mut self, frame: &mut Frame, roster: &Roster) {
-        for Jump { row, user, path } in &mut self.jumps {
-            let lines = path.lines(lines_of(self.net.as_deref()));
-            let profile = roster.profile_of(*user);
-            let (front, axis) = (path.track.point(lines), path.track.chord(lines, profile.chord));
-            let state = frame.state_mut(*row);
-            (state.x, state.y, state.heading) = (front.x, front.y, axis.y.atan2(axis.x));
-            self.on_lanes[*row as usize] = state.moves() || profile.carriages > 1;
-            let next = std::mem::replace(&mut self.paths[user.0 as usize], std::mem::take(path));
-            self.next_paths.push((*user, next));
-        }
+    /// The state in which a road user was reported in the last step; none if it was not there, or was put elsewhere since.
+    pub(super) fn last_reported(&self, user: UserIndex) -> Option<State> {
+        let is_known = self.speeds.get(user.0 as usize).is_some_and(|last| last.is_known());
+        self.reported.get(user.0 as usize).filter(|_| is_known).copied()
     }
 
-    /// Gives those that had jumped in the last step the paths of their new lanes.
-    pub(super) fn redo_jumps(&mut self) {
-        self.jumps.clear();
-        self.jumped.clear();
-        self.put_elsewhere.clear();
-        for (user, path) in self.next_paths.drain(..) {
-            self.paths[user.0 as usize] = path;
-            self.jumped.push(user);
-        }
-    }
-
-    fn move_back(&mut self, user: UserIndex, on_lanes: bool, chord: Metre, state: &mut State, driven: Metre) {
-        if !on_lanes {
-            let back = direction(state.heading) * driven;
-            (state.x, state.y) = (state.x - back.x, state.y - back.y);
-            return;
-        }
-        let path = &mut self.paths[user.0 as usize];
-        let of_net = lines_of(self.net.as_deref());
-        let before = path.track.chord(path.lines(of_net), chord);
-        path.move_back(of_net, driven);
-        let front = path.track.point(path.lines(of_net));
-        let after = path.track.chord(path.lines(of_net), chord);
-        (state.x, state.y) = (front.x, front.y);
-        // One that has just entered is as SUMO has put it, straight on its lane.
-        if self.speeds.get(user.0 as usize).is_some_and(|last| last.is_known()) {
+    /// Moves a road user back on its way from where it was reported last.
+    fn move_back(&mut self, row: u32, user: UserIndex, profile: &Profile, last: &State, state: &mut State) {
+        let driven = state.speed * self.behind();
+        let came = if self.on_lanes[row as usize] { self.came(user, profile, last, state) } else { None };
+        if let Some(came) = came {
+            let (path, of_net) = (&mut self.paths[user.0 as usize], lines_of(self.net.as_deref()));
+            let before = path.track.chord(path.lines(of_net), profile.chord);
+            path.move_back(of_net, driven.min(came));
+            let front = path.track.point(path.lines(of_net));
+            let after = path.track.chord(path.lines(of_net), profile.chord);
+            (state.x, state.y) = (front.x, front.y);
             state.heading += turn(&before, &after);
+            return;
         }
+        let way = (state.front() - last.front()).norm();
+        self.on_lanes[row as usize] = false;
+        if way > self.driven_at_most(user, state.speed) {
+            self.speeds[user.0 as usize] = LastSpeed::default();
+        } else if way > 0.0 {
+            let ends = [last.front(), state.front()];
+            let arc = Bow::new(ends, [last.heading, state.heading]);
+            let bow = if arc.turn.abs() > MOST_TURN { Bow::new(ends, [state.heading; 2]) } else { arc };
+            let back = (driven / way).min(1.0);
+            let front = bow.at(1.0 - back);
+            (state.x, state.y) = (front.x, front.y);
+            state.heading -= bow.turn * back;
+        }
+    }
+
+    /// How far a road user came along its path since it was reported last; none if it came another way.
+    fn came(&self, user: UserIndex, profile: &Profile, last: &State, state: &State) -> Option<Metre> {
+        let path = &self.paths[user.0 as usize];
+        path.driven().or_else(|| {
+            let lines = path.lines(lines_of(self.net.as_deref()));
+            let scale = path.track.scale(lines);
+            let (mut came, mut beside) = (self.expected(last, state), Metre::INFINITY);
+            // The first guess is right where the speeds tell the way.
+            for _ in 0..2 {
+                let (point, direction) = path.track.behind_at(lines, came);
+                let off = last.front() - point;
+                let along = off.dot(&direction);
+                beside = (off - direction * along).norm();
+                came -= along / scale;
+            }
+            let way = (state.front() - last.front()).norm();
+            let is_along = || came * scale >= ALONG * way - ROUNDED;
+            let heads_along = || !is_askew(&path.track.chord(lines, profile.chord), state);
+            (beside < BESIDE && (is_along() || heads_along())).then_some(came.max(0.0))
+        })
+    }
+
+    /// How far a road user has driven in the step, as its speeds tell.
+    fn expected(&self, last: &State, state: &State) -> Metre {
+        let half_of_change = (state.speed - last.speed) / 2.0;
+        ((state.speed + last.speed) / 2.0 + self.share() * half_of_change) * self.step
     }
 
     /// How far a path has to reach back beyond the road user's length.
     pub(super) fn way_back(&self, state: &State) -> Metre {
         state.speed * self.behind()
     }
+}
+
+/// Whether a heading is not that of a path with this chord.
+pub(super) fn is_askew(chord: &Vector, state: &State) -> bool {
+    turn(chord, &direction(state.heading)).abs() > ASKEW
 }

@@ -10,7 +10,7 @@ use crate::detection::path::lanes::LanePath;
 use crate::detection::path::turning::Turning;
 use crate::options::{Mode, PathModel};
 use crate::traffic::frame::{Frame, Row, State};
-use crate::traffic::profile::Category;
+use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::limits::{FEWEST_PAIRS, PAIRS};
 use crate::util::threads::share;
@@ -70,9 +70,9 @@ impl Detector {
                     continue;
                 }
                 if state.moves() {
-                    self.keep_on_path(row, user, &state);
+                    self.keep_on_path(row, user, profile, &state);
                 } else {
-                    self.stop_on_path(row, user, &state);
+                    self.stop_on_path(row, user, profile, &state);
                     // It still bends along the path on which it came.
                     self.on_lanes[row] = profile.carriages > 1 && !self.paths[user.0 as usize].track.is_empty();
                 }
@@ -113,7 +113,6 @@ impl Detector {
             turns,
             epsilon,
             is_earlier: self.behind() > 0.0,
-            put_elsewhere: &self.put_elsewhere,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths,
@@ -212,12 +211,12 @@ impl Detector {
     }
 
     /// Follows a row's path along the lanes, or adds it to those whose lane is needed.
-    fn keep_on_path(&mut self, row: usize, user: UserIndex, state: &State) {
+    fn keep_on_path(&mut self, row: usize, user: UserIndex, profile: &Profile, state: &State) {
         let of_net = lines_of(self.net.as_deref());
         let driven = self.driven_at_most(user, state.speed);
         self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, state.front(), driven);
         if !self.on_lanes[row] {
-            self.take_jump(row as u32, user, state);
+            self.take_jump(row as u32, user, profile, state);
         }
         if self.shortcuts.known_paths && !self.routes_may_change && self.on_lanes[row] {
             self.work.known_paths += 1;
@@ -228,14 +227,14 @@ impl Detector {
 
     /// How far a road user may have driven in this step, with a reserve: where one lane leads back beside the other, the way
     /// to a place across may be far.
-    fn driven_at_most(&self, user: UserIndex, speed: MetrePerSecond) -> Metre {
+    pub(super) fn driven_at_most(&self, user: UserIndex, speed: MetrePerSecond) -> Metre {
         let last = self.speeds.get(user.0 as usize).map_or(f64::NAN, |last| last.speed);
         if last.is_nan() { f64::INFINITY } else { FASTER * last.max(speed) * self.step + LEAST_DRIVEN }
     }
 
     /// Follows the path of a vehicle that has stopped, and removes it if the vehicle stopped elsewhere. Where lanes are
     /// longer or shorter than drawn, the lane of a vehicle without a path is needed, as its drawn length depends on it.
-    fn stop_on_path(&mut self, row: usize, user: UserIndex, state: &State) {
+    fn stop_on_path(&mut self, row: usize, user: UserIndex, profile: &Profile, state: &State) {
         let of_net = lines_of(self.net.as_deref());
         let driven = self.driven_at_most(user, 0.0);
         let path = &mut self.paths[user.0 as usize];
@@ -243,7 +242,7 @@ impl Detector {
             && !path.track.is_at(path.lines(of_net), state.front())
             && !path.follow(of_net, state.front(), driven)
         {
-            self.take_jump(row as u32, user, state);
+            self.take_jump(row as u32, user, profile, state);
             self.paths[user.0 as usize].clear();
         }
         let of_net = lines_of(self.net.as_deref());

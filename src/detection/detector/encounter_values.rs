@@ -218,8 +218,9 @@ impl StepInputs<'_> {
         }
         let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
         let braking = self.late_braking(met.slots[0], ego);
-        let wait = |deceleration| LateBraking { deceleration, ..braking }.longest_wait_behind(&leader);
-        crash_probability(&self.profile(self.user(met.slots[0])).driver, braking.present >= BRAKES, wait)
+        let driver = &self.profile(self.user(met.slots[0])).driver;
+        let wait = |deceleration| driver.braking_with(deceleration, &braking).longest_wait_behind(&leader);
+        crash_probability(driver, braking.present >= BRAKES, wait)
     }
 
     /// How a road user brakes if it goes on as now for a while.

@@ -48,7 +48,7 @@ impl Unsettled {
 /// Whether two road users can be a pair at all. One of which it is not known where it was meets nothing. Two that stand are a pair only in the
 /// step in which one of them stops: what it ran into on its last metre is a collision.
 fn is_pair([(a, a_state), (b, b_state)]: [(&User, &State); 2], mode: Mode, work: &mut Work) -> bool {
-    if [a, b].into_iter().any(|user| user.motion == Motion::WasElsewhere) {
+    if [a, b].into_iter().any(|user| user.motion == Motion::Appears) {
         work.not_there_yet += 1;
         return false;
     }
@@ -179,7 +179,7 @@ impl StepInputs<'_> {
         None
     }
 
-    /// Adds a pair that collides now, unless one of the two was not there yet.
+    /// Adds a pair that collides now.
     fn collide(
         &self,
         work: &mut Work,
@@ -188,9 +188,6 @@ impl StepInputs<'_> {
         overlap: Overlap,
         found: &mut Findings,
     ) {
-        if slots.iter().any(|slot| self.user(*slot).motion == Motion::Enters) {
-            return;
-        }
         let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
         let roles = Roles::new(ego, slots, [first, second]);
         let conflict_point = ConflictPoint {

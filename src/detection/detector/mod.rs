@@ -44,7 +44,7 @@ use super::path::turning::Turning;
 use crate::braking::MuModel;
 use crate::options::condition::LookAhead;
 use crate::options::{Mode, Options};
-use crate::traffic::frame::Frame;
+use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::limits::{ENCOUNTERS, FEWEST_ENCOUNTERS};
@@ -84,8 +84,6 @@ pub struct Detector {
     next_paths: Vec<(UserIndex, LanePath)>,
     /// Those that jumped at the end of the last step.
     jumped: Vec<UserIndex>,
-    /// Those that were put elsewhere at the end of this step.
-    put_elsewhere: Vec<UserIndex>,
     conflicts_only: bool,
     /// The time of the step, in s; infinite before the first.
     time: Second,
@@ -105,6 +103,8 @@ pub struct Detector {
     on_lanes: Vec<bool>,
     /// By [`UserIndex`], the speed in the last step that the road user was in, and the deceleration since the one before.
     speeds: Vec<LastSpeed>,
+    /// By [`UserIndex`], the state that was reported in that step; empty unless road users are moved back.
+    reported: Vec<State>,
     /// By [`UserIndex`], the last change of lanes; none where there was none, or beyond the end.
     lane_changes: Vec<Option<LaneChange>>,
     /// The road users of the step in slots; those that meet are close in memory.
@@ -138,7 +138,7 @@ impl Detector {
             jumps: Vec::new(),
             next_paths: Vec::new(),
             jumped: Vec::new(),
-            put_elsewhere: Vec::new(),
+            reported: Vec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
@@ -321,7 +321,6 @@ impl Detector {
             turns,
             epsilon,
             is_earlier: self.behind() > 0.0,
-            put_elsewhere: &self.put_elsewhere,
             on_lanes: &self.on_lanes,
             speeds: &self.speeds,
             paths: self.all_paths(),

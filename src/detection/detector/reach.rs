@@ -23,10 +23,9 @@ pub(super) enum Motion {
     Moves,
     /// It stands, and moved in the step before.
     HasStopped,
-    /// It moves, and has entered the scene after the moment to which the others are moved back.
-    Enters,
-    /// It was put where it is after that moment, or stands there since: where it was then is not known.
-    WasElsewhere,
+    /// It has entered the scene, or was put elsewhere, after the moment to which the others are moved back: where it was then is
+    /// not known.
+    Appears,
     /// It stands, and stood in the step before or has just entered the scene.
     Rests,
 }
@@ -59,8 +58,6 @@ pub(super) struct StepView<'a> {
     pub epsilon: Metre,
     /// Whether road users are moved back to a moment before the end of the step.
     pub is_earlier: bool,
-    /// Those that were put elsewhere in this step.
-    pub put_elsewhere: &'a [UserIndex],
     pub on_lanes: &'a [bool],
     /// By [`UserIndex`], the speed in the last step that the road user was in.
     pub speeds: &'a [LastSpeed],
@@ -117,13 +114,7 @@ impl StepView<'_> {
             profile: type_index,
             category: profile.category,
             motion: match moves {
-                _ if self.is_earlier && is_new() => {
-                    if moves && !self.put_elsewhere.contains(&index) {
-                        Motion::Enters
-                    } else {
-                        Motion::WasElsewhere
-                    }
-                }
+                _ if self.is_earlier && is_new() => Motion::Appears,
                 true => Motion::Moves,
                 false if last().is_some_and(|last| last.speed > 0.0) => Motion::HasStopped,
                 false => Motion::Rests,

@@ -42,7 +42,7 @@ impl Timely {
         let wait = evasion.longest_wait(braking);
         let ttb = Some(wait.max(0.0)).filter(|wait| wait.is_finite());
         let crash_probability = ttb.map_or(0.0, |_| {
-            let wait_with = |deceleration| evasion.longest_wait(&LateBraking { deceleration, ..*braking });
+            let wait_with = |deceleration| evasion.longest_wait(&driver.braking_with(deceleration, braking));
             crash_probability(driver, braking.present >= BRAKES, wait_with)
         });
         Self { ttb, crash_probability, ..self }

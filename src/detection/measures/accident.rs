@@ -44,9 +44,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn at_fifty_kilometres_per_hour_a_second_and_a_half_is_serious() {
+    fn at_fifty_kilometres_per_hour_the_border_is_1_543_seconds() {
         let speed = 50.0 / 3.6;
-        assert_eq!([1.6, 1.5, 1.0, 0.0].map(|ta| level(ta, speed)), [25.0, 26.0, 27.0, 29.0]);
+        assert_eq!([1.544, 1.542, 1.0, 0.0].map(|ta| level(ta, speed)), [25.0, 26.0, 27.0, 29.0]);
         assert_eq!([level(20.0, speed), level(0.0, 60.0)], [1.0, 30.0]);
     }
 

@@ -1,4 +1,5 @@
-//! The probability of a fatal injury of the one that is worse off, from its ΔV in a collision.
+//! The probability of a fatal injury of the one that is worse off in a collision: of those in a vehicle from its ΔV, of those that
+//! nothing protects from the speed of the impact.
 
 use crate::detection::kind::Kind;
 use crate::traffic::profile::Profile;
@@ -30,31 +31,36 @@ enum Hit {
 
 /// The larger probability of a fatal injury, of the ego's occupants and of the foe's.
 ///
-/// Those that nothing protects: 1 / (1 + exp(6.9 − 0.090 v)) with v in km/h, for pedestrians hit by cars (Rosén and Sander
-/// 2009). Occupants of vehicles: 1 / (1 + exp(9.032 − 0.198 v − 1.462 side + 1.921 rear)) with v in mph (Malliaris, Digges and
-/// DeBlois 1997). The ego hits with its front; where the foe is hit follows from the kind.
+/// Those that nothing protects: 1 / (1 + exp(6.9 − 0.090 v)) with the impact speed v in km/h, for adult pedestrians that the front of
+/// a car hits (Rosén and Sander 2009). The impact speed is the speed at which the two close in, which is the sum of both ΔV. No
+/// curve is known for two that nothing protects: there v is the ΔV of each, as nothing heavier hits it. Occupants of vehicles:
+/// 1 / (1 + exp(9.032 − 0.198 v − 1.462 side + 1.921 rear)) with ΔV v in mph (Malliaris, Digges and DeBlois 1997). The ego hits
+/// with its front; where the foe is hit follows from the kind.
 pub fn injury_probability(kind: Kind, ego: Body, foe: Body) -> f64 {
     let foe_is_hit_at = match kind {
         Kind::Frontal => Hit::Front,
         Kind::Side => Hit::Side,
         Kind::RearEnd => Hit::Rear,
     };
-    fatal(ego, Hit::Front).max(fatal(foe, foe_is_hit_at))
+    let impact = ego.delta_v + foe.delta_v;
+    let speed = |one: Body, other: Body| if one.unprotected && !other.unprotected { impact } else { one.delta_v };
+    let of_ego = fatal(speed(ego, foe), ego.unprotected, Hit::Front);
+    of_ego.max(fatal(speed(foe, ego), foe.unprotected, foe_is_hit_at))
 }
 
-fn fatal(Body { delta_v, unprotected }: Body, hit: Hit) -> f64 {
+fn fatal(speed: MetrePerSecond, unprotected: bool, hit: Hit) -> f64 {
     /// Kilometres per hour and miles per hour in 1 m/s.
     const KILOMETRES_PER_HOUR: f64 = 3.6;
     const MILES_PER_HOUR: f64 = 3600.0 / 1609.344;
     let exponent = if unprotected {
-        0.090 * KILOMETRES_PER_HOUR * delta_v - 6.9
+        0.090 * KILOMETRES_PER_HOUR * speed - 6.9
     } else {
         let direction = match hit {
             Hit::Front => 0.0,
             Hit::Side => 1.462,
             Hit::Rear => -1.921,
         };
-        0.198 * MILES_PER_HOUR * delta_v + direction - 9.032
+        0.198 * MILES_PER_HOUR * speed + direction - 9.032
     };
     1.0 / (1.0 + (-exponent).exp())
 }
@@ -62,14 +68,28 @@ fn fatal(Body { delta_v, unprotected }: Body, hit: Hit) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::detection::measures::delta_v;
 
     const STANDS: Body = Body { delta_v: 0.0, unprotected: false };
 
     #[test]
     fn a_pedestrian_hit_at_50_kilometres_per_hour_dies_with_8_per_cent() {
-        let walker = Body { delta_v: 50.0 / 3.6, unprotected: true };
-        let found = injury_probability(Kind::Side, STANDS, walker);
-        assert!((found - 0.083).abs() < 5e-4, "{found}");
+        // Whatever the car weighs.
+        for mass in [900.0, 1500.0, 3500.0] {
+            let [of_car, of_walker] = delta_v((50.0 / 3.6, mass), (0.0, 75.0), std::f64::consts::FRAC_PI_2);
+            let car = Body { delta_v: of_car, unprotected: false };
+            let walker = Body { delta_v: of_walker, unprotected: true };
+            let found = injury_probability(Kind::Side, car, walker);
+            assert!((found - 0.083).abs() < 5e-4, "{found}");
+            assert_eq!(found, injury_probability(Kind::Side, walker, car), "whichever is the ego");
+        }
+    }
+
+    #[test]
+    fn a_bicycle_hits_a_pedestrian_less_hard_than_a_car() {
+        let walker = Body { delta_v: 3.0, unprotected: true };
+        let found = |unprotected| injury_probability(Kind::Side, Body { delta_v: 3.0, unprotected }, walker);
+        assert!(found(true) < found(false));
     }
 
     #[test]

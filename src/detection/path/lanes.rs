@@ -25,6 +25,9 @@ use crate::util::units::{Metre, MetrePerSecond, Second};
 const SPARE: Metre = 30.0;
 /// Lanes further behind the rear bumper than this are removed, in m.
 pub(crate) const KEPT_BEHIND: Metre = 5.0;
+/// A rear that is straight behind by this much more than on a lane is on no lane, in m.
+const BEND: Metre = 0.1;
+
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
 pub struct LanePath {
@@ -38,6 +41,8 @@ pub struct LanePath {
     edge: Option<usize>,
     /// How far its front bumper was moved back since it last was followed.
     moved_back: Metre,
+    /// How far its front bumper moved along it when it was last followed; none since it was built.
+    driven: Option<Metre>,
 }
 
 /// What a path starts from.
@@ -81,7 +86,15 @@ impl LanePath {
         if moved_back > 0.0 {
             self.track.move_on(lines, moved_back);
         }
-        self.track.follow(lines, front, driven)
+        let ahead = self.track.ahead();
+        let follows = self.track.follow(lines, front, driven);
+        self.driven = follows.then(|| (ahead - self.track.ahead()).max(0.0));
+        follows
+    }
+
+    /// How far the front bumper moved along it in the last step; none if the path was built since.
+    pub fn driven(&self) -> Option<Metre> {
+        self.driven
     }
 
     /// Moves the front bumper on.
@@ -126,6 +139,7 @@ impl LanePath {
         let joins =
             before.iter().try_fold(placement.lane.0, |next, lane| net.lines.join(lane.0, next).then_some(lane.0));
         self.own = None;
+        self.driven = None;
         if !against && beside.is_none() && line.len() > 1 && joins.is_some() {
             self.track.begin(&net.lines, placement.lane.0, foot.distance);
             before.iter().for_each(|lane| self.track.prepend(lane.0));
@@ -154,7 +168,7 @@ impl LanePath {
 
     /// Begins a path that follows no lanes with the points behind the front bumper and where that is.
     pub(super) fn begin_driven(&mut self, behind: impl Iterator<Item = Point>, front: Point) {
-        self.moved_back = 0.0;
+        (self.moved_back, self.driven) = (0.0, None);
         self.own.get_or_insert_default().begin(&mut self.track, behind, front);
     }
 
@@ -324,8 +338,8 @@ fn leads_to_a_lane(net: &Net, lane: LaneIndex, towards_higher_lanes: MetrePerSec
 }
 
 /// The lanes behind that of the front bumper, nearest first, as far as [`KEPT_BEHIND`] behind the rear bumper. Of several
-/// that lead here, it came over the one that is nearest to the rear of the part whose heading is known; further behind, over
-/// the one that its route has passed.
+/// that lead here, it came over the one that is nearest to the rear of the part whose heading is known, or over none if it stands
+/// straight: SUMO has inserted it before the lane's begin. Further behind, it came over the one that its route has passed.
 fn lanes_behind(
     net: &Net,
     lane: LaneIndex,
@@ -339,21 +353,31 @@ fn lanes_behind(
     let mut covered = foot.distance;
     let mut current = lane;
     while covered < needed {
-        let before = net.lanes[current.0 as usize].from.iter().copied().min_by(|&a, &b| {
-            let distance = |lane: LaneIndex| {
-                if covered >= start.chord {
-                    return if route.has_passed(net, lane) { 0.0 } else { 1.0 };
-                }
-                let distance = net.lines.length(lane.0) - (start.chord - covered);
-                (rear - Foot::of(net.lines.line(lane.0), rear, distance).point).norm()
-            };
-            distance(a).total_cmp(&distance(b))
-        });
+        let distance = |lane: LaneIndex| {
+            if covered >= start.chord {
+                return if route.has_passed(net, lane) { 0.0 } else { 1.0 };
+            }
+            let distance = net.lines.length(lane.0) - (start.chord - covered);
+            (rear - Foot::of(net.lines.line(lane.0), rear, distance).point).norm()
+        };
+        let from = net.lanes[current.0 as usize].from.iter().copied();
+        let before = from.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         let Some(before) = before else { break };
+        if covered < start.chord
+            && (rear - straight_back(net, current, start.chord - covered)).norm() + BEND < distance(before)
+        {
+            break;
+        }
         lanes.push(before);
         // A ring of lanes of length 0 would never end.
         covered += net.lines.length(before.0).max(0.1);
         current = before;
     }
     lanes
+}
+
+/// The place at a distance straight behind the begin of a lane.
+fn straight_back(net: &Net, lane: LaneIndex, distance: Metre) -> Point {
+    let first = net.lines.segment(net.lines.range(lane.0).0);
+    first.at(first.begins_at - distance)
 }

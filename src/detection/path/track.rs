@@ -144,6 +144,12 @@ impl Track {
         (cursor.point(), cursor.under.direction)
     }
 
+    /// The place and the direction at a distance behind the front bumper; before the first line, straight back.
+    pub fn behind_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+        let cursor = self.behind(lines, distance);
+        (cursor.point(), cursor.under.direction)
+    }
+
     /// A cursor at a distance ahead of the front bumper.
     fn before<'a>(&'a self, lines: &'a Lines, distance: Metre) -> Cursor<'a> {
         let mut cursor = self.cursor(lines);

@@ -130,6 +130,7 @@ impl Replay {
         Ok(Self {
             path: path.to_path_buf(),
             recorded_steps: Steps::InPlace(recording),
+            averaged_over: update::averaged_over(path, projection.as_ref())?,
             projection,
             step,
             second_step,
@@ -143,7 +144,6 @@ impl Replay {
             stops: RecordedStops::default(),
             options: options.clone(),
             step_length,
-            averaged_over: update::averaged_over(path)?,
             steps: 0,
             vehicle_rows: 0,
             unknown_lanes: 0,

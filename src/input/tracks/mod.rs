@@ -46,8 +46,8 @@ pub enum Opened {
 pub struct Converted {
     fcd: TempPath,
     types: TempPath,
-    /// Whether its speeds were measured: each is that of its moment, not the mean of a step.
-    is_measured: bool,
+    /// Whether each of its speeds is that of its moment, not the mean of a step.
+    has_speeds_of_moments: bool,
     /// What had to be assumed, a line each.
     pub remarks: Vec<String>,
 }
@@ -69,9 +69,10 @@ impl Opened {
         }
     }
 
-    /// Whether its speeds were measured: each is that of its moment, not the mean of a step of a simulation.
-    pub fn is_measured(&self) -> bool {
-        matches!(self, Self::Converted(converted) if converted.is_measured)
+    /// Whether each of its speeds is that of its moment: it was measured, or Vissim simulated it. Other simulations may move vehicles
+    /// by the speed of a step's end.
+    pub fn has_speeds_of_moments(&self) -> bool {
+        matches!(self, Self::Converted(converted) if converted.has_speeds_of_moments)
     }
 
     /// What had to be assumed, a line each.
@@ -108,6 +109,6 @@ pub fn open(path: &Path, options: &TrackOptions, net: Option<&Net>) -> Result<Op
         _ => rows::convert(path, &layouts::mapping_of(format, options)?, options.smooth, &mut writer)?,
     };
     let (fcd, types) = writer.finish().map_err(|source| Error::file(path, source))?;
-    let is_measured = !matches!(format, RecordingFormat::Trj | RecordingFormat::Fzp);
-    Ok(Opened::Converted(Converted { fcd, types, is_measured, remarks }))
+    let has_speeds_of_moments = format != RecordingFormat::Trj;
+    Ok(Opened::Converted(Converted { fcd, types, has_speeds_of_moments, remarks }))
 }

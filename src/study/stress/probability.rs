@@ -70,6 +70,7 @@ fn driver(&[response_mean, response_sd, mean, deviation, low, high]: &[f64; 6]) 
         deceleration_sd: Some(deviation),
         deceleration_min: Some(low),
         deceleration_max: Some(high),
+        ..DriverOptions::default()
     };
     Driver::new(DriverModel::Attentive, &options, &DriverOptions::default(), 1.0)
 }
