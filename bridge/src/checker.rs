@@ -39,7 +39,7 @@ const AUTO: &str = "closecall-out";
 ///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.
 ///     paint: whether to colour the vehicles in conflict; by default only if libsumo runs sumo-gui.
 ///     on_conflict: called with each `Conflict` when it has closed and is settled: 1 s after the last step that meets the log's
-///         condition, up to 5 s later where a PET is waited for.
+///         condition, some seconds later where a PET is waited for.
 ///     on_alarm: called with an `Alarm` in the step in which a conflict opens.
 ///     **options: the long options of the command line, with underscores: `mu="at_rest"`, `epsilon=1.0`.
 ///
@@ -197,8 +197,8 @@ impl Checker {
         self.state.with(py, |state| Ok(alarm::active(&state.recorded.run)))
     }
 
-    /// The conflicts that are over but wait for the second road user to come, for at most 5 s: `pet_at_least` tells how long
-    /// ago the first left.
+    /// The conflicts that are over but wait for the second road user to come and pass, for some seconds: `pet_at_least` tells
+    /// how long ago the first left.
     #[getter]
     fn waiting(&self, py: Python) -> PyResult<Vec<Alarm>> {
         self.state.with(py, |state| Ok(alarm::waiting(&state.recorded.run)))

@@ -31,6 +31,8 @@ pub struct Encounter {
     pub ego_distance: Metre,
     /// Distance of the foe until it reaches the conflict point or (cos α > 0) has left it.
     pub foe_distance: Metre,
+    /// Whether the foe is at the conflict point already: of a rear-end pair, a leader on the ego's path.
+    pub foe_leads: bool,
     /// Front-bumper centre of the ego at the conflict point, or the centre of the front of its carriage that touches, x.
     pub x: Metre,
     /// The same, y.
@@ -80,6 +82,11 @@ impl Encounter {
     /// Whether the gap is smaller than μ, or there is none left.
     pub fn in_conflict(&self) -> bool {
         self.margin < 0.0 || self.collision
+    }
+
+    /// Whether the paths of the two may cross or merge, so that they may have a PET; a follower's and its leader's are one.
+    pub fn may_cross(&self) -> bool {
+        self.kind != Kind::RearEnd || !self.foe_leads
     }
 
     /// Whether it meets the log's condition, if its event has the PET for it.

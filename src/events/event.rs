@@ -79,7 +79,7 @@ pub struct Conflict {
     pub injury_probability: f64,
     /// Largest of all steps of the larger ΔV of both if each brakes until they touch, in m/s.
     pub extended_delta_v: Option<MetrePerSecond>,
-    /// Post-encroachment time, in s; side and frontal only.
+    /// Post-encroachment time, in s; none of followers.
     pub pet: Option<Second>,
     /// Speed change of the ego in a fully inelastic collision, in m/s.
     pub ego_delta_v: MetrePerSecond,

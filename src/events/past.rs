@@ -8,7 +8,8 @@ use crate::traffic::frame::{Frame, Row};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, Radian, Second};
 
-/// The number of past steps kept, at least [`APART`] from one another: 5 s, in which a vehicle crosses a junction.
+/// The number of past steps, at least [`APART`] from one another, from which causes are told: 5 s, in which a vehicle crosses
+/// a junction. More are kept where a longer PET is looked for.
 const STEPS: usize = 10;
 /// The time between two of them, in s: half a second, in which a path bends by centimetres, less what sums of steps differ
 /// from it by rounding.
@@ -24,6 +25,8 @@ const ABSENT: [f64; 3] = [f64::NAN; 3];
 /// The last steps, the oldest first.
 #[derive(Debug, Default)]
 pub(super) struct Past {
+    /// How many are kept.
+    most: usize,
     steps: VecDeque<PastStep>,
 }
 
@@ -43,12 +46,17 @@ impl PastStep {
 }
 
 impl Past {
+    /// That of so long: of the longest PET, as the first has left the conflict area by so much before.
+    pub fn of_last(seconds: Second) -> Self {
+        Self { most: STEPS.max((seconds / APART) as usize), steps: VecDeque::new() }
+    }
+
     /// Adds a step, if the last one is long enough ago; `users` is more than every index in use.
     pub fn add(&mut self, frame: &Frame, users: usize) {
         if self.steps.back().is_some_and(|last| frame.time - last.time < APART) {
             return;
         }
-        let mut step = if self.steps.len() < STEPS { None } else { self.steps.pop_front() }.unwrap_or_default();
+        let mut step = if self.steps.len() < self.most { None } else { self.steps.pop_front() }.unwrap_or_default();
         step.time = frame.time;
         step.places.clear();
         step.places.reserve_exact(users);
@@ -59,10 +67,19 @@ impl Past {
         self.steps.push_back(step);
     }
 
-    /// Where a road user was before this time, the oldest first, since it was last away.
+    /// Where a road user was in the last 5 s before this time, the oldest first, since it was last away.
     pub fn of(&self, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
+        self.since(self.steps.len().saturating_sub(STEPS), user, before)
+    }
+
+    /// The same as far back as is known.
+    pub fn all_of(&self, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
+        self.since(0, user, before)
+    }
+
+    fn since(&self, first: usize, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
         let away = self.steps.iter().rposition(|step| step.of(user).is_none());
-        let since = self.steps.range(away.map_or(0, |away| away + 1)..);
+        let since = self.steps.range(away.map_or(0, |away| away + 1).max(first)..);
         since.filter_map(move |step| step.of(user)).take_while(move |(time, ..)| *time < before)
     }
 
@@ -105,7 +122,7 @@ mod tests {
 
     #[test]
     fn the_last_five_seconds_are_kept_at_every_half_second() {
-        let mut past = Past::default();
+        let mut past = Past::of_last(5.0);
         (0..=80).for_each(|step| past.add(&frame(f64::from(step) * 0.1, true), 2));
         let expected = (0..10).map(|step| 3.5 + f64::from(step) * 0.5).collect::<Vec<_>>();
         assert!(times(&past).iter().zip(&expected).all(|(time, expected)| (time - expected).abs() < 1e-6));
@@ -113,11 +130,18 @@ mod tests {
     }
 
     #[test]
+    fn a_longer_past_is_kept_for_the_pet_alone() {
+        let mut past = Past::of_last(10.0);
+        (0..=80).for_each(|step| past.add(&frame(f64::from(step) * 0.5, true), 2));
+        assert_eq!((times(&past).len(), past.all_of(USER, f64::INFINITY).count()), (10, 20));
+    }
+
+    #[test]
     fn what_came_within_a_second_or_a_step_is_new() {
         for (step, expected) in
             [(0.1, [true, true, true, false]), (0.5, [true, true, false, false]), (2.0, [true, true, false, false])]
         {
-            let mut past = Past::default();
+            let mut past = Past::of_last(5.0);
             let mut is_new = |number: u32| {
                 let time = f64::from(number) * step;
                 let new = past.is_new(USER, time);
@@ -131,7 +155,7 @@ mod tests {
 
     #[test]
     fn what_was_before_it_was_away_is_not_its_path() {
-        let mut past = Past::default();
+        let mut past = Past::of_last(5.0);
         for (time, is_there) in [(0.0, true), (0.5, true), (1.0, false), (1.5, true), (2.0, true)] {
             past.add(&frame(time, is_there), 2);
         }

@@ -6,7 +6,7 @@ use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
-use super::under_way::{Event, Keeps, Pair, Rules, SevereEvent};
+use super::under_way::{Event, Keeps, Pair, Pets, Rules, SevereEvent};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Severity;
@@ -15,13 +15,12 @@ use crate::geometry::bisection::Bisection;
 use crate::options::Options;
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Radian, Second};
+use crate::util::units::Second;
 
 /// Follows the pairs that meet the log's condition over the steps.
 #[derive(Debug)]
 pub struct Tracker {
-    /// Paths that meet at a smaller angle do not cross.
-    crossing: Radian,
+    pets: Pets,
     keeps: Keeps,
     rules: Rules,
     past: Past,
@@ -40,14 +39,14 @@ impl Tracker {
     /// A tracker of what is logged with these options.
     pub fn new(options: &Options) -> Self {
         Self {
-            crossing: options.kind_bounds().rear_end_below,
+            pets: Pets { widest: options.kind_bounds().rear_end_below, longest: options.log.longest_pet() },
             keeps: Keeps { met: options.log.needs_pet(), steps: options.series_file().is_some() },
             rules: Rules {
                 contact_tolerance: options.contact_tolerance,
                 severity: options.severity_thresholds(),
                 counts_artefacts: options.artefacts,
             },
-            past: Past::default(),
+            past: Past::of_last(options.log.longest_pet()),
             last_time: Second::NAN,
             events: Vec::new(),
             waiting: Vec::new(),
@@ -141,7 +140,7 @@ impl Tracker {
     pub fn pet_so_far(&self, alarm: &Alarm, ahead: impl Fn(UserIndex) -> Vec<Pose>) -> Option<PetSoFar> {
         let pair = [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
         let event = self.events.iter().chain(&self.waiting).find(|event| event.pair() == pair)?;
-        event.pet_so_far(self.last_time, ahead, self.crossing)
+        event.pet_so_far(self.last_time, ahead, self.pets)
     }
 
     /// The events that are not settled yet and of which a part is at least this severe.
@@ -200,7 +199,7 @@ impl Tracker {
         // One for the step, not kept: a long wait in small steps would otherwise hold its memory for the rest of the run.
         let mut halves = Bisection::default();
         let rule = self.rules.severity;
-        let settled = self.waiting.extract_if(.., |event| event.settles(time, &mut halves, self.crossing));
+        let settled = self.waiting.extract_if(.., |event| event.settles(time, &mut halves, self.pets));
         self.closed.extend(settled.flat_map(|event| event.conflicts(roster, rule).collect::<Vec<_>>()));
         sort(&mut self.closed);
     }
@@ -284,6 +283,7 @@ mod tests {
                 margin,
                 ego_distance: 10.0,
                 foe_distance: 0.0,
+                foe_leads: true,
                 x: 0.0,
                 y: 0.0,
                 lane: None,

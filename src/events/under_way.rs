@@ -56,8 +56,8 @@ struct Seen {
     behind: Second,
 }
 
-/// The paths that the two of a side or frontal event have driven, from some seconds before it became one, in their order,
-/// and the PET so far.
+/// The paths that the two of an event have driven whose paths may cross, from some seconds before that, in their order, and
+/// the PET, once it is final.
 #[derive(Debug)]
 struct Driven {
     paths: [DrivenPath; 2],
@@ -80,6 +80,15 @@ pub(super) struct Rules {
     pub severity: SeverityThresholds,
     /// Whether artefacts count.
     pub counts_artefacts: bool,
+}
+
+/// What PETs are looked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pets {
+    /// Paths that meet at a smaller angle cross only where each goes on beyond the other.
+    pub widest: Radian,
+    /// How long they may be, and so how long after an event one is waited for.
+    pub longest: Second,
 }
 
 /// What an event keeps of its steps.
@@ -125,7 +134,7 @@ impl Event {
                 met.push(Span::of(seen, keeps.steps));
             }
         }
-        if kind != Kind::RearEnd && self.driven.is_none() {
+        if seen.found.may_cross() && self.driven.is_none() {
             let paths = self.pair.map(|user| driven_before(user, seen));
             self.driven = Some(Box::new(Driven { paths, pet: None }));
         }
@@ -201,23 +210,20 @@ impl Event {
     }
 
     /// The PET at this time, if the first of both has left the conflict area; `ahead` has the poses that a road user will go
-    /// through. Paths that meet at a smaller angle than `crossing` do not cross.
-    pub fn pet_so_far(
-        &self,
-        time: Second,
-        ahead: impl Fn(UserIndex) -> Vec<Pose>,
-        crossing: Radian,
-    ) -> Option<PetSoFar> {
+    /// through.
+    pub fn pet_so_far(&self, time: Second, ahead: impl Fn(UserIndex) -> Vec<Pose>, pets: Pets) -> Option<PetSoFar> {
         let Driven { paths: [a, b], .. } = self.driven.as_deref()?;
         let mut halves = Bisection::default();
-        if let Some(pet) = pet::post_encroachment_time(&mut halves, a, b, crossing) {
+        let known = pet::post_encroachment_time(&mut halves, a, b, pets.widest);
+        if let Some(pet) = known.filter(|pet| pet.is_final) {
             return Some(PetSoFar::Known(pet.lasts));
         }
-        [(a, b, self.pair[1]), (b, a, self.pair[0])].into_iter().find_map(|(first, second, user)| {
+        let expected = [(a, b, self.pair[1]), (b, a, self.pair[0])].into_iter().find_map(|(first, second, user)| {
             let second = second.going_on(&ahead(user));
-            let Pet { lasts, enters, .. } = pet::post_encroachment_time(&mut halves, first, &second, crossing)?;
-            (enters > time).then_some(PetSoFar::AtLeast(time - (enters - lasts)))
-        })
+            let Pet { lasts, enters, .. } = pet::post_encroachment_time(&mut halves, first, &second, pets.widest)?;
+            Some(if enters > time { PetSoFar::AtLeast(time - (enters - lasts)) } else { PetSoFar::Known(lasts) })
+        });
+        expected.or(known.map(|pet| PetSoFar::Known(pet.lasts)))
     }
 
     /// The vehicles that stood at this time, its last step, and of which a stop would be a cause.
@@ -243,7 +249,7 @@ impl Event {
         self.met.iter_mut().flat_map(|met| met.last_mut()).for_each(|met| met.mark(is_reported));
     }
 
-    /// Records the paths of the two of a side or frontal event.
+    /// Records the paths of the two of an event whose paths may cross.
     pub fn follow(&mut self, frame: &Frame, roster: &Roster) {
         let Some(driven) = &mut self.driven else { return };
         for (user, path) in self.pair.iter().zip(&mut driven.paths) {
@@ -272,21 +278,20 @@ impl Event {
         is_over(&self.followed.extremes, frame.time) || self.pair.iter().any(|user| frame.row_of(*user).is_none())
     }
 
-    /// Whether the PET of a closed event is known at this time, or will not be. Paths that meet at a smaller angle than
-    /// `crossing` do not cross.
-    pub fn settles(&mut self, time: Second, halves: &mut Bisection, crossing: Radian) -> bool {
-        let Extremes { end, worst, .. } = &self.followed.extremes;
-        let since = time - end;
-        let Some(Driven { paths, pet }) = self.driven.as_deref_mut().filter(|_| worst.kind != Kind::RearEnd) else {
-            return true;
-        };
-        let last_call = since >= CLOSES_AFTER + pet::WAIT - SAME_MOMENT || paths.iter().any(DrivenPath::has_ended);
-        let just_closed = since < 2.0 * CLOSES_AFTER;
-        if !last_call && !just_closed {
+    /// Whether the PET of a closed event is known at this time, or will not be. One that the second is about to make shorter
+    /// is waited for as long again.
+    pub fn settles(&mut self, time: Second, halves: &mut Bisection, pets: Pets) -> bool {
+        let since = time - self.followed.extremes.end;
+        let Some(Driven { paths, pet }) = self.driven.as_deref_mut() else { return true };
+        let wait = CLOSES_AFTER + pets.longest - SAME_MOMENT;
+        let has_ended = paths.iter().any(DrivenPath::has_ended);
+        if !has_ended && (2.0 * CLOSES_AFTER..wait).contains(&since) {
             return false;
         }
-        *pet = pet::post_encroachment_time(halves, &paths[0], &paths[1], crossing);
-        last_call || pet.is_some_and(|pet| pet.is_final)
+        let found = pet::post_encroachment_time(halves, &paths[0], &paths[1], pets.widest);
+        *pet = found.filter(|pet| pet.is_final && pet.lasts <= pets.longest);
+        let is_under_way = found.is_some_and(|pet| !pet.is_final) && since < wait + pets.longest;
+        pet.is_some() || has_ended || (since >= wait && !is_under_way)
     }
 }
 
@@ -305,6 +310,7 @@ fn contact_of(of: &Extremes, closest: &Closest, at: Point, frame: &Frame) -> Opt
         margin: -mu,
         ego_distance: 0.0,
         foe_distance: 0.0,
+        foe_leads: true,
         x: at.x,
         y: at.y,
         lane: None,
@@ -343,7 +349,7 @@ fn driven_before(user: UserIndex, seen: &Observation) -> DrivenPath {
     let profile = seen.roster.profile_of(user);
     let mut path = DrivenPath::of_carriages(profile.carriages(), profile.width);
     if profile.category != Category::Obstacle {
-        let past = seen.past.of(user, seen.frame.time);
+        let past = seen.past.all_of(user, seen.frame.time);
         past.for_each(|(time, front, heading)| path.drive_to(time, front, heading));
     }
     path

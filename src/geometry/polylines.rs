@@ -1,7 +1,8 @@
 //! Polylines, all in one table: their points, and the distance of each from the beginning of its line.
 //!
 //! A line may be stretched: its distances are then not those of the plane. SUMO drives along a lane in metres of the
-//! lane's attribute `length`, which may differ from the length of the lane's shape.
+//! lane's attribute `length`, which may differ from the length of the lane's shape, and beside the lane's middle in
+//! metres of the middle.
 
 use super::{Point, Vector};
 use crate::util::units::Metre;
@@ -20,6 +21,9 @@ pub struct Vertex {
 
 /// Metres along a line per metre of the plane that differ from 1 by less than this are 1: lengths are rounded.
 const TO_SCALE: f64 = 1e-3;
+
+/// A line beside another is at most this many times as long or as short: inside a narrow bend.
+const MOST_BESIDE: f64 = 4.0;
 
 /// Lines, numbered from 0, each with its vertices one after the other.
 #[derive(Clone, Debug)]
@@ -94,6 +98,23 @@ impl Lines {
 
     /// Appends a point to the last line, unless it lies within a millimetre of the point before.
     pub fn push(&mut self, point: Point) {
+        self.push_after(point, |step| step);
+    }
+
+    /// The same of a line beside another, along which it is this far from the point before. Returns how much of that is
+    /// left for the next point.
+    pub(crate) fn push_beside(&mut self, point: Point, along: Metre) -> Metre {
+        let mut rest = along;
+        self.push_after(point, |step| {
+            let way = along.clamp(step / MOST_BESIDE, step * MOST_BESIDE);
+            rest -= way;
+            way
+        });
+        rest
+    }
+
+    /// Appends a point; `way` is how far it is along the line from the point before, for a step of the plane.
+    fn push_after(&mut self, point: Point, way: impl FnOnce(Metre) -> Metre) {
         let [.., begin, end] = &mut self.begins[..] else { return };
         let distance = match self.vertices[*begin as usize..].last() {
             Some(last) => {
@@ -101,7 +122,9 @@ impl Lines {
                 if step < ON_THE_LINE {
                     return;
                 }
-                last.distance + step * self.stretch
+                let way = way(step) * self.stretch;
+                self.most_stretch = self.most_stretch.max(way / step);
+                last.distance + way
             }
             None => 0.0,
         };

@@ -123,8 +123,8 @@ columns! { |conflict, context|
     [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
     /// whether in any step before contact no deceleration would have avoided it
     [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
-    /// time between the first leaving and the second entering the conflict area, from what both really drove; side and
-    /// frontal conflicts only
+    /// time between the first leaving and the second entering the conflict area, from what both really drove; empty for
+    /// followers
     [Required] pet: Option<Second> = conflict.pet;
     /// speed change of the ego in a fully inelastic collision
     [Required] ego_delta_v: MetrePerSecond = conflict.ego_delta_v;

@@ -10,11 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Callable, NamedTuple
 
-import numpy as np
 import pytest
-import shapely
 from conftest import NETS, Once, Row, closecall, rows
-from numpy.typing import NDArray
 
 FOLLOWER, CROSSING_FOLLOWER = "2", "11"
 
@@ -169,53 +166,6 @@ def courses(run: Run) -> dict[str, list[Place]]:
 
 
 LENGTH, WIDTH = 4.6, 1.8
-LENGTH_IN_SIDE = 5.0
-PARTS = 50
-"""Parts into which each step is divided."""
-
-
-class Driven(NamedTuple):
-    """The rectangles of a car over time."""
-
-    times: NDArray[np.float64]
-    rectangles: NDArray[np.object_]
-
-
-def driven(course: list[Place], length: float, begin: float, end: float) -> Driven:
-    """The rectangles of a car between two times, moved and turned linearly within each step."""
-    places = np.array([place[:4] for place in course if begin - 1e-6 <= place.time <= end])
-    steps = np.diff(places, axis=0)
-    steps[:, 3] = (steps[:, 3] + np.pi) % (2 * np.pi) - np.pi
-    parts = np.arange(PARTS)[:, None] / PARTS
-    times, x, y, heading = (places[:-1, None] + steps[:, None] * parts).reshape(-1, 4).T
-    front = np.stack([x, y], -1)
-    rear = front - length * np.stack([np.cos(heading), np.sin(heading)], -1)
-    aside = WIDTH / 2 * np.stack([-np.sin(heading), np.cos(heading)], -1)
-    corners = np.stack([front + aside, rear + aside, rear - aside, front - aside], 1)
-    return Driven(times, shapely.polygons(corners))
-
-
-def span(car: Driven, other: Driven) -> tuple[float, float]:
-    """The first and the last time at which a car is anywhere where the other one is at any time."""
-    inside = np.unique(shapely.STRtree(other.rectangles).query(car.rectangles, predicate="intersects")[0])
-    return float(car.times[inside[0]]), float(car.times[inside[-1]])
-
-
-@pytest.mark.parametrize(("name", "least"), [("side", 1), ("signals", 4), ("left_turn", 3), ("priority", 10)])
-def test_pet_equals_that_of_the_rectangles_in_fcd(name: str, least: int, compared: Compared) -> None:
-    run = compared(name)
-    places = courses(run)
-    length = LENGTH_IN_SIDE if name == "side" else LENGTH
-    compared_pets = 0
-    for row in run.conflicts:
-        if not row["pet"]:
-            continue
-        begin, end = float(row["begin"]), float(row["end"]) + 7.0
-        ego, foe = (driven(places[row[user]], length, begin, end) for user in ("ego", "foe"))
-        (_, leaves), (enters, _) = sorted([span(ego, foe), span(foe, ego)])
-        assert float(row["pet"]) == pytest.approx(enters - leaves, abs=0.02), row
-        compared_pets += 1
-    assert compared_pets >= least
 
 
 @pytest.mark.parametrize(

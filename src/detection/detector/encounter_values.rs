@@ -77,7 +77,7 @@ impl StepInputs<'_> {
             speeds: users.map(|user| self.state(user).speed),
             types: users.map(|user| self.profile(user)),
         };
-        let may_have_pet = encounter.kind != Kind::RearEnd && !self.is_obstacle(slots[1]);
+        let may_have_pet = encounter.may_cross() && !self.is_obstacle(slots[1]);
         self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
     }
 

@@ -117,6 +117,7 @@ impl StepInputs<'_> {
             margin,
             ego_distance: meeting.ego_distance,
             foe_distance: meeting.foe_distance,
+            foe_leads: meeting.foe_leads || meeting.foe_distance <= 0.0,
             x: at.x,
             y: at.y,
             lane: if ego.on_lanes {

@@ -28,8 +28,8 @@ pub struct DrivenPath {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct TimedPose {
     pub time: Second,
-    front: Point,
-    heading: Radian,
+    pub front: Point,
+    pub heading: Radian,
 }
 
 impl TimedPose {
@@ -95,6 +95,11 @@ impl DrivenPath {
     /// Whether it has left the scene.
     pub fn has_ended(&self) -> bool {
         self.ended
+    }
+
+    /// From its front to the rear of its last carriage.
+    pub(super) fn length(&self) -> Metre {
+        self.carriages.iter().map(|carriage| carriage.behind + carriage.length).fold(0.0, f64::max)
     }
 
     /// The path of each carriage.

@@ -3,6 +3,7 @@
 pub mod accident;
 pub mod advantage;
 mod blocked_path;
+mod corridor;
 pub mod crash_potential;
 pub mod crash_probability;
 pub mod drac;
@@ -14,6 +15,7 @@ pub mod headway;
 pub mod injury;
 pub mod mdrac;
 pub mod mttc;
+mod passage;
 pub mod pet;
 pub mod plane;
 pub mod rss;

@@ -1,118 +1,18 @@
 //! Post-encroachment time: how long after the first has left the conflict area the second enters it.
 //!
 //! Measured on the paths that both really drove. A corridor is the area that a rectangle covered; the conflict area is
-//! where the two corridors overlap. The first leaves it when its rectangle touches the other's corridor for the last
-//! time. The second enters it when its rectangle touches the first's corridor for the first time. While the second is in
-//! that corridor, its own may still overlap a later part of it, so the time is final when the second has left. An
-//! articulated vehicle has a corridor of each carriage.
+//! the place of both corridors in which the second crosses the first's ([`super::passage`]): from where it comes into it
+//! until it is clear of it, or until the two go on together. The second enters the area when it comes into the first's
+//! corridor; the first leaves it when its rectangle touches what the second covers there for the last time. So the time is
+//! final when the second has crossed, whatever both do afterwards. An articulated vehicle has a corridor of each carriage.
 //!
-//! Only of two whose paths cross: where the second enters, its heading has to differ from that of the first when that was
-//! there. One that follows the other, out of the same lane too, has none.
+//! One that follows the other has none, whatever the bends that both drive through, nor have two that part out of one lane.
 
-use smallvec::SmallVec;
-
-use super::driven_path::{Course, DrivenPath, bounds};
-use crate::geometry::bisection::{Bisection, Part};
-use crate::geometry::movement::TOLERANCE;
-use crate::geometry::separating_axes::Contact;
-use crate::geometry::{Bounds, Vector, angle_between};
-use crate::options::condition::LONGEST_PET;
+use super::corridor::Corridor;
+use super::driven_path::{DrivenPath, bounds};
+use super::passage::{Passage, Track, crossing};
+use crate::geometry::bisection::Bisection;
 use crate::util::units::{Radian, Second};
-
-/// How long after a conflict closed its PET is waited for, in s.
-pub const WAIT: Second = LONGEST_PET;
-
-/// The area that one road user covered, as far as the other may have been there.
-struct Corridor {
-    /// Of each carriage, in the order of time.
-    carriages: SmallVec<[Vec<Step>; 1]>,
-    /// When it ends.
-    end: Second,
-}
-
-/// The area covered between two times.
-struct Step {
-    from: Second,
-    to: Second,
-    /// The directions at its begin and end.
-    axes: [Vector; 2],
-    part: Part,
-}
-
-impl Step {
-    fn time(&self, part: f64) -> Second {
-        self.from + (self.to - self.from) * part
-    }
-
-    fn axis(&self, part: f64) -> Vector {
-        self.axes[0] * (1.0 - part) + self.axes[1] * part
-    }
-}
-
-/// Where one enters the other's corridor.
-struct Entry {
-    time: Second,
-    /// Between its heading there and that of the other when it was there.
-    angle: Radian,
-}
-
-impl Corridor {
-    fn of(courses: &[Course], near: &Bounds, halves: &mut Bisection) -> Self {
-        let end = courses.first().and_then(|course| course.poses.last()).map_or(0.0, |pose| pose.time);
-        Self { carriages: courses.iter().map(|course| steps(course, near, halves)).collect(), end }
-    }
-
-    /// The first time at which it touches the other's corridor. The steps after it, which cost most, are not tested.
-    fn enters(&self, other: &Self, halves: &mut Bisection) -> Option<Entry> {
-        let entries = self.carriages.iter().filter_map(|steps| {
-            steps.iter().find_map(|step| {
-                let (enters, met) = other.touch(step.part, Contact::Entry, halves)?;
-                Some(Entry { time: step.time(enters), angle: angle_between(&step.axis(enters), &met.axis(0.5)) })
-            })
-        });
-        entries.min_by(|a, b| a.time.total_cmp(&b.time))
-    }
-
-    /// The last time; none where it still touches it at the end.
-    fn leaves(&self, other: &Self, halves: &mut Bisection) -> Option<Second> {
-        let exits = self.carriages.iter().filter_map(|steps| {
-            let (step, leaves) = steps.iter().rev().find_map(|step| {
-                let (leaves, _) = other.touch(step.part, Contact::Exit, halves)?;
-                Some((step, leaves.min(1.0)))
-            })?;
-            let still = step.to == self.end && leaves >= 1.0;
-            Some(if still { f64::INFINITY } else { step.time(leaves) })
-        });
-        exits.reduce(f64::max).filter(|time| time.is_finite())
-    }
-
-    /// The fraction of a step of the other at which it touches this corridor, and the step of this one that it touches.
-    fn touch(&self, part: Part, which: Contact, halves: &mut Bisection) -> Option<(f64, &Step)> {
-        let mut found = (which.none(), None);
-        for step in self.carriages.iter().flatten() {
-            let touch = halves.touch(part, step.part, which, found.0);
-            if touch != found.0 {
-                found = (touch, Some(step));
-            }
-        }
-        Some((found.0, found.1?))
-    }
-}
-
-/// The steps that may touch what lies within these bounds.
-fn steps(course: &Course, near: &Bounds, halves: &mut Bisection) -> Vec<Step> {
-    let steps = course.poses.windows(2).filter_map(|pair| {
-        let [start, end] = [&pair[0], &pair[1]].map(|pose| course.pose(pose));
-        let mut bounds = course.bounds_at(&start);
-        bounds.join(&course.bounds_at(&end));
-        if !bounds.grown(TOLERANCE).meet(near) {
-            return None;
-        }
-        let part = halves.add(start.movement_to(&end, course.length, course.width));
-        Some(Step { from: pair[0].time, to: pair[1].time, axes: [start.axis, end.axis], part })
-    });
-    steps.collect()
-}
 
 /// A post-encroachment time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,27 +21,30 @@ pub struct Pet {
     pub lasts: Second,
     /// When the second enters it, in s.
     pub enters: Second,
-    /// Whether the second has left the first's corridor, so that no further step changes this.
+    /// Whether the second has crossed the first's corridor, so that no further step changes this.
     pub is_final: bool,
 }
 
-/// The PET of two driven paths that cross at an angle of at least `crossing`. None where the corridors do not overlap, or
-/// both are in the conflict area at once, as where one merges behind the other. `halves` only lends its allocations.
-pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath, crossing: Radian) -> Option<Pet> {
+/// The PET of two driven paths; paths that meet at a smaller angle than `widest` cross only where each goes on beyond the
+/// other. None where they do not cross, or both are in the conflict area at once. `halves` only lends its allocations.
+pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath, widest: Radian) -> Option<Pet> {
     let courses = [a, b].map(DrivenPath::courses);
     let near = bounds(&courses[0]).shared_with(&bounds(&courses[1]))?;
     halves.clear();
-    let [a, b] = courses.map(|courses| Corridor::of(&courses, &near, halves));
-    let (a_enters, b_enters) = (a.enters(&b, halves)?, b.enters(&a, halves)?);
-    if a_enters.time == b_enters.time {
-        return None;
-    }
-    let (first, second, enters) = if a_enters.time < b_enters.time { (a, b, b_enters) } else { (b, a, a_enters) };
-    if enters.angle < crossing {
-        return None;
-    }
-    let lasts = enters.time - first.leaves(&second, halves)?;
-    (lasts >= 0.0).then(|| Pet { lasts, enters: enters.time, is_final: second.leaves(&first, halves).is_some() })
+    let corridors = [0, 1].map(|of| Corridor::of(&courses[of], &near, halves));
+    let pets = [[0, 1], [1, 0]].into_iter().filter_map(|[first, second]| {
+        let (course, width) = (courses[first].first()?, courses[second].first()?.width);
+        let track = Track::of(course, [a, b][first].length(), width, widest);
+        let carriages = &corridors[second].carriages;
+        let passages = carriages.iter().filter_map(|steps| crossing(steps, &corridors[first], &track, halves));
+        let Passage { enters, leaves, is_final } = passages.reduce(Passage::joined)?;
+        let lasts = enters - leaves;
+        // It still is in the conflict area where its record ends.
+        let has_left = track.ends() > leaves;
+        let is_final = is_final || [a, b][second].has_ended();
+        (has_left && lasts >= 0.0 && lasts.is_finite()).then_some(Pet { lasts, enters, is_final })
+    });
+    pets.min_by(|a, b| a.enters.total_cmp(&b.enters))
 }
 
 #[cfg(test)]
@@ -249,6 +152,67 @@ mod tests {
     #[test]
     fn a_follower_on_the_same_path_has_no_pet() {
         assert_eq!(pet_of(&course(0.0, 2.0), &course(0.0, 4.0)), None);
+    }
+
+    /// What one has driven between two times, later by this much.
+    fn part(of: &DrivenPath, [begin, end]: [f64; 2], later: f64) -> DrivenPath {
+        let mut part = DrivenPath::new(4.0, 2.0);
+        for pose in &of.courses()[0].poses[..] {
+            if (begin..=end).contains(&pose.time) {
+                part.push(pose.time + later, pose.front, pose.heading);
+            }
+        }
+        part
+    }
+
+    #[test]
+    fn a_follower_through_a_bend_has_no_pet() {
+        let turn = turn(0.1);
+        // The record of the first begins anywhere before, in and behind the bend.
+        for begin in (0..30).map(|step| f64::from(step) * 0.1) {
+            for later in [0.7, 2.0, 5.9] {
+                assert_eq!(pet_of(&part(&turn, [begin, 9.0], 0.0), &part(&turn, [0.0, 9.0], later)), None, "{begin}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_pet_of_a_merge_is_the_same_however_far_both_go_on() {
+        // It goes on to the west, into which the first turns, and is faster than it in the end.
+        let mut second = DrivenPath::new(4.0, 2.0);
+        (0..=90).map(|step| f64::from(step) * 0.1).for_each(|time| {
+            second.push(time, Point::new(-10.0 * (time - 5.0), 9.0), std::f64::consts::PI);
+        });
+        let first = turn(0.1);
+        let until = |end: f64| pet_of(&part(&first, [0.0, end], 0.0), &part(&second, [0.0, end], 0.0));
+        let all = until(9.0).unwrap();
+        assert!(all.is_final && 1.0 < all.lasts && all.lasts < 3.0, "{all:?}");
+        let found = (40..90).filter_map(|step| until(f64::from(step) * 0.1)).collect::<Vec<_>>();
+        let final_ones = found.iter().filter(|pet| pet.is_final).collect::<Vec<_>>();
+        assert!(final_ones.len() > 30 && final_ones.iter().all(|pet| **pet == all), "{found:?}");
+    }
+
+    #[test]
+    fn a_crossing_at_a_small_angle_has_a_pet() {
+        let at = |degrees: f64| pet_of(&course(0.0, 2.0), &course(degrees.to_radians(), 5.0));
+        for degrees in [15.0, 29.0, 31.0_f64] {
+            // Both corridors are 2 m wide; a corner of each enters and leaves the parallelogram that they share.
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let area = (1.0 + cosine) / sine;
+            let Pet { lasts, is_final, .. } = at(degrees).unwrap();
+            assert!((lasts - (3.0 - 0.4 - 2.0 * area / 10.0)).abs() < 0.01 && is_final, "{degrees}: {lasts}");
+        }
+    }
+
+    #[test]
+    fn one_that_changes_lanes_behind_another_has_no_pet() {
+        let mut changes = DrivenPath::new(4.0, 2.0);
+        (0..=100).map(|step| f64::from(step) * 0.1).for_each(|time| {
+            let (x, aside) = (10.0 * (time - 4.0), (time - 4.0).clamp(0.0, 3.0) - 3.0);
+            let drifts = (4.0..7.0).contains(&time);
+            changes.push(time, Point::new(x, aside), if drifts { 0.1 } else { 0.0 });
+        });
+        assert_eq!(pet_of(&course(0.0, 2.0), &changes), None);
     }
 
     #[test]

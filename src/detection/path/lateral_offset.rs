@@ -1,4 +1,5 @@
-//! A line beside the lanes' centre line: the path of a road user that keeps to one side or changes lanes.
+//! A line beside the lanes' centre line: the path of a road user that keeps to one side or changes lanes. Its metres are
+//! those of the centre line: SUMO advances along the lane, so that one on the outer side of a bend is the faster.
 
 use crate::geometry::polylines::Lines;
 use crate::geometry::{Point, Vector, left_of};
@@ -90,13 +91,15 @@ pub(super) struct OffsetLine {
     last: Option<Point>,
     /// Distance of the last point along the centre line, from where the front bumper was when the line was begun.
     distance: Metre,
+    /// Way along the centre line from the last vertex to beside the last point.
+    along: Metre,
 }
 
 impl OffsetLine {
     /// None if the line is the centre line itself.
     pub fn new(offset: Offset) -> Option<Self> {
         let is_aside = offset.now != 0.0 || offset.target != 0.0;
-        is_aside.then_some(Self { offset, before: None, last: None, distance: f64::NEG_INFINITY })
+        is_aside.then_some(Self { offset, before: None, last: None, distance: f64::NEG_INFINITY, along: 0.0 })
     }
 
     /// The offset where the line was begun.
@@ -140,21 +143,25 @@ impl OffsetLine {
             return;
         }
         if let (Some(before), Some(last)) = (self.before, self.last) {
-            line.push(last + miter(&(last - before), &(point - last)) * self.offset.at(self.distance));
+            self.add(line, last, miter(&(last - before), &(point - last)));
         } else if let Some(first) = self.last {
-            let normal = left_of(&(point - first).try_normalize(0.0).unwrap_or_else(Vector::x));
-            line.push(first + normal * self.offset.at(self.distance));
+            self.add(line, first, left_of(&(point - first).try_normalize(0.0).unwrap_or_else(Vector::x)));
         }
+        self.along += self.last.map_or(0.0, |last| (point - last).norm());
         self.before = self.last.replace(point);
         self.distance = distance;
     }
 
     /// Adds the vertex beside the last point of the centre line, for as long as no further point is known.
-    pub fn flush(&self, line: &mut Lines) {
+    pub fn flush(&mut self, line: &mut Lines) {
         if let (Some(before), Some(last)) = (self.before, self.last) {
-            let normal = left_of(&(last - before).try_normalize(0.0).unwrap_or_else(Vector::x));
-            line.push(last + normal * self.offset.at(self.distance));
+            self.add(line, last, left_of(&(last - before).try_normalize(0.0).unwrap_or_else(Vector::x)));
         }
+    }
+
+    /// Adds the vertex beside the last point of the centre line, `shift` for an offset of 1 to the left.
+    fn add(&mut self, line: &mut Lines, last: Point, shift: Vector) {
+        self.along = line.push_beside(last + shift * self.offset.at(self.distance), self.along);
     }
 }
 
@@ -170,6 +177,8 @@ fn miter(before: &Vector, after: &Vector) -> Vector {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use crate::detection::path::lateral_offset::*;
 
     /// A motorcycle that drives 10 m/s in a lane of 3.2 m.
@@ -225,6 +234,29 @@ mod tests {
         assert_eq!(leads_to(0.5, 1.0, 1.0, MOTORCYCLE), INSIDE);
         assert_eq!(leads_to(0.7, 1.0, 1.0, MOTORCYCLE), 3.2);
         assert_eq!(leads_to(0.7, 1.0, 1.0, Movement { leads_to_a_lane: false, ..MOTORCYCLE }), INSIDE);
+    }
+
+    #[test]
+    fn beside_a_bend_metres_are_those_of_the_middle() {
+        // A quarter circle of 10 m about the origin, driven to the left, with 20 m before and behind it.
+        let bend = (0..=18)
+            .map(|part| f64::from(part) * FRAC_PI_2 / 18.0)
+            .map(|at| Point::new(10.0 * at.cos(), 10.0 * at.sin()));
+        let middle =
+            [Point::new(10.0, -20.0)].into_iter().chain(bend).chain([Point::new(-20.0, 10.0)]).collect::<Vec<_>>();
+        for aside in [1.0, -1.0, -3.0] {
+            let mut beside = OffsetLine::new(Offset { now: aside, target: aside, over: 0.0, speed: 0.0 }).unwrap();
+            let mut lines = Lines::through([]);
+            beside.push_front(&mut lines, middle[0]);
+            middle[1..].iter().for_each(|point| beside.push_ahead(&mut lines, *point));
+            beside.flush(&mut lines);
+            for vertex in lines.line(0) {
+                // Where a ray through the centre of the bend meets the middle.
+                let angle = vertex.point.y.atan2(vertex.point.x).clamp(0.0, FRAC_PI_2);
+                let way = 20.0 + vertex.point.y.min(0.0) + 10.0 * angle + (-vertex.point.x).max(0.0);
+                assert!((vertex.distance - way).abs() < 0.02, "{aside}: {vertex:?} {way}");
+            }
+        }
     }
 
     #[test]

@@ -151,7 +151,7 @@ impl OwnLine {
 
     /// Records that the line continues on this lane, a metre of whose shape is `stretch` metres of SUMO's.
     fn begin_lane(&mut self, lane: LaneIndex, stretch: f64) {
-        if let Some(beside) = &self.beside {
+        if let Some(beside) = &mut self.beside {
             beside.flush(&mut self.lines);
         }
         self.lines.set_stretch(stretch);
@@ -163,7 +163,7 @@ impl OwnLine {
         if self.lines.stretch() == stretch {
             return;
         }
-        if let Some(beside) = &self.beside {
+        if let Some(beside) = &mut self.beside {
             beside.flush(&mut self.lines);
         }
         self.lines.set_stretch(stretch);

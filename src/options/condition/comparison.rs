@@ -61,7 +61,7 @@ impl Comparison {
                 Err("asks for a late PET; a PET can only be bounded above, as in \"pet < 2\"".into())
             }
             (Measure::Pet, true) if value > LONGEST_PET => {
-                Err(format!("asks for a longer PET than is waited for, {LONGEST_PET} s"))
+                Err(format!("asks for a longer PET than is looked for, {LONGEST_PET} s at most"))
             }
             (Measure::Pet, true) => Ok(LookAhead { pet: at_least_0, ..LookAhead::NONE }),
             (Measure::Gap | Measure::Margin, true) => Ok(LookAhead { metres: at_least_0, ..LookAhead::NONE }),

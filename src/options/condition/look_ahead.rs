@@ -3,8 +3,10 @@
 use crate::braking::rss;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// How long after an event its PET is waited for, in s: no condition may ask for a later one.
-pub const LONGEST_PET: Second = 5.0;
+/// The longest PET that a condition may ask for, in s: so long the places of all road users are kept.
+pub(super) const LONGEST_PET: Second = 60.0;
+/// The longest PET that is looked for where no condition asks for a longer one, in s.
+pub(super) const USUAL_PET: Second = 5.0;
 /// How a road user may speed up within the PET that is looked for, in m/s²: SUMO's `accel` of cars, rounded up. Without it,
 /// one that still waits when the other leaves would be missed.
 const SPEEDS_UP: MetrePerSecondSquared = 3.0;

@@ -20,7 +20,8 @@ use comparison::Comparison;
 use parse::Parser;
 use tree::Tree;
 
-pub use look_ahead::{LONGEST_PET, LookAhead};
+pub use look_ahead::LookAhead;
+use look_ahead::USUAL_PET;
 pub use measure::Measure;
 
 /// Names of conditions: FHWA's SSAM (Gettman et al. 2008), SUMO's device.ssm, and the paper's.
@@ -55,6 +56,11 @@ impl Condition {
     /// Whether it asks for the PET.
     pub fn needs_pet(&self) -> bool {
         self.tree.needs_pet()
+    }
+
+    /// The longest PET that is looked for: 5 s, or as long as it asks for.
+    pub fn longest_pet(&self) -> Second {
+        self.tree.longest_pet().max(USUAL_PET)
     }
 
     fn new(tree: Tree) -> Result<Self, String> {
@@ -198,10 +204,17 @@ mod tests {
             assert!(error.contains("however far ahead they meet"), "{text}: {error}");
         }
         assert!("pet > 1".parse::<Condition>().unwrap_err().contains("bounded above"));
-        assert!("pet < 6".parse::<Condition>().unwrap_err().contains("5 s"));
+        assert!("pet < 61".parse::<Condition>().unwrap_err().contains("60 s"));
         for text in ["ttc > 3 and ttc < 4", "ego_speed < 5 and margin < 0", "overlap > 0 or clearance < 1 and gap < 9"]
         {
             condition(text);
+        }
+    }
+
+    #[test]
+    fn the_longest_pet_is_that_which_is_asked_for() {
+        for (text, expected) in [("ttc < 3", 5.0), ("pet < 2", 5.0), ("ttc < 1 or pet <= 10 and ttc < 5", 10.0)] {
+            assert_eq!(condition(text).longest_pet(), expected, "{text}");
         }
     }
 

@@ -46,6 +46,15 @@ impl Tree {
         }
     }
 
+    /// The largest bound of the PET; 0 where there is none.
+    pub fn longest_pet(&self) -> Second {
+        match self {
+            Self::Compare(Comparison { measure: Measure::Pet, value, .. }) => *value,
+            Self::Compare(_) => 0.0,
+            Self::And(parts) | Self::Or(parts) => parts.iter().map(Self::longest_pet).fold(0.0, Second::max),
+        }
+    }
+
     /// Of parts that all have to hold, the one that looks least far is enough.
     pub fn look_ahead(&self) -> Result<LookAhead, String> {
         match self {
