@@ -39,6 +39,7 @@ impl State {
     /// Checks one step.
     pub fn check(&mut self, py: Python, time: f64, rows: Option<&Rows>) -> PyResult<Stepped> {
         let goes_on = Ok(Stepped { goes_on: true, warning: None });
+        self.recorded.leave_if_forked();
         let run = &mut self.recorded.run;
         let mut warning = None;
         let checked = match (&mut self.feed, rows) {
@@ -57,6 +58,9 @@ impl State {
                     return if asked.is_some_and(|until| until > 0.0) { goes_on } else { Err(again(now)) };
                 }
                 self.has_listened = self.listens;
+                if identity.has_moves_between() {
+                    source.look_up_all();
+                }
                 source.pull(py, run, now)?;
                 warning = source.take_remark();
                 source.update_paths(py, run)?;
@@ -97,6 +101,7 @@ impl State {
         if std::mem::replace(&mut self.is_closed, true) {
             return Ok(());
         }
+        self.recorded.leave_if_forked();
         let is_known = self.recorded.run.log_error().is_some();
         let closed = self.recorded.close(Ending { error, ..Ending::default() });
         if let Some(painter) = &mut self.painter {

@@ -12,6 +12,7 @@ mod exclusive;
 mod film;
 mod frames;
 mod functions;
+mod interruptible;
 mod interrupts;
 mod numbers;
 mod paint;

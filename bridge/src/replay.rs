@@ -2,6 +2,7 @@
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
 
 use arrow_array::cast::AsArray;
 use arrow_array::ffi_stream::{FFI_ArrowArrayStream, RecordBatchStreamReader};
@@ -13,6 +14,7 @@ use arrow_schema::DataType;
 use clap::ValueEnum;
 use closecall::internals::input::{NOISE, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, open_tracks};
 use closecall::internals::output::COLUMNS;
+use closecall::internals::util::Stop;
 use closecall::{Error, Net, Options, Replay, Run};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -21,6 +23,7 @@ use pyo3::types::{PyCapsule, PyCapsuleMethods, PyDict};
 use crate::checker::options_from;
 use crate::conflict::logged;
 use crate::error::exception;
+use crate::interruptible::interruptibly;
 use crate::table::Table;
 
 /// The method of Arrow's C stream.
@@ -65,12 +68,14 @@ pub fn replay(
         format.map(|name| RecordingFormat::from_str(name, true)).transpose().map_err(PyValueError::new_err)?;
     tracks.origin = origin.map(|name| TrackOrigin::from_str(name, true)).transpose().map_err(PyValueError::new_err)?;
     tracks.smooth = smooth.map(noise_of).transpose()?.flatten();
-    let check = |path: &Path| check(path, &tracks, net.as_deref(), &route_files, &options);
+    let check = move |path: PathBuf| {
+        interruptibly(py, move |stop| check(&path, &tracks, net.as_deref(), &route_files, &options, stop))
+    };
     if let Ok(path) = data.extract::<PathBuf>() {
-        return py.detach(|| check(&path)).map_err(exception).and_then(|run| table(&run));
+        return check(path)?.map_err(exception).and_then(|run| table(&run));
     }
     let file = written(py, data)?;
-    let run = py.detach(|| check(file.path())).map_err(|error| match error {
+    let run = check(file.path().to_owned())?.map_err(|error| match error {
         // The first row of the file is that of the names.
         Error::Line { line, message, .. } if line > 1 => PyValueError::new_err(format!("row {}: {message}", line - 1)),
         Error::Line { message, .. } | Error::Content { message, .. } => PyValueError::new_err(message),
@@ -103,6 +108,7 @@ fn check(
     net: Option<&Path>,
     route_files: &[PathBuf],
     options: &Options,
+    stop: &Stop,
 ) -> closecall::Result<Run> {
     let net = net.map(Net::read).transpose()?.map(std::sync::Arc::new);
     let opened = open_tracks(path, tracks, net.as_deref())?;
@@ -111,7 +117,11 @@ fn check(
     let mut run = Run::new(options, net)?;
     run.set_fixed_routes(true);
     run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
-    while replay.next(&mut run)?.is_some() {}
+    while replay.next(&mut run)?.is_some() {
+        if stop.load(Ordering::Relaxed) {
+            return Err(Error::Stopped);
+        }
+    }
     run.finish()?;
     Ok(run)
 }
@@ -127,7 +137,7 @@ fn written(py: Python, data: &Bound<PyAny>) -> PyResult<tempfile::NamedTempFile>
     // pandas has the method, but needs PyArrow for it.
     let stream = data.call_method0(STREAM);
     match (stream, data.hasattr("to_csv")?) {
-        (Ok(capsule), _) => write(&capsule.cast_into::<PyCapsule>()?, &file)?,
+        (Ok(capsule), _) => write(py, &capsule.cast_into::<PyCapsule>()?, &file)?,
         (Err(_), true) => {
             let keywords = PyDict::new(py);
             keywords.set_item("index", false)?;
@@ -143,7 +153,7 @@ fn written(py: Python, data: &Bound<PyAny>) -> PyResult<tempfile::NamedTempFile>
 }
 
 #[expect(unsafe_code, reason = "Arrow's C interface is a pointer, which its name vouches for")]
-fn write(capsule: &Bound<PyCapsule>, file: &tempfile::NamedTempFile) -> PyResult<()> {
+fn write(py: Python, capsule: &Bound<PyCapsule>, file: &tempfile::NamedTempFile) -> PyResult<()> {
     let failed = |error: arrow_schema::ArrowError| PyValueError::new_err(error.to_string());
     let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?.cast::<FFI_ArrowArrayStream>();
     // SAFETY: a capsule of this name holds such a stream, and the reader takes it over, as Arrow's interface says.
@@ -152,6 +162,7 @@ fn write(capsule: &Bound<PyCapsule>, file: &tempfile::NamedTempFile) -> PyResult
     let names = reader.schema().fields().iter().map(|field| quoted(field.name())).collect::<Vec<_>>();
     writeln!(out, "{}", names.join(","))?;
     for batch in reader {
+        py.check_signals()?;
         let batch = batch.map_err(failed)?;
         for row in 0..batch.num_rows() {
             for (place, column) in batch.columns().iter().enumerate() {

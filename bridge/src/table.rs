@@ -14,16 +14,16 @@ use arrow_array::{
 };
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
 use closecall::internals::analysis::ConflictReader;
-use closecall::internals::output::{Column, ColumnType, LoggedConflict, Value};
+use closecall::internals::output::{Column, ColumnType, LoggedConflict, Presence, Value};
 use numpy::PyArray1;
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyCapsule, PyDict, PyList};
 
 use crate::error::exception;
 
 /// Rows of a batch.
-const BATCH: usize = 1 << 16;
+const BATCH: usize = 1 << 13;
 /// Rows that a notebook shows.
 const SHOWN: usize = 10;
 /// The columns that a notebook shows.
@@ -230,13 +230,33 @@ fn failed(error: ArrowError) -> PyErr {
 
 /// The conflicts of a log folder as a table, in the order of the file.
 ///
+/// Args:
+///     folder: the log's folder.
+///     columns: the names of the columns that are wanted; by default all. The table is in memory, and each
+///         column of numbers takes 8 bytes a conflict.
+///
 /// Raises:
 ///     OSError: the log is missing or cannot be read.
-///     ValueError: it is not a log.
+///     ValueError: it is not a log, or has no such column.
 #[pyfunction]
-pub fn read(py: Python, folder: PathBuf) -> PyResult<Table> {
+#[pyo3(signature = (folder, *, columns=None))]
+pub fn read(py: Python, folder: PathBuf, columns: Option<Vec<String>>) -> PyResult<Table> {
     py.detach(|| {
-        let conflicts = ConflictReader::open(&folder).map_err(exception)?.with_snapshots();
-        Table::of(&conflicts.columns_of_schema(), conflicts, exception)
+        let mut conflicts = ConflictReader::open(&folder).map_err(exception)?;
+        let mut wanted = conflicts.columns_of_schema();
+        if let Some(names) = columns {
+            let of = |name: String| {
+                let column = wanted.iter().find(|column| column.name == name).copied();
+                column.ok_or_else(|| PyValueError::new_err(format!("columns: the log has no \"{name}\"")))
+            };
+            wanted = names.into_iter().map(of).collect::<PyResult<Vec<_>>>()?;
+        }
+        if wanted.iter().any(|column| column.presence == Presence::Snapshot) {
+            conflicts = conflicts.with_snapshots();
+        }
+        let interrupted = || Python::attach(|py| py.check_signals());
+        let rows = conflicts.map(|row| row.map_err(exception)).enumerate();
+        let rows = rows.map(|(number, row)| if number % BATCH == 0 { interrupted().and(row) } else { row });
+        Table::of(&wanted, rows, |error: PyErr| error)
     })
 }

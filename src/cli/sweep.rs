@@ -15,6 +15,7 @@ use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use crate::batch::sweep::{Seeds, Sweep, Task, Vary};
+use crate::input::sumo_outputs::is_output;
 use crate::output::folder::LogFolder;
 use crate::util::input_file;
 use crate::util::threads::processors;
@@ -273,6 +274,10 @@ pub(super) fn check(vary: &Vary) -> Result<()> {
     if vary.is_sumos() {
         return match vary.option() {
             "seed" => Err(value("--vary sumo:seed: use --seeds")),
+            option if is_output(option) => Err(value(format!(
+                "--vary sumo:{option}: its values are files, which several runs would write at once; write \
+                 -- --{option} FILE for one file a run"
+            ))),
             _ => Ok(()),
         };
     }
@@ -292,7 +297,10 @@ pub(super) fn check(vary: &Vary) -> Result<()> {
 pub(super) fn check_runs(plan: &Sweep, seeds: &Seeds, parse_run: &ParseRun) -> Result<()> {
     for task in &plan.tasks[..plan.tasks.len() / seeds.0.len()] {
         let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
-        request(&parse_run(words.map(OsString::from).collect())?)?;
+        let request = request(&parse_run(words.map(OsString::from).collect())?)?;
+        if let Some((option, _)) = request.outputs.files().next() {
+            return Err(value(format!("{option} in the file of --config: all runs would write the same file")));
+        }
     }
     Ok(())
 }
@@ -330,6 +338,8 @@ mod tests {
             ("seed=1,2", "use --seeds"),
             ("keep-all=1", "takes no value"),
             ("scale=1,2", "write sumo:scale"),
+            ("sumo:fcd-output=a.xml,b.xml", "several runs would write at once"),
+            ("sumo:log=a", "several runs would write at once"),
             ("out=a", "no such option"),
         ] {
             let message = check(&vary.parse().unwrap()).unwrap_err().to_string();

@@ -2,5 +2,6 @@
 
 pub mod replay;
 pub mod sumo_files;
+pub mod sumo_outputs;
 #[cfg(feature = "cli")]
 pub mod tracks;

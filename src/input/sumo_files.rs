@@ -75,7 +75,7 @@ pub fn value_of(configuration: &Path, option: &str) -> Option<String> {
 }
 
 /// The files that a configuration names, each with the option that names it.
-fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
+pub(super) fn files_of(configuration: &Path) -> Result<Vec<(&'static str, PathBuf)>> {
     const OPTIONS: [(&str, &str); 6] = [
         ("net-file", "net-file"),
         ("n", "net-file"),

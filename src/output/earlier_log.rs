@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::log::{RUN, files};
+use crate::util::output_file::check_is_no_link;
 use crate::{Error, Result};
 
 /// The folder of the earlier logs, within the log's own: `earlier/1`, `earlier/2`, …
@@ -30,11 +31,13 @@ impl EarlierLog {
             return Ok(None);
         }
         let within = folder.join(EARLIER);
+        check_is_no_link(&within)?;
         let numbers = fs::read_dir(&within).into_iter().flatten().flatten();
         let numbers = numbers.filter_map(|entry| entry.file_name().to_str()?.parse::<u64>().ok());
         let last = numbers.max().unwrap_or_default();
         let of = |number: u64| within.join(number.to_string());
         let kept = if last > 0 && is_rest(folder, &of(last)) { of(last) } else { of(last + 1) };
+        check_is_no_link(&kept)?;
         fs::create_dir_all(&kept).map_err(|source| Error::file(&kept, source))?;
         move_log(folder, &kept)?;
         Ok(Some(Self { folder: folder.to_owned(), kept }))

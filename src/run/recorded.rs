@@ -6,6 +6,7 @@
 use std::path::Path;
 
 use super::Run;
+use super::writing::Writing;
 use crate::detection::detector::LeftOut;
 use crate::output::earlier_log::EarlierLog;
 use crate::output::folder::LogFolder;
@@ -27,6 +28,8 @@ pub struct RecordedRun {
     earlier: Option<EarlierLog>,
     /// No other run writes to the log's folder.
     folder: Option<LogFolder>,
+    /// The process that writes the log.
+    process: u32,
 }
 
 /// How a run ended, and what its source adds to the summary.
@@ -66,12 +69,12 @@ impl RecordedRun {
         if let Some(length) = record.step_length {
             run.set_step_length(length);
         }
-        Ok(Self { run, record: Some(Box::new(record)), earlier, folder: Some(folder) })
+        Ok(Self { run, record: Some(Box::new(record)), earlier, folder: Some(folder), process: std::process::id() })
     }
 
     /// A run without a log, whose conflicts stay in memory.
     pub fn in_memory(run: Run) -> Self {
-        Self { run, record: None, earlier: None, folder: None }
+        Self { run, record: None, earlier: None, folder: None, process: std::process::id() }
     }
 
     /// Where the earlier log of the folder is now, if there was one, in a line for the user.
@@ -79,11 +82,27 @@ impl RecordedRun {
         self.earlier.as_ref().map(|earlier| format!("the earlier log is kept in {}", earlier.kept.display()))
     }
 
+    /// Leaves the log and the other files to the process that opened them, if this one is a copy that was forked from it:
+    /// both would otherwise write what is in their buffers, release the folder and complete `run.json`.
+    pub fn leave_if_forked(&mut self) {
+        if self.process == std::process::id() {
+            return;
+        }
+        self.process = std::process::id();
+        let Writing { log, outputs, error } = std::mem::take(&mut self.run.writing);
+        let had_log = self.record.take().is_some();
+        let left = "this process is a fork: the one that opened the log writes it".to_owned();
+        self.run.writing.error = error.or(had_log.then_some(left));
+        // What is dropped would be written, released or removed.
+        std::mem::forget((log, outputs, self.folder.take(), self.earlier.take()));
+    }
+
     /// Closes the open conflicts and completes the log; returns the summary.
     ///
     /// # Errors
     /// [`crate::Error::File`] that names what cannot be written; `run.json` then says so too, if it can be written itself.
     pub fn close(&mut self, ending: Ending) -> Result<Summary> {
+        self.leave_if_forked();
         let Ending { error, left_out, remarks, spent } = ending;
         let finished = self.run.finish();
         let error = self.run.log_error().map(str::to_owned).or(error);
@@ -110,6 +129,7 @@ impl RecordedRun {
 
     /// Removes the log and the other files: the input could not be used after all.
     pub fn discard(mut self) {
+        self.leave_if_forked();
         self.run.writing.outputs = Outputs::default();
         if let Some(log) = self.run.writing.log.take() {
             log.discard();
@@ -121,6 +141,7 @@ impl RecordedRun {
 
     /// Records that closecall itself failed within a step, which nothing can close any more; the rows so far stay.
     pub fn abandon(&mut self, error: String) {
+        self.leave_if_forked();
         if let (Some(mut log), Some(record)) = (self.run.writing.log.take(), self.record.take()) {
             let (step_length, summary) = (self.run.step_length(), self.run.summary.clone());
             let conflicts_sha256 = Some(log.digest());
@@ -154,6 +175,7 @@ fn check_keeps_inputs(folder: &Path, inputs: &[Input]) -> Result<()> {
 
 impl Drop for RecordedRun {
     fn drop(&mut self) {
+        self.leave_if_forked();
         if std::thread::panicking() {
             self.abandon(Error::Internal(panics::last()).to_string());
         }

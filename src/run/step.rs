@@ -106,6 +106,7 @@ impl Run {
             }
             is_wanted && filter.as_ref().is_none_or(|filter| filter.holds(found.lane))
         });
+        detector.drop_pairs_with_one_between(&self.frame, &self.roster);
     }
 
     /// Updates the events and closes those that are over.

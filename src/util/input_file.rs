@@ -9,6 +9,7 @@ use flate2::bufread::MultiGzDecoder;
 
 use super::limits::{ELEMENT, INFLATION, LINE, Limit, TEXT};
 use super::read_ahead::ReadAhead;
+use super::stop::StoppableFile;
 use super::threads::processors;
 use crate::{Error, Result};
 
@@ -51,7 +52,7 @@ pub fn open(path: &Path) -> Result<Box<dyn BufRead + Send>> {
     let mut magic = [0; 2];
     let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;
     file.seek(SeekFrom::Start(0)).map_err(|source| Error::file(path, source))?;
-    let file = BufReader::with_capacity(BLOCK, file);
+    let file = BufReader::with_capacity(BLOCK, StoppableFile::new(file));
     if magic[..length] != [0x1f, 0x8b] {
         return Ok(Box::new(file));
     }

@@ -11,5 +11,7 @@ pub mod panics;
 #[cfg(feature = "parquet")]
 pub mod parquet_column;
 mod read_ahead;
+pub mod stop;
 pub mod threads;
 pub mod units;
+pub mod xml_text;

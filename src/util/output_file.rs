@@ -105,6 +105,17 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<()> {
     file.finish()
 }
 
+/// Checks that a folder that is written into is not a link to one that is elsewhere.
+///
+/// # Errors
+/// [`Error::Content`] that names it.
+pub fn check_is_no_link(folder: &Path) -> Result<()> {
+    if folder.is_symlink() {
+        return Err(Error::content(folder, "a symbolic link to a folder elsewhere, into which nothing is written"));
+    }
+    Ok(())
+}
+
 /// Forces the names in a folder to disk.
 pub fn sync_folder(folder: &Path) {
     // Not every system can; the file is there in any case.

@@ -202,3 +202,31 @@ def test_every_feature_of_geojson_is_a_line(log: Path, tmp_path: Path) -> None:
     features = [json.loads(line.rstrip(",")) for line in lines[1:-1]]
     assert [feature["id"] for feature in features] == [int(row["id"]) for row in rows(log / "conflicts.csv")]
     assert json.loads("\n".join(lines))["type"] == "FeatureCollection"
+
+
+@pytest.mark.parametrize("name", ["a\x01", "a\x0c\x1f", "a\uffff", 'a<b>&"c]]>'])
+def test_any_id_makes_files_that_a_parser_reads(name: str, tmp_path: Path) -> None:
+    recording = tmp_path / "t.csv"
+    quoted = '"' + name.replace('"', '""') + '"'
+    users = [(who, t, x + v * t, v) for t in range(4) for who, x, v in ((quoted, 0, 20), ("b", 40, 5))]
+    lines = ["who,t,x,y,v", *(f"{who},{t},{x},0,{v}" for who, t, x, v in users)]
+    recording.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    log, ssm = tmp_path / "log", tmp_path / "s.xml"
+    columns = ("--columns", "id=who,time=t,x=x,y=y,speed=v", "--path", "straight", "--log-clips", "caution")
+    done = closecall("replay", recording, *columns, "--out", log, "--ssm-output", ssm)
+    assert done.returncode == 0, done.stderr
+    number = rows(log / "conflicts.csv")[0]["id"]
+    words = (
+        ("export", log, "--format", "poi", "--out", tmp_path / "p.xml"),
+        ("export", log, "--format", "ssm", "--out", tmp_path / "e.xml"),
+        ("clip", log, number, "-o", tmp_path / "c.svg"),
+        ("extract", log, number, "--format", "openscenario", "-o", tmp_path / "x"),
+        ("plot", log, "--format", "svg", "-o", tmp_path / "plots"),
+    )
+    for command in words:
+        done = closecall(*command)
+        assert done.returncode == 0, done.stderr
+    written = [path for ending in ("xml", "svg", "xosc") for path in tmp_path.rglob(f"*.{ending}")]
+    assert len(written) > 6
+    for path in written:
+        ET.parse(path)

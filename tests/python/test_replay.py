@@ -7,6 +7,7 @@ import json
 import os
 import re
 import signal
+import subprocess
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
@@ -254,3 +255,44 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(
         rows(tmp_path / "out" / "conflicts.csv")
     )
+
+
+PARKS = """<routes><vType id="d" sigma="0" speedDev="0"/>
+<vehicle id="beside" type="d" depart="0" departSpeed="10"><route edges="east"/>
+    <stop lane="east_0" endPos="60" duration="20" parking="true"/></vehicle>
+<vehicle id="area" type="d" depart="4" departSpeed="10"><route edges="east"/><stop parkingArea="off" duration="20"/></vehicle>
+<vehicle id="road" type="d" depart="8" departSpeed="10"><route edges="east"/><stop parkingArea="on" duration="20"/></vehicle>
+<vehicle id="by" type="d" depart="24" departSpeed="13"><route edges="east"/></vehicle></routes>"""
+AREAS = """<additional><parkingArea id="off" lane="east_0" startPos="80" endPos="110" roadsideCapacity="2"/>
+<parkingArea id="on" lane="east_0" startPos="130" endPos="150" roadsideCapacity="2" onRoad="true"/></additional>"""
+
+
+def test_vehicles_parked_off_the_road_are_left_out_as_live(tmp_path: Path) -> None:
+    net, routes, areas = (tmp_path / name for name in ("n.net.xml", "r.rou.xml", "a.add.xml"))
+    (tmp_path / "n.nod.xml").write_text('<nodes><node id="w" x="0" y="0"/><node id="e" x="200" y="0"/></nodes>')
+    (tmp_path / "n.edg.xml").write_text('<edges><edge id="east" from="w" to="e" numLanes="1"/></edges>')
+    made = ("netconvert", "-n", tmp_path / "n.nod.xml", "-e", tmp_path / "n.edg.xml", "-o", net)
+    subprocess.run(made, check=True, capture_output=True)
+    routes.write_text(PARKS)
+    areas.write_text(AREAS)
+    config, fcd, stops = (tmp_path / name for name in ("c.sumocfg", "f.xml", "s.xml"))
+    inputs = f'<net-file value="{net}"/><route-files value="{routes}"/><additional-files value="{areas}"/>'
+    config.write_text(f"<configuration><input>{inputs}</input></configuration>")
+    log = ("--log", "ttc < 9 or gap < 20", "--align", "never")
+    words = ("--end", "45", "--step-length", "0.5", "--", "--fcd-output", fcd, "--stop-output", stops)
+    done = closecall("run", config, "--out", tmp_path / "live", *log, *words)
+    assert done.returncode == 0, done.stderr
+
+    def pairs(folder: str) -> set[tuple[str, str]]:
+        return {(row["ego"], row["foe"]) for row in rows(tmp_path / folder / "conflicts.csv")}
+
+    def replay(folder: str, *words: str | Path) -> set[tuple[str, str]]:
+        done = closecall("replay", fcd, "--out", tmp_path / folder, "--route-files", routes, *log, *words)
+        assert done.returncode == 0, done.stderr
+        return pairs(folder)
+
+    assert ("by", "road") in pairs("live")
+    assert replay("net", "--net", net) == pairs("live")
+    straight = ("--path", "straight")
+    with_stops = replay("stops", *straight, "--stops", stops)
+    assert not {pair for pair in with_stops if "area" in pair and "by" in pair}

@@ -163,3 +163,41 @@ def current_umask() -> int:
     mask = os.umask(0)
     os.umask(mask)
     return mask
+
+
+def test_a_linked_folder_is_not_written_into(scenario: Copy, log: Path, tmp_path: Path) -> None:
+    mine = tmp_path / "mine"
+    mine.mkdir()
+    (mine / "summary.json").write_text("mine")
+    folder = scenario("side").parent
+    (folder / "expected").symlink_to(mine)
+    (log / "earlier").symlink_to(mine)
+    done = closecall("regress", "--bless", folder)
+    assert done.returncode == 2 and f"{folder / 'expected'}: a symbolic link" in done.stdout, done.stdout
+    with pytest.raises(ValueError, match="earlier: a symbolic link"):
+        cc.Checker(out=log)
+    assert [(path.name, path.read_text()) for path in mine.iterdir()] == [("summary.json", "mine")]
+
+
+@pytest.mark.parametrize("setting", ['ssm-output = "FILE"', 'trj_output = "FILE"', '[regress]\nsumo_options = ["--log", "FILE"]'])
+def test_a_scenarios_settings_name_no_file_to_write(setting: str, scenario: Copy, tmp_path: Path) -> None:
+    precious, config = tmp_path / "precious", scenario("side")
+    precious.write_text("mine")
+    toml = config.parent / "closecall.toml"
+    toml.write_text(setting.replace("FILE", str(precious)))
+    done = closecall("regress", config.parent)
+    assert done.returncode == 2 and "file to be written" in done.stdout, done.stdout
+    if "regress" not in setting:
+        done = closecall("sweep", config, "--config", toml, "--seeds", "1-2", "--out", tmp_path / "sweep")
+        assert done.returncode == 2 and "all runs would write the same file" in done.stderr, done.stderr
+    assert precious.read_text() == "mine"
+
+
+def test_each_run_of_a_sweep_writes_its_own_files(scenario: Copy, tmp_path: Path) -> None:
+    config, file = scenario("side"), tmp_path / "fcd.xml"
+    words = ("sweep", config, "--seeds", "1-2", "--out", tmp_path / "sweep", "--end", "5")
+    done = closecall(*words, "--vary", f"sumo:fcd-output={file}")
+    assert (done.returncode, list(tmp_path.glob("*fcd.xml"))) == (2, []) and "fcd-output" in done.stderr
+    done = closecall(*words, "--", "--fcd-output", file)
+    assert done.returncode == 0, done.stderr
+    assert sorted(path.name for path in tmp_path.glob("*fcd.xml")) == ["seed-1_fcd.xml", "seed-2_fcd.xml"]

@@ -124,3 +124,12 @@ def test_what_is_no_log_is_told(tmp_path: Path) -> None:
     (tmp_path / "conflicts.csv").write_text("a,b\n1,2\n")
     with pytest.raises(ValueError, match='column "id" is missing'):
         api.read(tmp_path)
+
+
+def test_columns_that_are_wanted_are_those_of_the_table(log: Path) -> None:
+    table = api.read(log, columns=["ttc", "ego", "ego_x"])
+    assert table.columns == ["ttc", "ego", "ego_x"]
+    agrees_in = [row["ego"] for row in rows(log / "conflicts.csv")]
+    assert table.to_dict()["ego"] == agrees_in and not math.isnan(sum(table.to_dict()["ego_x"]))
+    with pytest.raises(ValueError, match='no "tcc"'):
+        api.read(log, columns=["tcc"])

@@ -20,6 +20,8 @@ pub struct Libsumo {
     vehicles: LibsumoDomain,
     persons: LibsumoDomain,
     stop_state: Py<PyAny>,
+    /// Whether the lists of a step do not name all that entered or left since the last one.
+    looks_up_all: bool,
     /// The getters of the vehicles that begin and end to park.
     parking: [Py<PyAny>; 2],
     types: TypeProfiles,
@@ -56,6 +58,7 @@ impl Libsumo {
             collisions: function("simulation_getCollisions")?,
             vehicles: LibsumoDomain::new(&compiled, Domain::Vehicle)?,
             persons: LibsumoDomain::new(&compiled, Domain::Person)?,
+            looks_up_all: false,
             parking: [
                 function("simulation_getParkingStartingVehiclesIDList")?,
                 function("simulation_getParkingEndingVehiclesIDList")?,
@@ -77,6 +80,10 @@ impl Libsumo {
                 lane_change: function("vehicle_getLaneChangeState")?,
             },
         })
+    }
+
+    pub fn look_up_all(&mut self) {
+        self.looks_up_all = true;
     }
 
     pub fn set_exclusive(&mut self) {
@@ -102,7 +109,7 @@ impl Libsumo {
     pub fn pull(&mut self, py: Python, run: &mut Run, time: Second) -> PyResult<()> {
         // The lists of departed road users cover the last step only; after a jump over several, all are looked up.
         let last = run.time();
-        let jumped = last.is_none_or(|last| time - last > 1.5 * self.step_length);
+        let jumped = self.looks_up_all || last.is_none_or(|last| time - last > 1.5 * self.step_length);
         run.begin_step(time);
         run.set_collisions_of_sumo(simulation::collisions(&self.collisions.bind(py).call0()?)?);
         self.read_lights(py, run)?;

@@ -62,6 +62,14 @@ impl Source {
         }
     }
 
+    /// States that SUMO's lists of a step do not name all road users that entered, left or parked since the last one.
+    pub fn look_up_all(&mut self) {
+        match self {
+            Self::Libsumo(source) => source.look_up_all(),
+            Self::Traci(_) => {}
+        }
+    }
+
     /// What road users are read through, as in docs/attach.md.
     pub fn getters(&self) -> &'static str {
         match self {

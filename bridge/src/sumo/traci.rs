@@ -80,9 +80,17 @@ impl Traci {
         };
         let Variables { position, angle, speed, lane, lane_position, .. } = variable;
         let Variables { lateral_speed, route_id, route_index, stop_state, vehicle, .. } = variable;
+        let script = source.py().import("closecall._traci")?;
         let domain = |name: &str, variables: Vec<i32>| -> PyResult<TraciDomain> {
-            let domain = source.getattr(name)?.unbind();
-            Ok(TraciDomain { domain, variables, live: FxHashMap::default(), rows: Vec::new(), first_row: 0 })
+            let domain = source.getattr(name)?;
+            script.call_method1("unsubscribe_at_removal", (&domain,))?;
+            Ok(TraciDomain {
+                domain: domain.unbind(),
+                variables,
+                live: FxHashMap::default(),
+                rows: Vec::new(),
+                first_row: 0,
+            })
         };
         let of_vehicles =
             vec![position, angle, speed, lane, lane_position, lateral_speed, route_id, route_index, stop_state];

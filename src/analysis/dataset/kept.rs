@@ -7,6 +7,8 @@ use crate::output::schema::LoggedConflict;
 
 /// The most conflicts that are kept.
 pub const MOST: usize = 300_000;
+/// So many more wait until they are sorted out together: a conflict takes more than a kilobyte.
+const WAITING: usize = MOST / 8;
 
 /// A conflict, and the run that it is of.
 #[derive(Clone, Debug)]
@@ -35,8 +37,9 @@ impl KeptConflicts {
     pub fn push(&mut self, conflict: RunConflict) {
         self.seen += 1;
         self.kept.push(conflict);
-        if self.kept.len() >= 2 * MOST {
-            self.prune();
+        if self.kept.len() >= MOST + WAITING {
+            self.kept.select_nth_unstable_by(MOST, worst_first);
+            self.kept.truncate(MOST);
         }
     }
 
@@ -47,12 +50,8 @@ impl KeptConflicts {
 
     /// The conflicts that are kept, worst first.
     pub fn into_sorted(mut self) -> Vec<RunConflict> {
-        self.prune();
-        self.kept
-    }
-
-    fn prune(&mut self) {
         self.kept.sort_unstable_by(worst_first);
         self.kept.truncate(MOST);
+        self.kept
     }
 }

@@ -14,6 +14,7 @@ use crate::events::{ClipCategory, ClipUser};
 use crate::geometry::Point;
 use crate::output::palette::{Ground, hex};
 use crate::util::units::{Metre, Second};
+use crate::util::xml_text::escaped;
 
 /// The time left at which the bar is full, in s.
 const FULL: Second = 3.0;
@@ -47,7 +48,8 @@ fn picture(playback: &Playback, time: &Loop) -> String {
     let [width, height] = SIZE;
     let field = height - PANEL;
     let title = heading(playback);
-    let full = escaped(&format!("{title}: {} and {}", conflict.ego, conflict.foe));
+    let full = format!("{title}: {} and {}", conflict.ego, conflict.foe);
+    let full = escaped(&full);
     let mut text = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" font-family=\"{FONT}\" \
          role=\"img\" aria-label=\"{full}\">\n<title>{full}</title>\n\
@@ -276,9 +278,4 @@ fn numbers(x: f64, y: f64, time: &Loop, count: usize, text_at: impl Fn(usize) ->
         time.seen(|place: usize| text_at(place) == *text, &drawn)
     });
     drawn.collect()
-}
-
-/// A text as SVG has it: ids may contain anything.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

@@ -25,7 +25,8 @@ const DID_NOT_YIELD: &str = Cause::DidNotYield.name();
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
-/// All of the page's data. It contains no `<`: the data stands in a script, which it must not end.
+/// All of the page's data. It contains no `<`: the data stands in a script, which it must not end. The columns are text as soon as
+/// they are made, one after the other, since a number of a row takes four times its size as a value of JSON.
 ///
 /// # Errors
 /// Those of reading the clips.
@@ -46,7 +47,6 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "seen": seen,
         "kinds": Kind::ALL.map(Kind::name),
         "severities": Severity::ALL.map(Severity::name),
-        "conflicts": columns(&conflicts, drawn, net),
         "clips": played,
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
@@ -56,7 +56,20 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "before": before,
         "filter": filter,
     });
-    Ok(data.to_string().replace('<', "\\u003c"))
+    let mut text = "{\"conflicts\":".to_owned();
+    columns(&mut text, &conflicts, drawn, net);
+    drop(conflicts);
+    text.push(',');
+    push(&mut text, &data.to_string()[1..]);
+    Ok(text)
+}
+
+/// Appends JSON without a `<`.
+fn push(text: &mut String, json: &str) {
+    for (place, part) in json.split('<').enumerate() {
+        text.push_str(if place > 0 { "\\u003c" } else { "" });
+        text.push_str(part);
+    }
 }
 
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
@@ -98,9 +111,14 @@ impl<'a> Words<'a> {
     }
 }
 
-fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value {
-    let mut columns = Map::new();
-    let mut add = |name: &str, column: Value| drop(columns.insert(name.to_owned(), once(column)));
+/// Appends the conflicts, a column after the other, and the lists of the words that repeat.
+fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) {
+    text.push_str("{\"columns\":{");
+    let mut is_first = true;
+    let mut add = |name: &str, column: Value| {
+        text.push_str(if std::mem::take(&mut is_first) { "" } else { "," });
+        push(text, &format!("\"{name}\":{}", once(column)));
+    };
     let conflicts = || rows.iter().map(|row| &row.conflict);
     let mut ids = Words::default();
     add("ego", conflicts().map(|conflict| ids.place(&conflict.ego)).collect());
@@ -144,9 +162,8 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     let mut places = Words::default();
     let spots = lanes.list.iter().map(|lane| spot(lane, net)).collect::<Vec<_>>();
     let spot_of_lane = spots.iter().map(|spot| places.place(spot)).collect::<Vec<_>>();
-    json!({
+    let lists = json!({
         "count": rows.len(),
-        "columns": columns,
         "ids": ids.list,
         "types": types.list,
         "manoeuvres": manoeuvres.list,
@@ -156,7 +173,9 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
         "spot_of_lane": spot_of_lane,
         "drawn": drawn,
         "movements": movements.json(),
-    })
+    });
+    text.push_str("},");
+    push(text, &lists.to_string()[1..]);
 }
 
 fn is_shown_number(column: &Column) -> bool {

@@ -17,7 +17,7 @@ use super::logged::{LostRows, Progress, check_keeps_logs};
 use super::statistics::Effects;
 use super::style;
 use crate::Result;
-use crate::util::output_file;
+use crate::util::output_file::OutputFile;
 
 /// The template, with a mark for each part.
 const PAGE: &str = include_str!("page.html");
@@ -92,23 +92,30 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         lost.extend(lost_before.into_iter().filter(|rows| !conflicts.lost.contains(rows)));
         Some(data::before(&effects, &read(against, net, filter, progress)?))
     };
-    let page = page(&data::json(conflicts, before)?);
-    output_file::write(out, page.as_bytes())?;
-    Ok(Made { runs, conflicts: seen, bytes: page.len(), lost })
+    let data = data::json(conflicts, before)?;
+    let mut file = OutputFile::create(out)?;
+    let mut bytes = 0;
+    page(&data, |part| {
+        bytes += part.len();
+        file.append(part.as_bytes())
+    })?;
+    file.finish()?;
+    Ok(Made { runs, conflicts: seen, bytes, lost })
 }
 
-/// Replaces each mark by its part. The parts themselves are not searched for marks, since an id may look like one.
-fn page(data: &str) -> String {
+/// Writes the page, each mark replaced by its part. The parts themselves are not searched for marks, since an id may look like
+/// one.
+fn page(data: &str, mut write: impl FnMut(&str) -> Result<()>) -> Result<()> {
     let scripts = OWN_SCRIPTS.concat();
     let style = style::sheet();
-    let mut page = String::with_capacity(data.len() + LIBRARY.1.len() + (1 << 17));
     let mut rest = PAGE;
     for (mark, part) in [(STYLE, &*style), (DATA, data), LIBRARY, (SCRIPTS, &scripts)] {
         let (before, after) = rest.split_once(mark).unwrap_or((rest, ""));
-        page.extend([before, part]);
+        write(before)?;
+        write(part)?;
         rest = after;
     }
-    page + rest
+    write(rest)
 }
 
 #[cfg(test)]
@@ -127,6 +134,12 @@ mod tests {
 
     #[test]
     fn data_that_looks_like_a_mark_stays_data() {
-        assert!(page("[\"{{scripts}}\"]").contains("[\"{{scripts}}\"]"));
+        let mut text = String::new();
+        page("[\"{{scripts}}\"]", |part| {
+            text += part;
+            Ok(())
+        })
+        .unwrap();
+        assert!(text.contains("[\"{{scripts}}\"]"));
     }
 }

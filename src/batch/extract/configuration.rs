@@ -3,10 +3,11 @@
 use std::fs;
 use std::path::Path;
 
-use quick_xml::escape::{escape, unescape};
+use quick_xml::escape::unescape;
 
 use crate::input::sumo_files::{SumoOption, options_of};
 use crate::util::output_file;
+use crate::util::xml_text::escaped;
 use crate::{Error, Result};
 
 /// The configuration.
@@ -89,7 +90,8 @@ impl Configuration {
     /// # Errors
     /// [`Error::File`] that names the file.
     pub fn write(&self, path: &Path) -> Result<()> {
-        let lines = self.0.iter().map(|Set { name, value, .. }| format!("    <{name} value=\"{}\"/>\n", escape(value)));
+        let lines =
+            self.0.iter().map(|Set { name, value, .. }| format!("    <{name} value=\"{}\"/>\n", escaped(value)));
         output_file::write(path, format!("<configuration>\n{}</configuration>\n", lines.collect::<String>()).as_bytes())
     }
 }

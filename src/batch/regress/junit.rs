@@ -2,11 +2,10 @@
 
 use std::path::Path;
 
-use quick_xml::escape::escape;
-
 use super::Report;
 use crate::Result;
 use crate::util::output_file;
+use crate::util::xml_text::escaped;
 
 /// Writes the reports, one test case per scenario.
 ///
@@ -28,8 +27,8 @@ fn document(reports: &[Report]) -> String {
 }
 
 fn case(report: &Report) -> String {
-    let headline = xml(&report.headline());
-    let details = xml(&report.details().join("\n"));
+    let (headline, details) = (report.headline(), report.details().join("\n"));
+    let (headline, details) = (escaped(&headline), escaped(&details));
     let problem = |element: &str, kind: &str| {
         format!("<{element} type=\"{kind}\" message=\"{headline}\">{headline}\n{details}</{element}>\n")
     };
@@ -40,13 +39,7 @@ fn case(report: &Report) -> String {
     };
     format!(
         "<testcase name=\"{}\" classname=\"closecall.regress\">\n{problem}<system-out>{}</system-out>\n</testcase>\n",
-        xml(&report.name),
-        xml(&report.to_string())
+        escaped(&report.name),
+        escaped(&report.to_string())
     )
-}
-
-/// A text within XML, without the control characters that XML cannot hold.
-fn xml(text: &str) -> String {
-    let text = text.chars().filter(|sign| !sign.is_control() || matches!(sign, '\n' | '\t')).collect::<String>();
-    escape(&text).into_owned()
 }

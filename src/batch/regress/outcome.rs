@@ -172,6 +172,7 @@ impl Outcome {
     pub fn write(&self, expected: &Path) -> Result<()> {
         let text =
             serde_json::to_string_pretty(&self.summary).map_err(|error| Error::content(expected, error.to_string()))?;
+        output_file::check_is_no_link(expected)?;
         for (name, bytes) in [(log::CONFLICTS, self.csv.clone()), (SUMMARY, (text + "\n").into_bytes())] {
             output_file::write(&expected.join(name), &bytes)?;
         }

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::analysis::logged::SUMMARY;
+use crate::input::sumo_outputs::output_in;
 use crate::options::{Options, OptionsFile};
+use crate::output::formats::OutputFiles;
 use crate::output::log::CONFLICTS;
 use crate::util::input_file;
 use crate::util::units::{Metre, Second};
@@ -139,6 +141,12 @@ impl Scenario {
         } else {
             OptionsFile::default()
         };
+        let is_output = |word: &&String| OutputFiles::OPTIONS.iter().any(|option| word.starts_with(option));
+        if let Some(word) = file.words.iter().find(is_output) {
+            let message =
+                "a scenario's settings name no file to be written: give it on the command line of closecall run";
+            return Err(Error::content(&path, format!("{}: {message}", word.trim_start_matches('-'))));
+        }
         let mut settings = match file.regress {
             Some(table) => table.try_into().map_err(|error: toml::de::Error| {
                 let key = error.to_string().lines().last().unwrap_or_default().trim().to_owned();
@@ -254,6 +262,9 @@ fn check(settings: &RegressSettings) -> std::result::Result<(), String> {
     if let Some(twice) = seeds.windows(2).find(|pair| pair[0] == pair[1]) {
         return Err(format!("seeds has {} twice", twice[0]));
     }
+    if let Some(option) = output_in(&settings.sumo_options) {
+        return Err(format!("sumo_options has --{option}, which names a file to be written"));
+    }
     if !(settings.false_alarm > 0.0 && settings.false_alarm < 1.0) {
         return Err(format!("false_alarm is {}; it must be between 0 and 1", settings.false_alarm));
     }
@@ -274,7 +285,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("net.sumocfg"), "<configuration/>").unwrap();
         std::fs::write(folder.path().join(SETTINGS), toml).unwrap();
-        Scenario::read(folder.path(), &["end".to_owned(), "seed".to_owned()])
+        let known = ["end", "seed", "ssm-output", "trj-output"].map(str::to_owned);
+        Scenario::read(folder.path(), &known)
     }
 
     #[test]
@@ -293,6 +305,9 @@ mod tests {
             ("[regress]\nlevel = 'strict'\n", "strict"),
             ("[regress]\nseeds = [1, 2, 1]\n", "seeds has 1 twice"),
             ("[regress]\nseeds = [-1]\n", "seeds"),
+            ("ssm-output = '/precious'\n", "ssm-output=/precious"),
+            ("trj_output = 'a.trj'\n", "trj-output=a.trj"),
+            ("[regress]\nsumo_options = ['--fcd-output', 'f.xml']\n", "--fcd-output"),
             ("[regress]\nfalse_alarm = 0\n", "false_alarm"),
             ("[regress.tolerance]\ntcc = 0.1\n", "tcc"),
             ("[regress]\nsumocfg = 'no.sumocfg'\n", "no.sumocfg"),

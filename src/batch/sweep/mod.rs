@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::analysis::logged::{Label, LabelValue};
+use crate::input::sumo_outputs::{PREFIX, has_outputs};
 use crate::{Error, Result};
 
 pub use seeds::Seeds;
@@ -73,6 +74,9 @@ impl Sweep {
         also_read: &[PathBuf],
     ) -> Result<Self> {
         let read = done::contents(also_read)?;
+        // Side by side, runs would write into the same files.
+        let has_outputs = seeds.0.len() * settings.len() > 1
+            && words.first().is_some_and(|scenario| has_outputs(Path::new(scenario), for_sumo));
         let mut tasks = Vec::new();
         let mut names = BTreeSet::new();
         for &seed in &seeds.0 {
@@ -82,6 +86,9 @@ impl Sweep {
                 own.extend(["--seed".to_owned(), seed.to_string()]);
                 let mut sumo = setting.without_its_options(for_sumo);
                 sumo.extend_from_slice(&setting.for_sumo);
+                if has_outputs {
+                    sumo.push(format!("{PREFIX}={name}_"));
+                }
                 if !sumo.is_empty() {
                     own.push("--".to_owned());
                     own.append(&mut sumo);

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::logged::{self, Label, LoggedRun, PARQUET, RunTime};
 use crate::options::SERIES_FILES;
 use crate::output::clips::CLIPS;
+use crate::util::output_file::check_is_no_link;
 use crate::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.
@@ -42,6 +43,8 @@ impl Task {
         }
         let folder = self.out.join("series").join(format!("{RUN}{}", self.name));
         let fault = |source| Error::file(&folder, source);
+        let written_into = [self.out.join("series"), folder.clone(), data_set(&self.out), self.log()];
+        written_into.iter().try_for_each(|folder| check_is_no_link(folder))?;
         if folder.exists() {
             // The series of the run that this one replaces.
             fs::remove_dir_all(&folder).map_err(fault)?;

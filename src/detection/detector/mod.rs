@@ -18,7 +18,9 @@ mod last_speed;
 mod left_out;
 mod level;
 mod meet;
+mod neighbours;
 mod occupancy;
+mod one_between;
 mod overlap;
 mod paths;
 mod placing;
@@ -53,6 +55,7 @@ use crate::util::units::{Metre, Second};
 use cover::Cover;
 use jump::Jump;
 use last_speed::LastSpeed;
+use one_between::OneBetween;
 use paths::Paths;
 use reach::{Reach, StepView, User};
 use row_order::RowOrder;
@@ -116,6 +119,8 @@ pub struct Detector {
     /// By thread, the slots of the pairs whose areas meet.
     pairs: Vec<Vec<(u32, u32)>>,
     workers: Vec<Worker>,
+    /// None until a step has rear-end pairs.
+    one_between: Option<Box<OneBetween>>,
     /// Whether the step has more pairs than can be checked.
     is_crowded: bool,
     team: Team,
@@ -156,6 +161,7 @@ impl Detector {
             unplaced: Vec::new(),
             pairs: vec![Vec::new()],
             workers: vec![Worker::default()],
+            one_between: None,
             is_crowded: false,
             team: Team::default(),
             narrow_phase_alone: Duration::ZERO,

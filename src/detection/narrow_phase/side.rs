@@ -1,5 +1,7 @@
 //! Side conflicts, and all others that are not in line: swept rectangles.
 
+use std::slice::from_ref;
+
 use super::approach::{Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
@@ -42,6 +44,13 @@ pub fn refine(
 ) -> Option<Approach> {
     bisection.sweep_to(tolerance);
     find(bisection, a, b, a_has_smaller_id)
+}
+
+/// How far an ego goes until it touches a foe, each of whose carriages stands where it is now, and its axis there.
+pub fn distance_to(bisection: &mut Bisection, ego: &Participant, foe: &[Participant]) -> Option<(Metre, Vector)> {
+    bisection.clear();
+    let touch = touch(bisection, [0, movement_count(ego)], from_ref(ego), foe)?;
+    Some((touch.ego_distance, touch.ego_rectangle.axis))
 }
 
 /// How a pair meets, swept to the bisection's tolerance.
@@ -349,7 +358,6 @@ mod tests {
     use crate::geometry::Point;
     use crate::traffic::profile::Carriage;
     use proptest::prelude::*;
-    use std::slice::from_ref;
 
     const SIZE: (Metre, Metre) = (5.0, 2.0);
     const BRAKES: Brakes = Brakes { response: 1.0, build_up: 0.1, deceleration: 8.0 };

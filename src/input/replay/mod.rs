@@ -19,6 +19,7 @@ pub mod lights;
 mod lists;
 mod names;
 mod number;
+mod parked;
 #[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(not(feature = "parquet"))]
@@ -242,10 +243,8 @@ impl Replay {
             if let Some(places) = self.future.as_mut().and_then(|future| future.take(row.user)) {
                 run.drive(user, places);
             }
-            if let (false, Some(net)) = (row.person, run.net()) {
-                self.vehicle_rows += 1;
-                self.unknown_lanes +=
-                    u64::from(self.lanes.lane(row.lane, |lane| self.recorded_steps.lane(lane), net).is_none());
+            if !row.person && self.is_parked(&row, run.net()) {
+                continue;
             }
             // SUMO gives a person that rides in a vehicle the vehicle's position; it is not a road user of its own.
             if row.person && self.vehicles.contains(&exact_state(&row)) {

@@ -1,4 +1,4 @@
-//! Where vehicles stopped on the road: SUMO's `--stop-output`.
+//! Where vehicles stopped, on the road and off it: SUMO's `--stop-output`.
 
 use std::path::Path;
 
@@ -14,15 +14,19 @@ use crate::util::limits::TIME;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
-/// The stops of all vehicles, without those off the road.
+/// The stops of all vehicles.
 #[derive(Default)]
 pub struct RecordedStops {
-    /// By id, when each stop began and ended.
-    of_vehicles: FxHashMap<String, Vec<[Second; 2]>>,
+    /// By id, when each stop on the road began and ended.
+    of_vehicles: Stops,
+    /// The same of those that parked.
+    parked: Stops,
 }
 
-/// A stop: the vehicle's id, and when it began and ended.
-type Stop = (String, [Second; 2]);
+type Stops = FxHashMap<String, Vec<[Second; 2]>>;
+
+/// A stop: the vehicle's id, when it began and ended, and whether it parked.
+type Stop = (String, [Second; 2], bool);
 
 impl RecordedStops {
     /// Reads the file.
@@ -40,9 +44,9 @@ impl RecordedStops {
             depth += usize::from(matches!(event, Event::Start(_)));
             match event {
                 Event::Start(ref tag) | Event::Empty(ref tag) if tag.name().as_ref() == "stopinfo" => {
-                    if let Some((id, times)) = stop(tag).map_err(wrong)? {
-                        stops.of_vehicles.entry(id).or_default().push(times);
-                    }
+                    let (id, times, parks) = stop(tag).map_err(wrong)?;
+                    let of = if parks { &mut stops.parked } else { &mut stops.of_vehicles };
+                    of.entry(id).or_default().push(times);
                 }
                 // A run without stops has none to write.
                 Event::Start(ref tag) | Event::Empty(ref tag) => is_of_stops |= tag.name().as_ref() == "stops",
@@ -63,16 +67,24 @@ impl RecordedStops {
             return;
         }
         for user in run.standing() {
-            let stops = self.of_vehicles.get(run.roster.id(user).as_str());
-            if stops.is_some_and(|stops| stops.iter().any(|[began, ended]| *began <= time && time < *ended)) {
+            if stops_at(&self.of_vehicles, run.roster.id(user), time) {
                 run.set_stopped(user);
             }
         }
     }
+
+    /// Whether a vehicle is parked at this time, beside the road or on a parking area.
+    pub fn is_parked(&self, id: &str, time: Second) -> bool {
+        !self.parked.is_empty() && stops_at(&self.parked, id, time)
+    }
 }
 
-/// The stop that a `<stopinfo>` tells; none off the road.
-fn stop(tag: &BytesStart) -> std::result::Result<Option<Stop>, String> {
+fn stops_at(stops: &Stops, id: &str, time: Second) -> bool {
+    stops.get(id).is_some_and(|stops| stops.iter().any(|[began, ended]| *began <= time && time < *ended))
+}
+
+/// The stop that a `<stopinfo>` tells.
+fn stop(tag: &BytesStart) -> std::result::Result<Stop, String> {
     let needed = |name: &str| text(tag, name)?.ok_or_else(|| format!("a stopinfo has no {name}"));
     let time = |name: &str| -> std::result::Result<Second, String> {
         let told = needed(name)?;
@@ -82,7 +94,7 @@ fn stop(tag: &BytesStart) -> std::result::Result<Option<Stop>, String> {
     let (id, began, ended) = (needed("id")?, time("started")?, time("ended")?);
     // One that had not ended when the simulation did ends before it began.
     let ended = if ended < began { f64::INFINITY } else { ended };
-    Ok(Some((id, [began, ended])).filter(|_| needed("parking").is_ok_and(|parking| parking == "0")))
+    Ok((id, [began, ended], needed("parking").is_ok_and(|parking| parking != "0")))
 }
 
 #[cfg(test)]
@@ -96,13 +108,19 @@ mod tests {
     }
 
     #[test]
-    fn stops_off_the_road_are_left_out() {
+    fn stops_off_the_road_are_told_apart() {
         let stops = read(
             r#"<stops><stopinfo id="a" parking="0" started="1" ended="4"/><stopinfo id="b" parking="1" started="1" ended="4"/>
             <stopinfo id="a" parking="0" started="9" ended="-1"/></stops>"#,
         );
-        let known = stops.unwrap().of_vehicles;
+        let stops = stops.unwrap();
+        let known = &stops.of_vehicles;
         assert_eq!((known.len(), &known["a"][..]), (1, &[[1.0, 4.0], [9.0, f64::INFINITY]][..]));
+        let parked = |id, time| stops.is_parked(id, time);
+        assert_eq!(
+            [parked("b", 0.5), parked("b", 1.0), parked("b", 4.0), parked("a", 2.0)],
+            [false, true, false, false]
+        );
     }
 
     #[test]

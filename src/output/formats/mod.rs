@@ -63,6 +63,15 @@ pub enum LogFormat {
 }
 
 impl OutputFiles {
+    /// The options that name a file to be written.
+    pub(crate) const OPTIONS: [&str; 2] = ["--ssm-output", "--trj-output"];
+
+    /// The files to be written besides the log, each with its option.
+    pub(crate) fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let files = [&self.ssm_output, &self.trj_output];
+        Self::OPTIONS.into_iter().zip(files).filter_map(|(option, file)| Some((option, file.as_deref()?)))
+    }
+
     /// Checks that writing them overwrites none of the files to be kept.
     ///
     /// # Errors
@@ -71,9 +80,8 @@ impl OutputFiles {
         let [ssm, trajectories] = [&self.ssm_output, &self.trj_output];
         let refused =
             |option: &str, over: &Path| Err(Error::Value(format!("{option} would be written over {}", over.display())));
-        for (option, path) in [("--ssm-output", ssm), ("--trj-output", trajectories)] {
-            let over = path.iter().find_map(|path| same_file(path, kept.iter().map(P::as_ref)));
-            if let Some(over) = over {
+        for (option, path) in self.files() {
+            if let Some(over) = same_file(path, kept.iter().map(P::as_ref)) {
                 return refused(option, over);
             }
         }

@@ -4,13 +4,12 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use quick_xml::escape::escape;
-
 use crate::Result;
 use crate::detection::kind::Severity;
 use crate::output::schema::{Column, LoggedConflict, Value};
 use crate::util::decimal::shortest;
 use crate::util::output_file::OutputFile;
+use crate::util::xml_text::escaped;
 
 /// Above the roads and the vehicles.
 const LAYER: u32 = 300;
@@ -49,7 +48,7 @@ impl Poi {
             if !matches!(value, Value::Missing | Value::Text("")) {
                 let value = value.text(&mut buffer);
                 // Writing to a String cannot fail.
-                let _ = writeln!(text, "        <param key=\"{}\" value=\"{}\"/>", column.name, escape(value));
+                let _ = writeln!(text, "        <param key=\"{}\" value=\"{}\"/>", column.name, escaped(value));
             }
         }
         self.file.append((text + "    </poi>\n").as_bytes())

@@ -6,8 +6,6 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use quick_xml::escape::escape;
-
 use crate::Result;
 use crate::detection::kind::Kind;
 use crate::events::{Conflict, Moment};
@@ -15,6 +13,7 @@ use crate::output::schema::LoggedConflict;
 use crate::util::decimal::shortest;
 use crate::util::output_file::OutputFile;
 use crate::util::units::Second;
+use crate::util::xml_text::escaped;
 
 /// The device's code for an ego that follows its foe.
 const FOLLOWING_FOLLOWER: u32 = 2;
@@ -88,7 +87,7 @@ fn element(conflict: &Element) -> String {
         Kind::Side => CROSSING_FOLLOWER,
         Kind::Frontal => ONCOMING,
     };
-    let (ego, foe) = (escape(conflict.ego), escape(conflict.foe));
+    let (ego, foe) = (escaped(conflict.ego), escaped(conflict.foe));
     let mut text = format!(
         "    <conflict begin=\"{}\" end=\"{}\" ego=\"{ego}\" foe=\"{foe}\">\n",
         decimal(conflict.begin),

@@ -1,13 +1,12 @@
 //! Tables for a browser: one self-contained page.
 
-use quick_xml::escape::escape;
-
 use super::cells::{Cell, Table};
 use crate::analysis::style;
+use crate::util::xml_text::escaped;
 
 /// The tables as one HTML page in the report's style, with a title; text from the scenario is escaped.
 pub fn html(title: &str, tables: &[Table]) -> String {
-    let (title, style) = (escape(title), style::sheet());
+    let (title, style) = (escaped(title), style::sheet());
     let mut page = format!(
         "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{title} – closecall</title>\
          <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\">\
@@ -18,24 +17,24 @@ pub fn html(title: &str, tables: &[Table]) -> String {
     for table in tables {
         page += &format!(
             "<section><h2>{}</h2>\n<div class=\"scroll\" tabindex=\"0\"><table>\n<thead><tr>",
-            escape(heading(table.title))
+            escaped(&heading(table.title))
         );
         let is_number =
             |column: usize| table.rows.iter().any(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::None)));
         for (place, column) in table.columns.iter().enumerate() {
             let class = if is_number(place) { " class=\"number\"" } else { "" };
-            page += &format!("<th scope=\"col\"{class}>{}</th>", escape(*column));
+            page += &format!("<th scope=\"col\"{class}>{}</th>", escaped(*column));
         }
         page += "</tr></thead>\n";
         for row in &table.rows {
             let cells = row.iter().map(|cell| match cell {
-                Cell::Text(text) => format!("<td>{}</td>", escape(text.as_str())),
+                Cell::Text(text) => format!("<td>{}</td>", escaped(text.as_str())),
                 number => format!("<td class=\"number\">{}</td>", number.rounded()),
             });
             page += &format!("<tr>{}</tr>\n", cells.collect::<String>());
         }
         page += "</table></div>\n";
-        table.notes.iter().for_each(|note| page += &format!("<p class=\"note\">{}</p>\n", escape(note.as_str())));
+        table.notes.iter().for_each(|note| page += &format!("<p class=\"note\">{}</p>\n", escaped(note.as_str())));
         page += "</section>\n";
     }
     page + "</main></body></html>\n"

@@ -6,7 +6,6 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use quick_xml::escape::escape;
 use rustc_hash::FxHashSet;
 
 use super::bodies::{Place, WHEEL, axle, box_around, class_of, places};
@@ -15,6 +14,7 @@ use crate::geometry::Point;
 use crate::output::schema::LoggedConflict;
 use crate::util::decimal::shortest;
 use crate::util::units::{Metre, Second};
+use crate::util::xml_text::escaped;
 
 /// The format wants the largest speed, acceleration and deceleration of each vehicle, in m/s and m/s²: more than any that follows
 /// a line in time reaches.
@@ -57,7 +57,7 @@ pub fn scenario(scenario: &Scenario) -> String {
            <FileHeader revMajor=\"1\" revMinor=\"2\" date=\"{date}\" author=\"closecall {}\" description=\"{}\"/>\n  \
            <CatalogLocations/>\n",
         env!("CARGO_PKG_VERSION"),
-        escape(&description)
+        escaped(&description)
     );
     text += &roads.map_or_else(
         || "  <RoadNetwork/>\n".to_owned(),
@@ -110,7 +110,7 @@ fn entities(clip: &Clip) -> Vec<Entity<'_>> {
 
 /// A name that no other has. A `$` at its begin would make it the name of a parameter.
 fn name(id: &str, taken: &mut FxHashSet<String>) -> String {
-    let id = escape(id.strip_prefix('$').unwrap_or(id)).into_owned();
+    let id = escaped(id.strip_prefix('$').unwrap_or(id)).into_owned();
     let names = std::iter::once(id.clone()).chain((2..).map(|number| format!("{id}_{number}")));
     let mut free = names.filter(|name| taken.insert(name.clone()));
     free.next().unwrap_or(id)
@@ -174,7 +174,7 @@ impl Entity<'_> {
         format!(
             "    <ScenarioObject name=\"{name}\">\n      <{what} name=\"{}\" {more}>\n{inner}        \
                    <Properties>{role}</Properties>\n      </{what}>\n    </ScenarioObject>\n",
-            escape(model)
+            escaped(model)
         )
     }
 

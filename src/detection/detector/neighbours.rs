@@ -1,0 +1,78 @@
+//! Drops the rear-end pairs of a step that another vehicle is between (see [`super::one_between`]).
+
+use super::one_between::{OneBetween, Way, may_have_one_between};
+use super::{Detector, LEVEL};
+use crate::detection::encounter::Encounter;
+use crate::options::Mode;
+use crate::traffic::frame::Frame;
+use crate::traffic::roster::Roster;
+use crate::util::units::Metre;
+
+impl Detector {
+    /// Drops the rear-end encounters of two between which another vehicle is on the same path. Call
+    /// [`Detector::narrow_phase`] with the same frame first.
+    pub fn drop_pairs_with_one_between(&mut self, frame: &Frame, roster: &Roster) {
+        if self.options.mode == Mode::Paper || !self.encounters().any(may_have_one_between) {
+            return;
+        }
+        let mut between = self.one_between.take().unwrap_or_default();
+        let pairs = self.pairs.iter().flatten().copied();
+        if between.find(frame.len(), self.search.slots(), self.encounters(), pairs) {
+            let (mut order, mut workers) = (std::mem::take(&mut self.order), std::mem::take(&mut self.workers));
+            order.retain(&mut workers, |found| {
+                !may_have_one_between(found) || !self.has_one_between(&mut between, frame, roster, found)
+            });
+            (self.order, self.workers) = (order, workers);
+            between.way.bisection.shrink();
+        }
+        self.one_between = Some(between);
+    }
+
+    fn has_one_between(&mut self, between: &mut OneBetween, frame: &Frame, roster: &Roster, found: &Encounter) -> bool {
+        let OneBetween { slots, near, way, .. } = between;
+        let [ego, foe] = [found.ego_row, found.foe_row].map(|row| slots[row as usize]);
+        let first = near.partition_point(|(slot, _)| *slot < ego);
+        let near = near[first..].iter().take_while(|(slot, _)| *slot == ego).map(|(_, other)| *other);
+        let mut near = near.filter(|other| *other != foe).peekable();
+        if near.peek().is_none() {
+            return false;
+        }
+        let length = roster.profile_of(found.foe).length;
+        let furthest = found.ego_distance + found.foe_distance + length;
+        self.look_ahead(frame, roster, ego, furthest, way);
+        let Some(to_foe) = self.scene(frame, roster).distance_to(way, ego, foe) else { return false };
+        let height = frame.state(found.ego_row).z;
+        for other in near {
+            let scene = self.scene(frame, roster);
+            if (scene.state(scene.user(other)).z - height).abs() > LEVEL {
+                continue;
+            }
+            // The poses are the ego's until one is found to be on its path.
+            if scene.distance_to(way, ego, other).is_none_or(|distance| distance >= to_foe) {
+                continue;
+            }
+            self.look_ahead(frame, roster, other, to_foe, way);
+            if self.scene(frame, roster).distance_to(way, other, foe).is_some_and(|distance| distance < to_foe) {
+                return true;
+            }
+            self.look_ahead(frame, roster, ego, furthest, way);
+        }
+        false
+    }
+
+    /// Computes the poses of the road user in a slot as far as `furthest`.
+    fn look_ahead(&mut self, frame: &Frame, roster: &Roster, slot: u32, furthest: Metre, way: &mut Way) {
+        let user = self.search.slots()[slot as usize];
+        let moves = frame.state(user.row).moves();
+        // One that stands still has the path on which it came.
+        let user = if moves { user } else { self.sight(frame, roster).further(&user) };
+        if user.on_lanes {
+            self.lengthen(roster, &user, furthest);
+        }
+        let scene = self.scene(frame, roster);
+        way.poses.clear();
+        if let Some(first) = scene.carriages(&user).next() {
+            scene.course(&user, first, &[furthest], true, &mut way.poses);
+        }
+    }
+}
