@@ -86,7 +86,7 @@ pub(super) fn may_have_one_between(found: &Encounter) -> bool {
 
 /// Whether it is a vehicle, and where it is at this moment is known.
 fn is_there(user: &User) -> bool {
-    user.category == Category::Vehicle && !matches!(user.motion, Motion::Enters | Motion::WasElsewhere)
+    user.category == Category::Vehicle && user.motion != Motion::Appears
 }
 
 impl StepInputs<'_> {

@@ -8,8 +8,8 @@ use serde::Serialize;
 
 use super::manoeuvre::{changes_lanes, stands_aside};
 use super::pair::{Pair, Party, STANDS};
+use crate::geometry::angle_between;
 use crate::geometry::rectangle::direction;
-use crate::geometry::{Point, angle_between};
 use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::Category;
 use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
@@ -128,9 +128,11 @@ fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
     passes.speed >= STANDS && passes.course.deceleration < UNBRAKED && passes.course.of(lane).is_none()
 }
 
-/// Whether a person is where only persons go, and stays there until the two would meet.
+/// Whether a person is where only persons go, and not about to step on a crossing where the two would meet: SUMO's persons
+/// leave pavements for nothing else, whatever their heading.
 fn is_off_the_road(net: &Net, pair: &Pair, person: &Party) -> bool {
-    let is_off = |place: Point| !net.is_on_crossing(place) && net.is_off_the_road(place, BESIDE);
     let meets_at = person.front + direction(person.heading) * person.way;
-    is_off(person.front) && (stands_aside(pair, person) || is_off(meets_at))
+    !net.is_on_crossing(person.front)
+        && net.is_off_the_road(person.front, BESIDE)
+        && (stands_aside(pair, person) || !net.is_on_crossing(meets_at))
 }
