@@ -271,6 +271,6 @@ proptest! {
         let outside = (found.front() - middle).norm() - (to - from).norm() / 2.0;
         prop_assert!(outside <= 0.5, "{outside} m: {found:?} {last:?} {to:?}");
         let back = (found.front() - to).norm();
-        prop_assert!(back <= speed / 2.0 + aside.abs().max(further.abs()) + 0.5, "{back} m back at {speed} m/s");
+        prop_assert!(back <= speed / 2.0 + aside.hypot(further) + 0.5, "{back} m back at {speed} m/s");
     }
 }
