@@ -8,6 +8,7 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Callable
@@ -271,7 +272,7 @@ def test_vehicles_parked_off_the_road_are_left_out_as_live(tmp_path: Path) -> No
     net, routes, areas = (tmp_path / name for name in ("n.net.xml", "r.rou.xml", "a.add.xml"))
     (tmp_path / "n.nod.xml").write_text('<nodes><node id="w" x="0" y="0"/><node id="e" x="200" y="0"/></nodes>')
     (tmp_path / "n.edg.xml").write_text('<edges><edge id="east" from="w" to="e" numLanes="1"/></edges>')
-    made = ("netconvert", "-n", tmp_path / "n.nod.xml", "-e", tmp_path / "n.edg.xml", "-o", net)
+    made = (Path(sys.executable).with_name("netconvert"), "-n", tmp_path / "n.nod.xml", "-e", tmp_path / "n.edg.xml", "-o", net)
     subprocess.run(made, check=True, capture_output=True)
     routes.write_text(PARKS)
     areas.write_text(AREAS)

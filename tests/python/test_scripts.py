@@ -90,9 +90,9 @@ for step in range(60):
             if way == "step": assert "fork" in checker.log_error, checker.log_error
             os._exit(0)
         assert os.waitpid(child, 0)[1] == 0
-    checker.step(step * 0.1, {"id": [f"v{n}" for n in range(40)], "x": [7.0 * n + n % 7 * 2.0 * step for n in range(40)],
-                              "y": [n % 3 * 3.5 for n in range(40)], "heading": [0.0] * 40,
-                              "speed": [20.0 * (n % 7) for n in range(40)]})
+    checker.step(step * 0.1, {"id": [f"v{n}" for n in range(10)], "x": [7.0 * n + n % 7 * 2.0 * step for n in range(10)],
+                              "y": [n % 3 * 3.5 for n in range(10)], "heading": [0.0] * 10,
+                              "speed": [20.0 * (n % 7) for n in range(10)]})
 checker.close()
 assert checker.log_error is None
 """
@@ -104,7 +104,7 @@ def test_a_fork_writes_nothing_into_the_log(way: str, tmp_path: Path) -> None:
         done = python(FORKS, tmp_path / name, does)
         assert done.returncode == 0, done.stderr
     whole = [(tmp_path / name / "conflicts.csv").read_bytes() for name in ("alone", "forked")]
-    assert whole[0] == whole[1] and whole[0].count(b"\n") > 20
+    assert whole[0] == whole[1] and whole[0].count(b"\n") > 5
     assert closecall("stats", tmp_path / "forked").returncode == 0
 
 
