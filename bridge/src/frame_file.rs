@@ -28,7 +28,7 @@ pub fn written(py: Python, data: &Bound<PyAny>, tracks: &TrackOptions) -> PyResu
     // pandas has the method, but needs PyArrow for it.
     let stream = data.call_method0(STREAM);
     match (stream, data.hasattr("to_csv")?) {
-        (Ok(capsule), _) => write(py, &capsule.cast_into::<PyCapsule>()?, &file, tracks)?,
+        (Ok(stream), _) => write(data, stream, &file, tracks)?,
         (Err(_), true) => {
             let keywords = PyDict::new(py);
             keywords.set_item("index", false)?;
@@ -43,32 +43,49 @@ pub fn written(py: Python, data: &Bound<PyAny>, tracks: &TrackOptions) -> PyResu
     Ok(file)
 }
 
-#[expect(unsafe_code, reason = "Arrow's C interface is a pointer, which its name vouches for")]
-fn write(py: Python, capsule: &Bound<PyCapsule>, file: &NamedTempFile, tracks: &TrackOptions) -> PyResult<()> {
-    let failed = |error: ArrowError| PyValueError::new_err(error.to_string());
-    let pointer = capsule.pointer_checked(Some(c"arrow_array_stream"))?.cast::<FFI_ArrowArrayStream>();
-    // SAFETY: a capsule of this name holds such a stream, and the reader takes it over, as Arrow's interface says.
-    let reader = unsafe { RecordBatchStreamReader::from_raw(pointer.as_ptr()) }.map_err(failed)?;
+/// Writes the columns that are read. Those of nulls alone, which Polars hands over otherwise than Arrow says, are not asked for.
+fn write(data: &Bound<PyAny>, stream: Bound<PyAny>, file: &NamedTempFile, tracks: &TrackOptions) -> PyResult<()> {
+    let mut reader = reader_of(&stream)?;
     let schema = reader.schema();
     let names = schema.fields().iter().map(|field| field.name().clone()).collect::<Vec<_>>();
     let read = columns_read(&names, tracks).map_err(exception)?;
     check_types(&schema, &read)?;
+    let is_null = |place: usize| *schema.field(place).data_type() == DataType::Null;
+    // Where each column is in a batch.
+    let mut places = read.iter().map(|place| Some(*place)).collect::<Vec<_>>();
+    if (0..names.len()).any(is_null) && data.hasattr("select")? {
+        let kept = read.iter().copied().filter(|place| !is_null(*place)).collect::<Vec<_>>();
+        let kept_names = kept.iter().map(|place| names[*place].as_str()).collect::<Vec<_>>();
+        reader = reader_of(&data.call_method1("select", (kept_names,))?.call_method0(STREAM)?)?;
+        places = read.iter().map(|place| kept.iter().position(|kept| kept == place)).collect();
+    }
     let mut out = BufWriter::new(file);
     writeln!(out, "{}", read.iter().map(|place| quoted(&names[*place])).collect::<Vec<_>>().join(","))?;
     for batch in reader {
-        py.check_signals()?;
+        data.py().check_signals()?;
         let batch = batch.map_err(failed)?;
-        let columns = read.iter().map(|place| Texts::of(batch.column(*place))).collect::<Vec<_>>();
+        let columns = places.iter().map(|place| place.map(|place| Texts::of(batch.column(place)))).collect::<Vec<_>>();
         for row in 0..batch.num_rows() {
             for (place, column) in columns.iter().enumerate() {
                 let comma = if place > 0 { "," } else { "" };
-                write!(out, "{comma}{}", column.text(row))?;
+                write!(out, "{comma}{}", column.as_ref().map_or(String::new(), |column| column.text(row)))?;
             }
             writeln!(out)?;
         }
     }
     out.flush()?;
     Ok(())
+}
+
+#[expect(unsafe_code, reason = "Arrow's C interface is a pointer, which its name vouches for")]
+fn reader_of(stream: &Bound<PyAny>) -> PyResult<RecordBatchStreamReader> {
+    let pointer = stream.cast::<PyCapsule>()?.pointer_checked(Some(c"arrow_array_stream"))?;
+    // SAFETY: a capsule of this name holds such a stream, and the reader takes it over, as Arrow's interface says.
+    unsafe { RecordBatchStreamReader::from_raw(pointer.cast::<FFI_ArrowArrayStream>().as_ptr()) }.map_err(failed)
+}
+
+fn failed(error: ArrowError) -> PyErr {
+    PyValueError::new_err(error.to_string())
 }
 
 /// Checks that the columns that are read hold texts or numbers.

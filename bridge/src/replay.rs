@@ -9,7 +9,7 @@ use closecall::internals::output::COLUMNS;
 use closecall::{Error, Net, Options, Replay, Run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyList, PyTuple};
 
 use crate::checker::options_from;
 use crate::conflict::logged;
@@ -37,7 +37,8 @@ const ASKED: Duration = Duration::from_millis(50);
 ///     route_files: route and additional files that define the types and routes of SUMO's recordings.
 ///     **options: the long options of the command line, with underscores: `path="arc"`, `log="ttc < 3"`.
 ///
-/// What had to be assumed is written to sys.stderr, as by the command.
+/// The table's `remarks` are the lines that the command says. Those about what is in the data, such as rows that are left out, are also
+/// written to sys.stderr; those about columns that are not there at all, and about the length of steps, are not.
 ///
 /// Raises:
 ///     ValueError: the data cannot be used; the message names row and column.
@@ -65,9 +66,12 @@ pub fn replay(
     tracks.origin = origin.map(|name| TrackOrigin::from_str(name, true)).transpose().map_err(PyValueError::new_err)?;
     tracks.smooth = smooth.map(noise_of).transpose()?.flatten();
     let replay = |paths: &[PathBuf]| checked(py, paths, &tracks, net.as_deref(), &route_files, &options);
-    let paths = data.extract::<PathBuf>().map(|path| vec![path]).or_else(|_| data.extract::<Vec<PathBuf>>());
-    if let Ok(paths) = paths {
-        return replay(&paths)?.map_err(exception);
+    if let Ok(path) = data.extract::<PathBuf>() {
+        return replay(&[path])?.map_err(exception);
+    }
+    // A data frame can be iterated over too.
+    if data.is_instance_of::<PyList>() || data.is_instance_of::<PyTuple>() {
+        return replay(&data.extract::<Vec<PathBuf>>()?)?.map_err(exception);
     }
     let file = written(py, data, &tracks)?;
     replay(&[file.path().to_owned()])?.map_err(|error| match error {
@@ -119,14 +123,23 @@ fn checked(
     match (interrupt, run) {
         (Some(interrupt), _) => Err(interrupt),
         (None, Err(error)) => Ok(Err(error)),
-        (None, Ok((run, remarks))) => {
-            remarks.iter().try_for_each(|remark| say::line(py, remark))?;
-            table(&run).map(Ok)
+        (None, Ok(Checked { run, doubtful, remarks })) => {
+            doubtful.iter().try_for_each(|remark| say::line(py, remark))?;
+            Ok(Ok(table(&run)?.with_remarks(remarks)))
         }
     }
 }
 
-/// Checks a recording; returns also what was assumed, as the command says it.
+/// A recording that was checked.
+struct Checked {
+    run: Run,
+    /// What had to be assumed because of what is in the recording.
+    doubtful: Vec<String>,
+    /// All that the command says.
+    remarks: Vec<String>,
+}
+
+/// Checks a recording.
 fn check(
     paths: &[PathBuf],
     tracks: &TrackOptions,
@@ -134,15 +147,14 @@ fn check(
     route_files: &[PathBuf],
     options: &Options,
     stopped: &mut dyn FnMut() -> bool,
-) -> closecall::Result<(Run, Vec<String>)> {
+) -> closecall::Result<Checked> {
     let net = net.map(Net::read).transpose()?.map(std::sync::Arc::new);
     let opened = open_tracks(paths, tracks, net.as_deref(), stopped)?;
     let demand = route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open_unless(opened.recording(), &demand, net.as_deref(), options, stopped)?;
     let mut run = Run::new(options, net)?;
     run.set_fixed_routes(true);
-    let mut remarks = opened.remarks().to_vec();
-    remarks.extend(run.opening_remarks(Some(replay.step_length())));
+    let opening = run.opening_remarks(Some(replay.step_length()));
     run.set_averaged_over(if opened.is_measured() { 0.0 } else { replay.averaged_over() });
     while replay.next(&mut run)?.is_some() {
         if stopped() {
@@ -150,8 +162,9 @@ fn check(
         }
     }
     run.finish()?;
-    remarks.extend(replay.remarks());
-    Ok((run, remarks))
+    let doubtful = [opened.doubtful(), &replay.remarks()].concat();
+    let remarks = [opened.missing(), opened.doubtful(), &opening, &replay.remarks()].concat();
+    Ok(Checked { run, doubtful, remarks })
 }
 
 fn table(run: &Run) -> PyResult<Table> {

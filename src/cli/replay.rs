@@ -86,7 +86,12 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.drop_closed_conflicts();
     if !arguments.check.quiet {
         let remarks = run.opening_remarks(Some(replay.step_length()));
-        opened.remarks().iter().chain(&remarks).for_each(|remark| eprintln!("closecall: {remark}"));
+        opened
+            .missing()
+            .iter()
+            .chain(opened.doubtful())
+            .chain(&remarks)
+            .for_each(|remark| eprintln!("closecall: {remark}"));
     }
     run.set_averaged_over(if opened.is_measured() { 0.0 } else { replay.averaged_over() });
     let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use super::Said;
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
 use super::table::maybe_cut;
 use crate::geometry::{Point, Vector};
@@ -31,7 +32,7 @@ struct Columns {
 }
 
 /// Turns a file into SUMO's fcd-output; returns what had to be assumed.
-pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
+pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Said> {
     let mut columns = None;
     let [mut speed_unit, mut place_unit] = [1.0 / 3.6, 1.0];
     let mut last = f64::NEG_INFINITY;
@@ -65,8 +66,8 @@ pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
     let Some(columns) = columns else {
         return Err(Error::content(path, "this is not a .fzp file: no line begins with $VEHICLE:"));
     };
-    let mut remarks = Vec::new();
-    remarks.push(if columns.kind.is_some() {
+    let mut said = Said::default();
+    said.missing.push(if columns.kind.is_some() {
         "Vissim's vehicle types 100, 200, 300, 400, 5xx and 6xx are its cars, trucks, buses, trams, pedestrians and bicycles; others \
          are cars"
             .to_owned()
@@ -74,12 +75,12 @@ pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
         "classes: it has no column VEHTYPE, so all road users are cars".to_owned()
     });
     if columns.width.is_none() {
-        remarks.push("widths: it has no column WIDTH, so they are those of SUMO's classes".to_owned());
+        said.missing.push("widths: it has no column WIDTH, so they are those of SUMO's classes".to_owned());
     }
     if !has_ended {
-        remarks.push(maybe_cut(path));
+        said.doubtful.push(maybe_cut(path));
     }
-    Ok(remarks)
+    Ok(said)
 }
 
 impl Columns {

@@ -58,8 +58,16 @@ pub struct Converted {
     types: TempPath,
     /// Whether its speeds were measured: each is that of its moment, not the mean of a step.
     is_measured: bool,
-    /// What had to be assumed, a line each.
-    pub remarks: Vec<String>,
+    said: Said,
+}
+
+/// What had to be assumed, a line each.
+#[derive(Debug, Default)]
+pub(crate) struct Said {
+    /// For lack of columns that the files or the format do not have at all.
+    pub missing: Vec<String>,
+    /// Because of what is in the files.
+    pub doubtful: Vec<String>,
 }
 
 impl Opened {
@@ -84,11 +92,19 @@ impl Opened {
         matches!(self, Self::Converted(converted) if converted.is_measured)
     }
 
-    /// What had to be assumed, a line each.
-    pub fn remarks(&self) -> &[String] {
+    /// What had to be assumed for lack of columns that it does not have at all, a line each.
+    pub fn missing(&self) -> &[String] {
         match self {
             Self::Fcd(_) => &[],
-            Self::Converted(converted) => &converted.remarks,
+            Self::Converted(converted) => &converted.said.missing,
+        }
+    }
+
+    /// What had to be assumed because of what is in it, a line each.
+    pub fn doubtful(&self) -> &[String] {
+        match self {
+            Self::Fcd(_) => &[],
+            Self::Converted(converted) => &converted.said.doubtful,
         }
     }
 }
@@ -131,7 +147,7 @@ pub fn open(
         return Ok(Opened::Fcd(path.to_owned()));
     }
     let mut writer = FcdWriter::create(net.map(LaneFinder::new))?;
-    let mut remarks = match format {
+    let mut said = match format {
         RecordingFormat::Trj => trj::convert(path, net, &mut writer)?,
         RecordingFormat::Fzp => fzp::convert(path, &mut writer)?,
         _ => {
@@ -142,10 +158,10 @@ pub fn open(
             rows::convert(&tables, options.smooth, stopped, &mut writer)?
         }
     };
-    remarks.extend(writer.remarks());
+    said.doubtful.extend(writer.remarks());
     let (fcd, types) = writer.finish().map_err(|source| Error::file(path, source))?;
     let is_measured = !matches!(format, RecordingFormat::Trj | RecordingFormat::Fzp);
-    Ok(Opened::Converted(Converted { fcd, types, is_measured, remarks }))
+    Ok(Opened::Converted(Converted { fcd, types, is_measured, said }))
 }
 
 /// The places of the columns that are read of a table with columns of these names.

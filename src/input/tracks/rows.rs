@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::path::Path;
 
+use super::Said;
 use super::field::Field;
 use super::layouts::hint;
 use super::mapping::{Mapping, Origin, Places};
@@ -39,12 +40,12 @@ pub(super) fn convert(
     noise: Option<Metre>,
     stopped: &mut dyn FnMut() -> bool,
     out: &mut FcdWriter,
-) -> Result<Vec<String>> {
+) -> Result<Said> {
     let mut users = Users::default();
-    let mut remarks = Vec::new();
+    let mut said = Said::default();
     let path = tables.first().map_or(Path::new(""), |table| table.path);
     let fault = |source| Error::file(path, source);
-    let mut by_user = read(tables, &mut users, &mut remarks, stopped)?;
+    let mut by_user = read(tables, &mut users, &mut said, stopped)?;
     let mut tracks = Tracks::new(tables, noise);
     let mut rows = 0;
     while let Some(row) = by_user.next().map_err(fault)? {
@@ -65,9 +66,9 @@ pub(super) fn convert(
         written.map_err(|why| Error::content(path, format!("\"{id}\" at {time} s: {why}")))?;
         ask(&mut rows, stopped)?;
     }
-    remarks.extend(users.counts.remarks());
-    remarks.extend(tracks.remarks(|user| users.id(user)));
-    Ok(remarks)
+    users.counts.say(&mut said);
+    said.doubtful.extend(tracks.remarks(|user| users.id(user)));
+    Ok(said)
 }
 
 /// Counts a row, and asks now and then whether to stop.
@@ -77,18 +78,13 @@ fn ask(rows: &mut u64, stopped: &mut dyn FnMut() -> bool) -> Result<()> {
 }
 
 /// Reads the rows of all files, sorted by road user.
-fn read(
-    tables: &[Table],
-    users: &mut Users,
-    remarks: &mut Vec<String>,
-    stopped: &mut dyn FnMut() -> bool,
-) -> Result<Sorted> {
+fn read(tables: &[Table], users: &mut Users, said: &mut Said, stopped: &mut dyn FnMut() -> bool) -> Result<Sorted> {
     let mut sorter = Sorter::new(Order::Users);
     let mut rows = 0;
     for (number, table) in tables.iter().enumerate() {
         users.begin_file();
         let of_file = FileReader::new(table, if tables.len() > 1 { Some(number) } else { None })?;
-        remarks.extend(of_file.meta.remarks.iter().cloned());
+        said.doubtful.extend(of_file.meta.remarks.iter().cloned());
         let elsewhere = tables.iter().flat_map(|table| &table.names).cloned().collect::<Vec<_>>();
         let places = std::cell::RefCell::new(Places::default());
         let mut is_stopped = false;
@@ -101,7 +97,7 @@ fn read(
             places.replace(found);
             Ok(read)
         };
-        remarks.extend(table::read(table.path, begin, |cells| {
+        let cut = table::read(table.path, begin, |cells| {
             let places = places.borrow();
             let reader = RowReader { file: &of_file, places: &places, cells };
             if let Some(row) = reader.row(users)? {
@@ -109,11 +105,12 @@ fn read(
             }
             is_stopped = ask(&mut rows, stopped).is_err();
             Ok(!is_stopped)
-        })?);
+        })?;
+        said.doubtful.extend(cut);
         if is_stopped {
             return Err(Error::Stopped);
         }
-        remarks.extend(of_file.lacking(places.into_inner(), users));
+        said.doubtful.extend(of_file.lacking(places.into_inner(), users));
     }
     match tables.first() {
         Some(table) if users.is_empty() => Err(Error::content(table.path, "it has no rows of road users")),
@@ -226,6 +223,7 @@ impl RowReader<'_> {
             place += Vector::new(length, up * width) / 2.0;
             heading = velocity.map(|(x, _)| if x < 0.0 { PI } else { 0.0 });
         }
+        users.counts.rows += 1;
         users.counts.lengths += u64::from(length == 0.0);
         users.counts.widths += u64::from(width == 0.0);
         let of_velocity = velocity.filter(|(x, y)| x.hypot(*y) > MOVES).map(|(x, y)| y.atan2(x));

@@ -2,6 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
+use super::Said;
 use super::classes::Class;
 use super::mapping::Mapping;
 
@@ -28,6 +29,8 @@ pub(super) struct Users {
 /// How many rows lacked what, or were left out.
 #[derive(Default)]
 pub(super) struct Counts {
+    /// All rows of road users.
+    pub rows: u64,
     pub headings: u64,
     pub speeds: u64,
     pub lengths: u64,
@@ -143,9 +146,8 @@ fn note(names: &mut Vec<String>, name: &str) {
 }
 
 impl Counts {
-    /// What was assumed, a line each.
-    pub fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
+    /// Says what was assumed.
+    pub fn say(&self, said: &mut Said) {
         for (what, rows, instead) in [
             ("headings", self.headings, "they follow from how the road user moved"),
             ("speeds", self.speeds, "they follow from how far the road user moved"),
@@ -155,17 +157,17 @@ impl Counts {
         ] {
             if rows > 0 {
                 let have = if rows == 1 { "row has" } else { "rows have" };
-                remarks.push(format!("{what}: {rows} {have} none, so {instead}"));
+                let said = if rows == self.rows { &mut said.missing } else { &mut said.doubtful };
+                said.push(format!("{what}: {rows} {have} none, so {instead}"));
             }
         }
         let quoted = |names: &[String]| names.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
         if !self.unknown.is_empty() {
-            remarks.push(format!("classes: {} are unknown, so they are cars", quoted(&self.unknown)));
+            said.doubtful.push(format!("classes: {} are unknown, so they are cars", quoted(&self.unknown)));
         }
         if self.left_out > 0 {
             let (rows, names) = (self.left_out, quoted(&self.things));
-            remarks.push(format!("classes: {names} are no road users, so their rows are left out: {rows}"));
+            said.doubtful.push(format!("classes: {names} are no road users, so their rows are left out: {rows}"));
         }
-        remarks
     }
 }
