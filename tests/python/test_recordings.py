@@ -298,4 +298,4 @@ def test_ctrl_c_ends_a_replay_in_python(tmp_path: Path) -> None:
     time.sleep(0.3)
     sent = time.monotonic()
     process.send_signal(signal.SIGINT)
-    assert process.communicate(timeout=60)[0] == "interrupted\n" and time.monotonic() - sent < 2
+    assert process.communicate(timeout=60)[0] == "interrupted\n" and time.monotonic() - sent < 10
