@@ -57,7 +57,7 @@ pub mod input {
     pub use crate::input::sumo_files::{check_xml, fault, net_of};
     #[cfg(feature = "cli")]
     pub use crate::input::tracks::{
-        NOISE, Opened as OpenedTracks, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE,
+        NOISE, Opened as OpenedTracks, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, columns_read,
         inspect as inspect_tracks, open as open_tracks,
     };
 }

@@ -10,6 +10,7 @@ mod conflict;
 mod error;
 mod exclusive;
 mod film;
+mod frame_file;
 mod frames;
 mod functions;
 mod interruptible;

@@ -36,6 +36,7 @@ const TELLING: [&str; 10] = ["id", "time", "kind", "severity", "ego", "foe", "ma
 pub struct Table {
     schema: SchemaRef,
     batches: Vec<RecordBatch>,
+    remarks: Vec<String>,
 }
 
 impl Table {
@@ -55,11 +56,16 @@ impl Table {
         loop {
             let rows = conflicts.by_ref().take(BATCH).collect::<Result<Vec<_>, E>>().map_err(&wrong)?;
             if rows.is_empty() {
-                return Ok(Self { schema, batches });
+                return Ok(Self { schema, batches, remarks: Vec::new() });
             }
             let arrays = columns.iter().map(|column| array(column, &rows)).collect();
             batches.push(RecordBatch::try_new(schema.clone(), arrays).map_err(failed)?);
         }
+    }
+
+    /// The same table, with what had to be assumed.
+    pub fn with_remarks(self, remarks: Vec<String>) -> Self {
+        Self { remarks, ..self }
     }
 
     fn rows(&self) -> usize {
@@ -73,6 +79,12 @@ impl Table {
     #[getter]
     fn columns(&self) -> Vec<String> {
         self.schema.fields().iter().map(|field| field.name().clone()).collect()
+    }
+
+    /// What `closecall.replay` had to assume of a recording, a line each, as the command says it; empty for a log.
+    #[getter]
+    fn remarks(&self) -> Vec<String> {
+        self.remarks.clone()
     }
 
     /// The columns by name: numbers as NumPy arrays, NaN where they are missing; texts and flags as lists, None where they are.

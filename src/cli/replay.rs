@@ -1,6 +1,6 @@
 //! `closecall replay`: the same checks on a recording; SUMO is not needed.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use clap::Args;
@@ -23,9 +23,9 @@ use crate::{Error, Result};
 #[derive(Args)]
 pub struct ReplayArgs {
     /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
-    /// gzipped.
-    #[arg(value_name = "FILE")]
-    recording: PathBuf,
+    /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
+    #[arg(value_name = "FILE", required = true)]
+    recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
     #[arg(short = 'n', long, value_name = "NET")]
     net: Option<PathBuf>,
@@ -53,14 +53,22 @@ pub struct ReplayArgs {
     pub(super) check: CheckArgs,
 }
 
+impl ReplayArgs {
+    /// The recording, or the first file of it.
+    fn recording(&self) -> &Path {
+        self.recordings.first().map_or(Path::new(""), PathBuf::as_path)
+    }
+}
+
 /// Checks the recording and prints the summary.
 pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
-    let out = arguments.check.log_folder(&arguments.recording);
+    let recording = arguments.recording().to_owned();
+    let out = arguments.check.log_folder(&recording);
     let options = arguments.check.checked(&out)?;
     let folder = arguments.check.claim(&out)?;
     let out = folder.path().to_owned();
     let net = arguments.net.as_deref().map(Net::read).transpose()?.map(Arc::new);
-    let opened = tracks::open(&arguments.recording, &arguments.tracks, net.as_deref())?;
+    let opened = tracks::open(&arguments.recordings, &arguments.tracks, net.as_deref(), &mut || false)?;
     let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
     let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options)?;
     let threads = arguments.threads.unwrap_or_else(default_threads);
@@ -78,7 +86,12 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     run.drop_closed_conflicts();
     if !arguments.check.quiet {
         let remarks = run.opening_remarks(Some(replay.step_length()));
-        opened.remarks().iter().chain(&remarks).for_each(|remark| eprintln!("closecall: {remark}"));
+        opened
+            .missing()
+            .iter()
+            .chain(opened.doubtful())
+            .chain(&remarks)
+            .for_each(|remark| eprintln!("closecall: {remark}"));
     }
     run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
     let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
@@ -93,15 +106,16 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
         ..Ending::default()
     });
     if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
-        arguments.check.finish(&closed?, &arguments.recording, &out)?;
+        arguments.check.finish(&closed?, &recording, &out)?;
     }
     ended
 }
 
 /// The record of a replay that begins.
 fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
-    let files = [&arguments.recording]
-        .into_iter()
+    let files = arguments
+        .recordings
+        .iter()
         .chain(&arguments.net)
         .chain(&arguments.route_files)
         .chain(&arguments.signals)
@@ -109,7 +123,7 @@ fn record(arguments: &ReplayArgs, options: Options) -> Result<RunRecord> {
     Ok(RunRecord {
         sublane: arguments.sublane,
         inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,
-        ..RunRecord::new(arguments.recording.clone(), options)
+        ..RunRecord::new(arguments.recording().to_owned(), options)
     })
 }
 

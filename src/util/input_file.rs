@@ -15,6 +15,17 @@ use crate::{Error, Result};
 
 /// Bytes that are read at once.
 const BLOCK: usize = 1 << 16;
+/// The first bytes that tell how a file is packed.
+const MAGIC: u64 = 6;
+/// Packings that are not read: the first bytes, the name, and what unpacks it.
+const PACKINGS: [(&[u8], &str, &str); 6] = [
+    (&[0x28, 0xb5, 0x2f, 0xfd], "zstd", "zstd -d"),
+    (&[0xfd, b'7', b'z', b'X', b'Z', 0], "xz", "xz -d"),
+    (b"BZh", "bzip2", "bzip2 -d"),
+    (&[0x04, 0x22, 0x4d, 0x18], "lz4", "lz4 -d"),
+    (b"PK\x03\x04", "zip", "unzip"),
+    (b"7z\xbc\xaf\x27\x1c", "7-Zip", "7z x"),
+];
 /// Up to this size, in bytes, a gzipped file may unpack to whatever it wants.
 const SMALL: u64 = 1 << 24;
 
@@ -49,11 +60,15 @@ pub fn text(path: &Path) -> Result<String> {
 /// Those of [`file`].
 pub fn open(path: &Path) -> Result<Box<dyn BufRead + Send>> {
     let mut file = file(path)?;
-    let mut magic = [0; 2];
-    let length = file.read(&mut magic).map_err(|source| Error::file(path, source))?;
+    let mut magic = Vec::new();
+    (&mut file).take(MAGIC).read_to_end(&mut magic).map_err(|source| Error::file(path, source))?;
     file.seek(SeekFrom::Start(0)).map_err(|source| Error::file(path, source))?;
+    if let Some((_, packing, program)) = PACKINGS.iter().find(|(first, ..)| magic.starts_with(first)) {
+        let message = format!("it is packed by {packing}, and closecall reads gzip alone: unpack it first ({program})");
+        return Err(Error::content(path, message));
+    }
     let file = BufReader::with_capacity(BLOCK, StoppableFile::new(file));
-    if magic[..length] != [0x1f, 0x8b] {
+    if !magic.starts_with(&[0x1f, 0x8b]) {
         return Ok(Box::new(file));
     }
     let unpacked = MultiGzDecoder::new(file);
@@ -97,17 +112,24 @@ pub struct ShortRows<R> {
     source: R,
     /// Bytes read since the row began.
     row: usize,
+    /// Whether the last byte read is a line break, or none was read.
+    has_ended: bool,
 }
 
 impl<R: Read> ShortRows<R> {
     /// The rows of this source.
     pub fn new(source: R) -> Self {
-        Self { source, row: 0 }
+        Self { source, row: 0, has_ended: true }
     }
 
     /// A row ends, the next one begins.
     pub fn begin_row(&mut self) {
         self.row = 0;
+    }
+
+    /// Whether what was read so far ends with a line break.
+    pub fn has_ended(&self) -> bool {
+        self.has_ended
     }
 
     /// The source.
@@ -124,6 +146,9 @@ impl<R: Read> Read for ShortRows<R> {
         }
         let read = self.source.read(buffer)?;
         self.row += read;
+        if let Some(last) = buffer[..read].last() {
+            self.has_ended = matches!(last, b'\n' | b'\r');
+        }
         Ok(read)
     }
 }

@@ -41,6 +41,8 @@ pub const HEIGHT: Limit = between("heights", "m", [-1e5, 1e5], "space begins at 
 pub const ANGLE: Limit = between("angles", "rad or °", [-1e6, 1e6], "a day of turning once a second");
 /// Speeds.
 pub const SPEED: Limit = between("speeds", "m/s", [0.0, 1e3], "the land speed record is 341 m/s (1997)");
+/// A speed this little below 0, in m/s, is the noise of a measurement: the road user stands.
+const SPEED_NOISE: f64 = 0.1;
 /// Decelerations with which a road user brakes.
 pub const DECELERATION: Limit = between(
     "decelerations",
@@ -95,6 +97,18 @@ pub const ENCOUNTERS: Limit =
 pub const FEWEST_PAIRS: usize = 1 << 21;
 /// The number of pairs that would meet that a step of any size may have.
 pub const FEWEST_ENCOUNTERS: usize = 1 << 17;
+
+/// Whether a speed in m/s is below 0, but only as noise makes it; it is read as 0 then, and counted.
+pub fn is_noise(speed: f64) -> bool {
+    (-SPEED_NOISE..0.0).contains(&speed)
+}
+
+/// What is said of such speeds.
+pub fn said_of_noise(rows: u64) -> Option<String> {
+    (rows > 0).then(|| {
+        format!("speeds: {rows} are below 0 by at most {SPEED_NOISE} m/s, which is noise, so they are read as 0")
+    })
+}
 
 /// All limits, in the order of docs/limits.md.
 pub const ALL: [Limit; 21] = [

@@ -205,7 +205,11 @@ fn of_tracks(files: &[(&str, &[u8])], options: &TrackOptions) {
     let path = folder.path().join(files[0].0);
     let _ = inspect_tracks(&path);
     for net in [None, Some(&a_net())] {
-        let Ok(opened @ OpenedTracks::Converted(_)) = open_tracks(&path, options, net) else { return };
+        let Ok(opened @ OpenedTracks::Converted(_)) =
+            open_tracks(std::slice::from_ref(&path), options, net, &mut || false)
+        else {
+            return;
+        };
         let mut recording = Recording::open(opened.recording()).unwrap();
         let mut step = RecordedStep::default();
         while recording.next_step(&mut step).unwrap() {}

@@ -59,7 +59,7 @@ fn refused_tracks(columns: &str, text: &str) -> String {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), text).unwrap();
     let options = TrackOptions { columns: columns.to_owned(), ..TrackOptions::default() };
-    let error = open_tracks(file.path(), &options, None).unwrap_err().to_string();
+    let error = open_tracks(&[file.path().to_owned()], &options, None, &mut || false).unwrap_err().to_string();
     error.trim_start_matches(&file.path().display().to_string()).trim_start_matches(", ").to_owned()
 }
 

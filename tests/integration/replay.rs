@@ -323,6 +323,28 @@ fn what_is_wrong_is_named_with_its_line() {
         (csv("0;a;1;2;3;4\n1;a"), r#"fcd, line 3: "a" has no value in column x"#),
         (csv("0;\"a;1;2;3;4"), "fcd: cut short after time NaN s: the last row is incomplete"),
         ("\u{feff}".to_owned(), "fcd: the file is empty"),
+        (csv("0;;1;2;3;4"), "fcd, line 2: a row without id, but x is 1: whose is it?"),
+        (csv("0;a;1;2;3;-5"), "fcd, line 2: \"a\": speed is -5, it must be 0 to 1000 m/s"),
+        (csv("").replace("_y", "_x"), "fcd: it has no column vehicle_y"),
+        (csv("").replace("speed", "speed;vehicle_x"), "fcd: its columns vehicle_x and vehicle_x are the same"),
+        (csv("").replace("speed", "speed;x"), "fcd: its columns vehicle_x and x are the same"),
+        (
+            xml("").replace("<vehicle />\n</timestep>", ""),
+            "fcd, line 4: the timestep of 1 s is not closed: its </timestep> is missing",
+        ),
+        (
+            xml("").replace("<vehicle />\n</timestep>", "<timestep time=\"2\"/>"),
+            "fcd, line 3: the timestep of 1 s is not closed: its </timestep> is missing",
+        ),
+        (
+            xml("").replace("<vehicle />", "</timestep><person/>"),
+            "fcd, line 3: a road user stands outside of a timestep",
+        ),
+        (
+            "<fcd-export>\n</fcd-export>\n<!-- -->\n<fcd-export/>".to_owned(),
+            "fcd, line 4: <fcd-export> follows after the end of the recording: are there two in one file?",
+        ),
+        ("<net/>".to_owned(), "fcd: it is not an fcd-output: its root element is <net>, not <fcd-export>"),
     ] {
         assert_eq!(read(&text).1.as_deref(), Some(said), "{text}");
     }
@@ -370,7 +392,7 @@ fn read_routes(rows: impl Iterator<Item = (f64, String, usize)>) -> (tempfile::N
     rows.for_each(|(time, id, edge)| writeln!(text, "{time};{id};0;0;0;1;e{edge}_0").unwrap());
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), text).unwrap();
-    let routes = Routes::read(file.path(), &net, PlannedRoutes::none().unwrap(), None).unwrap();
+    let routes = Routes::read(file.path(), &net, PlannedRoutes::none().unwrap(), None, &mut || false).unwrap();
     (file, routes)
 }
 

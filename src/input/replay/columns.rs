@@ -5,7 +5,8 @@
 
 use std::path::Path;
 
-use super::rows::{Attribute, Scope};
+use super::fields::{Attribute, Scope};
+use crate::util::header;
 use crate::{Error, Result};
 
 /// The columns of a table that matter.
@@ -33,22 +34,43 @@ impl Columns {
     /// The columns with these names.
     ///
     /// # Errors
-    /// [`Error::Content`] if a column is missing.
+    /// [`Error::Content`] if a column is missing, or is there twice.
     pub fn of(path: &Path, names: &[String], scope: Scope) -> Result<Self> {
-        let place = |wanted: &str| names.iter().position(|name| name == wanted);
-        let Some(time) = place("timestep_time").or_else(|| place("time")) else {
+        let place = |wanted: &str| header::exact(names, wanted).map_err(|why| Error::content(path, why));
+        let time = match place("timestep_time")? {
+            None => place("time")?,
+            place => place,
+        };
+        let Some(time) = time else {
             return Err(Error::content(path, "it is not an fcd-output: it has no column timestep_time"));
         };
-        let has = |attribute: &str| KINDS.map(|kind| place(&format!("{kind}{attribute}")).is_some());
+        let is_there = |name: &str| names.iter().any(|known| known == name);
+        let has = |attribute: &str| KINDS.map(|kind| is_there(&format!("{kind}{attribute}")));
         for needed in ["id", "x", "y", "angle", "speed"] {
             if !has(needed).contains(&true) {
                 return Err(Error::content(path, format!("it has no column vehicle_{needed}")));
             }
         }
         let [vehicles, persons, _] = has("id");
-        let named = names.iter().enumerate().filter_map(|(place, name)| column(place, name, scope)).collect();
+        let named = names.iter().enumerate().filter_map(|(place, name)| column(place, name, scope)).collect::<Vec<_>>();
+        let what = |column: &NamedColumn| column.attribute.map(|attribute| (attribute, column.person));
+        for (number, column) in named.iter().enumerate().filter(|(_, column)| column.attribute.is_some()) {
+            if let Some(other) = named[..number].iter().find(|other| what(other) == what(column)) {
+                let [first, second] = [other, column].map(|column| &names[column.place]);
+                return Err(Error::content(path, format!("its columns {first} and {second} are the same")));
+            }
+        }
         Ok(Self { time, named, shared: !(vehicles && persons) })
     }
+}
+
+/// The places of the columns of an fcd-output that are read.
+///
+/// # Errors
+/// Those of [`Columns::of`].
+pub fn columns_of_fcd(names: &[String]) -> Result<Vec<usize>> {
+    let columns = Columns::of(Path::new("the data frame"), names, Scope::All)?;
+    Ok(std::iter::once(columns.time).chain(columns.named.iter().map(|column| column.place)).collect())
 }
 
 /// What stands before the name of an attribute.

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::clock;
 use super::columns::{Columns, NamedColumn};
+use super::fields::{Fields, Scope};
 use super::names::Users;
-use super::rows::{Fields, RecordedStep, Scope, cut_short, in_order};
+use super::rows::{RecordedStep, cut_short, in_order};
 use super::source::{ByteWindow, find_all};
 use crate::util::input_file::longer;
 use crate::util::limits::LINE;
@@ -110,8 +111,7 @@ impl CsvRecording {
             if self.columns.shared {
                 fields.tell_apart();
             }
-            // A step without road users has one row without an id.
-            if fields.has_id() {
+            if fields.is_user().map_err(wrong)? {
                 step.add(&fields, users, "value in column").map_err(wrong)?;
             }
             self.source.consume(length);

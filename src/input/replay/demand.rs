@@ -112,10 +112,12 @@ impl<'a> DemandReader<'a> {
                     "vehicle" | "trip" | "flow" => holder = self.vehicle(&tag).map_err(wrong)?,
                     // Which of several routes a vehicle takes is not known.
                     "routeDistribution" => holder = None,
+                    "person" | "personFlow" => self.person(&tag).map_err(wrong)?,
                     _ => self.element(&tag, holder.as_ref(), wrong)?,
                 },
                 Event::Empty(tag) => match tag.name().as_ref() {
                     "vehicle" | "trip" | "flow" => _ = self.vehicle(&tag).map_err(wrong)?,
+                    "person" | "personFlow" => self.person(&tag).map_err(wrong)?,
                     _ => self.element(&tag, holder.as_ref(), wrong)?,
                 },
                 Event::End(tag) if ["vehicle", "trip", "flow"].contains(&tag.name().as_ref()) => holder = None,
@@ -152,10 +154,18 @@ impl<'a> DemandReader<'a> {
     fn vehicle(&mut self, tag: &BytesStart) -> Found<Option<Holder>> {
         let Some(id) = text(tag, "id")?.map(String::into_boxed_str) else { return Ok(None) };
         let is_flow = tag.name().as_ref() == "flow";
+        self.types.assign(&id, text(tag, "type")?, false);
         let Some(route) = text(tag, "route")? else { return Ok(Some(Holder { id, is_flow })) };
         let known = if is_flow { &mut self.routes.flows } else { &mut self.routes.vehicles };
         known.insert(id, PlannedRoute::Named(route.into()));
         Ok(None)
+    }
+
+    fn person(&mut self, tag: &BytesStart) -> Found<()> {
+        if let Some(id) = text(tag, "id")? {
+            self.types.assign(&id, text(tag, "type")?, true);
+        }
+        Ok(())
     }
 
     /// The edges of a route; none where the net lacks one of them.
@@ -183,10 +193,11 @@ mod tests {
         let routes = write(
             "a.rou.xml",
             r#"<vType id="t"/>
-            <vehicle id="own" depart="0"><stop lane="a_0"/><route edges="a b"/></vehicle>
+            <vehicle id="own" type="t" depart="0"><stop lane="a_0"/><route edges="a b"/></vehicle>
             <vehicle id="named" route="late" depart="1"/>
             <trip id="trip" from="a" to="c"/>
-            <flow id="flow" begin="0" end="9" number="3"><route edges="b,c"/></flow>
+            <person id="walker" depart="0"><walk edges="a"/></person>
+            <flow id="flow" type="truck" begin="0" end="9" number="3"><route edges="b,c"/></flow>
             <flow id="flow.x" route="late" begin="0" end="9" number="3"><param key="a" value="b"/></flow>
             <vehicle id="several"><routeDistribution><route edges="a"/><route edges="b"/></routeDistribution></vehicle>
             <vehicle id="elsewhere"><route edges="a z"/></vehicle>"#,
@@ -194,6 +205,16 @@ mod tests {
         let named = write("b.add.xml", r#"<route id="late" edges="c"/><route edges="a"/>"#);
         let (types, mut planned) = read(&[routes, named], &net).unwrap();
         assert!(types.define("t"));
+        for (id, person, kind) in [
+            ("own", false, Some("t")),
+            ("flow.7", false, Some("truck")),
+            ("named", false, Some("DEFAULT_VEHTYPE")),
+            ("walker", true, Some("DEFAULT_PEDTYPE")),
+            ("walker", false, None),
+            ("flow.x.y", false, None),
+        ] {
+            assert_eq!(types.of_user(id, person), kind, "{id}");
+        }
         for (vehicle, route) in [
             ("own", "ab"),
             ("named", "c"),

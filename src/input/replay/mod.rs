@@ -12,6 +12,7 @@ mod connections;
 mod csv;
 pub mod demand;
 mod drive;
+mod fields;
 mod fit;
 mod future;
 mod lanes;
@@ -54,12 +55,13 @@ use crate::traffic::roster::UserIndex;
 use crate::util::units::Second;
 use crate::{Error, Result};
 use ahead::Steps;
+pub use columns::columns_of_fcd;
 use future::Future;
 use lanes::{Lanes, heading, is_opposite};
 use lights::RecordedLights;
 use recording::Recording;
 use routes::Routes;
-use rows::{RecordedRow, RecordedStep};
+use rows::{LeftOut, RecordedRow, RecordedStep};
 use stops::RecordedStops;
 use types::VehicleTypes;
 use user::ReplayedUser;
@@ -92,6 +94,7 @@ pub struct Replay {
     /// Rows of vehicles so far, and how many of them are on a lane that the net does not have.
     vehicle_rows: u64,
     unknown_lanes: u64,
+    left_out: LeftOut,
     /// The road users in the scene, by the recording's number.
     users: Vec<Option<ReplayedUser>>,
     /// The states of the step's vehicles, if there are persons.
@@ -107,6 +110,20 @@ impl Replay {
     /// # Errors
     /// An error that names the file and what is wrong with it.
     pub fn open(path: &Path, demand_files: &[PathBuf], net: Option<&Net>, options: &Options) -> Result<Self> {
+        Self::open_unless(path, demand_files, net, options, &mut || false)
+    }
+
+    /// As [`Replay::open`]; `stopped` is asked now and then whether to stop.
+    ///
+    /// # Errors
+    /// Those of [`Replay::open`], and [`Error::Stopped`].
+    pub fn open_unless(
+        path: &Path,
+        demand_files: &[PathBuf],
+        net: Option<&Net>,
+        options: &Options,
+        stopped: &mut dyn FnMut() -> bool,
+    ) -> Result<Self> {
         let (types, planned) = demand::read(demand_files, net.unwrap_or(&Net::default()))?;
         let mut recording = Recording::open(path)?;
         let mut step = RecordedStep::default();
@@ -125,7 +142,7 @@ impl Replay {
         let step_length = if has_second_step { second_step.time - step.time } else { 1.0 };
         let projection = net.map(|net| fit::projection(path, net)).transpose()?.flatten();
         let on_lanes = net.filter(|_| options.path == PathModel::Lanes);
-        let routes = on_lanes.map(|net| Routes::read(path, net, planned, projection.as_ref())).transpose()?;
+        let routes = on_lanes.map(|net| Routes::read(path, net, planned, projection.as_ref(), stopped)).transpose()?;
         let is_driven = options.path == PathModel::Driven && options.mode == Mode::Closecall;
         let future = if is_driven { Some(Future::open(path)?) } else { None };
         Ok(Self {
@@ -148,6 +165,7 @@ impl Replay {
             steps: 0,
             vehicle_rows: 0,
             unknown_lanes: 0,
+            left_out: LeftOut::default(),
             users: Vec::new(),
             vehicles: FxHashSet::default(),
             rows: Vec::new(),
@@ -228,6 +246,7 @@ impl Replay {
         if let Some(future) = &mut self.future {
             future.look_from(self.step.time, self.projection.as_ref());
         }
+        self.left_out += self.step.left_out;
         self.vehicles.clear();
         if self.step.persons() > 0 {
             self.vehicles.extend(self.step.rows().iter().filter(|row| !row.person).map(exact_state));
@@ -268,7 +287,11 @@ impl Replay {
 
     /// A road user enters the scene.
     fn enter(&mut self, row: &RecordedRow, run: &mut Run) -> Result<UserIndex> {
-        let type_name = self.recorded_steps.type_name(row);
+        let type_name = match self.recorded_steps.type_name(row) {
+            // A recording may lack its types (--fcd-output.attributes); the route files have them too.
+            "" => self.types.of_user(self.recorded_steps.id(row.user), row.person).unwrap_or_default(),
+            name => name,
+        };
         let category = if row.person { Category::Person } else { Category::Vehicle };
         let profile = match run.roster.profile_named(type_name, category) {
             Some(known) => known,

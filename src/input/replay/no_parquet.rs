@@ -3,8 +3,9 @@
 use std::fs::File;
 use std::path::Path;
 
+use super::fields::Scope;
 use super::names::Users;
-use super::rows::{RecordedStep, Scope};
+use super::rows::RecordedStep;
 use crate::{Error, Result};
 
 /// No value of it exists.

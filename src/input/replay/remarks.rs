@@ -1,6 +1,7 @@
 //! What may make the result of a replay differ from that of the simulation.
 
 use super::Replay;
+use crate::util::limits::said_of_noise;
 
 /// The number of undefined types that a remark names.
 const NAMED_TYPES: usize = 5;
@@ -8,7 +9,17 @@ const NAMED_TYPES: usize = 5;
 impl Replay {
     /// What may make the result differ from that of the simulation, a line each.
     pub fn remarks(&self) -> Vec<String> {
-        [self.undefined_types(), self.unknown_lanes(), self.unknown_routes()].into_iter().flatten().collect()
+        let speeds = said_of_noise(self.left_out.below_zero);
+        let remarks =
+            [self.undefined_types(), self.unknown_lanes(), self.unknown_routes(), self.other_elements(), speeds];
+        remarks.into_iter().flatten().collect()
+    }
+
+    fn other_elements(&self) -> Option<String> {
+        let elements = self.left_out.elements;
+        (elements > 0).then(|| {
+            format!("left out: {elements} elements of the recording's steps are neither vehicles nor persons (containers, for one)")
+        })
     }
 
     fn undefined_types(&self) -> Option<String> {

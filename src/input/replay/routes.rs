@@ -49,11 +49,17 @@ pub struct Route {
 }
 
 impl Routes {
-    /// Reads the routes of a recording. In one that is cut short, they end there.
+    /// Reads the routes of a recording. In one that is cut short, they end there. `stopped` is asked in each step whether to stop.
     ///
     /// # Errors
-    /// Those of [`Recording`]; [`Error::File`] if a temporary file cannot be written.
-    pub fn read(path: &Path, net: &Net, planned: PlannedRoutes, projection: Option<&Projection>) -> Result<Self> {
+    /// Those of [`Recording`]; [`Error::File`] if a temporary file cannot be written; [`Error::Stopped`].
+    pub fn read(
+        path: &Path,
+        net: &Net,
+        planned: PlannedRoutes,
+        projection: Option<&Projection>,
+        stopped: &mut dyn FnMut() -> bool,
+    ) -> Result<Self> {
         let mut recording = Recording::open_for_lanes(path)?;
         let mut step = RecordedStep::default();
         let mut lanes = Lanes::default();
@@ -65,6 +71,9 @@ impl Routes {
                 Ok(true) => {}
                 Ok(false) | Err(Error::CutShort { .. }) => break,
                 Err(error) => return Err(error),
+            }
+            if stopped() {
+                return Err(Error::Stopped);
             }
             if let Some(projection) = projection {
                 step.project(projection).map_err(|message| Error::content(path, message))?;

@@ -7,16 +7,34 @@ use crate::traffic::profile::origins;
 use crate::traffic::sumo_type::SumoType;
 use crate::util::limits::{DECELERATION, DURATION, LENGTH, Limit, MASS, RESERVE, WIDTH};
 
-/// VehicleTypes by their id.
+/// Types by their id, and which vehicle or person has which.
 #[derive(Clone, Debug, Default)]
 pub struct VehicleTypes {
     known: FxHashMap<String, SumoType>,
+    /// The type of each vehicle and flow, and of each person, by id.
+    of_users: [FxHashMap<Box<str>, Box<str>>; 2],
 }
 
 impl VehicleTypes {
     /// Adds a type.
     pub fn insert(&mut self, found: SumoType) {
         self.known.insert(found.name.clone(), found);
+    }
+
+    /// Notes the type that a file gives to a vehicle, a flow or a person; without one it is SUMO's default type.
+    pub fn assign(&mut self, id: &str, name: Option<String>, person: bool) {
+        let name = name.unwrap_or_else(|| OWN[usize::from(person)].0.to_owned());
+        self.of_users[usize::from(person)].insert(id.into(), name.into());
+    }
+
+    /// The type that a file gives to a vehicle or a person. Those of the flow F are named F.0, F.1, ….
+    pub fn of_user(&self, id: &str, person: bool) -> Option<&str> {
+        let known = &self.of_users[usize::from(person)];
+        let flow = || {
+            let (flow, number) = id.rsplit_once('.')?;
+            known.get(flow).filter(|_| number.bytes().all(|byte| byte.is_ascii_digit()))
+        };
+        known.get(id).or_else(flow).map(|name| &**name)
     }
 
     /// Whether a file or SUMO itself defines this type or the type from which it was made.
@@ -70,7 +88,7 @@ pub(super) fn text(tag: &BytesStart, name: &str) -> std::result::Result<Option<S
     Ok(Some(value.into_owned()))
 }
 
-/// SUMO's own types, with the vehicle class of each.
+/// SUMO's own types, with the vehicle class of each; first that of vehicles, then that of persons.
 const OWN: [(&str, &str); 6] = [
     ("DEFAULT_VEHTYPE", "passenger"),
     ("DEFAULT_PEDTYPE", "pedestrian"),

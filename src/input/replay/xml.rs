@@ -6,12 +6,16 @@
 use std::path::{Path, PathBuf};
 
 use super::clock;
+use super::fields::{Attribute, Scope};
 use super::names::Users;
-use super::rows::{Attribute, RecordedStep, Scope, cut_short, in_order};
+use super::rows::{RecordedStep, cut_short, in_order};
 use super::source::{ByteWindow, find};
 use super::tags::{Tag, TagFault, next_tag};
 use crate::util::units::Second;
 use crate::{Error, Result};
+
+/// Bytes of an element's name that a message shows.
+const NAMED: usize = 40;
 
 /// An `<fcd-export>` being read.
 pub(super) struct XmlRecording {
@@ -58,8 +62,10 @@ impl XmlRecording {
                     let patterns = [false, true].map(|person| RowPattern { person, scope, expected: Vec::new() });
                     return Ok(Self { path: path.to_owned(), source, patterns, last: None });
                 }
-                Tag::Start(..) | Tag::End(_) => {
-                    return Err(Error::content(path, "it is not an fcd-output: its root element is not <fcd-export>"));
+                Tag::Start(name, _) | Tag::End(name) => {
+                    let name = String::from_utf8_lossy(&name[..name.len().min(NAMED)]);
+                    let why = format!("it is not an fcd-output: its root element is <{name}>, not <fcd-export>");
+                    return Err(Error::content(path, why));
                 }
                 Tag::Other => source.consume(end + 1),
             }
@@ -86,6 +92,7 @@ impl XmlRecording {
                         pattern.add(attributes, step, users).map_err(wrong)?;
                     }
                 }
+                Tag::Start(b"timestep", _) if inside => return Err(wrong(unclosed(step.time))),
                 Tag::Start(b"timestep", attributes) => {
                     let time = time(attributes).map_err(wrong)?;
                     in_order(self.last, time).map_err(wrong)?;
@@ -93,9 +100,18 @@ impl XmlRecording {
                     inside = true;
                     ended = attributes.ends_with(b"/");
                 }
-                Tag::End(b"timestep") => ended = inside,
-                Tag::End(b"fcd-export") => return Ok(false),
-                _ => {}
+                Tag::End(b"timestep") if inside => ended = true,
+                Tag::End(b"fcd-export") if inside => return Err(wrong(unclosed(step.time))),
+                Tag::End(b"fcd-export") => {
+                    self.source.consume(end + 1);
+                    return self.nothing_follows().map(|()| false);
+                }
+                Tag::Start(b"vehicle" | b"person", _) => {
+                    return Err(wrong("a road user stands outside of a timestep".to_owned()));
+                }
+                // Such as containers.
+                Tag::Start(..) => step.left_out.elements += 1,
+                Tag::End(_) | Tag::Other => {}
             }
             self.source.consume(end + 1);
             if ended {
@@ -105,6 +121,24 @@ impl XmlRecording {
             }
         }
     }
+
+    /// Checks that the recording is all that is in the file.
+    fn nothing_follows(&mut self) -> Result<()> {
+        loop {
+            let next = next_tag(&mut self.source).map_err(|fault| fault.at(&self.path, self.source.line()))?;
+            let Some(end) = next else { return Ok(()) };
+            if let Tag::Start(name, _) | Tag::End(name) = Tag::of(&self.source.rest()[1..end]) {
+                let name = String::from_utf8_lossy(&name[..name.len().min(NAMED)]);
+                let why = format!("<{name}> follows after the end of the recording: are there two in one file?");
+                return Err(Error::line(&self.path, self.source.line(), why));
+            }
+            self.source.consume(end + 1);
+        }
+    }
+}
+
+fn unclosed(time: Second) -> String {
+    format!("the timestep of {time} s is not closed: its </timestep> is missing")
 }
 
 fn time(attributes: &[u8]) -> std::result::Result<Second, String> {

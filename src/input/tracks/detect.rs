@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::format::RecordingFormat;
-use super::layouts::LAYOUTS;
+use super::layouts::Layout;
 use super::{table, trj};
 use crate::Error;
 use crate::Result;
@@ -15,15 +15,12 @@ use crate::util::input_file;
 /// # Errors
 /// [`Error::File`] where it cannot be read.
 pub(super) fn format_of(path: &Path) -> Result<RecordingFormat> {
-    let mut first = Vec::new();
-    let read = input_file::open(path)?.take(4096).read_to_end(&mut first);
-    read.map_err(|source| Error::file(path, source))?;
+    let first = first_bytes(path)?;
     if trj::is_trj(&first) {
         return Ok(RecordingFormat::Trj);
     }
     let text = String::from_utf8_lossy(&first);
-    let is_markup = text.trim_start_matches('\u{feff}').trim_start().starts_with('<');
-    if is_markup || first.is_empty() {
+    if begins_markup(&text) || first.is_empty() {
         return Ok(RecordingFormat::Fcd);
     }
     if text.contains("$VEHICLE") {
@@ -31,6 +28,21 @@ pub(super) fn format_of(path: &Path) -> Result<RecordingFormat> {
     }
     // A file without a table is not a recording; replay names what it lacks.
     let Ok(names) = table::names(path) else { return Ok(RecordingFormat::Fcd) };
-    let layout = LAYOUTS.iter().find(|layout| layout.fits(&names));
-    Ok(layout.map_or(RecordingFormat::Fcd, |layout| layout.format))
+    Ok(Layout::known(&names).map_or(RecordingFormat::Fcd, |layout| layout.format))
+}
+
+/// Whether a file is XML.
+pub(super) fn is_markup(path: &Path) -> Result<bool> {
+    first_bytes(path).map(|first| begins_markup(&String::from_utf8_lossy(&first)))
+}
+
+fn begins_markup(text: &str) -> bool {
+    text.trim_start_matches('\u{feff}').trim_start().starts_with('<')
+}
+
+fn first_bytes(path: &Path) -> Result<Vec<u8>> {
+    let mut first = Vec::new();
+    let read = input_file::open(path)?.take(4096).read_to_end(&mut first);
+    read.map_err(|source| Error::file(path, source))?;
+    Ok(first)
 }

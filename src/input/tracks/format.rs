@@ -31,3 +31,22 @@ pub enum RecordingFormat {
     /// OMEGA-Prime.
     OmegaPrime,
 }
+
+impl RecordingFormat {
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fcd => "fcd",
+            Self::Trj => "trj",
+            Self::Fzp => "fzp",
+            Self::Table => "table",
+            Self::InD => "inD",
+            Self::HighD => "highD",
+            Self::Ngsim => "ngsim",
+            Self::Interaction => "interaction",
+            Self::Sind => "sind",
+            Self::CitySim => "citysim",
+            Self::OmegaPrime => "omega-prime",
+        }
+    }
+}

@@ -3,8 +3,11 @@
 
 use std::path::Path;
 
+use super::Said;
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
+use super::table::maybe_cut;
 use crate::geometry::{Point, Vector};
+use crate::util::header;
 use crate::util::input_file::{self, next_line};
 use crate::util::limits::LINE;
 use crate::util::units::{Metre, MetrePerSecond};
@@ -29,15 +32,17 @@ struct Columns {
 }
 
 /// Turns a file into SUMO's fcd-output; returns what had to be assumed.
-pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
+pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Said> {
     let mut columns = None;
     let [mut speed_unit, mut place_unit] = [1.0 / 3.6, 1.0];
     let mut last = f64::NEG_INFINITY;
     let mut source = input_file::open(path)?;
+    let mut has_ended = true;
     for number in 1.. {
         let wrong = |message: String| Error::line(path, number, message);
         let line = next_line(&mut source, &LINE).map_err(|error| wrong(error.to_string()))?;
         let Some(line) = line else { break };
+        has_ended = line.ends_with('\n');
         if let Some(names) = line.trim_start_matches('\u{feff}').strip_prefix(HEADER) {
             columns = Some(Columns::of(names, speed_unit, place_unit).map_err(wrong)?);
         } else if let Some(columns) = &columns {
@@ -58,29 +63,39 @@ pub(super) fn convert(path: &Path, out: &mut FcdWriter) -> Result<Vec<String>> {
             }
         }
     }
-    match columns {
-        Some(_) => Ok(vec![
-            "Vissim's vehicle types 100, 200, 300, 400, 5xx and 6xx are its cars, trucks, buses, trams, \
-                            pedestrians and bicycles; others are cars"
-                .to_owned(),
-        ]),
-        None => Err(Error::content(path, "this is not a .fzp file: no line begins with $VEHICLE:")),
+    let Some(columns) = columns else {
+        return Err(Error::content(path, "this is not a .fzp file: no line begins with $VEHICLE:"));
+    };
+    let mut said = Said::default();
+    said.missing.push(if columns.kind.is_some() {
+        "Vissim's vehicle types 100, 200, 300, 400, 5xx and 6xx are its cars, trucks, buses, trams, pedestrians and bicycles; others \
+         are cars"
+            .to_owned()
+    } else {
+        "classes: it has no column VEHTYPE, so all road users are cars".to_owned()
+    });
+    if columns.width.is_none() {
+        said.missing.push("widths: it has no column WIDTH, so they are those of SUMO's classes".to_owned());
     }
+    if !has_ended {
+        said.doubtful.push(maybe_cut(path));
+    }
+    Ok(said)
 }
 
 impl Columns {
     fn of(names: &str, speed_unit: MetrePerSecond, place_unit: Metre) -> std::result::Result<Self, String> {
         let names = names.split(';').map(|name| name.trim().to_ascii_uppercase()).collect::<Vec<_>>();
-        let optional = |name: &str| names.iter().position(|known| known == name);
-        let place = |name: &str| optional(name).ok_or_else(|| format!("it has no column {name}"));
+        let optional = |name: &str| header::exact(&names, name);
+        let place = |name: &str| optional(name)?.ok_or_else(|| format!("it has no column {name}"));
         Ok(Self {
             time: place("SIMSEC")?,
             id: place("NO")?,
             front: place("COORDFRONT")?,
             rear: place("COORDREAR")?,
             speed: place("SPEED")?,
-            width: optional("WIDTH"),
-            kind: optional("VEHTYPE"),
+            width: optional("WIDTH")?,
+            kind: optional("VEHTYPE")?,
             speed_unit,
             place_unit,
         })
@@ -112,11 +127,14 @@ impl Columns {
         let (front, height) = point(self.front, "COORDFRONT")?;
         let (rear, _) = point(self.rear, "COORDREAR")?;
         let ahead: Vector = front - rear;
+        if ahead.norm() == 0.0 {
+            return Err("COORDFRONT and COORDREAR are at one place, so that nothing tells its heading".to_owned());
+        }
         let width = self.width.map(|place| number(cell(place, "WIDTH")?, "WIDTH")).transpose()?;
         out.write(&Sample {
             time,
             id: cell(self.id, "NO")?,
-            class: self.kind.and_then(|place| cells.get(place)).map_or("passenger", |kind| class(kind)),
+            class: self.kind.map(|place| cell(place, "VEHTYPE")).transpose()?.map_or("passenger", class),
             front,
             height,
             heading: ahead.y.atan2(ahead.x),

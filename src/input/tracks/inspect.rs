@@ -3,28 +3,15 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use super::detect::format_of;
+use super::detect::{format_of, is_markup};
 use super::format::RecordingFormat;
+use super::guess::{Guess, guess};
 use super::layouts::Layout;
-use super::mapping::{Mapping, has};
+use super::mapping::Mapping;
 use super::meta::beside;
 use super::table;
 use crate::Result;
 use crate::input::replay::recording::Recording;
-
-/// Columns that are often called like this, by what `--columns` calls them: a guess for a table of no known layout.
-const USUAL: [(&str, &[&str]); 10] = [
-    ("id", &["id", "track_id", "trackid", "vehicle_id", "object_id", "agent_id"]),
-    ("time", &["time", "t", "timestamp", "seconds"]),
-    ("frame", &["frame", "frame_id", "frameid", "framenum"]),
-    ("x", &["x", "x_m", "xcenter", "x_center", "pos_x", "utm_x"]),
-    ("y", &["y", "y_m", "ycenter", "y_center", "pos_y", "utm_y"]),
-    ("heading", &["heading", "heading_rad", "yaw", "psi_rad", "orientation"]),
-    ("speed", &["speed", "v", "velocity"]),
-    ("length", &["length", "l"]),
-    ("width", &["width", "w"]),
-    ("class", &["class", "type", "agent_type", "category"]),
-];
 
 /// Tells what a file is taken for, what it lacks, and the command that replays it.
 ///
@@ -43,7 +30,10 @@ pub fn inspect(path: &Path) -> Result<String> {
             Err(error) => {
                 // A table of no known layout, or no recording.
                 let Ok(names) = table::names(path) else { return Err(error) };
-                unknown(&mut text, path, &names);
+                if is_markup(path)? {
+                    return Err(error);
+                }
+                unknown(&mut text, path, &names)?;
             }
         },
         RecordingFormat::Trj => {
@@ -82,52 +72,27 @@ fn layout(text: &mut String, path: &Path, format: RecordingFormat) -> Result<()>
     if !lacking.is_empty() {
         _ = writeln!(text, "missing: {}", lacking.join(", "));
     }
-    let name = name(format);
+    let name = format.name();
     _ = writeln!(text, "closecall replay {} --format {name}{rate} --path arc", path.display());
     Ok(())
 }
 
-/// The name of a format on the command line.
-fn name(format: RecordingFormat) -> &'static str {
-    match format {
-        RecordingFormat::Fcd => "fcd",
-        RecordingFormat::Trj => "trj",
-        RecordingFormat::Fzp => "fzp",
-        RecordingFormat::Table => "table",
-        RecordingFormat::InD => "inD",
-        RecordingFormat::HighD => "highD",
-        RecordingFormat::Ngsim => "ngsim",
-        RecordingFormat::Interaction => "interaction",
-        RecordingFormat::Sind => "sind",
-        RecordingFormat::CitySim => "citysim",
-        RecordingFormat::OmegaPrime => "omega-prime",
-    }
-}
-
-/// A table of no known layout: a guess by the names of its columns.
-fn unknown(text: &mut String, path: &Path, names: &[String]) {
+/// A table of no known layout: a guess by the names of its columns and its first rows.
+fn unknown(text: &mut String, path: &Path, names: &[String]) -> Result<()> {
     _ = writeln!(text, "{}: a table of no known layout, with the columns {}", path.display(), names.join(", "));
-    let usual =
-        |wanted: &[&str]| names.iter().find(|name| wanted.iter().any(|wanted| name.eq_ignore_ascii_case(wanted)));
-    let guessed = USUAL.iter().map(|(key, wanted)| (*key, usual(wanted)));
-    let has_time = has(names, "time") || usual(USUAL[1].1).is_some();
-    let guessed = guessed.filter(|(key, _)| *key != "frame" || !has_time);
-    let needed = |key: &str| ["id", "x", "y"].contains(&key) || key == if has_time { "time" } else { "frame" };
-    let mut columns = Vec::new();
-    let mut missing = Vec::new();
-    for (key, found) in guessed {
-        match found {
-            Some(name) => columns.push(format!("{key}={name}")),
-            None if needed(key) => {
-                columns.push(format!("{key}=COLUMN"));
-                missing.push(key);
-            }
-            None => {}
-        }
-    }
+    let Guess { columns, missing, frame_rate } = guess(path, names)?;
     if !missing.is_empty() {
         _ = writeln!(text, "missing: {}: name their columns where the command says COLUMN", missing.join(", "));
     }
-    let rate = if has_time { "" } else { " --frame-rate 25" };
-    _ = writeln!(text, "closecall replay {} --columns {}{rate} --path arc", path.display(), columns.join(","));
+    match frame_rate {
+        Some((rate, true)) => _ = writeln!(text, "frames: the speeds show {rate} a second"),
+        Some((rate, false)) => _ = writeln!(text, "missing: the frames per second: {rate} is a guess"),
+        None => {}
+    }
+    let rate = frame_rate.map_or(String::new(), |(rate, _)| format!(" --frame-rate {rate}"));
+    // Brackets and blanks mean something to a shell.
+    let is_plain = columns.chars().all(|it| it.is_alphanumeric() || "=,_.-".contains(it));
+    let columns = if is_plain { columns } else { format!("'{columns}'") };
+    _ = writeln!(text, "closecall replay {} --columns {columns}{rate} --path arc", path.display());
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Jumps of tracks, and identities that two road users exchange: counted, and told with the first of each.
 
-use super::smooth::Jump;
+use super::filter::Jump;
 
 /// Jumps that are compared with each other: a recording with more is useless.
 const COMPARED: usize = 1 << 16;

@@ -1,5 +1,6 @@
 //! The column layouts of public trajectory data, each as the text of `--columns`.
 
+use super::field::Field;
 use super::format::RecordingFormat;
 use super::mapping::{Mapping, Origin, TrackOptions, has};
 use crate::{Error, Result};
@@ -22,12 +23,22 @@ pub(super) struct Layout {
     /// Whether the classes and the frame rate are in files beside it (`00_tracks.csv`, `00_tracksMeta.csv`,
     /// `00_recordingMeta.csv`).
     pub has_meta: bool,
+    /// Columns that tell road users apart whose ids are the same: its ids are used again.
+    pub reused: &'static [&'static str],
 }
 
 impl Layout {
-    /// Whether a table with these columns has it: all of them but those that a file may lack.
-    pub fn fits(&self, names: &[String]) -> bool {
-        Mapping::parse(self.columns).is_ok_and(|mapping| mapping.distinctive().all(|name| has(names, name)))
+    /// That of a table with these columns: all of it but those that a file may lack. SinD and INTERACTION differ only in the
+    /// name of the heading, which their files of pedestrians lack.
+    pub fn known(names: &[String]) -> Option<&'static Self> {
+        let fits = |layout: &&Self, is_whole: bool| {
+            Mapping::parse(layout.columns).is_ok_and(|mapping| {
+                let heading = Some(mapping.name(Field::Heading)).filter(|name| is_whole && !name.is_empty());
+                mapping.distinctive().chain(heading).all(|name| has(names, name))
+            })
+        };
+        let whole = LAYOUTS.iter().find(|layout| fits(layout, true));
+        whole.or_else(|| LAYOUTS.iter().find(|layout| fits(layout, false)))
     }
 
     /// That of a format.
@@ -60,9 +71,11 @@ pub(super) fn mapping_of(format: RecordingFormat, options: &TrackOptions) -> Res
         is_picture: layout.is_picture,
         classes: layout.classes,
         has_meta: layout.has_meta,
+        reused: layout.reused,
         ..parsed
     });
     Ok(Mapping {
+        is_named: !options.columns.is_empty(),
         origin: options.origin.unwrap_or(base.origin),
         frame_rate: options.frame_rate.or(base.frame_rate),
         ..base
@@ -71,7 +84,7 @@ pub(super) fn mapping_of(format: RecordingFormat, options: &TrackOptions) -> Res
 
 /// What a table with these columns may be, as the end of a message.
 pub(super) fn hint(names: &[String]) -> String {
-    let layout = LAYOUTS.iter().find(|layout| layout.fits(names));
+    let layout = Layout::known(names);
     layout.map_or(String::new(), |layout| format!("; its columns are those of {}", layout.name))
 }
 
@@ -87,6 +100,7 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         is_picture: false,
         classes: &[],
         has_meta: true,
+        reused: &[],
     },
     Layout {
         format: RecordingFormat::HighD,
@@ -98,6 +112,7 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         is_picture: true,
         classes: &[],
         has_meta: true,
+        reused: &[],
     },
     Layout {
         format: RecordingFormat::Ngsim,
@@ -109,17 +124,7 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         is_picture: false,
         classes: &[("1", "motorcycle"), ("2", "passenger"), ("3", "truck")],
         has_meta: false,
-    },
-    Layout {
-        format: RecordingFormat::Sind,
-        name: "SinD",
-        columns: "time=timestamp_ms[ms],id=track_id,class=agent_type,x=x,y=y,vx=vx,vy=vy,heading=heading_rad,\
-                  length=length,width=width",
-        origin: Origin::Centre,
-        frame_rate: None,
-        is_picture: false,
-        classes: &[],
-        has_meta: false,
+        reused: &["Location", "Total_Frames"],
     },
     Layout {
         format: RecordingFormat::Interaction,
@@ -131,6 +136,19 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         is_picture: false,
         classes: &[],
         has_meta: false,
+        reused: &[],
+    },
+    Layout {
+        format: RecordingFormat::Sind,
+        name: "SinD",
+        columns: "time=timestamp_ms[ms],id=track_id,class=agent_type,x=x,y=y,vx=vx,vy=vy,heading=heading_rad,\
+                  length=length,width=width",
+        origin: Origin::Centre,
+        frame_rate: None,
+        is_picture: false,
+        classes: &[],
+        has_meta: false,
+        reused: &[],
     },
     Layout {
         format: RecordingFormat::CitySim,
@@ -142,6 +160,7 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         is_picture: true,
         classes: &[],
         has_meta: false,
+        reused: &[],
     },
     Layout {
         format: RecordingFormat::OmegaPrime,
@@ -153,6 +172,7 @@ pub(super) static LAYOUTS: [Layout; 7] = [
         // OSI's MovingObject.Type.
         classes: &[("1", "passenger"), ("2", "passenger"), ("3", "pedestrian"), ("4", "pedestrian")],
         has_meta: false,
+        reused: &[],
     },
 ];
 

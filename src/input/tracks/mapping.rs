@@ -1,6 +1,8 @@
 //! Which column of a table is what, in which unit: the text of `--columns`, and the options beside it.
 
+use super::field::{Field, HeadingUnit};
 use super::format::RecordingFormat;
+use crate::util::header::{self, Wanted};
 use crate::util::limits::{Limit, RESERVE};
 use crate::util::units::Metre;
 
@@ -58,69 +60,6 @@ pub enum Origin {
     UpperLeft,
 }
 
-/// What a column is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Field {
-    Id,
-    Time,
-    Frame,
-    X,
-    Y,
-    RearX,
-    RearY,
-    Heading,
-    Speed,
-    SpeedX,
-    SpeedY,
-    Length,
-    Width,
-    Class,
-}
-
-impl Field {
-    pub const COUNT: usize = 14;
-
-    const NAMES: [(&'static str, Self); Self::COUNT] = [
-        ("id", Self::Id),
-        ("time", Self::Time),
-        ("frame", Self::Frame),
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("rear_x", Self::RearX),
-        ("rear_y", Self::RearY),
-        ("heading", Self::Heading),
-        ("speed", Self::Speed),
-        ("vx", Self::SpeedX),
-        ("vy", Self::SpeedY),
-        ("length", Self::Length),
-        ("width", Self::Width),
-        ("class", Self::Class),
-    ];
-
-    /// What a file may lack.
-    fn is_optional(self) -> bool {
-        !matches!(self, Self::Id | Self::Time | Self::Frame | Self::X | Self::Y)
-    }
-
-    /// Its units, each with the factor to SI.
-    fn units(self) -> &'static [(&'static str, f64)] {
-        match self {
-            Self::Time => &[("s", 1.0), ("ms", 1e-3), ("us", 1e-6), ("ns", 1e-9)],
-            Self::X | Self::Y | Self::RearX | Self::RearY | Self::Length | Self::Width => &[("m", 1.0), ("ft", 0.3048)],
-            // The last is clockwise from north; `rows` turns it.
-            Self::Heading => &[("rad", 1.0), ("deg", DEGREE), (NORTH, DEGREE)],
-            Self::Speed | Self::SpeedX | Self::SpeedY => {
-                &[("m/s", 1.0), ("km/h", 1.0 / 3.6), ("mph", 0.447_04), ("ft/s", 0.3048)]
-            }
-            Self::Id | Self::Frame | Self::Class => &[],
-        }
-    }
-}
-
-const DEGREE: f64 = std::f64::consts::PI / 180.0;
-/// The unit of a heading in degrees clockwise from north.
-const NORTH: &str = "north";
-
 /// A column.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct NamedField {
@@ -137,17 +76,31 @@ pub(super) struct Mapping {
     pub origin: Origin,
     pub frame_rate: Option<f64>,
     pub is_picture: bool,
-    /// Whether the heading is clockwise from north.
-    pub is_compass: bool,
+    pub heading_unit: HeadingUnit,
     pub classes: &'static [(&'static str, &'static str)],
     pub has_meta: bool,
+    /// Whether the user named the columns, so that all of them have to be there.
+    pub is_named: bool,
+    /// Columns that tell road users apart whose ids are the same, where there are any: the ids are used again.
+    pub reused: &'static [&'static str],
+}
+
+/// Where the columns of a table are.
+#[derive(Debug, Default)]
+pub(super) struct Places {
+    /// By field: the place among the columns that are read, and the factor to SI.
+    pub of: [Option<(usize, f64)>; Field::COUNT],
+    /// Of the columns that tell apart road users with one id.
+    pub reused: Vec<usize>,
+    /// The columns that are read, by their places in the table.
+    pub read: Vec<(usize, Wanted)>,
 }
 
 impl Mapping {
     /// The columns in the text of `--columns`.
     pub fn parse(text: &str) -> Result<Self, String> {
         let mut fields: Vec<NamedField> = Vec::new();
-        let mut is_compass = false;
+        let mut heading_unit = HeadingUnit::default();
         for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
             let (key, column) =
                 part.split_once('=').ok_or_else(|| format!("\"{part}\" is not x=COLUMN or x=COLUMN[UNIT]"))?;
@@ -172,7 +125,9 @@ impl Mapping {
                     )?
                 }
             };
-            is_compass |= field == Field::Heading && unit == Some(NORTH);
+            if let (Field::Heading, Some(unit)) = (field, unit) {
+                heading_unit = HeadingUnit::ALL.into_iter().find(|it| it.name() == unit).unwrap_or_default();
+            }
             if fields.iter().any(|known| known.field == field) {
                 return Err(format!("{key} is there twice"));
             }
@@ -194,33 +149,53 @@ impl Mapping {
             origin: Origin::default(),
             frame_rate: None,
             is_picture: false,
-            is_compass,
+            heading_unit,
             classes: &[],
             has_meta: false,
+            is_named: false,
+            reused: &[],
         })
     }
 
-    /// The columns by which its layout is known: those that a file must have, and the heading, which tells SinD from
-    /// INTERACTION.
+    /// The columns by which its layout is known: those that a file must have, and the speed.
     pub fn distinctive(&self) -> impl Iterator<Item = &str> {
-        let is_distinctive = |field: &&NamedField| !field.field.is_optional() || field.field == Field::Heading;
+        let is_distinctive = |field: &&NamedField| !field.field.is_optional();
         let speeds = self.fields.iter().filter(|field| matches!(field.field, Field::SpeedX | Field::Speed));
         self.fields.iter().filter(is_distinctive).chain(speeds).map(|field| field.name.as_str())
     }
 
-    /// Where in a table the columns are, by field.
+    /// The name of the column of a field; empty where the mapping has none.
+    pub fn name(&self, field: Field) -> &str {
+        self.fields.iter().find(|known| known.field == field).map_or("", |known| &known.name)
+    }
+
+    /// The unit of headings that are given, if there are any.
+    pub fn given_headings(&self) -> Option<HeadingUnit> {
+        let is_derived = self.origin == Origin::UpperLeft || !self.name(Field::RearX).is_empty();
+        Some(self.heading_unit).filter(|_| !is_derived && !self.name(Field::Heading).is_empty())
+    }
+
+    /// Where in a table the columns are. `elsewhere` are the names of columns of the recording's other files, which may have what
+    /// this one lacks.
     ///
     /// # Errors
-    /// Which column is missing.
-    pub fn places(&self, names: &[String]) -> Result<[Option<(usize, f64)>; Field::COUNT], String> {
-        let mut places = [None; Field::COUNT];
+    /// Which column is missing, or is there twice.
+    pub fn places(&self, names: &[String], elsewhere: &[String]) -> Result<Places, String> {
+        let mut places = Places::default();
         for NamedField { field, name, factor } in &self.fields {
-            let exact = names.iter().position(|known| known == name);
-            let place = exact.or_else(|| names.iter().position(|known| known.eq_ignore_ascii_case(name)));
-            match place {
-                Some(place) => places[*field as usize] = Some((place, *factor)),
-                None if field.is_optional() => {}
+            match header::any_case(names, name)? {
+                Some(place) => {
+                    places.of[*field as usize] = Some((places.read.len(), *factor));
+                    places.read.push((place, field.wanted()));
+                }
+                None if field.is_optional() && (!self.is_named || has(elsewhere, name)) => {}
                 None => return Err(format!("it has no column {name}")),
+            }
+        }
+        for name in self.reused {
+            if let Some(place) = header::any_case(names, name)? {
+                places.reused.push(places.read.len());
+                places.read.push((place, Wanted::Text));
             }
         }
         Ok(places)
@@ -254,6 +229,16 @@ mod tests {
             let error = Mapping::parse(text).unwrap_err();
             assert!(error.starts_with(said), "{error}");
         }
+    }
+
+    #[test]
+    fn what_the_user_named_must_be_in_one_of_the_files() {
+        let names = ["id", "time", "x", "y", "len"].map(str::to_owned);
+        let layout = Mapping::parse("id=id,time=time,x=x,y=y,length=lenght").unwrap();
+        assert!(layout.places(&names, &[]).is_ok_and(|places| places.read.len() == 4));
+        let named = Mapping { is_named: true, ..layout };
+        assert_eq!(named.places(&names, &[]).unwrap_err(), "it has no column lenght");
+        assert!(named.places(&names, &["lenght".to_owned()]).is_ok());
     }
 
     #[test]

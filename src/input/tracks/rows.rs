@@ -1,194 +1,169 @@
-//! Tables of trajectories, in any order of their rows: sorted by road user, so that headings and speeds that they lack follow
-//! from how each moved, then by time. Memory does not grow with their number.
+//! Tables of trajectories, in any order of their rows, one file or several of one time base: sorted by road user, so that headings
+//! and speeds that they lack follow from how each moved, then by time. Memory does not grow with their number.
 
 use std::borrow::Cow;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 use std::path::Path;
 
-use rustc_hash::FxHashMap;
-
-use super::jumps::Jumps;
+use super::Said;
+use super::field::Field;
 use super::layouts::hint;
-use super::mapping::{Field, Mapping, Origin};
-use super::meta::read_meta;
-use super::sample::{FcdWriter, PEDESTRIAN, Sample};
-use super::smooth::Smoother;
+use super::mapping::{Mapping, Origin, Places};
+use super::meta::{Meta, name_beside, read_meta};
+use super::sample::{FcdWriter, Sample};
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
-use crate::geometry::Point;
+use super::tracks::Tracks;
+use super::users::Users;
 use crate::geometry::rectangle::direction;
+use crate::geometry::{Point, Vector};
 use crate::traffic::sumo_type::SumoType;
 use crate::util::units::{Metre, MetrePerSecond};
 use crate::{Error, Result};
 
-/// A road user that moves less than this between the steps before and after keeps its heading, in m: noise would turn it.
-const MOVED: Metre = 0.2;
 /// Below this the direction of a velocity is noise, in m/s.
 const MOVES: MetrePerSecond = 0.1;
-/// Classes that a remark names.
-const NAMED: usize = 5;
+/// Rows after which a wish to stop is asked for.
+const ASKED: u64 = 4096;
 
-/// What the names of classes in public data mean; other names are cars.
-const CLASSES: [(&str, &str); 27] = [
-    ("car", "passenger"),
-    ("passenger", "passenger"),
-    ("vehicle", "passenger"),
-    ("auto", "passenger"),
-    ("van", "passenger"),
-    ("suv", "passenger"),
-    ("mv", "passenger"),
-    ("truck", "truck"),
-    ("lorry", "truck"),
-    ("hgv", "truck"),
-    ("truck_bus", "truck"),
-    ("trailer", "trailer"),
-    ("bus", "bus"),
-    ("tram", "tram"),
-    ("motorcycle", "motorcycle"),
-    ("motorcyclist", "motorcycle"),
-    ("motorbike", "motorcycle"),
-    ("moped", "moped"),
-    ("bicycle", "bicycle"),
-    ("bicyclist", "bicycle"),
-    ("cyclist", "bicycle"),
-    ("bike", "bicycle"),
-    ("tricycle", "bicycle"),
-    ("pedestrian", PEDESTRIAN),
-    ("person", PEDESTRIAN),
-    ("pedestrian/bicycle", PEDESTRIAN),
-    ("animal", PEDESTRIAN),
-];
-
-/// What is known of the road users beside their rows.
-#[derive(Default)]
-struct Users {
-    ids: Vec<String>,
-    numbers: FxHashMap<String, u32>,
-    /// By the number that a row has: SUMO's class.
-    classes: Vec<&'static str>,
-    /// By id, from the file beside the table.
-    class_of: FxHashMap<String, String>,
-    /// The first [`NAMED`] unknown names of classes.
-    unknown: Vec<String>,
+/// A file, and how it is read.
+pub(super) struct Table<'a> {
+    pub path: &'a Path,
+    pub mapping: Mapping,
+    /// The names of its columns.
+    pub names: Vec<String>,
 }
 
-impl Users {
-    fn number(&mut self, id: &str) -> u32 {
-        if let Some(known) = self.numbers.get(id) {
-            return *known;
-        }
-        let number = self.ids.len() as u32;
-        self.ids.push(id.to_owned());
-        self.numbers.insert(id.to_owned(), number);
-        number
-    }
-
-    fn class(&mut self, name: &str, mapping: &Mapping) -> u32 {
-        let lower = name.to_lowercase();
-        let known = mapping.classes.iter().chain(&CLASSES).find(|(known, _)| *known == lower);
-        let is_new = || !name.is_empty() && !self.unknown.iter().any(|unknown| unknown == name);
-        if known.is_none() && self.unknown.len() < NAMED && is_new() {
-            self.unknown.push(name.to_owned());
-        }
-        let class = known.map_or("passenger", |(_, class)| class);
-        let place = self.classes.iter().position(|known| *known == class).unwrap_or_else(|| {
-            self.classes.push(class);
-            self.classes.len() - 1
-        });
-        place as u32
-    }
-}
-
-/// Turns a table into SUMO's fcd-output, smoothed if its places have this noise; returns what had to be assumed.
+/// Turns tables into SUMO's fcd-output, smoothed if their places have this noise; returns what had to be assumed.
 pub(super) fn convert(
-    path: &Path,
-    mapping: &Mapping,
+    tables: &[Table],
     noise: Option<Metre>,
+    stopped: &mut dyn FnMut() -> bool,
     out: &mut FcdWriter,
-) -> Result<Vec<String>> {
+) -> Result<Said> {
     let mut users = Users::default();
-    let mut frame_rate = mapping.frame_rate;
-    if mapping.has_meta {
-        let meta = read_meta(path)?;
-        frame_rate = frame_rate.or(meta.frame_rate);
-        users.class_of = meta.class_of;
-    }
-    let by_user = read(path, mapping, frame_rate, &mut users)?;
+    let mut said = Said::default();
+    let path = tables.first().map_or(Path::new(""), |table| table.path);
     let fault = |source| Error::file(path, source);
-    let mut steps = Sorter::new(Order::Steps);
-    let (mut smoother, mut jumps, mut derived) = (Smoother::new(noise), Jumps::default(), [0, 0]);
-    let complete = |track: &mut [Row]| {
-        let added = smoother.smooth(track, |jump| jumps.add(jump));
-        derived = [0, 1].map(|of| derived[of] + added[of]);
-        complete(track, &mut derived);
-        track.iter().try_for_each(|row| steps.push(*row))
-    };
-    each_track(by_user, complete).map_err(fault)?;
-    let mut steps = steps.sorted().map_err(fault)?;
-    while let Some(Row { user, class, time, values: [x, y, heading, speed, length, width] }) =
-        steps.next().map_err(fault)?
-    {
-        let id = users.ids.get(user as usize).map_or("", String::as_str);
-        let class = users.classes.get(class as usize).copied().unwrap_or("passenger");
+    let mut by_user = read(tables, &mut users, &mut said, stopped)?;
+    let mut tracks = Tracks::new(tables, noise);
+    let mut rows = 0;
+    while let Some(row) = by_user.next().map_err(fault)? {
+        tracks.add(row, &mut users).map_err(fault)?;
+        ask(&mut rows, stopped)?;
+    }
+    let mut steps = tracks.finish(&mut users).map_err(fault)?;
+    let origin = tables.first().map_or(Origin::default(), |table| table.mapping.origin);
+    while let Some(row) = steps.next().map_err(fault)? {
+        let Row { user, class, time, values: [x, y, _, speed, length, width] } = row;
+        let heading = tracks.heading(&row);
+        let (id, class) = (users.id(user), users.class_name(class));
         let length = if length > 0.0 { length } else { SumoType::of_class("", class).length };
         let place = Point::new(x, y);
-        let front = if mapping.origin == Origin::Front { place } else { place + direction(heading) * (length / 2.0) };
+        let front = if origin == Origin::Front { place } else { place + direction(heading) * (length / 2.0) };
         let written =
             out.write(&Sample { time, id, class, front, height: 0.0, heading, speed, length, width, lane: None });
         written.map_err(|why| Error::content(path, format!("\"{id}\" at {time} s: {why}")))?;
+        ask(&mut rows, stopped)?;
     }
-    let id = |user: u32| users.ids.get(user as usize).map_or("", String::as_str);
-    Ok(remarks(&users, derived).into_iter().chain(jumps.remarks(id)).collect())
+    users.counts.say(&mut said);
+    said.doubtful.extend(tracks.remarks(|user| users.id(user)));
+    Ok(said)
 }
 
-fn remarks(users: &Users, [headings, speeds]: [u64; 2]) -> Vec<String> {
-    let mut remarks = Vec::new();
-    if headings > 0 {
-        remarks.push(format!("headings: {headings} rows have none, so they follow from how the road user moved"));
-    }
-    if speeds > 0 {
-        remarks.push(format!("speeds: {speeds} rows have none, so they follow from how far the road user moved"));
-    }
-    if !users.unknown.is_empty() {
-        let named = users.unknown.iter().map(|name| format!("\"{name}\"")).collect::<Vec<_>>().join(", ");
-        remarks.push(format!("classes: {named} are unknown, so they are cars"));
-    }
-    remarks
+/// Counts a row, and asks now and then whether to stop.
+fn ask(rows: &mut u64, stopped: &mut dyn FnMut() -> bool) -> Result<()> {
+    *rows += 1;
+    if *rows % ASKED == 0 && stopped() { Err(Error::Stopped) } else { Ok(()) }
 }
 
-/// Reads the rows, sorted by road user.
-fn read(path: &Path, mapping: &Mapping, frame_rate: Option<f64>, users: &mut Users) -> Result<Sorted> {
+/// Reads the rows of all files, sorted by road user.
+fn read(tables: &[Table], users: &mut Users, said: &mut Said, stopped: &mut dyn FnMut() -> bool) -> Result<Sorted> {
     let mut sorter = Sorter::new(Order::Users);
-    let places = std::cell::Cell::new([None; Field::COUNT]);
-    let begin = |names: &[String]| {
-        let found = mapping.places(names).map_err(|why| why + &hint(names))?;
-        if found[Field::Time as usize].is_none() && frame_rate.is_none() {
-            return Err("its time is a number of frames: --frame-rate HZ is needed".to_owned());
+    let mut rows = 0;
+    for (number, table) in tables.iter().enumerate() {
+        users.begin_file();
+        let of_file = FileReader::new(table, if tables.len() > 1 { Some(number) } else { None })?;
+        said.doubtful.extend(of_file.meta.remarks.iter().cloned());
+        let elsewhere = tables.iter().flat_map(|table| &table.names).cloned().collect::<Vec<_>>();
+        let places = std::cell::RefCell::new(Places::default());
+        let mut is_stopped = false;
+        let begin = |names: &[String]| {
+            let found = table.mapping.places(names, &elsewhere).map_err(|why| why + &hint(names))?;
+            if found.of[Field::Time as usize].is_none() && of_file.frame_rate.is_none() {
+                return Err("its time is a number of frames: --frame-rate HZ is needed".to_owned());
+            }
+            let read = found.read.clone();
+            places.replace(found);
+            Ok(read)
+        };
+        let cut = table::read(table.path, begin, |cells| {
+            let places = places.borrow();
+            let reader = RowReader { file: &of_file, places: &places, cells };
+            if let Some(row) = reader.row(users)? {
+                sorter.push(row).map_err(|error| error.to_string())?;
+            }
+            is_stopped = ask(&mut rows, stopped).is_err();
+            Ok(!is_stopped)
+        })?;
+        said.doubtful.extend(cut);
+        if is_stopped {
+            return Err(Error::Stopped);
         }
-        places.set(found);
-        Ok(())
-    };
-    table::read(path, begin, |cells| {
-        let reader = RowReader { mapping, places: places.get(), cells };
-        let row = reader.row(frame_rate, users)?;
-        sorter.push(row).map_err(|error| error.to_string())
-    })?;
-    if users.ids.is_empty() {
-        return Err(Error::content(path, "it has no rows"));
+        said.doubtful.extend(of_file.lacking(places.into_inner(), users));
     }
-    sorter.sorted().map_err(|source| Error::file(path, source))
+    match tables.first() {
+        Some(table) if users.is_empty() => Err(Error::content(table.path, "it has no rows of road users")),
+        table => sorter.sorted().map_err(|source| Error::file(table.map_or(Path::new(""), |table| table.path), source)),
+    }
+}
+
+/// What is known of a file while its rows are read.
+struct FileReader<'a> {
+    table: &'a Table<'a>,
+    frame_rate: Option<f64>,
+    meta: Meta,
+    /// Its number, where there are several: each has ids of its own.
+    number: Option<usize>,
+}
+
+impl<'a> FileReader<'a> {
+    fn new(table: &'a Table, number: Option<usize>) -> Result<Self> {
+        let meta = if table.mapping.has_meta { read_meta(table.path)? } else { Meta::default() };
+        Ok(Self { table, frame_rate: table.mapping.frame_rate.or(meta.frame_rate), meta, number })
+    }
+
+    /// What the file lacks with the classes, or a file whose columns the user named, as lines.
+    fn lacking(&self, places: Places, users: &mut Users) -> Vec<String> {
+        let Table { path, mapping, names } = self.table;
+        let mut remarks = Vec::new();
+        let lacking = mapping.lacking(names).collect::<Vec<_>>();
+        if mapping.is_named && !lacking.is_empty() {
+            remarks.push(format!("{}: it has no column {}", path.display(), lacking.join(", ")));
+        }
+        let is_classed = places.of[Field::Class as usize].is_some();
+        let file = || name_beside(path, "tracksMeta").unwrap_or_else(|| "tracksMeta".to_owned());
+        let unclassed = std::mem::take(&mut users.counts.unclassed);
+        if mapping.has_meta && self.meta.class_of.is_none() && !is_classed {
+            remarks.push(format!("classes: there is no file {} beside it, which has them", file()));
+        } else if let Some(first) = unclassed.iter().min() {
+            let count = unclassed.len();
+            remarks.push(format!("classes: {} lacks {count} of the road users, one of them \"{first}\"", file()));
+        }
+        remarks
+    }
 }
 
 /// One row of the table.
 struct RowReader<'a> {
-    mapping: &'a Mapping,
-    places: [Option<(usize, f64)>; Field::COUNT],
+    file: &'a FileReader<'a>,
+    places: &'a Places,
     cells: &'a [Cell<'a>],
 }
 
 impl RowReader<'_> {
     fn cell(&self, field: Field) -> Option<(&Cell<'_>, f64)> {
-        let (place, factor) = self.places[field as usize]?;
+        let (place, factor) = self.places.of[field as usize]?;
         Some((self.cells.get(place)?, factor))
     }
 
@@ -207,34 +182,36 @@ impl RowReader<'_> {
         self.number(field)?.ok_or_else(|| format!("column {}: a number is needed, but it is empty", self.name(field)))
     }
 
-    fn name(&self, field: Field) -> &str {
-        self.mapping.fields.iter().find(|known| known.field == field).map_or("", |known| &known.name)
+    /// A length or width; 0 where there is none.
+    fn size(&self, field: Field) -> std::result::Result<Metre, String> {
+        let size = self.number(field)?.unwrap_or_default();
+        if size >= 0.0 { Ok(size) } else { Err(format!("column {}: {size} m is below 0", self.name(field))) }
     }
 
-    fn row(&self, frame_rate: Option<f64>, users: &mut Users) -> std::result::Result<Row, String> {
+    fn name(&self, field: Field) -> &str {
+        self.file.table.mapping.name(field)
+    }
+
+    /// The row; none if it is not a road user's.
+    fn row(&self, users: &mut Users) -> std::result::Result<Option<Row>, String> {
+        let mapping = &self.file.table.mapping;
         let id = self.text(Field::Id);
         if id.is_empty() {
             return Err(format!("column {}: an id is needed, but it is empty", self.name(Field::Id)));
         }
-        let time = match frame_rate {
-            _ if self.places[Field::Time as usize].is_some() => self.needed(Field::Time)?,
+        let time = match self.file.frame_rate {
+            _ if self.places.of[Field::Time as usize].is_some() => self.needed(Field::Time)?,
             rate => self.needed(Field::Frame)? / rate.unwrap_or(1.0),
         };
         // Sums of steps: a millionth of a second tells them apart.
         let time = (time * 1e6).round() / 1e6;
-        let class = match users.class_of.get(&*id).cloned() {
-            Some(class) => users.class(&class, self.mapping),
-            None => users.class(&self.text(Field::Class), self.mapping),
-        };
-        let up = if self.mapping.is_picture { -1.0 } else { 1.0 };
+        let Some(class) = self.class(&id, users) else { return Ok(None) };
+        let up = if mapping.is_picture { -1.0 } else { 1.0 };
         let mut place = Point::new(self.needed(Field::X)?, up * self.needed(Field::Y)?);
-        let [mut length, width] =
-            [self.number(Field::Length)?, self.number(Field::Width)?].map(Option::unwrap_or_default);
+        let (mut length, width) = (self.size(Field::Length)?, self.size(Field::Width)?);
         let velocity = self.number(Field::SpeedX)?.zip(self.number(Field::SpeedY)?).map(|(x, y)| (x, up * y));
-        let mut heading = self.number(Field::Heading)?.map(|angle| match self.mapping.is_compass {
-            true => FRAC_PI_2 - angle,
-            false => up * angle,
-        });
+        let given = self.number(Field::Heading)?;
+        let mut heading = given.map(|number| mapping.heading_unit.heading(number, mapping.is_picture));
         if let Some((rear_x, rear_y)) = self.number(Field::RearX)?.zip(self.number(Field::RearY)?) {
             let ahead = place - Point::new(rear_x, up * rear_y);
             if ahead.norm() > 0.0 {
@@ -242,59 +219,40 @@ impl RowReader<'_> {
                 length = if length > 0.0 { length } else { ahead.norm() };
             }
         }
-        if self.mapping.origin == Origin::UpperLeft {
-            place += crate::geometry::Vector::new(length, up * width) / 2.0;
+        if mapping.origin == Origin::UpperLeft {
+            place += Vector::new(length, up * width) / 2.0;
             heading = velocity.map(|(x, _)| if x < 0.0 { PI } else { 0.0 });
         }
+        users.counts.rows += 1;
+        users.counts.lengths += u64::from(length == 0.0);
+        users.counts.widths += u64::from(width == 0.0);
         let of_velocity = velocity.filter(|(x, y)| x.hypot(*y) > MOVES).map(|(x, y)| y.atan2(x));
         let heading = heading.or(of_velocity).unwrap_or(f64::NAN);
         let speed = self.number(Field::Speed)?.or(velocity.map(|(x, y)| x.hypot(y))).unwrap_or(f64::NAN);
-        let user = users.number(&id);
-        Ok(Row { user, class, time, values: [place.x, place.y, heading, speed, length, width] })
+        let user = self.user(&id, users);
+        Ok(Some(Row { user, class, time, values: [place.x, place.y, heading, speed, length, width] }))
     }
-}
 
-/// Calls `with` for one track after the other.
-fn each_track(mut rows: Sorted, mut with: impl FnMut(&mut [Row]) -> std::io::Result<()>) -> std::io::Result<()> {
-    let mut track: Vec<Row> = Vec::new();
-    loop {
-        let next = rows.next()?;
-        if track.first().is_some_and(|first| next.is_none_or(|next| next.user != first.user)) {
-            with(&mut track)?;
-            track.clear();
+    /// The number of the class; none for a thing that is no road user.
+    fn class(&self, id: &str, users: &mut Users) -> Option<u32> {
+        let of_meta = self.file.meta.class_of.as_ref();
+        let known = of_meta.and_then(|class_of| class_of.get(id));
+        if of_meta.is_some() && known.is_none() && !users.counts.unclassed.contains(id) {
+            users.counts.unclassed.insert(id.to_owned());
         }
-        match next {
-            Some(row) => track.push(row),
-            None => return Ok(()),
-        }
+        let name = known.map_or_else(|| self.text(Field::Class), |class| Cow::Borrowed(class.as_str()));
+        users.counts.classes += u64::from(name.is_empty());
+        users.class(&name, &self.file.table.mapping)
     }
-}
 
-/// Derives the headings and speeds that the rows of a track, in the order of time, lack.
-fn complete(track: &mut [Row], derived: &mut [u64; 2]) {
-    let places = track.iter().map(|row| (row.time, Point::new(row.values[0], row.values[1]))).collect::<Vec<_>>();
-    let moved = |number: usize| {
-        let (from, to) = (number.saturating_sub(1), (number + 1).min(places.len() - 1));
-        (places[to].0 - places[from].0, places[to].1 - places[from].1)
-    };
-    let mut heading = f64::NAN;
-    let mut waiting = 0;
-    for (number, Row { values, .. }) in track.iter_mut().enumerate() {
-        let (lasted, way) = moved(number);
-        if values[2].is_nan() {
-            derived[0] += 1;
-            values[2] = if way.norm() >= MOVED { way.y.atan2(way.x) } else { heading };
+    /// The number of the road user.
+    fn user(&self, id: &str, users: &mut Users) -> u32 {
+        let parts = self.places.reused.iter().filter_map(|place| self.cells.get(*place));
+        let mut key = Cow::Borrowed(id);
+        for part in parts.map(Cell::text).chain(self.file.number.map(|number| Cow::Owned(number.to_string()))) {
+            key = Cow::Owned(format!("{key}\n{part}"));
         }
-        if values[3].is_nan() {
-            derived[1] += 1;
-            values[3] = if lasted > 0.0 { way.norm() / lasted } else { 0.0 };
-        }
-        heading = values[2];
-        if heading.is_nan() {
-            waiting = number + 1;
-        }
+        let is_reused = !self.file.table.mapping.reused.is_empty();
+        if is_reused { users.number_of_reused(&key, id) } else { users.number(&key, id) }
     }
-    // Those that stood at first head where they went then; one that never moved heads along +x.
-    let first = track.get(waiting).map_or(0.0, |row| row.values[2]);
-    track[..waiting].iter_mut().for_each(|row| row.values[2] = first);
 }

@@ -11,7 +11,7 @@ use crate::geometry::Point;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::sumo_type::SumoType;
 use crate::util::input_file::longer;
-use crate::util::limits::{ANGLE, HEIGHT, LENGTH, NAME, POSITION, SPEED, TIME, WIDTH};
+use crate::util::limits::{ANGLE, HEIGHT, LENGTH, NAME, POSITION, SPEED, TIME, WIDTH, is_noise, said_of_noise};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// One road user in one step.
@@ -27,7 +27,7 @@ pub(super) struct Sample<'a> {
     /// Counter-clockwise from +x.
     pub heading: Radian,
     pub speed: MetrePerSecond,
-    /// 0 or less where it is not known: that of its class.
+    /// 0 where it is not known: that of its class.
     pub length: Metre,
     pub width: Metre,
     /// Its lane, where the recording tells.
@@ -44,6 +44,7 @@ pub(super) struct FcdWriter<'a> {
     /// The step that is written, and the ids in it: those of vehicles and those of persons.
     time: Second,
     written: [FxHashSet<String>; 2],
+    below_zero: u64,
 }
 
 /// The class of persons.
@@ -60,7 +61,15 @@ impl<'a> FcdWriter<'a> {
             Ok(fcd)
         };
         let fcd = draft().map_err(|source: IoError| crate::Error::file(&std::env::temp_dir(), source))?;
-        Ok(Self { fcd, lanes, types: FxHashMap::default(), row: String::new(), time: 0.0, written: Default::default() })
+        Ok(Self {
+            fcd,
+            lanes,
+            types: FxHashMap::default(),
+            row: String::new(),
+            time: 0.0,
+            written: Default::default(),
+            below_zero: 0,
+        })
     }
 
     /// Appends a road user; those of a step follow each other.
@@ -68,7 +77,11 @@ impl<'a> FcdWriter<'a> {
     /// # Errors
     /// Which value is impossible.
     pub fn write(&mut self, sample: &Sample) -> Result<(), String> {
-        let Sample { time, id, class, front, height, heading, speed, .. } = *sample;
+        let Sample { time, id, class, front, height, heading, mut speed, .. } = *sample;
+        if is_noise(speed) {
+            speed = 0.0;
+            self.below_zero += 1;
+        }
         TIME.check("time", time)?;
         POSITION.check("x", front.x)?;
         POSITION.check("y", front.y)?;
@@ -106,10 +119,15 @@ impl<'a> FcdWriter<'a> {
         self.fcd.write_all(self.row.as_bytes()).map_err(|error| error.to_string())
     }
 
+    /// What was read otherwise than it stands in the file, as a line.
+    pub fn remarks(&self) -> Option<String> {
+        said_of_noise(self.below_zero)
+    }
+
     /// The name of the type of this class and size.
     fn kind(&mut self, sample: &Sample) -> Result<String, String> {
         let usual = SumoType::of_class("", sample.class);
-        let size = |given: Metre, usual: Metre| if given > 0.0 { (given * 100.0).round() / 100.0 } else { usual };
+        let size = |given: Metre, usual: Metre| if given == 0.0 { usual } else { (given * 100.0).round() / 100.0 };
         let (length, width) = (size(sample.length, usual.length), size(sample.width, usual.width));
         LENGTH.check("length", length)?;
         WIDTH.check("width", width)?;

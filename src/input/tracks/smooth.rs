@@ -1,92 +1,35 @@
-//! Places and headings of a track smoothed: Kalman's filter forward, then Rauch, Tung and Striebel's smoother back (AIAA Journal 3,
-//! 1965). The model is that of a constant acceleration, which white noise changes; steps may be of any length.
-//!
-//! Where a place is further from its prediction than a vehicle can drive, the track jumps. Each piece is smoothed alone, so
-//! that a jump stays what it is.
+//! Places and headings of a track smoothed: Kalman's [`filter`](super::filter) forward, then Rauch, Tung and Striebel's smoother back (AIAA
+//! Journal 3, 1965). Each piece between two jumps is smoothed alone, so that a jump stays what it is.
 
-use nalgebra::{Matrix1x3, Matrix3, Matrix3x2, Vector3};
-
+use super::filter::{Filter, Filtered, Jump, Model, jump};
 use super::spill::Row;
-use crate::geometry::Point;
-use crate::util::units::{Metre, Second};
+use crate::util::units::Metre;
 
-/// The noise of the places of a recording that is not smoothed, in m: that which the drones' data sets state.
-pub const USUAL_NOISE: Metre = 0.1;
-/// Spectral density of the jerk, in m²/s⁵. Of 1, 3, 10, 30 and 100 the error of places at 25 Hz with white noise of 0.1 and 0.3 m differs
-/// by 25 % at most in `sumo_nets/roundabout` and `reckless`; it is 5 % less with 3.
-const JERK: f64 = 10.0;
-/// That of the heading, in rad²/s⁵.
+/// Spectral density of the change of the turning speed, in rad²/s⁵.
 const TURNING: f64 = 1.0;
-/// Standard deviations of a speed, an acceleration, a turning speed and its change before a track is known, in SI units.
-const UNKNOWN: [f64; 2] = [40.0, 5.0];
+/// Standard deviations of a turning speed and its change before a track is known, in SI units.
 const UNKNOWN_TURN: [f64; 2] = [1.0, 1.0];
-/// A value further from its prediction than this number of standard deviations is not noise.
-const SURE: f64 = 5.0;
 /// A velocity below this number of standard deviations is that of a road user that stands.
 const MOVES: f64 = 3.0;
-/// A place nearer than this to its prediction is not a jump, in m: two vehicles that exchange identities are further apart.
-const LEAST_JUMP: Metre = 2.0;
-
-/// A place that its road user cannot have driven to.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Jump {
-    pub user: u32,
-    pub time: Second,
-    /// Where it was expected.
-    pub expected: Point,
-    pub found: Point,
-}
-
-/// Value, its change and the change of that, of two quantities.
-type State = Matrix3x2<f64>;
-
-/// How noisy values are, and how they change.
-#[derive(Clone, Copy)]
-struct Model {
-    noise: f64,
-    density: f64,
-    unknown: [f64; 2],
-    /// The least distance of a value from its prediction that is not noise.
-    least_jump: f64,
-}
-
-/// A step of the filter, as the smoother needs it.
-struct Filtered {
-    transition: Matrix3<f64>,
-    predicted: State,
-    predicted_covariance: Matrix3<f64>,
-    state: State,
-    covariance: Matrix3<f64>,
-    /// Whether the track jumps here, and the smoother does not look back beyond.
-    begins: bool,
-}
 
 /// Smooths tracks one after the other; its memory is reused.
 pub(super) struct Smoother {
-    noise: Option<Metre>,
+    noise: Metre,
     filtered: Vec<Filtered>,
 }
 
 impl Smoother {
-    /// For places with noise of this standard deviation; none if they are not to be smoothed, but only searched for jumps.
-    pub fn new(noise: Option<Metre>) -> Self {
+    /// For places with noise of this standard deviation.
+    pub fn new(noise: Metre) -> Self {
         Self { noise, filtered: Vec::new() }
     }
 
-    /// Finds the jumps of a track and smooths it, if that is wanted: its places and headings. Adds the headings and speeds that it lacks,
-    /// where the road user moves, and returns their numbers.
-    pub fn smooth(&mut self, track: &mut [Row], mut jumped: impl FnMut(Jump)) -> [u64; 2] {
-        let noise = self.noise.unwrap_or(USUAL_NOISE);
-        let places = Model { noise, density: JERK, unknown: UNKNOWN, least_jump: LEAST_JUMP };
-        self.filter(track, &places, |row| [row.values[0], row.values[1]]);
-        for (row, step) in track.iter().zip(&self.filtered).skip(1).filter(|(_, step)| step.begins) {
-            let expected = Point::new(step.predicted[(0, 0)], step.predicted[(0, 1)]);
-            let found = Point::new(row.values[0], row.values[1]);
-            jumped(Jump { user: row.user, time: row.time, expected, found });
-        }
-        if self.noise.is_none() {
-            return [0, 0];
-        }
+    /// Smooths a track, its places and headings, and finds its jumps. Adds the headings and speeds that it lacks, where the road user
+    /// moves, and returns their numbers.
+    pub fn smooth(&mut self, track: &mut [Row], jumped: impl FnMut(Jump)) -> [u64; 2] {
+        self.filter(track, Model::of_places(self.noise), |row| [row.values[0], row.values[1]]);
+        let begins = track.iter().zip(&self.filtered).skip(1).filter(|(_, step)| step.begins);
+        begins.map(|(row, step)| jump(row, step)).for_each(jumped);
         let mut added = [0, 0];
         self.smooth_back();
         for (row, step) in track.iter_mut().zip(&self.filtered) {
@@ -100,12 +43,12 @@ impl Smoother {
                 values[3] = if moves { vx.hypot(vy) } else { 0.0 };
             }
         }
-        self.smooth_headings(track, noise, &mut added);
+        self.smooth_headings(track, &mut added);
         added
     }
 
     /// Smooths the headings where all are given, and derives them from the velocities where none is.
-    fn smooth_headings(&mut self, track: &mut [Row], noise: Metre, added: &mut [u64; 2]) {
+    fn smooth_headings(&mut self, track: &mut [Row], added: &mut [u64; 2]) {
         if track.iter().any(|row| row.values[2].is_nan()) {
             for (row, step) in track.iter_mut().zip(&self.filtered).filter(|(row, _)| row.values[2].is_nan()) {
                 let [vx, vy] = [0, 1].map(|of| step.state[(1, of)]);
@@ -118,7 +61,7 @@ impl Smoother {
         }
         // As if both ends of the road user were found with the noise of a place.
         let length = track.first().map_or(1.0, |row| row.values[4]).max(1.0);
-        let noise = std::f64::consts::SQRT_2 * noise / length;
+        let noise = std::f64::consts::SQRT_2 * self.noise / length;
         let begins = self.filtered.iter().map(|step| step.begins).collect::<Vec<_>>();
         let mut before = track.first().map_or(0.0, |row| row.values[2]);
         for row in track.iter_mut() {
@@ -127,7 +70,7 @@ impl Smoother {
             row.values[2] = before;
         }
         let turns = Model { noise, density: TURNING, unknown: UNKNOWN_TURN, least_jump: std::f64::consts::FRAC_PI_4 };
-        self.filter(track, &turns, |row| [row.values[2], 0.0]);
+        self.filter(track, turns, |row| [row.values[2], 0.0]);
         for (step, begins) in self.filtered.iter_mut().zip(begins) {
             step.begins |= begins;
         }
@@ -137,51 +80,11 @@ impl Smoother {
         }
     }
 
-    /// Kalman's filter, from the first row to the last.
-    fn filter(&mut self, track: &[Row], model: &Model, value: impl Fn(&Row) -> [f64; 2]) {
-        let Model { noise, density, unknown: [change, change_of_change], least_jump } = *model;
-        let measured = Matrix1x3::new(1.0, 0.0, 0.0);
-        let variance = noise * noise;
-        let unknown = Vector3::new(variance, change * change, change_of_change * change_of_change);
-        let first = |[x, y]: [f64; 2]| (State::new(x, y, 0.0, 0.0, 0.0, 0.0), Matrix3::from_diagonal(&unknown));
+    /// The filter, from the first row to the last.
+    fn filter(&mut self, track: &[Row], model: Model, value: impl Fn(&Row) -> [f64; 2]) {
+        let mut filter = Filter::new(model);
         self.filtered.clear();
-        let mut time = f64::NAN;
-        for row in track {
-            let found = value(row);
-            let lasted = if time.is_nan() { 0.0 } else { row.time - time };
-            time = row.time;
-            let transition = Matrix3::new(1.0, lasted, lasted * lasted / 2.0, 0.0, 1.0, lasted, 0.0, 0.0, 1.0);
-            let step = match self.filtered.last() {
-                None => {
-                    let (state, covariance) = first(found);
-                    Filtered {
-                        transition,
-                        predicted: state,
-                        predicted_covariance: covariance,
-                        state,
-                        covariance,
-                        begins: true,
-                    }
-                }
-                Some(last) => {
-                    let predicted = transition * last.state;
-                    let predicted_covariance =
-                        transition * last.covariance * transition.transpose() + jerks(lasted) * density;
-                    let off = [found[0] - predicted[(0, 0)], found[1] - predicted[(0, 1)]];
-                    let expected = predicted_covariance[(0, 0)] + variance;
-                    let begins = off[0].hypot(off[1]) > least_jump.max(SURE * expected.sqrt());
-                    let (state, covariance) = if begins {
-                        first(found)
-                    } else {
-                        let gain = predicted_covariance.column(0) / expected;
-                        let state = predicted + gain * nalgebra::RowVector2::new(off[0], off[1]);
-                        (state, (Matrix3::identity() - gain * measured) * predicted_covariance)
-                    };
-                    Filtered { transition, predicted, predicted_covariance, state, covariance, begins }
-                }
-            };
-            self.filtered.push(step);
-        }
+        self.filtered.extend(track.iter().map(|row| filter.step(row.time, value(row))));
     }
 
     /// The smoother, from the last row to the first.
@@ -197,16 +100,10 @@ impl Smoother {
     }
 }
 
-/// The covariance that white jerk of density 1 adds within a time.
-fn jerks(lasted: Second) -> Matrix3<f64> {
-    let power = |exponent: i32| lasted.powi(exponent);
-    let [a, b, c] = [power(5) / 20.0, power(4) / 8.0, power(3) / 6.0];
-    Matrix3::new(a, b, c, b, power(3) / 3.0, power(2) / 2.0, c, power(2) / 2.0, lasted)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::input::tracks::filter::JumpFinder;
 
     /// A track of 10 s at 25 Hz that speeds up and turns; noise of 0.3 m if wanted.
     fn track(noise: bool) -> Vec<Row> {
@@ -233,7 +130,7 @@ mod tests {
         let (truth, noisy) = (track(false), track(true));
         let mut found = noisy.clone();
         let mut jumps = 0;
-        let added = Smoother::new(Some(0.3)).smooth(&mut found, |_| jumps += 1);
+        let added = Smoother::new(0.3).smooth(&mut found, |_| jumps += 1);
         assert_eq!((jumps, added), (0, [250, 250]));
         assert!(rms(&noisy, &truth) > 0.4 && rms(&found, &truth) < 0.15, "{}", rms(&found, &truth));
         for row in &found[25..225] {
@@ -243,23 +140,25 @@ mod tests {
     }
 
     #[test]
-    fn without_a_wish_nothing_changes() {
-        let mut found = track(true);
-        assert_eq!(Smoother::new(None).smooth(&mut found, |_| ()), [0, 0]);
-        assert!(found.iter().zip(track(true)).all(|(a, b)| a.values[..2] == b.values[..2] && a.values[3].is_nan()));
+    fn a_jump_is_found_and_kept() {
+        let mut found = track(false);
+        found[100..].iter_mut().for_each(|row| row.values[1] += 3.0);
+        let mut finder = JumpFinder::default();
+        let unsmoothed = found.iter().filter_map(|row| finder.next(row)).collect::<Vec<_>>();
+        let mut jumps = Vec::new();
+        Smoother::new(0.1).smooth(&mut found, |jump| jumps.push(jump));
+        for jumps in [unsmoothed, jumps] {
+            assert_eq!(jumps.iter().map(|jump| (jump.user, jump.time)).collect::<Vec<_>>(), [(3, 4.0)]);
+        }
+        let moved = found[100].values[1] - found[99].values[1];
+        assert!(moved > 2.8, "{moved}");
     }
 
     #[test]
-    fn a_jump_is_found_and_kept() {
-        for wish in [None, Some(0.1)] {
-            let mut found = track(false);
-            found[100..].iter_mut().for_each(|row| row.values[1] += 3.0);
-            let mut jumps = Vec::new();
-            Smoother::new(wish).smooth(&mut found, |jump| jumps.push(jump));
-            assert_eq!(jumps.iter().map(|jump| (jump.user, jump.time)).collect::<Vec<_>>(), [(3, 4.0)]);
-            let moved = found[100].values[1] - found[99].values[1];
-            assert!(moved > 2.8, "{moved}");
-        }
+    fn the_first_row_of_another_road_user_is_no_jump() {
+        let mut finder = JumpFinder::default();
+        let of_another = track(false).into_iter().map(|row| Row { user: 4, ..row });
+        assert!(track(false).into_iter().chain(of_another).all(|row| finder.next(&row).is_none()));
     }
 
     #[test]
@@ -269,7 +168,7 @@ mod tests {
             let shake = if step % 2 == 0 { 0.05 } else { -0.05 };
             row.values[2] = (3.1 + 0.01 * f64::from(step) + shake + 4.0).rem_euclid(std::f64::consts::TAU) - 4.0;
         }
-        Smoother::new(Some(0.2)).smooth(&mut found, |_| ());
+        Smoother::new(0.2).smooth(&mut found, |_| ());
         for (step, row) in (0..).zip(&found).skip(20).take(200) {
             let off = row.values[2] - 3.1 - 0.01 * f64::from(step);
             let turns = off / std::f64::consts::TAU;
@@ -284,7 +183,7 @@ mod tests {
             row.values[0] -= moving.values[0];
             row.values[1] -= moving.values[1];
         }
-        Smoother::new(Some(0.3)).smooth(&mut found, |_| ());
+        Smoother::new(0.3).smooth(&mut found, |_| ());
         assert!(found.iter().filter(|row| row.values[3] == 0.0).count() > 230);
     }
 }

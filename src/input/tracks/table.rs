@@ -4,15 +4,13 @@ use std::borrow::Cow;
 use std::io::{BufRead, Read};
 use std::path::Path;
 
-#[cfg(feature = "parquet")]
-use parquet::file::reader::{FileReader, SerializedFileReader};
-#[cfg(feature = "parquet")]
-use parquet::record::Field;
-
+use crate::util::header::Wanted;
 use crate::util::input_file::{self, ShortRows, longer};
 use crate::util::limits::LINE;
 #[cfg(feature = "parquet")]
-use crate::util::parquet_column::{self, guarded};
+use crate::util::parquet_rows::ParquetRows;
+#[cfg(feature = "parquet")]
+use crate::util::parquet_values::Value;
 use crate::{Error, Result};
 
 /// What may stand between values, in the order in which it is looked for.
@@ -61,46 +59,56 @@ impl Cell<'_> {
 /// [`Error::File`] where it cannot be read; [`Error::Line`] where it is not a table.
 pub(super) fn names(path: &Path) -> Result<Vec<String>> {
     #[cfg(feature = "parquet")]
-    if let Some(file) = parquet_of(path)? {
-        return Ok(parquet_names(&file));
+    if let Some(rows) = parquet_of(path)? {
+        return Ok(rows.names());
     }
     csv_names(path, &mut csv_of(path)?)
 }
 
-/// Reads a table: `begin` gets the names of its columns, `row` each row.
+/// Reads a table: `begin` gets the names of its columns and returns the places of those that are read, `row` gets their values and
+/// returns whether to read on. Returns what is doubtful.
 ///
 /// # Errors
 /// Those of [`names`], and what `begin` and `row` return, with the row.
 pub(super) fn read(
     path: &Path,
-    begin: impl FnOnce(&[String]) -> std::result::Result<(), String>,
-    mut row: impl FnMut(&[Cell]) -> std::result::Result<(), String>,
-) -> Result<()> {
+    begin: impl FnOnce(&[String]) -> std::result::Result<Vec<(usize, Wanted)>, String>,
+    mut row: impl FnMut(&[Cell]) -> std::result::Result<bool, String>,
+) -> Result<Option<String>> {
     #[cfg(feature = "parquet")]
-    if let Some(file) = parquet_of(path)? {
-        begin(&parquet_names(&file)).map_err(|why| Error::content(path, why))?;
-        let mut rows = guarded(path, || file.get_row_iter(None))?;
-        for number in 1_u64.. {
-            let Some(next) = guarded(path, || rows.next().transpose())? else { break };
-            let cells =
-                next.get_column_iter().map(|(_, field)| cell(field)).collect::<std::result::Result<Vec<_>, _>>();
-            let done = cells.and_then(|cells| row(&cells));
-            done.map_err(|why| Error::content(path, format!("row {number}: {why}")))?;
+    if let Some(mut rows) = parquet_of(path)? {
+        let columns = begin(&rows.names()).map_err(|why| Error::content(path, why))?;
+        rows.want(&columns)?;
+        while rows.has_row()? {
+            let cells = (0..columns.len()).map(|column| cell(rows.value(column)));
+            let done = cells.collect::<std::result::Result<Vec<_>, _>>().and_then(|cells| row(&cells));
+            if !done.map_err(|why| Error::content(path, format!("row {}: {why}", rows.number())))? {
+                break;
+            }
+            rows.use_row();
         }
-        return Ok(());
+        return Ok(None);
     }
     let mut reader = csv_of(path)?;
-    begin(&csv_names(path, &mut reader)?).map_err(|why| Error::line(path, 1, why))?;
+    let columns = begin(&csv_names(path, &mut reader)?).map_err(|why| Error::line(path, 1, why))?;
     let mut record = csv::StringRecord::new();
     loop {
         let line = reader.position().line();
         reader.get_mut().begin_row();
         if !reader.read_record(&mut record).map_err(|error| unreadable(path, line, &error))? {
-            return Ok(());
+            return Ok((!reader.get_ref().has_ended()).then(|| maybe_cut(path)));
         }
-        let cells = record.iter().map(|text| Cell::Text(Cow::Borrowed(text))).collect::<Vec<_>>();
-        row(&cells).map_err(|why| Error::line(path, line, why))?;
+        let text = |place: usize| record.get(place).map_or(Cell::Missing, |text| Cell::Text(Cow::Borrowed(text)));
+        let cells = columns.iter().map(|(place, _)| text(*place)).collect::<Vec<_>>();
+        if !row(&cells).map_err(|why| Error::line(path, line, why))? {
+            return Ok(None);
+        }
     }
+}
+
+/// What is said of a table whose last row has no line break.
+pub(super) fn maybe_cut(path: &Path) -> String {
+    format!("{}: its last row has no line break; where the file was cut short, the last value is wrong", path.display())
 }
 
 fn csv_of(path: &Path) -> Result<csv::Reader<ShortRows<impl Read>>> {
@@ -137,35 +145,18 @@ fn unreadable(path: &Path, line: u64, error: &csv::Error) -> Error {
 }
 
 #[cfg(feature = "parquet")]
-fn parquet_of(path: &Path) -> Result<Option<SerializedFileReader<std::fs::File>>> {
+fn parquet_of(path: &Path) -> Result<Option<ParquetRows>> {
     let mut file = input_file::file(path)?;
     let mut first = [0; PARQUET.len()];
     let is_one = file.read(&mut first).map_err(|source| Error::file(path, source))? == first.len() && first == *PARQUET;
-    if is_one { parquet_column::open(path, file).map(Some) } else { Ok(None) }
+    if is_one { ParquetRows::open(path, file).map(Some) } else { Ok(None) }
 }
 
 #[cfg(feature = "parquet")]
-fn parquet_names(file: &SerializedFileReader<std::fs::File>) -> Vec<String> {
-    let columns = file.metadata().file_metadata().schema_descr().root_schema().get_fields().iter();
-    columns.map(|column| column.name().to_owned()).collect()
-}
-
-#[cfg(feature = "parquet")]
-fn cell(field: &Field) -> std::result::Result<Cell<'_>, String> {
-    Ok(match field {
-        Field::Null => Cell::Missing,
-        Field::Str(text) => Cell::Text(Cow::Borrowed(text)),
-        Field::Byte(number) => Cell::Number(f64::from(*number)),
-        Field::Short(number) => Cell::Number(f64::from(*number)),
-        Field::Int(number) => Cell::Number(f64::from(*number)),
-        Field::Long(number) => Cell::Number(*number as f64),
-        Field::UByte(number) => Cell::Number(f64::from(*number)),
-        Field::UShort(number) => Cell::Number(f64::from(*number)),
-        Field::UInt(number) => Cell::Number(f64::from(*number)),
-        Field::ULong(number) => Cell::Number(*number as f64),
-        Field::Float(number) => Cell::Number(f64::from(*number)),
-        Field::Double(number) => Cell::Number(*number),
-        // Columns that do not matter may hold anything.
-        _ => Cell::Missing,
+fn cell(value: Value<'_>) -> std::result::Result<Cell<'_>, String> {
+    Ok(match value {
+        Value::Missing => Cell::Missing,
+        Value::Number(number) => Cell::Number(number),
+        Value::Text(text) => Cell::Text(Cow::Borrowed(std::str::from_utf8(text).map_err(|error| error.to_string())?)),
     })
 }

@@ -9,6 +9,7 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
+use super::Said;
 use super::sample::{FcdWriter, Sample};
 use crate::geometry::{Point, Vector};
 use crate::output::formats::{FAR, origin_of_trajectories};
@@ -46,7 +47,7 @@ struct Reader<'a> {
 }
 
 /// Turns a file into SUMO's fcd-output; returns what had to be assumed.
-pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Result<Vec<String>> {
+pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Result<Said> {
     let mut reader = Reader { path, source: input_file::open(path)?, is_little: true, at: 0 };
     let has_heights = reader.format()?;
     let mut unit = 1.0;
@@ -105,9 +106,8 @@ pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Re
             other => return Err(reader.wrong(format!("a record begins with {other}; 1, 2 and 3 are known"))),
         }
     }
-    Ok(vec![
-        "the format has no types: vehicles longer than 6.5 m are trucks, those narrower than 1.2 m bicycles".to_owned(),
-    ])
+    let types = "the format has no types: vehicles longer than 6.5 m are trucks, those narrower than 1.2 m bicycles";
+    Ok(Said { missing: vec![types.to_owned()], ..Said::default() })
 }
 
 /// The lane of a link and number, as closecall writes them.
