@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +24,9 @@ class Elsewhere:
 
     def __init__(self, repository: Path) -> None:
         sys.path.insert(0, str(repository))
-        from src import longitudinal_ssms, two_dimensional_ssms  # type: ignore[import-not-found]
-
-        self.functions: dict[str, Any] = {"2D-TTC": longitudinal_ssms.TTC}
-        self.functions |= {name: getattr(two_dimensional_ssms, name) for name in ("TTC2D", "ACT", "TAdv")}
+        along, on_plane = (import_module(f"src.{name}") for name in ("longitudinal_ssms", "two_dimensional_ssms"))
+        self.functions: dict[str, Any] = {"2D-TTC": along.TTC}
+        self.functions |= {name: getattr(on_plane, name) for name in ("TTC2D", "ACT", "TAdv")}
 
     def steps(self, recording: Recording) -> dict[frozenset[str], dict[int, dict[str, float]]]:
         """The values of each pair by tick."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from statistics import median
 
 import numpy as np
-from measures import RULES, Measure, Rule
+from measures import Measure, Rule
 from replays import Steps
 from scores import auc, auprc
 from tracks import TICK, Pair, Recording
@@ -95,7 +95,7 @@ def rate_rule(
             "crashes": str(len(crashes)),
         }
         yield setting.columns | row
-    leads = [lead for pair in crashes if (lead := lead_of(ticks[pair], pair)) is not None]
+    leads = [ahead for pair in crashes if (ahead := lead_of(ticks[pair], pair)) is not None]
     if leads:
         spread = {"value": f"{median(leads):.1f}", "low": f"{min(leads):.1f}", "high": f"{max(leads):.1f}"}
         yield setting.columns | {"name": rule.name, "kind": "lead time"} | spread
@@ -104,10 +104,7 @@ def rate_rule(
     yield setting.columns | row | {"hours": f"{hours:.4f}"}
 
 
-def has_column(rule: Rule, steps: dict[str, dict[frozenset[str], Steps]]) -> bool:
-    """Whether the log has the column of a rule."""
-    rows = (row for pairs in steps.values() for of_pair in pairs.values() for row in of_pair.values())
-    return rule.column in next(rows, {})
-
-
-__all__ = ["LEADS", "RULES", "Result", "Setting", "has_column", "rate_measure", "rate_rule"]
+def has_column(name: str, replayed: dict[str, dict[frozenset[str], Steps]]) -> bool:
+    """Whether the log has a column."""
+    rows = (row for pairs in replayed.values() for steps in pairs.values() for row in steps.values())
+    return name in next(rows, {})

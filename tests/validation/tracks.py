@@ -67,7 +67,7 @@ class Recording:
     @property
     def hours(self) -> float:
         """How long all its road users were in the scene together, in vehicle-hours."""
-        return sum(np.diff(track.ticks, append=track.ticks[-1]).sum() for track in self.tracks.values()) * TICK / 3600
+        return sum(int(track.ticks[-1] - track.ticks[0]) for track in self.tracks.values()) * TICK / 3600
 
     @cached_property
     def pairs(self) -> list[Pair]:
@@ -94,7 +94,7 @@ def speeds(ticks: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     if len(ticks) < 2:
         return np.zeros(len(ticks))
     seconds = ticks * TICK
-    return np.hypot(np.gradient(x, seconds), np.gradient(y, seconds))
+    return np.asarray(np.hypot(np.gradient(x, seconds), np.gradient(y, seconds)))
 
 
 def read(path: Path, crash: bool) -> Recording:

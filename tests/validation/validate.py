@@ -1,11 +1,13 @@
 """Crashes against crash-free traffic: how well each measure and rule tells them apart.
 
-python tests/validation/validate.py [--more FILE ... --label NAME] [--ssms-on-plane FOLDER] [--page docs/validation.md]
+python tests/validation/validate.py [--crashes FILE ...] [--free FILE ...] [--label NAME] [--ssms-on-plane FOLDER]
+    [--page docs/validation.md]
 
 Replays each recording in crashes/ and free/ along the paths driven and along arcs, as it is and smoothed, and writes
-results.csv beside this file. `--more` adds crash-free recordings that may not be passed on; their results stand under
-a label of their own, with the date. Rows of results.csv that a run does not repeat are kept: those of `--more`, and,
-without `--ssms-on-plane`, those of SSMsOnPlane. `--page` writes the tables into a page, between its marks.
+results.csv beside this file. `--crashes` takes other crashes or near-crashes instead, `--free` other crash-free
+recordings, as those that may not be passed on; the results stand under a label of their own, with the date. Rows of
+results.csv that a run does not repeat are kept: those of other labels, and, without `--ssms-on-plane`, those of
+SSMsOnPlane. `--page` writes the tables into a page, between its marks.
 """
 
 from __future__ import annotations
@@ -13,13 +15,15 @@ from __future__ import annotations
 import argparse
 import csv
 import sys
+from collections.abc import Callable, Mapping
 from datetime import date
 from pathlib import Path
+from typing import Any
 
 from elsewhere import Elsewhere
-from measures import ELSEWHERE, MEASURES, RULES
+from measures import ELSEWHERE, MEASURES, RULES, Measure
 from page import write_tables
-from ratings import Result, Setting, has_column, rate_measure, rate_rule
+from ratings import Result, Setting, Values, has_column, rate_measure, rate_rule
 from replays import PATHS, Steps, replay
 from tracks import Pair, Recording, read
 
@@ -34,11 +38,21 @@ BY_SSMS_ON_PLANE = "SSMsOnPlane"
 Replayed = dict[str, dict[frozenset[str], Steps]]
 
 
-def recordings(more: list[Path]) -> list[Recording]:
-    """All recordings that are kept here, and more that are crash-free."""
-    crashes = [read(path, True) for path in sorted((HERE / "crashes").glob("*.csv"))]
-    free = [read(path, False) for path in [*sorted((HERE / "free").glob("*.csv")), *more]]
-    return crashes + free
+def recordings(crashes: list[Path], free: list[Path]) -> list[Recording]:
+    """These recordings; where there are none, those that are kept here."""
+    crashes = crashes or sorted((HERE / "crashes").glob("*.csv"))
+    free = free or sorted((HERE / "free").glob("*.csv"))
+    return [read(path, True) for path in crashes] + [read(path, False) for path in free]
+
+
+def steps_in(replayed: Replayed) -> Callable[[Pair], Steps]:
+    """The steps of a pair in these replays."""
+    return lambda pair: replayed[pair.recording].get(pair.names, {})
+
+
+def scores_in(steps: Callable[[Pair], Mapping[int, Mapping[str, Any]]], measure: Measure) -> Values:
+    """The scores of a pair by a measure."""
+    return lambda pair: {tick: measure.score(row[measure.name]) for tick, row in steps(pair).items()}
 
 
 def rated(scene: list[Recording], setting: Setting) -> list[Result]:
@@ -47,21 +61,13 @@ def rated(scene: list[Recording], setting: Setting) -> list[Result]:
     logged = {each.name: replay(each.path, setting.path, setting.smooth, "margin < 0") for each in scene}
     pairs = [pair for each in scene for pair in each.pairs]
     rows: list[Result] = []
-    columns = next(iter(steps for of_pair in wide.values() for steps in of_pair.values()), {})
-    known = next(iter(columns.values()), {})
     for measure in MEASURES:
-        if measure.name not in known:
-            continue
-
-        def values(pair: Pair, name: str = measure.name, score=measure.score) -> dict[int, float]:
-            steps = wide[pair.recording].get(pair.names, {})
-            return {tick: score(row[name]) for tick, row in steps.items()}
-
-        rows += rate_measure(measure, pairs, values, setting)
+        if has_column(measure.name, wide):
+            rows += rate_measure(measure, pairs, scores_in(steps_in(wide), measure), setting)
     for rule in RULES:
-        replayed: Replayed = logged if rule.default_log else wide
-        if has_column(rule, replayed):
-            rows += rate_rule(rule, scene, lambda pair, of=replayed: of[pair.recording].get(pair.names, {}), setting)
+        replayed = logged if rule.default_log else wide
+        if has_column(rule.column, replayed):
+            rows += rate_rule(rule, scene, steps_in(replayed), setting)
     return rows
 
 
@@ -69,37 +75,36 @@ def rated_elsewhere(scene: list[Recording], functions: Elsewhere, label: str) ->
     """The rows of SSMsOnPlane's measures."""
     steps = {each.name: functions.steps(each) for each in scene}
     pairs = [pair for each in scene for pair in each.pairs]
+    setting = Setting(label, BY_SSMS_ON_PLANE, False)
     rows: list[Result] = []
     for measure in ELSEWHERE:
-
-        def values(pair: Pair, name: str = measure.name, score=measure.score) -> dict[int, float]:
-            of_pair = steps[pair.recording].get(pair.names, {})
-            return {tick: score(row[name]) for tick, row in of_pair.items()}
-
-        rows += rate_measure(measure, pairs, values, Setting(label, BY_SSMS_ON_PLANE, False))
+        values = scores_in(lambda pair: steps[pair.recording].get(pair.names, {}), measure)
+        rows += rate_measure(measure, pairs, values, setting)
     return rows
 
 
 def main() -> None:
     """Rate everything, write the results, and the tables of the page."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--more", type=Path, nargs="+", default=[], metavar="FILE")
-    parser.add_argument("--label", default=None, help="name of the recordings with those of --more")
+    parser.add_argument("--crashes", type=Path, nargs="+", default=[], metavar="FILE")
+    parser.add_argument("--free", type=Path, nargs="+", default=[], metavar="FILE")
+    parser.add_argument("--label", default=None, help="name of the results with --crashes or --free")
     parser.add_argument("--ssms-on-plane", type=Path, default=None, metavar="FOLDER")
     parser.add_argument("--page", type=Path, default=None)
     arguments = parser.parse_args()
-    if bool(arguments.more) != bool(arguments.label):
-        sys.exit("--more needs --label, and --label needs --more")
+    others = bool(arguments.crashes or arguments.free)
+    if others != bool(arguments.label):
+        sys.exit("--crashes and --free need --label, and --label needs one of them")
     label = arguments.label or KEPT
-    scene = recordings(arguments.more)
+    scene = recordings(arguments.crashes, arguments.free)
     rows: list[Result] = []
     for path in PATHS:
         for smooth in (False, True):
             rows += rated(scene, Setting(label, path, smooth))
     if arguments.ssms_on_plane:
         rows += rated_elsewhere(scene, Elsewhere(arguments.ssms_on_plane), label)
-    of_today = {"date": date.today().isoformat()} if arguments.more or arguments.ssms_on_plane else {}
-    rows = [row | (of_today if row["path"] == BY_SSMS_ON_PLANE or arguments.more else {}) for row in rows]
+    today = {"date": date.today().isoformat()}
+    rows = [row | (today if others or row["path"] == BY_SSMS_ON_PLANE else {}) for row in rows]
     results = merged(rows)
     with RESULTS.open("w", newline="") as out:
         writer = csv.DictWriter(out, COLUMNS, restval="", lineterminator="\n")
