@@ -9,17 +9,23 @@ Result = dict[str, str]
 
 MARKS = ("<!-- make validation: begin {} -->\n", "<!-- make validation: end {} -->")
 LEADS = ("0", "0.5", "1")
+# Paths, and whether smoothed.
 SETTINGS = {
     ("driven", "no"): "driven",
-    ("driven", "yes"): "smoothed",
+    ("driven", "yes"): "driven, smoothed",
     ("arc", "no"): "arc",
     ("arc", "yes"): "arc, smoothed",
 }
+# The sets of recordings, as results.csv names them.
+NGSIM, DRONES = "kept", "INTERACTION"
 
 
-def interval(row: Result) -> str:
+def interval(row: Result | None) -> str:
     """A value with its interval."""
-    return f"{float(row['value']):.3f} [{float(row['low']):.2f}, {float(row['high']):.2f}]"
+    if row is None:
+        return "–"
+    value, low, high = (float(row[part]) for part in ("value", "low", "high"))
+    return f"{value:.3f} [{low:.2f}–{high:.2f}]"
 
 
 def table(header: list[str], lines: list[list[str]]) -> str:
@@ -31,20 +37,17 @@ def table(header: list[str], lines: list[list[str]]) -> str:
 class Results:
     """Rows by what they are of."""
 
-    def __init__(self, rows: list[Result], recordings: str) -> None:
-        self.rows = {
-            (row["path"], row["smooth"], row["name"], row["kind"], row.get("lead", "")): row
-            for row in rows
-            if row["recordings"] == recordings
-        }
+    def __init__(self, rows: list[Result]) -> None:
+        parts = ("recordings", "path", "smooth", "name", "kind", "lead")
+        self.rows = {tuple(row.get(part, "") for part in parts): row for row in rows}
 
     def names(self, path: str, kind: str) -> list[str]:
         """The names that there are rows of, in their order."""
-        return list(dict.fromkeys(key[2] for key in self.rows if key[0] == path and key[3] == kind))
+        return list(dict.fromkeys(key[3] for key in self.rows if key[:2] == (NGSIM, path) and key[4] == kind))
 
-    def row(self, path: str, smooth: str, name: str, kind: str, lead: str = "") -> Result | None:
-        """One row."""
-        return self.rows.get((path, smooth, name, kind, lead))
+    def row(self, of: tuple[str, str, str], name: str, kind: str, lead: str = "") -> Result | None:
+        """One row, of recordings, path and smoothing."""
+        return self.rows.get((*of, name, kind, lead))
 
 
 def measures(results: Results) -> str:
@@ -52,10 +55,12 @@ def measures(results: Results) -> str:
     lines = []
     for path, mark in (("driven", "`{}`"), ("SSMsOnPlane", "{}, SSMsOnPlane")):
         for name in results.names(path, "AUC"):
-            cells = [results.row(path, "no", name, "AUC", lead) for lead in LEADS]
-            cells.append(results.row(path, "no", name, "AUPRC", "0.5"))
-            lines.append([mark.format(name), *(interval(cell) if cell else "–" for cell in cells)])
-    return table(["", "AUC, 0 s", "AUC, 0.5 s", "AUC, 1 s", "AUPRC, 0.5 s"], lines)
+            kept = [results.row((NGSIM, path, "no"), name, "AUC", lead) for lead in LEADS]
+            kept.append(results.row((NGSIM, path, "no"), name, "AUPRC", "0.5"))
+            more = [results.row((DRONES, path, "no"), name, kind, "0.5") for kind in ("AUC", "AUPRC")]
+            lines.append([mark.format(name), *map(interval, kept + more)])
+    header = ["AUC, 0 s", "AUC, 0.5 s", "AUC, 1 s", "AUPRC, 0.5 s"]
+    return table(["NGSIM", *header, f"{DRONES}: AUC, 0.5 s", "AUPRC, 0.5 s"], lines)
 
 
 def settings(results: Results) -> str:
@@ -63,46 +68,48 @@ def settings(results: Results) -> str:
     lines = []
     for name in results.names("driven", "AUC"):
         cells = []
-        for path, smooth in SETTINGS:
-            both = [results.row(path, smooth, name, kind, "0.5") for kind in ("AUC", "AUPRC")]
-            cells.append(" / ".join(f"{float(row['value']):.3f}" if row else "–" for row in both))
+        for setting in SETTINGS:
+            both = [results.row((NGSIM, *setting), name, kind, "0.5") for kind in ("AUC", "AUPRC")]
+            cells.append("/".join(f"{float(row['value']):.2f}" if row else "–" for row in both))
         lines.append([f"`{name}`", *cells])
-    return table(["AUC / AUPRC, 0.5 s", *SETTINGS.values()], lines)
+    return table(["AUC/AUPRC, 0.5 s", *SETTINGS.values()], lines)
 
 
-def rules(results: Results, hours: bool = True) -> str:
+def rate(row: Result | None) -> str:
+    """False alarms per vehicle-hour."""
+    return f"{float(row['value']) / float(row['hours']):.1f}" if row else "–"
+
+
+def rules(results: Results) -> str:
     """What each rule finds, how early, and how often it is wrong."""
     lines = []
-    for path, smooth in SETTINGS:
-        for name in results.names(path, "found"):
-            found = [results.row(path, smooth, name, "found", lead) for lead in LEADS]
-            early, false = (results.row(path, smooth, name, kind) for kind in ("lead time", "false alarms"))
-            if not all(found) or not false:
-                continue
-            of = ", ".join(row["value"] for row in found if row)
-            ahead = f"{early['value']} ({early['low']} to {early['high']})" if early else "–"
-            rate = float(false["value"]) / float(false["hours"])
-            lines.append([name, SETTINGS[path, smooth], of, ahead, f"{rate:.1f} ({false['value']})"])
-    header = ["rule", "paths", "found at 0, 0.5, 1 s", "lead time in s", "false pairs per vehicle-hour (pairs)"]
-    return table(header, lines)
+    for name in results.names("driven", "found"):
+        found = [results.row((NGSIM, "driven", "no"), name, "found", lead) for lead in LEADS]
+        early = results.row((NGSIM, "driven", "no"), name, "lead time")
+        ahead = f"{early['value']} ({early['low']}–{early['high']})" if early else "–"
+        half = [results.row((NGSIM, *setting), name, "found", "0.5") for setting in SETTINGS]
+        cells = [", ".join(row["value"] for row in found if row), ahead]
+        cells.append("/".join(row["value"] if row else "–" for row in half))
+        for recordings in (NGSIM, DRONES):
+            false = [results.row((recordings, *setting), name, "false alarms") for setting in SETTINGS]
+            cells.append("/".join(map(rate, false)))
+        lines.append([name, *cells])
+    header = ["rule", "found at 0, 0.5, 1 s", "lead time, s", "found at 0.5 s, four ways"]
+    return table([*header, "false per vehicle-hour, NGSIM", f"the same, {DRONES}"], lines)
+
+
+TABLES = {"measures": measures, "settings": settings, "rules": rules}
 
 
 def write_tables(page: Path, rows: list[Result]) -> None:
     """Put the tables between the marks of the page."""
     text = page.read_text()
-    labels = list(dict.fromkeys(row["recordings"] for row in rows))
-    for label in labels:
-        results = Results(rows, label)
-        prefix = "" if label == "kept" else f"{label}: "
-        for name, content in (("measures", measures), ("settings", settings), ("rules", rules)):
-            begin, end = (mark.format(prefix + name) for mark in MARKS)
-            if begin not in text:
-                if not prefix:
-                    sys.exit(f'{page}: it lacks "{begin.strip()}"')
-                continue
-            before, _, rest = text.partition(begin)
-            _, closing, after = rest.partition(end)
-            if not closing:
-                sys.exit(f'{page}: "{end}" is missing after "{begin.strip()}"')
-            text = before + begin + content(results) + end + after
+    results = Results(rows)
+    for name, content in TABLES.items():
+        begin, end = (mark.format(name) for mark in MARKS)
+        before, opening, rest = text.partition(begin)
+        _, closing, after = rest.partition(end)
+        if not opening or not closing:
+            sys.exit(f'{page}: it lacks "{(end if opening else begin).strip()}"')
+        text = before + begin + content(results) + end + after
     page.write_text(text)
