@@ -49,7 +49,6 @@ MEASURES = [
     Measure("mttc", False),
     Measure("drac", True),
     Measure("act", False),
-    Measure("ei", True),
     Measure("max_braking", True),
 ]
 

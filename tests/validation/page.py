@@ -17,7 +17,7 @@ SETTINGS = {
     ("arc", "yes"): "arc, smoothed",
 }
 # The sets of recordings, as results.csv names them.
-NGSIM, DRONES = "kept", "INTERACTION"
+NGSIM, BOTH = "kept", "with INTERACTION"
 
 
 def interval(row: Result | None) -> str:
@@ -57,10 +57,10 @@ def measures(results: Results) -> str:
         for name in results.names(path, "AUC"):
             kept = [results.row((NGSIM, path, "no"), name, "AUC", lead) for lead in LEADS]
             kept.append(results.row((NGSIM, path, "no"), name, "AUPRC", "0.5"))
-            more = [results.row((DRONES, path, "no"), name, kind, "0.5") for kind in ("AUC", "AUPRC")]
+            more = [results.row((BOTH, path, "no"), name, kind, "0.5") for kind in ("AUC", "AUPRC")]
             lines.append([mark.format(name), *map(interval, kept + more)])
     header = ["AUC, 0 s", "AUC, 0.5 s", "AUC, 1 s", "AUPRC, 0.5 s"]
-    return table(["NGSIM", *header, f"{DRONES}: AUC, 0.5 s", "AUPRC, 0.5 s"], lines)
+    return table(["NGSIM", *header, f"{BOTH}: AUC, 0.5 s", "AUPRC, 0.5 s"], lines)
 
 
 def settings(results: Results) -> str:
@@ -75,12 +75,9 @@ def settings(results: Results) -> str:
     return table(["AUC/AUPRC, 0.5 s", *SETTINGS.values()], lines)
 
 
-def rate(*rows: Result | None) -> str:
-    """False alarms per vehicle-hour, of recordings together."""
-    known = [row for row in rows if row]
-    if len(known) < len(rows):
-        return "–"
-    return f"{sum(float(row['value']) for row in known) / sum(float(row['hours']) for row in known):.1f}"
+def rate(row: Result | None) -> str:
+    """False alarms per vehicle-hour."""
+    return f"{float(row['value']) / float(row['hours']):.1f}" if row else "–"
 
 
 def rules(results: Results) -> str:
@@ -93,12 +90,12 @@ def rules(results: Results) -> str:
         half = [results.row((NGSIM, *setting), name, "found", "0.5") for setting in SETTINGS]
         cells = [", ".join(row["value"] for row in found if row), ahead]
         cells.append("/".join(row["value"] if row else "–" for row in half))
-        for sets in ((NGSIM,), (DRONES,), (NGSIM, DRONES)):
-            false = [[results.row((of, *setting), name, "false alarms") for of in sets] for setting in SETTINGS]
-            cells.append("/".join(rate(*rows) for rows in false))
+        for recordings in (NGSIM, BOTH):
+            false = [results.row((recordings, *setting), name, "false alarms") for setting in SETTINGS]
+            cells.append("/".join(map(rate, false)))
         lines.append([name, *cells])
     header = ["rule", "found at 0, 0.5, 1 s", "lead time, s", "found at 0.5 s, four ways"]
-    return table([*header, "false per vehicle-hour, NGSIM", DRONES, "both"], lines)
+    return table([*header, "false per vehicle-hour, NGSIM", BOTH], lines)
 
 
 TABLES = {"measures": measures, "settings": settings, "rules": rules}

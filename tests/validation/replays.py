@@ -15,7 +15,7 @@ from pathlib import Path
 from tracks import COLUMNS, TICK
 
 CONDITION = "ttc < 10 or response_left < 5 or margin < 0"
-ADDED_MEASURES = "act,ei,mttc"
+ADDED_MEASURES = "act,mttc"
 PATHS = ("driven", "arc")
 
 # The steps of a pair: the tick, and the row of the series.
