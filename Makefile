@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy bench quick docs clean help
+.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation bench quick docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -83,6 +83,9 @@ accuracy: $(VENV)/wheel $(VENV)/tests ## precision and recall against the paths 
 		target/sublane/left_hand.sumocfg target/sublane/right_hand.sumocfg
 	$(BIN)/python tests/accuracy/criticals.py --end 200 sumo_nets/town/town.sumocfg sumo_nets/reckless/reckless.sumocfg
 	$(BIN)/python tests/accuracy/ranks.py --at-least 0.6 sumo_nets/*/expected/conflicts.csv
+
+validation: $(VENV)/wheel $(VENV)/tests ## real crashes against crash-free traffic: the tables of docs/validation.md
+	$(BIN)/python tests/validation/validate.py --page docs/validation.md
 
 PARTS := target/bench/parts
 

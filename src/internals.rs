@@ -97,7 +97,6 @@ pub mod traffic {
 pub mod util {
     pub use crate::util::limits;
     pub use crate::util::panics::caught;
-    pub use crate::util::stop::{Stop, until};
     pub use crate::util::threads::{Helper, Team, processors};
     pub use crate::util::units::Second;
 }

@@ -13,7 +13,6 @@ mod film;
 mod frame_file;
 mod frames;
 mod functions;
-mod interruptible;
 mod interrupts;
 mod numbers;
 mod paint;

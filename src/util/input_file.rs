@@ -9,7 +9,6 @@ use flate2::bufread::MultiGzDecoder;
 
 use super::limits::{ELEMENT, INFLATION, LINE, Limit, TEXT};
 use super::read_ahead::ReadAhead;
-use super::stop::StoppableFile;
 use super::threads::processors;
 use crate::{Error, Result};
 
@@ -67,7 +66,7 @@ pub fn open(path: &Path) -> Result<Box<dyn BufRead + Send>> {
         let message = format!("it is packed by {packing}, and closecall reads gzip alone: unpack it first ({program})");
         return Err(Error::content(path, message));
     }
-    let file = BufReader::with_capacity(BLOCK, StoppableFile::new(file));
+    let file = BufReader::with_capacity(BLOCK, file);
     if !magic.starts_with(&[0x1f, 0x8b]) {
         return Ok(Box::new(file));
     }

@@ -16,7 +16,6 @@ pub(crate) mod parquet_rows;
 #[cfg(feature = "parquet")]
 pub(crate) mod parquet_values;
 mod read_ahead;
-pub mod stop;
 pub mod threads;
 pub mod units;
 pub mod xml_text;
