@@ -132,7 +132,7 @@ fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
 /// leave pavements for nothing else, whatever their heading.
 fn is_off_the_road(net: &Net, pair: &Pair, person: &Party) -> bool {
     let meets_at = person.front + direction(person.heading) * person.way;
-    !net.is_on_crossing(person.front)
+    !person.is_on_crossing(net)
         && net.is_off_the_road(person.front, BESIDE)
         && (stands_aside(pair, person) || !net.is_on_crossing(meets_at))
 }

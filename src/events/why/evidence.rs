@@ -120,7 +120,7 @@ fn entered(pair: &Pair, party: &Party, passage: &Passage) -> Option<Second> {
 }
 
 fn is_on_a_crossing(pair: &Pair, party: &Party) -> bool {
-    pair.around.net.is_some_and(|net| net.is_on_crossing(party.front))
+    pair.around.net.is_some_and(|net| party.is_on_crossing(net))
 }
 
 /// When a vehicle was this far behind where it is now; none where that is longer ago than is known.

@@ -6,6 +6,7 @@ use crate::detection::kind::Kind;
 use crate::events::past::Past;
 use crate::geometry::Point;
 use crate::geometry::polylines::Vertex;
+use crate::geometry::rectangle::direction;
 use crate::options::measures::ChosenValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::{EdgeIndex, LaneIndex, Net, Passage};
@@ -16,6 +17,9 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 
 /// A vehicle's front bumper may be this far before a crossing when it touches a person there, in m.
 pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
+
+/// Up to this distance from the end of a crossing a person may still be at the kerb, in m.
+const KERB: Metre = 2.0;
 
 /// One that is slower than this stands, in m/s: what SUMO takes for halting.
 pub(crate) const STANDS: MetrePerSecond = 0.1;
@@ -82,6 +86,13 @@ impl Party {
 
     pub fn is_vehicle(&self) -> bool {
         self.category == Category::Vehicle
+    }
+
+    /// Whether it is a person on a crossing. At the kerb SUMO's ways over a walking area lead over the ends of crossings: there
+    /// only one that goes along is on it.
+    pub fn is_on_crossing(&self, net: &Net) -> bool {
+        let along = Some(direction(self.heading)).filter(|_| self.speed >= STANDS);
+        net.is_within_crossing(self.front, along, KERB)
     }
 
     /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,

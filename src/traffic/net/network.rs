@@ -12,7 +12,7 @@ use super::finder::Finder;
 use super::overlaps::distance_beside;
 use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
-use crate::geometry::{Bounds, Point};
+use crate::geometry::{Bounds, Point, Vector};
 use crate::util::units::{Degree, Metre};
 
 /// A road network.
@@ -46,6 +46,9 @@ pub struct Net {
     /// The lowest and the highest point of all lanes, in m.
     pub(super) heights: [Metre; 2],
 }
+
+/// The cosine of the angle up to which a person goes along a crossing: 45°.
+const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// No [`Passage`].
 pub(super) const NO_PASSAGE: u32 = u32::MAX;
@@ -89,10 +92,25 @@ impl Net {
 
     /// Whether a place is on a crossing of persons, and not before its ends, where they wait.
     pub fn is_on_crossing(&self, place: Point2<Metre>) -> bool {
-        self.finder.lanes_at(&self.lanes, place, 0.0).any(|lane| {
-            let Lane { shape, width, .. } = &self.lanes[lane.0 as usize];
-            self.function(lane) == EdgeFunction::Crossing && distance_beside(shape, place) <= width / 2.0
+        self.crossings_under(place).next().is_some()
+    }
+
+    /// Whether a place is on a crossing, and, unless this is a direction along it, further from its ends than `kerb`.
+    pub fn is_within_crossing(&self, place: Point2<Metre>, along: Option<Vector>, kerb: Metre) -> bool {
+        self.crossings_under(place).any(|lane| {
+            let Some((first, last)) = lane.shape.first().zip(lane.shape.last()) else { return false };
+            let way = last - first;
+            let (length, passed) = (way.norm(), (place - first).dot(&way) / way.norm().max(f64::MIN_POSITIVE));
+            let is_along = along.is_some_and(|along| along.dot(&way).abs() >= length * ALONG);
+            is_along || (kerb..=length - kerb).contains(&passed)
         })
+    }
+
+    fn crossings_under(&self, place: Point2<Metre>) -> impl Iterator<Item = &Lane> {
+        let lanes = self.finder.lanes_at(&self.lanes, place, 0.0);
+        let crossings = lanes.filter(|lane| self.function(*lane) == EdgeFunction::Crossing);
+        let crossings = crossings.map(|lane| &self.lanes[lane.0 as usize]);
+        crossings.filter(move |lane| distance_beside(&lane.shape, place) <= lane.width / 2.0)
     }
 
     /// Whether persons have a crossing, or the area where they wait for it, at a place or within this distance of it.
