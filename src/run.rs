@@ -73,6 +73,8 @@ pub struct Run {
     lane_lookups: u64,
     contact_tolerance: Metre,
     counts_artefacts: bool,
+    /// Whether the road users were tracked by sensors.
+    is_tracked: bool,
     /// Settings of single types: as the options name the type, and as the roster does.
     type_settings: Vec<(String, String)>,
     /// How long a step lasts: as the source says, or else the time between the first two steps.
@@ -117,6 +119,7 @@ impl Run {
             lane_lookups: 0,
             contact_tolerance: options.contact_tolerance,
             counts_artefacts: options.artefacts,
+            is_tracked: false,
             type_settings: type_settings(options),
             step_length: None,
             summary: Summary::default(),
@@ -160,6 +163,11 @@ impl Run {
         for &(user, corner) in &self.obstacles {
             self.frame.push(user, State { x: corner.x, y: corner.y, z: 0.0, heading: 0.0, speed: 0.0 });
         }
+    }
+
+    /// States whether the road users were tracked by sensors, whose errors are then looked for.
+    pub fn set_tracked(&mut self, is_tracked: bool) {
+        self.is_tracked = is_tracked;
     }
 
     /// States the pairs of ids of which SUMO reports a collision in the step under way.

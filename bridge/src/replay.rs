@@ -155,6 +155,7 @@ fn check(
     let mut run = Run::new(options, net)?;
     run.set_fixed_routes(true);
     let opening = run.opening_remarks(Some(replay.step_length()));
+    run.set_tracked(opened.is_tracked());
     run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
     while replay.next(&mut run)?.is_some() {
         if stopped() {

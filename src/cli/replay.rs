@@ -93,6 +93,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
             .chain(&remarks)
             .for_each(|remark| eprintln!("closecall: {remark}"));
     }
+    run.set_tracked(opened.is_tracked());
     run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
     let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
     // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.

@@ -140,6 +140,8 @@ impl Conflict {
             last: _,
             assessed: _,
             of_traffic: _,
+            is_tracked: _,
+            begins_in_contact: _,
             artefact: _,
             passed_at,
             collision,

@@ -55,6 +55,9 @@ pub(super) struct Extremes {
     pub of_traffic: Option<Assessment>,
     /// What the worst of the other steps is.
     pub artefact: Option<Artefact>,
+    /// Whether sensors tracked the two, and they overlap in the first step: a track that begins too late, or in error.
+    pub is_tracked: bool,
+    pub begins_in_contact: bool,
     pub collision: bool,
     pub overlap: Metre,
     /// Whether SUMO reported a collision of the two; none where it is not known what SUMO reports.
@@ -221,6 +224,8 @@ impl Extremes {
             assessed,
             of_traffic: Some(assessed).filter(|_| artefact.is_none()),
             artefact,
+            is_tracked: seen.around.is_tracked,
+            begins_in_contact: seen.found.overlap > 0.0,
             collision: seen.found.collision,
             overlap: seen.found.overlap,
             collision_sumo: None,
@@ -303,6 +308,9 @@ impl Extremes {
     /// How severe the event is, and what it is if it is none of traffic's. Of an event with steps of either kind those of
     /// traffic count, if they are as severe as the others, or serious.
     pub fn verdict(&self) -> (Assessment, Option<Artefact>) {
+        if self.is_tracked && self.begins_in_contact {
+            return (self.assessed, Some(Artefact::Tracking));
+        }
         let counts = |of: &Assessment| of.severity >= self.assessed.severity.min(Severity::Serious);
         match self.of_traffic.filter(counts) {
             Some(assessment) => (assessment, None),
@@ -310,6 +318,11 @@ impl Extremes {
             None if self.collision_sumo == Some(true) => (self.assessed, None),
             None => (self.assessed, self.artefact),
         }
+    }
+
+    /// Whether it is over within a single frame of tracked road users: one bad frame, no conflict.
+    pub fn is_a_bad_frame(&self) -> bool {
+        self.is_tracked && self.begin == self.end
     }
 
     /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair, `assessed` how severe a

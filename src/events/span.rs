@@ -2,6 +2,7 @@
 
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation};
+use super::why::Artefact;
 use crate::detection::measures::pet::Pet;
 use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::roster::Roster;
@@ -48,7 +49,11 @@ impl Span {
 
     /// The conflict so far, with the PET of its event.
     pub fn conflict(&self, pet: Option<Pet>, roster: &Roster, rule: SeverityThresholds) -> Conflict {
-        Conflict { steps: self.steps.clone().unwrap_or_default(), ..Conflict::of(&self.extremes, pet, roster, rule) }
+        let mut conflict = Conflict::of(&self.extremes, pet, roster, rule);
+        if self.extremes.is_a_bad_frame() {
+            conflict.artefact = Some(Artefact::Tracking);
+        }
+        Conflict { steps: self.steps.clone().unwrap_or_default(), ..conflict }
     }
 }
 

@@ -233,6 +233,7 @@ mod tests {
             std::sync::LazyLock::new(Default::default);
         Surroundings {
             net: None,
+            is_tracked: false,
             step: 0.5,
             signals: &SIGNALS,
             stopped: &[],

@@ -118,8 +118,17 @@ impl Run {
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
         let net = self.net.as_deref();
         let (signals, stopped, step) = (&self.signals, &self.stopped, self.step_length.unwrap_or_default());
-        let around =
-            Surroundings { net, step, signals, stopped, path: &path, course: &course, chosen: &chosen, tadv: &tadv };
+        let around = Surroundings {
+            net,
+            is_tracked: self.is_tracked,
+            step,
+            signals,
+            stopped,
+            path: &path,
+            course: &course,
+            chosen: &chosen,
+            tadv: &tadv,
+        };
         let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());
         count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, roster));

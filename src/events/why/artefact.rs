@@ -12,7 +12,7 @@ use crate::geometry::angle_between;
 use crate::geometry::rectangle::direction;
 use crate::traffic::net::{LaneIndex, Net};
 use crate::traffic::profile::Category;
-use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// A driver who brakes by less has noticed nothing, in m/s²: less than comfortable braking (ITE 3.05, AASHTO 3.4).
 const UNBRAKED: MetrePerSecondSquared = 2.5;
@@ -22,6 +22,12 @@ const AFTER_A_STOP: Second = 2.0;
 const TURNS_IN: Metre = 2.5;
 /// A smaller turn is no jump, in rad.
 const LEAST_TURN: Radian = 0.35;
+/// A tracked speed may differ from the displacement by this, in m/s, or by half.
+const CONTRADICTS: MetrePerSecond = 2.0;
+/// A tracked heading may sway by this within 5 s, besides what it turns, in rad.
+const SWAYS: Radian = 1.0;
+/// Two whose speeds differ by less than this go along with each other, in m/s.
+const ALIKE: MetrePerSecond = 1.0;
 /// A person may be this far beside a pavement or a crossing, in m.
 const BESIDE: Metre = 0.3;
 
@@ -63,6 +69,11 @@ impl Artefact {
         let any = |is: &dyn Fn(&Party) -> bool| parties.into_iter().any(is);
         let appears = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
         let stops = |party: &Party| party.is_vehicle() && party.course.since_impossible_stop < AFTER_A_STOP;
+        if pair.around.is_tracked {
+            let errs =
+                |party: &Party| appears(party) || stops(party) || jumps(pair, party) || is_mistracked(pair, party);
+            return (any(&errs) || rides_along(pair)).then_some(Self::Tracking);
+        }
         match () {
             () if any(&appears) => Some(Self::Appeared),
             () if any(&stops) => Some(Self::StoppedAtOnce),
@@ -85,6 +96,32 @@ fn jumps(pair: &Pair, party: &Party) -> bool {
         Some(turn > LEAST_TURN + (front - from).norm() / TURNS_IN)
     };
     course.has_jumped || course.change.is_some_and(|change| change.time >= pair.time) || turns() == Some(true)
+}
+
+/// Whether the speed of a tracked road user contradicts its displacement, or its heading sways more than it turns.
+fn is_mistracked(pair: &Pair, party: &Party) -> bool {
+    let mut places = pair.past.of(party.user, pair.time).collect::<Vec<_>>();
+    places.push((pair.time, party.front, party.heading));
+    let contradicts = places.len() > 1 && {
+        let [(before, from, _), (now, to, _)] = [places[places.len() - 2], places[places.len() - 1]];
+        let displaced = (to - from).norm() / (now - before);
+        (displaced - party.speed).abs() > f64::max(CONTRADICTS, party.speed / 2.0)
+    };
+    let turn = |one: Radian, other: Radian| angle_between(&direction(one), &direction(other));
+    let swayed = places.windows(2).map(|ends| turn(ends[0].2, ends[1].2)).sum::<Radian>();
+    let turned = places.first().map_or(0.0, |first| turn(first.2, party.heading));
+    party.category != Category::Obstacle && (contradicts || swayed - turned > SWAYS)
+}
+
+/// Whether a person goes along with one who rides: most likely one road user that was tracked twice.
+fn rides_along(pair: &Pair) -> bool {
+    pair.both().into_iter().any(|(person, rider)| {
+        person.category == Category::Person
+            && rider.is_vehicle()
+            && rider.unprotected
+            && direction(person.heading).dot(&direction(rider.heading)) > 0.0
+            && (person.speed - rider.speed).abs() < ALIKE
+    })
 }
 
 /// Whether the two overlap, or would, only as drawn.

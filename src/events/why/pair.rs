@@ -29,6 +29,8 @@ pub(crate) const STANDS: MetrePerSecond = 0.1;
 pub struct Surroundings<'a> {
     /// The net, if there is one.
     pub net: Option<&'a Net>,
+    /// Whether the road users were tracked by sensors, not simulated.
+    pub is_tracked: bool,
     /// How long a step lasts, in s; 0 where that is not known.
     pub step: Second,
     /// What the traffic lights show, where that is known.
@@ -49,6 +51,8 @@ pub struct Surroundings<'a> {
 pub(in crate::events) struct Party {
     pub user: UserIndex,
     pub category: Category,
+    /// Whether nothing protects it: a person, a bicycle, a motorcycle.
+    pub unprotected: bool,
     pub front: Point,
     pub heading: Radian,
     pub length: Metre,
@@ -80,8 +84,9 @@ impl Party {
     fn of(frame: &Frame, roster: &Roster, (user, row, way): (UserIndex, u32, Metre), course: Course) -> Self {
         let (state, profile) = (frame.state(row), roster.profile_of(user));
         let (category, brakes) = (profile.category, profile.brakes.deceleration);
-        let (heading, length) = (state.heading, profile.length);
-        Self { user, category, front: state.front(), heading, length, speed: state.speed, brakes, way, course }
+        let (front, heading, speed) = (state.front(), state.heading, state.speed);
+        let (length, unprotected) = (profile.length, profile.unprotected);
+        Self { user, category, unprotected, front, heading, length, speed, brakes, way, course }
     }
 
     pub fn is_vehicle(&self) -> bool {

@@ -56,8 +56,7 @@ pub enum Opened {
 pub struct Converted {
     fcd: TempPath,
     types: TempPath,
-    /// Whether each of its speeds is that of its moment, not the mean of a step.
-    has_speeds_of_moments: bool,
+    format: RecordingFormat,
     said: Said,
 }
 
@@ -90,7 +89,13 @@ impl Opened {
     /// Whether each of its speeds is that of its moment: it was measured, or Vissim simulated it. Other simulations may move vehicles
     /// by the speed of a step's end.
     pub fn has_speeds_of_moments(&self) -> bool {
-        matches!(self, Self::Converted(converted) if converted.has_speeds_of_moments)
+        matches!(self, Self::Converted(converted) if converted.format != RecordingFormat::Trj)
+    }
+
+    /// Whether sensors tracked its road users: it is not of a simulation.
+    pub fn is_tracked(&self) -> bool {
+        self.has_speeds_of_moments()
+            && !matches!(self, Self::Converted(converted) if converted.format == RecordingFormat::Fzp)
     }
 
     /// What had to be assumed for lack of columns that it does not have at all, a line each.
@@ -161,8 +166,7 @@ pub fn open(
     };
     said.doubtful.extend(writer.remarks());
     let (fcd, types) = writer.finish().map_err(|source| Error::file(path, source))?;
-    let has_speeds_of_moments = format != RecordingFormat::Trj;
-    Ok(Opened::Converted(Converted { fcd, types, has_speeds_of_moments, said }))
+    Ok(Opened::Converted(Converted { fcd, types, format, said }))
 }
 
 /// The places of the columns that are read of a table with columns of these names.
