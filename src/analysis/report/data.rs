@@ -30,7 +30,7 @@ const NOT_SHOWN: &str = "clearance";
 /// # Errors
 /// Those of reading the clips.
 pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
-    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, filter, .. } = found;
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, .. } = found;
     let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
@@ -55,6 +55,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "notes": ground.notes,
         "before": before,
         "filter": filter,
+        "set_aside": set_aside,
     });
     Ok(data.to_string().replace('<', "\\u003c"))
 }
@@ -108,6 +109,10 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
     let mut types = Words::default();
     add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)).collect());
     add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)).collect());
+    let [mut nearness, mut consequences, mut artefacts] = <[Words; 3]>::default();
+    add("nearness", conflicts().map(|conflict| nearness.place(&conflict.nearness)).collect());
+    add("consequence", conflicts().map(|conflict| consequences.place(&conflict.consequence)).collect());
+    add("artefact", conflicts().map(|conflict| artefacts.place(&conflict.artefact)).collect());
     let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
     add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
     add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
@@ -149,6 +154,9 @@ fn columns(rows: &[RunConflict], drawn: Vec<Value>, net: Option<&Net>) -> Value 
         "columns": columns,
         "ids": ids.list,
         "types": types.list,
+        "nearnesses": nearness.list,
+        "consequences": consequences.list,
+        "artefacts": artefacts.list,
         "manoeuvres": manoeuvres.list,
         "causes": causes.list,
         "lanes": lanes.list,
@@ -245,6 +253,7 @@ mod tests {
                 ground: Default::default(),
                 conflicts,
                 seen: 1,
+                set_aside: None,
                 filter: None,
             },
             None,
