@@ -191,7 +191,8 @@ impl Checker {
         self.state.with(py, |state| Ok(state.recorded.run.time()))
     }
 
-    /// The conflicts that are open now, for a script that reacts while the simulation runs.
+    /// The conflicts that are open now, for a script that reacts while the simulation runs; without those that are not
+    /// traffic's, unless the option `artefacts` counts them.
     #[getter]
     fn active(&self, py: Python) -> PyResult<Vec<Alarm>> {
         self.state.with(py, |state| Ok(alarm::active(&state.recorded.run)))
@@ -204,7 +205,8 @@ impl Checker {
         self.state.with(py, |state| Ok(alarm::waiting(&state.recorded.run)))
     }
 
-    /// The conflicts so far; the latest `keep` of the closed ones, and the open ones as they are now.
+    /// The conflicts so far; the latest `keep` of the closed ones, and the open ones as they are now. As in the log those with
+    /// an `artefact` are among them, which `summary`, `active` and rewards do not count (docs/artefacts.md).
     #[getter]
     fn conflicts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let conflicts = self.state.with(py, |state| Ok(logged(&state.recorded.run)))?;
@@ -220,7 +222,7 @@ impl Checker {
         })
     }
 
-    /// Counts by kind and severity, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
+    /// Counts by kind and severity, what was set aside, the amount of traffic and, once it is closed, the skipped tests; as in `run.json`.
     #[getter]
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let summary = self.state.with(py, |state| Ok(state.recorded.run.summary()))?;

@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::filter::ConflictFilter;
+use super::filter::{ConflictFilter, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, check_keeps_logs, log_folders};
 use crate::output::formats::{ExportFormat, Exported};
+use crate::output::summary::SetAside;
 use crate::{Error, Result};
 
 /// What was written.
@@ -12,8 +13,10 @@ use crate::{Error, Result};
 pub struct Made {
     /// The number of conflicts that passed the filter.
     pub conflicts: u64,
-    /// The number of conflicts in the log.
+    /// The number of conflicts in the log that are traffic's, or count all the same.
     pub all: u64,
+    /// How many others there are, and why, in words.
+    pub set_aside: Option<String>,
     /// What the log lacks.
     pub lost: Option<LostRows>,
 }
@@ -46,16 +49,19 @@ pub fn write(
     // The log's first, whether it passes or not: it tells in what its places are.
     let first = conflicts.next().transpose()?;
     let mut file = Exported::create(out, format, conflicts.columns_of_schema(), first.as_ref())?;
-    let (mut written, mut all) = (0, 0);
+    let (mut written, mut all, mut set_aside) = (0, 0, SetAside::new());
     for conflict in first.map(Ok).into_iter().chain(conflicts.by_ref()) {
         let conflict = conflict?;
+        reading.count(1);
+        if filter.sets_aside(&conflict, &mut set_aside) {
+            continue;
+        }
         all += 1;
         if filter.passes(&conflict) {
             file.write(conflict)?;
             written += 1;
         }
-        reading.count(1);
     }
     file.finish()?;
-    Ok(Made { conflicts: written, all, lost: conflicts.lost() })
+    Ok(Made { conflicts: written, all, set_aside: set_aside_in_words(&set_aside), lost: conflicts.lost() })
 }

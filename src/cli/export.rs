@@ -43,6 +43,7 @@ pub fn run(arguments: ExportArgs) -> Result<()> {
     if !quiet {
         let of = if filter.is_empty() { String::new() } else { format!(" of {}", made.all) };
         say(format_args!("{}{of} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
+        made.set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
     }
     check_none_lost(made.lost.as_slice())
 }

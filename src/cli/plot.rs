@@ -40,13 +40,14 @@ pub struct PlotArgs {
 pub fn run(arguments: &PlotArgs) -> Result<()> {
     let PlotArgs { folders, out, format, net, quiet, filter, style } = arguments;
     let mut bar = CountBar::new("conflicts", !quiet);
-    let (files, lost) =
+    let plot::Made { files, set_aside, lost } =
         plot::write(folders, net.as_deref(), filter, (out, *format, *style), &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if !quiet {
         for file in files {
             say(format_args!("{}\n", file.display()))?;
         }
+        set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
     }
     check_none_lost(&lost)
 }

@@ -42,11 +42,12 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
     let mut progress = |read, all| bar.show(read, all);
     let made = report::write(&request, &arguments.out, &mut progress)?;
     drop(bar);
-    let report::Made { runs, conflicts, bytes, lost } = made;
+    let report::Made { runs, conflicts, set_aside, bytes, lost } = made;
     if !arguments.quiet {
         let size = bytes as f64 / 1e6;
         let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
         say(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
+        set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
     }
     check_none_lost(&lost)
 }

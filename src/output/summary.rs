@@ -12,6 +12,9 @@ use crate::detection::kind::{Kind, Severity};
 use crate::events::Conflict;
 use crate::util::units::Second;
 
+/// How many conflicts are none of traffic's, by what they are.
+pub type SetAside = BTreeMap<String, u64>;
+
 /// What a run found.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
@@ -26,7 +29,7 @@ pub struct Summary {
     pub conflicts: Vec<Count>,
     /// Logged conflicts that are not traffic's, and so are not counted.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub set_aside: BTreeMap<String, u64>,
+    pub set_aside: SetAside,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
     /// The sum of all crash probabilities: an index for comparing plans, not a forecast.
@@ -223,11 +226,16 @@ impl Summary {
 impl Summary {
     /// How many conflicts are set aside, and why; none where none is.
     pub fn set_aside_in_words(&self) -> Option<String> {
-        let reasons = self.set_aside.iter().map(|(artefact, count)| format!("{count} {artefact}"));
-        let reasons = reasons.collect::<Vec<_>>().join(", ");
-        let all = self.set_aside.values().sum::<u64>();
-        (all > 0).then(|| format!("set aside {all} that are not traffic's: {reasons} (docs/artefacts.md)"))
+        in_words(&self.set_aside).map(|words| format!("{words} (docs/artefacts.md)"))
     }
+}
+
+/// How many conflicts are set aside, and why; none where none is.
+pub fn in_words(set_aside: &SetAside) -> Option<String> {
+    let reasons = set_aside.iter().map(|(artefact, count)| format!("{count} {artefact}"));
+    let reasons = reasons.collect::<Vec<_>>().join(", ");
+    let all = set_aside.values().sum::<u64>();
+    (all > 0).then(|| format!("set aside {all} that are not traffic's: {reasons}"))
 }
 
 impl fmt::Display for Summary {

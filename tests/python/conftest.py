@@ -103,6 +103,11 @@ def rows(path: Path) -> list[Row]:
         return list(csv.DictReader(file))
 
 
+def counted(log: Path) -> list[Row]:
+    """The conflicts of a log folder that count: those that are traffic's."""
+    return [row for row in rows(log / "conflicts.csv") if not row["artefact"]]
+
+
 def parked(stops: Path) -> Callable[[str, float], bool]:
     """Whether a vehicle is parked off the road at a time, from SUMO's stop-output."""
     spans: dict[str, list[tuple[float, float]]] = {}

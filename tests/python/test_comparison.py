@@ -7,7 +7,7 @@ from typing import Any, Callable
 
 import axe_playwright_python
 import pytest
-from conftest import NETS, Once, closecall, rows
+from conftest import NETS, Once, closecall, counted
 from report_page import Opened, severe
 
 Copy = Callable[[str], Path]
@@ -33,7 +33,7 @@ def change(once: Once) -> Path:
 def test_before_and_after_are_a_sentence_and_a_plot(browser: Any, change: Path) -> None:
     opened = Opened(browser, change / "report.html")
     counts = [
-        sum(len(severe(rows(change / name / seed / "conflicts.csv"))) for seed in ("1", "2"))
+        sum(len(severe(counted(change / name / seed))) for seed in ("1", "2"))
         for name in ("after", "before")
     ]
     assert f"{counts[0]} and {counts[1]} conflicts in 2 runs after, 2 before" in opened.text("#sentence")

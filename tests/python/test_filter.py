@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import Row, closecall, rows
+from conftest import Row, closecall, counted
 from report_page import ALL, PALETTE, Opened
 
 Copy = Callable[[str], Path]
@@ -16,7 +16,7 @@ Copy = Callable[[str], Path]
 
 def test_the_filter_applies_to_everything_below_it(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html", view=ALL)
-    found = rows(town / "log" / "conflicts.csv")
+    found = counted(town / "log")
     spots, before = opened.text("#spots"), opened.text("#worst")
     tiles = opened.text("#figures")
     opened.page.uncheck("input[name='kinds-rear-end']")
@@ -38,7 +38,7 @@ def test_the_filter_applies_to_everything_below_it(browser: Any, town: Path) -> 
 
 
 def test_the_filter_is_in_the_address(browser: Any, town: Path) -> None:
-    found = rows(town / "log" / "conflicts.csv")
+    found = counted(town / "log")
     wanted = [
         row for row in found if row["kind"] == "side" and row["severity"] == "caution" and float(row["time"]) <= 50
     ]
@@ -73,7 +73,7 @@ def test_the_filter_is_in_the_address(browser: Any, town: Path) -> None:
 def test_stats_and_report_filter_alike(
     words: str, is_wanted: Callable[[Row], bool], town: Path, tmp_path: Path
 ) -> None:
-    wanted = sum(map(is_wanted, rows(town / "log" / "conflicts.csv")))
+    wanted = sum(map(is_wanted, counted(town / "log")))
     assert wanted > 0
     done = closecall("stats", town / "log", "--format", "json", *words.split())
     assert done.returncode == 0, done.stderr

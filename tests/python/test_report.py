@@ -6,11 +6,12 @@ import csv
 import json
 import re
 import statistics
+from collections import Counter
 from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import closecall, python, rows
+from conftest import closecall, counted, python, rows
 from report_page import ALL, PALETTE, Opened, made_up, severe
 
 Copy = Callable[[str], Path]
@@ -19,14 +20,16 @@ Copy = Callable[[str], Path]
 def test_a_report_draws_without_errors_or_network_requests(browser: Any, town: Path) -> None:
     report = town / "report.html"
     opened = Opened(browser, report)
-    found = rows(town / "log" / "conflicts.csv")
+    found = counted(town / "log")
     severe = [row for row in found if row["severity"] != "caution"]
     assert opened.text("#shown") == f"{len(severe):,} of {len(found):,} conflicts"
     assert (opened.page.title(), opened.text("h1")) == ("town – conflicts", "town")
     for selector in ("#map", "#times", "#distributions > div:first-child .chart", "#worst li:first-child .chart"):
         assert opened.colours(selector) > 5, selector
     assert len(opened.page.query_selector_all("#distributions .chart")) == 6
-    assert opened.page.is_hidden("#notes")
+    artefacts = Counter(row["artefact"] for row in rows(town / "log" / "conflicts.csv") if row["artefact"])
+    why = ", ".join(f"{count} {artefact}" for artefact, count in sorted(artefacts.items()))
+    assert f"set aside {artefacts.total()} that are not traffic's: {why} (--artefacts counts them in)" in opened.text("#notes")
     card = opened.page.locator("#worst li").first
     assert card.locator("output").inner_text() == "worst step"
     assert f"closecall show {town / 'log'} " in str(card.text_content())
@@ -234,7 +237,7 @@ def test_an_old_log_without_places_has_no_drawings(browser: Any, tmp_path: Path)
 def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html")
     crashes: dict[str, float] = {}
-    for row in severe(rows(town / "log" / "conflicts.csv")):
+    for row in severe(counted(town / "log")):
         edge = row["lane"].rsplit("_", 1)[0]
         spot = f"junction {edge[1:].rsplit('_', 1)[0]}" if edge.startswith(":") else f"edge {edge}"
         crashes[spot] = crashes.get(spot, 0) + float(row["crash_probability"])
@@ -324,7 +327,7 @@ def test_every_chart_says_what_it_shows(browser: Any, town: Path) -> None:
     assert len(labels) == 13
     assert all(len(label) > 20 for label in labels), labels
     [of_map] = [label for label in labels if label.startswith("Map of")]
-    found = severe(rows(town / "log" / "conflicts.csv"))
+    found = severe(counted(town / "log"))
     assert f"Map of {len(found)} conflicts" in of_map
     opened.page.uncheck("input[name='kinds-rear-end']")
     assert opened.labels() != labels
@@ -332,7 +335,7 @@ def test_every_chart_says_what_it_shows(browser: Any, town: Path) -> None:
 
 def test_the_shown_conflicts_become_files(browser: Any, town: Path, tmp_path: Path) -> None:
     opened = Opened(browser, town / "report.html", view="severity=critical,serious&kind=side")
-    found = [row for row in severe(rows(town / "log" / "conflicts.csv")) if row["kind"] == "side"]
+    found = [row for row in severe(counted(town / "log")) if row["kind"] == "side"]
     for button in ("csv", "geojson"):
         with opened.page.expect_download() as download:
             opened.page.click(f"#{button}")

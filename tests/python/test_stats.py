@@ -13,7 +13,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import NETS, Once, closecall, is_one_message, parked, rows
+from conftest import NETS, Once, closecall, counted, is_one_message, parked, rows
 from scipy import stats as scipy_stats
 
 Copy = Callable[[str], Path]
@@ -43,7 +43,7 @@ def plans(once: Once) -> Path:
                 half = "first" if seed <= 8 else "second"
                 out = folder / plan / half / f"seed={seed}"
                 # Few of them are late enough to be serious by default.
-                rule = ("--serious-probability", "0.1", "--serious-delta-v", "0")
+                rule = ("--severity-rule", "time-left", "--serious-probability", "0.1", "--serious-delta-v", "0")
                 words = ("--seed", str(seed), "--log-clips", "serious", *rule)
                 simulate(NETS / "left_turn" / f"{plan}.sumocfg", out, *words)
 
@@ -78,7 +78,7 @@ def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None
     assert (traffic["vehicles"], traffic["persons"]) == (len(vehicles), len(persons))
 
     # Counts from the rows of conflicts.csv.
-    logged = rows(log / "conflicts.csv")
+    logged = counted(log)
     assert len(logged) > 500
     groups = {group["group"]: group for group in found["groups"]}
     for name in ("all", "caution", "serious", "critical"):
@@ -117,7 +117,7 @@ def test_statistics_equal_those_of_an_independent_script(tmp_path: Path) -> None
 
 def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
     log = simulate(NETS / "town" / "town.sumocfg", tmp_path / "log", "--end", "60")
-    logged = rows(log / "conflicts.csv")
+    logged = counted(log)
     of: dict[str, Callable[[dict[str, str]], str]] = {
         "kind": lambda row: row["kind"],
         "edge": lambda row: row["lane"].rpartition("_")[0] or "(none)",
@@ -144,7 +144,7 @@ def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
 
 def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
     found = stats(plans / "left_turn", "--worst", "500")["worst"]
-    every = [row for log in sorted(plans.glob("left_turn/*/*/conflicts.csv")) for row in rows(log)]
+    every = [row for log in sorted(plans.glob("left_turn/*/*")) for row in counted(log)]
     order = ["caution", "serious", "critical"]
 
     def rank(row: dict[str, str]) -> tuple[bool, int, float, float, float, float]:
@@ -168,7 +168,7 @@ def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
 def test_intervals_over_seeds_follow_students_t(plans: Path) -> None:
     found = stats(plans / "protected")
     runs = sorted(plans.glob("protected/*/*"))
-    counts = [len(rows(run / "conflicts.csv")) for run in runs]
+    counts = [len(counted(run)) for run in runs]
     records = [json.loads((run / "run.json").read_text())["summary"] for run in runs]
     hours = {record["end"] - record["begin"] + 0.2 for record in records}
     assert len(hours) == 1 and found["runs"] == 8
@@ -206,7 +206,7 @@ def test_permutation_test_and_cliffs_delta_equal_scipys(plans: Path) -> None:
     first, second = plans / "left_turn" / "first", plans / "left_turn" / "second"
     found = stats(first, "--against", second)["comparison"]
     values = {
-        half: [[float(row["margin"]) for row in rows(log)] for log in sorted(half.glob("*/conflicts.csv"))]
+        half: [[float(row["margin"]) for row in counted(log)] for log in sorted(half.glob("*"))]
         for half in (first, second)
     }
     medians = [[statistics.median(run) for run in values[half]] for half in (first, second)]

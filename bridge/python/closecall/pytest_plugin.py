@@ -24,9 +24,14 @@ from ._closecall import Conflict, read_log, scenario
 
 @dataclass(frozen=True)
 class ScenarioRun:
-    """The log of a run of a scenario."""
+    """The log of a run of a scenario.
+
+    `conflicts` has those that count, `set_aside` those that are not traffic's (docs/artefacts.md); the option `artefacts`
+    counts them, too.
+    """
 
     conflicts: list[Conflict]
+    set_aside: list[Conflict]
     summary: dict[str, Any]
     log: Path
 
@@ -87,4 +92,8 @@ def in_keywords(message: str) -> str:
 def read(log: Path) -> ScenarioRun:
     """The log of a run."""
     record = json.loads((log / "run.json").read_text(encoding="utf-8"))
-    return ScenarioRun(read_log(log), record["summary"], log)
+    counts_all = record["options"].get("artefacts", False)
+    parts: tuple[list[Conflict], list[Conflict]] = [], []
+    for conflict in read_log(log):
+        parts[conflict.artefact is not None and not counts_all].append(conflict)
+    return ScenarioRun(*parts, record["summary"], log)

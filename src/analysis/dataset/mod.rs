@@ -13,6 +13,7 @@ use crate::Result;
 use crate::detection::kind::{Kind, Severity};
 use crate::geometry::Point;
 use crate::output::schema::LoggedConflict;
+use crate::output::summary::SetAside;
 use crate::traffic::net::Net;
 use crate::util::units::Second;
 use kept::{KeptConflicts, RunConflict};
@@ -33,6 +34,8 @@ pub struct Conflicts {
     pub(super) conflicts: Vec<RunConflict>,
     /// How many there are in the logs.
     pub(super) seen: u64,
+    /// How many others are none of traffic's, and why, in words.
+    pub(super) set_aside: Option<String>,
     /// The filter that they passed, as the words of a command line; none for all.
     pub(super) filter: Option<String>,
     /// The logs that lack rows.
@@ -61,14 +64,13 @@ pub fn read(
     let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
     let mut worst = KeptConflicts::default();
     let mut lost = Vec::new();
-    let (mut all, mut set_aside) = (0_u64, 0_u64);
+    let (mut all, mut set_aside) = (0_u64, SetAside::new());
     for (run, log) in (0..).zip(&logs) {
         let mut conflicts = ConflictReader::open(log)?.with_snapshots();
         for conflict in &mut conflicts {
             let conflict = conflict?;
             reading.count(1);
-            if !filter.counts(&conflict) {
-                set_aside += 1;
+            if filter.sets_aside(&conflict, &mut set_aside) {
                 continue;
             }
             all += 1;
@@ -101,9 +103,8 @@ pub fn read(
     }
     ground.notes.append(&mut variants.notes);
     ground.notes.extend(lost.iter().map(ToString::to_string));
-    if set_aside > 0 {
-        ground.notes.push(format!("{}.", set_aside_in_words(set_aside)));
-    }
+    let aside = set_aside_in_words(&set_aside);
+    ground.notes.extend(aside.as_ref().map(|words| format!("The runs have {words}.")));
     let seen = worst.seen();
     if !filter.is_empty() {
         let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };
@@ -115,7 +116,8 @@ pub fn read(
         summaries.for_each(|summary| drop(summary.remove("entered")));
     }
     let filter = (!filter.is_empty()).then(|| filter.to_string());
-    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts: worst.into_sorted(), seen, filter, lost })
+    let conflicts = worst.into_sorted();
+    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts, seen, set_aside: aside, filter, lost })
 }
 
 impl Conflicts {
@@ -158,7 +160,8 @@ impl Conflicts {
             "drac" => "serious_drac",
             _ => return None,
         };
-        let threshold = match option("severity")?.as_str()? {
+        // Logs of earlier versions have the rule as "severity".
+        let threshold = match option("severity_rule").or_else(|| option("severity"))?.as_str()? {
             "fhwa" => option(key)?.as_f64()?,
             // The same for TTC, in s, and DRAC, in m/s².
             "ssm" => 3.0,

@@ -7,8 +7,8 @@ use std::fmt;
 use super::logged::{LoggedConflict, LoggedRun};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::{Cause, Manoeuvre};
-use crate::output::summary::Exposure;
-use crate::util::units::{Second, counted};
+use crate::output::summary::{Exposure, SetAside, in_words};
+use crate::util::units::Second;
 use crate::{Error, Result};
 
 pub use place::Place;
@@ -51,9 +51,9 @@ fn time(text: &str) -> std::result::Result<Second, String> {
     text.parse::<Second>().ok().filter(|time| time.is_finite()).ok_or_else(|| "it must be a time in s".to_owned())
 }
 
-/// How many conflicts are not counted.
-pub fn set_aside_in_words(count: u64) -> String {
-    format!("{} set aside that are not traffic's (--artefacts counts them in)", counted(count, "conflict"))
+/// How many conflicts are not counted, why, and what counts them; none where all are.
+pub fn set_aside_in_words(set_aside: &SetAside) -> Option<String> {
+    in_words(set_aside).map(|words| format!("{words} (--artefacts counts them in)"))
 }
 
 /// Whether one of these is met, or there are none.
@@ -83,6 +83,15 @@ impl ConflictFilter {
     /// Whether a conflict is traffic's, or others count, too: no other is among those that the rest of the filter sees.
     pub fn counts(&self, conflict: &LoggedConflict) -> bool {
         self.artefacts || conflict.artefact.is_empty()
+    }
+
+    /// The same; one that does not count is added to those set aside.
+    pub fn sets_aside(&self, conflict: &LoggedConflict, set_aside: &mut SetAside) -> bool {
+        let counts = self.counts(conflict);
+        if !counts {
+            *set_aside.entry(conflict.artefact.clone()).or_default() += 1;
+        }
+        !counts
     }
 
     /// Whether a conflict counts.

@@ -8,6 +8,7 @@ use super::folders::PARQUET;
 use super::packed::Packed;
 use crate::output::input_hash::Input;
 use crate::output::log::RUN;
+use crate::output::schema::LoggedConflict;
 use crate::output::summary::Summary;
 use crate::util::input_file;
 use crate::util::limits::{DURATION, TIME};
@@ -110,6 +111,12 @@ impl LoggedRun {
     /// The number of conflicts in its log.
     pub fn conflicts(&self) -> u64 {
         self.summary.logged()
+    }
+
+    /// Whether one of its conflicts is none of traffic's, and it did not count that.
+    pub fn sets_aside(&self, conflict: &LoggedConflict) -> bool {
+        let counts_all = self.options.get("artefacts").and_then(serde_json::Value::as_bool).unwrap_or_default();
+        !conflict.artefact.is_empty() && !counts_all
     }
 
     /// Simulated hours: from the first step to the end of the last, which lasts as long as the others.

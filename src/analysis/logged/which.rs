@@ -6,6 +6,7 @@ use std::path::Path;
 use super::reader::ConflictReader;
 use crate::output::rank::Rank;
 use crate::output::schema::LoggedConflict;
+use crate::output::summary::{SetAside, in_words};
 use crate::util::units::counted;
 use crate::{Error, Result};
 
@@ -14,7 +15,7 @@ use crate::{Error, Result};
 pub enum Which {
     /// That with this `id`.
     Id(u64),
-    /// The worst, the second worst, …: 1, 2, …
+    /// The worst, the second worst, … of those that are traffic's: 1, 2, …
     Worst(usize),
 }
 
@@ -34,18 +35,27 @@ impl Which {
     }
 }
 
-/// The `id` of the worst conflict of a log, the second worst, …
+/// The `id` of the worst conflict of a log, the second worst, … of those that are traffic's.
 fn worst(folder: &Path, place: usize) -> Result<u64> {
-    let mut found = Vec::new();
+    let (mut found, mut set_aside) = (Vec::new(), SetAside::new());
     for conflict in ConflictReader::open(folder)? {
         let conflict = conflict?;
-        found.push((Rank::from(&conflict), Reverse(conflict.id)));
+        if conflict.artefact.is_empty() {
+            found.push((Rank::from(&conflict), Reverse(conflict.id)));
+        } else {
+            *set_aside.entry(conflict.artefact).or_default() += 1;
+        }
     }
     found.sort_unstable_by(|a, b| b.cmp(a));
     let count = found.len();
     let Some((_, Reverse(id))) = place.checked_sub(1).and_then(|place| found.get(place)) else {
         let count = counted(count as u64, "conflict");
-        return Err(Error::Value(format!("--worst {place}: {} has {count}", folder.display())));
+        let aside = in_words(&set_aside).map(|words| format!(", and has {words}; name one by its id"));
+        return Err(Error::Value(format!(
+            "--worst {place}: {} has {count}{}",
+            folder.display(),
+            aside.unwrap_or_default()
+        )));
     };
     Ok(*id)
 }

@@ -120,10 +120,11 @@ pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
     Ok(found)
 }
 
-/// Whether a conflict of this severity has a clip, as far as is known without reading them.
-pub fn may_have_clip(folder: &Path, run: &LoggedRun, severity: Severity) -> bool {
+/// Whether a conflict has a clip, as far as is known without reading them.
+pub fn may_have_clip(folder: &Path, run: &LoggedRun, conflict: &LoggedConflict) -> bool {
     let level = level(run);
-    level != NO_CLIPS && !is_milder(severity, level) && folder.join(CLIPS).is_file()
+    let is_kept = level != NO_CLIPS && !is_milder(conflict.severity, level) && !run.sets_aside(conflict);
+    is_kept && folder.join(CLIPS).is_file()
 }
 
 /// The level of a run that keeps no clips.
@@ -152,6 +153,9 @@ fn no_clip(folder: &Path, conflict: &LoggedConflict) -> Error {
             format!(
                 "it is {severity}, and its run kept clips of {level} conflicts; run it again with --log-clips {severity}"
             )
+        }
+        Some(run) if run.sets_aside(conflict) => {
+            format!("it is not traffic's ({}); run it again with --artefacts", conflict.artefact)
         }
         Some(_) if !folder.join(CLIPS).is_file() => format!("there is no {CLIPS} in the folder"),
         Some(_) => format!("its run kept at most {MOST}; --log-clips critical, or --begin, leaves out others"),

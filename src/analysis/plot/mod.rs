@@ -38,8 +38,18 @@ pub enum PictureFormat {
     Svg,
 }
 
-/// Draws the charts of the logs in `folders` into the folder `out`, which is created if necessary; returns the files, and
-/// the logs that lack rows.
+/// What was drawn.
+#[derive(Clone, Debug)]
+pub struct Made {
+    /// The pictures.
+    pub files: Vec<PathBuf>,
+    /// How many conflicts are none of traffic's, and why, in words.
+    pub set_aside: Option<String>,
+    /// The logs that lack rows.
+    pub lost: Vec<LostRows>,
+}
+
+/// Draws the charts of the logs in `folders` into the folder `out`, which is created if necessary.
 ///
 /// # Errors
 /// Those of reading the logs, of an output that is one of them, and of writing a picture.
@@ -49,7 +59,7 @@ pub fn write(
     filter: &ConflictFilter,
     (out, format, style): (&Path, PictureFormat, PictureStyle),
     progress: &mut Progress,
-) -> Result<(Vec<PathBuf>, Vec<LostRows>)> {
+) -> Result<Made> {
     if (format, style) == (PictureFormat::Png, PictureStyle::Paper) {
         return Err(Error::Value(
             "--style paper is for --format svg: a paper's pictures are lines, not pixels".to_owned(),
@@ -65,7 +75,7 @@ pub fn write(
     for measure in &charts::MEASURES {
         files.push(picture((out, measure.name), (format, style, chart), from, charts::Distribution(measure))?);
     }
-    Ok((files, conflicts.lost))
+    Ok(Made { files, set_aside: conflicts.set_aside, lost: conflicts.lost })
 }
 
 /// Draws one chart into the file `name` with the format's extension.

@@ -31,7 +31,7 @@ const NOT_SHOWN: &str = "clearance";
 /// # Errors
 /// Those of reading the clips.
 pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
-    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, filter, .. } = found;
+    let Conflicts { logs, records, variants, mut ground, mut conflicts, seen, set_aside, filter, .. } = found;
     let clips = clips::of_worst(&conflicts, &logs, &mut ground.notes)?;
     let key = |one: &RunConflict| (one.run, one.conflict.id);
     let drawn = conflicts.iter().take(DRAWN).map(key).collect::<FxHashSet<_>>();
@@ -55,6 +55,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "notes": ground.notes,
         "before": before,
         "filter": filter,
+        "set_aside": set_aside,
     });
     let mut text = "{\"conflicts\":".to_owned();
     columns(&mut text, &conflicts, drawn, net);
@@ -126,6 +127,10 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     let mut types = Words::default();
     add("ego_type", conflicts().map(|conflict| types.place(&conflict.ego_type)).collect());
     add("foe_type", conflicts().map(|conflict| types.place(&conflict.foe_type)).collect());
+    let [mut nearness, mut consequences, mut artefacts] = <[Words; 3]>::default();
+    add("nearness", conflicts().map(|conflict| nearness.place(&conflict.nearness)).collect());
+    add("consequence", conflicts().map(|conflict| consequences.place(&conflict.consequence)).collect());
+    add("artefact", conflicts().map(|conflict| artefacts.place(&conflict.artefact)).collect());
     let [mut manoeuvres, mut causes] = <[Words; 2]>::default();
     add("manoeuvre", conflicts().map(|conflict| manoeuvres.place(&conflict.manoeuvre)).collect());
     add("cause", conflicts().map(|conflict| causes.place(&conflict.cause)).collect());
@@ -166,6 +171,9 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
         "count": rows.len(),
         "ids": ids.list,
         "types": types.list,
+        "nearnesses": nearness.list,
+        "consequences": consequences.list,
+        "artefacts": artefacts.list,
         "manoeuvres": manoeuvres.list,
         "causes": causes.list,
         "lanes": lanes.list,
@@ -264,6 +272,7 @@ mod tests {
                 ground: Default::default(),
                 conflicts,
                 seen: 1,
+                set_aside: None,
                 filter: None,
             },
             None,

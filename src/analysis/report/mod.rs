@@ -55,6 +55,8 @@ pub struct Made {
     pub runs: usize,
     /// The number of conflicts in the logs.
     pub conflicts: u64,
+    /// How many others are none of traffic's, and why, in words.
+    pub set_aside: Option<String>,
     /// The size of the page in bytes.
     pub bytes: usize,
     /// The logs that lack rows.
@@ -83,7 +85,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
     check_keeps_logs(out, &[folders, against].concat(), net)?;
     let conflicts = read(folders, net, filter, progress)?;
     let runs = conflicts.logs.len();
-    let seen = conflicts.seen;
+    let (seen, set_aside) = (conflicts.seen, conflicts.set_aside.clone());
     let mut lost = conflicts.lost.clone();
     let before = if against.is_empty() {
         None
@@ -100,7 +102,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
         file.append(part.as_bytes())
     })?;
     file.finish()?;
-    Ok(Made { runs, conflicts: seen, bytes, lost })
+    Ok(Made { runs, conflicts: seen, set_aside, bytes, lost })
 }
 
 /// Writes the page, each mark replaced by its part. The parts themselves are not searched for marks, since an id may look like

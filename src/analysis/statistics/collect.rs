@@ -21,6 +21,7 @@ use crate::analysis::filter::{ConflictFilter, set_aside_in_words};
 use crate::analysis::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::analysis::variants::{Variant, Variants};
 use crate::detection::kind::{Kind, Severity};
+use crate::output::summary::SetAside;
 use crate::util::threads::processors;
 use crate::{Error, Result};
 
@@ -39,8 +40,8 @@ pub struct Collection {
     pub lost: Vec<LostRows>,
     /// How many conflicts the logs have.
     pub read: u64,
-    /// How many others are none of traffic's.
-    pub set_aside: u64,
+    /// The others, which are none of traffic's.
+    pub set_aside: SetAside,
     /// How many of them count.
     pub passed: u64,
     /// The conflicts of each variant, by group.
@@ -84,7 +85,7 @@ impl Collection {
             left_out,
             lost: Vec::new(),
             read: 0,
-            set_aside: 0,
+            set_aside: SetAside::new(),
             passed: 0,
             tallies: Default::default(),
             edges: FxHashMap::default(),
@@ -123,7 +124,9 @@ impl Collection {
     /// Adds the conflicts of the next run.
     fn append(&mut self, variant: usize, of_run: OfRun) {
         self.read += of_run.read;
-        self.set_aside += of_run.set_aside;
+        for (artefact, count) in of_run.set_aside {
+            *self.set_aside.entry(artefact).or_default() += count;
+        }
         self.passed += of_run.passed;
         self.lost.extend(of_run.lost);
         self.medians.push(of_run.medians);
@@ -142,7 +145,7 @@ impl Collection {
 
     /// What was set aside, and what the filter left, in words; none without either.
     pub fn filtered(&self, filter: &ConflictFilter) -> Vec<String> {
-        let set_aside = (self.set_aside > 0).then(|| set_aside_in_words(self.set_aside));
+        let set_aside = set_aside_in_words(&self.set_aside);
         if filter.is_empty() {
             return set_aside.into_iter().collect();
         }

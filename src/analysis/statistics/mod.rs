@@ -30,6 +30,7 @@ use serde::Serialize;
 
 use super::filter::ConflictFilter;
 use super::logged::{LoggedRun, LostRows, Progress};
+use crate::output::summary::SetAside;
 use crate::{Error, Result};
 
 pub use chosen::LeftOutLog;
@@ -82,6 +83,8 @@ pub struct Statistics {
     /// The logs that lack rows, whose other rows count.
     #[serde(skip)]
     pub lost: Vec<LostRows>,
+    /// The conflicts that are none of traffic's, and are not counted.
+    pub set_aside: SetAside,
     /// Which conflicts count, as the words of a command line; none for all.
     pub filter: Option<String>,
     /// How conflicts are grouped.
@@ -140,6 +143,7 @@ impl Statistics {
             notes: variants.notes.iter().cloned().chain(set.filtered(&request.filter)).collect(),
             left_out,
             lost,
+            set_aside: std::mem::take(&mut set.set_aside),
             filter: (!request.filter.is_empty()).then(|| request.filter.to_string()),
             by: request.by,
             edges: hot_spots::edges(&set, request.worst),

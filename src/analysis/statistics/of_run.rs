@@ -13,6 +13,7 @@ use super::worst::WorstOf;
 use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{ConflictReader, LoggedConflict, LostRows};
 use crate::detection::kind::{Kind, Severity};
+use crate::output::summary::SetAside;
 use crate::{Error, Result};
 
 /// After this many conflicts the reader reports how far it is.
@@ -44,8 +45,8 @@ pub struct OfRun {
     pub columns: Vec<String>,
     /// What is wrong with its rows as a whole.
     pub lost: Option<LostRows>,
-    /// How many conflicts of the log are none of traffic's, and are not counted.
-    pub set_aside: u64,
+    /// The conflicts of the log that are none of traffic's, and are not counted.
+    pub set_aside: SetAside,
     /// How many others it has.
     pub read: u64,
     /// How many of them count.
@@ -89,7 +90,7 @@ impl OfRun {
             path: reader.path().to_owned(),
             columns,
             lost: None,
-            set_aside: 0,
+            set_aside: SetAside::new(),
             read: 0,
             passed: 0,
             groups: FxHashMap::default(),
@@ -100,15 +101,16 @@ impl OfRun {
             worst: WorstOf::new(worst),
             tails: Tails::default(),
         };
+        let mut rows = 0_u64;
         while let Some(conflict) = reader.next_row()? {
-            if !filter.counts(conflict) {
-                found.set_aside += 1;
+            rows += 1;
+            if rows.is_multiple_of(EVERY) {
+                progress(EVERY);
+            }
+            if filter.sets_aside(conflict, &mut found.set_aside) {
                 continue;
             }
             found.read += 1;
-            if found.read.is_multiple_of(EVERY) {
-                progress(EVERY);
-            }
             if filter.passes(conflict) {
                 found.add(run, conflict, by);
                 if found.worst.takes(run, conflict) {
@@ -117,7 +119,7 @@ impl OfRun {
                 }
             }
         }
-        progress(found.read % EVERY);
+        progress(rows % EVERY);
         found.lost = reader.lost();
         found.medians = std::array::from_fn(|measure| {
             let values = found.groups.values().flat_map(|group| &group.columns[measure]);

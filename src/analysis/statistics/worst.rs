@@ -120,7 +120,7 @@ impl WorstOf {
             let of_run = variants.all.iter().find(|variant| variant.runs.binary_search(&found.run).is_ok());
             found.variant = of_run.filter(|_| variants.are_several()).map(|variant| variant.name.clone());
             found.seed.clone_from(&run.seed);
-            found.command = if may_have_clip(&found.folder, run, found.conflict.severity) {
+            found.command = if may_have_clip(&found.folder, run, &found.conflict) {
                 Some(format!("closecall show {} {}", quoted(&found.folder.to_string_lossy()), found.conflict.id))
             } else {
                 show(run, &found.conflict)

@@ -50,7 +50,8 @@ impl Words<'_> {
              EGO, FOE, TIME = {ego}, {foe}, {time:?}\n\n\n\
              def test_the_conflict_is_still_there(closecall_scenario):\n    \
                  run = closecall_scenario(\"{configuration}\")\n    \
-                 pair = [conflict for conflict in run.conflicts if (conflict.ego, conflict.foe) == (EGO, FOE)]\n    \
+                 logged = run.conflicts + run.set_aside\n    \
+                 pair = [conflict for conflict in logged if (conflict.ego, conflict.foe) == (EGO, FOE)]\n    \
                  found = [(conflict.kind, conflict.margin) for conflict in pair if abs(conflict.time - TIME) < 1e-3]\n    \
                  assert found == [(\"{kind}\", pytest.approx({margin:?}, abs=1e-6))]\n"
         )

@@ -5,8 +5,11 @@ use super::outcome::{Outcome, SeedConflict, SeedSummary};
 use crate::output::schema::{COLUMNS, Column};
 
 /// The columns that tell how bad a conflict was, and where.
-const TELLING: [&str; 13] = [
+const TELLING: [&str; 16] = [
     "severity",
+    "nearness",
+    "consequence",
+    "artefact",
     "collision",
     "begin",
     "end",
@@ -83,7 +86,11 @@ pub fn described(row: &SeedConflict) -> String {
     let told = measures.map(|column| format!("{} {} {}", column.name, row.text(column.name), column.unit()));
     let told = told.collect::<Vec<_>>().join(", ");
     let hit = if row.text("collision") == "true" { ", collision" } else { "" };
-    format!("{}: {}, {told}{hit}", place(row), row.severity.name())
+    let artefact = match row.text("artefact") {
+        "" => String::new(),
+        artefact => format!(", set aside: {artefact}"),
+    };
+    format!("{}: {}, {told}{hit}{artefact}", place(row), row.severity.name())
 }
 
 /// Seed, kind, pair, time and place.

@@ -20,7 +20,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use crate::{Error, Result};
-use outcome::Outcome;
+use outcome::{Outcome, SeedSummary};
 use permutation::{fewest_seeds, smallest_p};
 use running::Job;
 use statistics::comparisons;
@@ -77,7 +77,7 @@ fn judge(scenario: &Scenario, logs: &[(u32, PathBuf)], bless: bool) -> Result<Ve
         Err(_) if bless => None,
         read => read?,
     };
-    let conflicts = found.conflicts.len();
+    let conflicts = found.summary.seeds.iter().map(SeedSummary::counted).sum();
     let Some(expected) = expected else {
         if !bless {
             return Err(Error::content(&scenario.expected(), "nothing is blessed yet; use --bless"));

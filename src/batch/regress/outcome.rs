@@ -13,7 +13,7 @@ use crate::analysis::logged::{LoggedRun, SUMMARY};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
-use crate::output::summary::{Count, Exposure};
+use crate::output::summary::{Count, Exposure, SetAside};
 use crate::util::units::Second;
 use crate::util::{input_file, output_file};
 use crate::{Error, Result};
@@ -57,8 +57,11 @@ pub struct SeedSummary {
     pub seed: u32,
     /// Steps that were checked.
     pub steps: u64,
-    /// Conflicts by kind and severity.
+    /// Conflicts by kind and severity; without those that are set aside.
     pub conflicts: Vec<Count>,
+    /// The conflicts that are none of traffic's, and are not counted.
+    #[serde(default, skip_serializing_if = "SetAside::is_empty")]
+    pub set_aside: SetAside,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
     /// The amount of traffic.
@@ -108,6 +111,20 @@ impl SeedConflict {
     }
 }
 
+impl RunsSummary {
+    /// Whether the runs count conflicts that are none of traffic's.
+    pub fn counts_artefacts(&self) -> bool {
+        self.options.get("artefacts").and_then(Value::as_bool).unwrap_or_default()
+    }
+}
+
+impl SeedSummary {
+    /// The number of conflicts that count.
+    pub fn counted(&self) -> u64 {
+        self.conflicts.iter().map(|count| count.count).sum()
+    }
+}
+
 impl Outcome {
     /// Collects the logs of the runs, each with its seed; `folder` is where they ran.
     ///
@@ -123,6 +140,7 @@ impl Outcome {
                 seed: *seed,
                 steps: record.summary.steps,
                 conflicts: record.summary.conflicts,
+                set_aside: record.summary.set_aside,
                 collisions: record.summary.collisions,
                 exposure: rounded(record.summary.exposure),
             };

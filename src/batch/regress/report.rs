@@ -31,8 +31,8 @@ pub struct Report {
 pub struct Verdict {
     /// Whether this outcome has become the expected one.
     pub blessed: bool,
-    /// The number of conflicts over all seeds.
-    pub conflicts: usize,
+    /// The number of conflicts over all seeds; without those that are set aside.
+    pub conflicts: u64,
     /// The differences; none if nothing was expected yet.
     pub compared: Option<Compared>,
     /// Changes in versions, options and input files.

@@ -52,8 +52,10 @@ impl std::fmt::Display for MeasureComparison {
 pub fn comparisons(expected: &Outcome, found: &Outcome, settings: &RegressSettings) -> Vec<MeasureComparison> {
     let measures = measures();
     let table = |outcome: &Outcome| {
+        let counts_artefacts = outcome.summary.counts_artefacts();
         let of_seed = |seed: &SeedSummary| {
-            let rows = outcome.conflicts.iter().filter(|row| row.seed == seed.seed).collect::<Vec<_>>();
+            let rows = outcome.conflicts.iter().filter(|row| row.seed == seed.seed);
+            let rows = rows.filter(|row| counts_artefacts || row.text("artefact").is_empty()).collect::<Vec<_>>();
             measures.iter().map(|measure| measure.of(seed, &rows)).collect::<Vec<_>>()
         };
         outcome.summary.seeds.iter().map(of_seed).collect::<Vec<_>>()
@@ -144,10 +146,7 @@ impl RunMeasure {
             }
             Self::VehicleKilometres => Some(seed.exposure.vehicle_kilometres),
             Self::Persons => Some(seed.exposure.persons as f64),
-            Self::Percentile(column, share, _) => {
-                let traffic = rows.iter().filter(|row| row.text("artefact").is_empty());
-                percentile(traffic.filter_map(|row| row.number(column)), share)
-            }
+            Self::Percentile(column, share, _) => percentile(rows.iter().filter_map(|row| row.number(column)), share),
         }
     }
 

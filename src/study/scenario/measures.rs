@@ -98,6 +98,9 @@ impl RunFigures {
         let mut samples = [const { Vec::new() }; COLUMNS.len()];
         for conflict in ConflictReader::open(&folder)? {
             let conflict = conflict?;
+            if run.sets_aside(&conflict) {
+                continue;
+            }
             for (count, tally) in counts.iter_mut().zip(&tallies) {
                 *count += f64::from(u8::from((tally.counts)(&conflict)));
             }

@@ -155,7 +155,7 @@ const times = {
 
 /** The threshold of a measure by which conflicts are serious; none where crash probabilities decide. */
 function threshold(by_rule, text) {
-  const at = { fhwa: by_rule[0], ssm: by_rule[1] }[options.severity];
+  const at = { fhwa: by_rule[0], ssm: by_rule[1] }[options.severity_rule || options.severity];
   return at === undefined ? undefined : { at, text: text(at) };
 }
 

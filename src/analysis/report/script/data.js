@@ -43,12 +43,15 @@ const strongestCause = (row) => conflicts.causes[column.cause[row]].split(" ")[0
 /** The conflicts that have a drawing: row → [row, ego, foe]. */
 const drawn = new Map(conflicts.drawn.map((entry) => [entry[0], entry]));
 
-/** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin. */
+/** What a conflict is that is none of traffic's; empty for the rest. */
+const artefactOf = (row) => conflicts.artefacts[column.artefact[row]];
+
+/** Order of rows, worst first: collision, severity, ΔV of collisions, crash probability, TTC, margin; last what is not traffic. */
 function worstFirst(a, b) {
   const { severity, collision, delta_v, crash_probability, ttc, margin } = column;
   const or = (value) => (value === null ? Infinity : value);
   const less = (x, y) => (x < y ? -1 : x > y ? 1 : 0);
-  return collision[b] - collision[a] || severity[b] - severity[a]
+  return Boolean(artefactOf(a)) - Boolean(artefactOf(b)) || collision[b] - collision[a] || severity[b] - severity[a]
     || collision[a] * (delta_v[b] - delta_v[a]) || crash_probability[b] - crash_probability[a] || less(or(ttc[a]), or(ttc[b]))
     || less(or(margin[a]), or(margin[b])) || a - b;
 }

@@ -110,6 +110,7 @@ function startPage() {
   showRuns();
   if (count === 0) {
     byId("nothing").textContent = data.filter ? `No conflict passes the filter ${data.filter}.`
+      : data.set_aside ? "No conflict is traffic’s."
       : "No conflicts were found: no pair came closer than its minimal collision distance μ.";
     byId("nothing").hidden = false;
     byId("filter").hidden = true;

@@ -94,6 +94,24 @@ function whyOf(row, cause) {
   return who === null ? WHY[cause] || inWords(cause) : `the ${["ego", "foe"][who]}, ${[egoId, foeId][who](row)}, had to yield and did not`;
 }
 
+const nearnessOf = (row) => conflicts.nearnesses[column.nearness[row]];
+const consequenceOf = (row) => conflicts.consequences[column.consequence[row]];
+/** Why a conflict is not traffic, by the log's name of it. */
+const ARTEFACTS = {
+  drawn_overlap: "the two overlap, or would, only as their lanes are drawn", appeared: "one of them had just been put there",
+  stopped_at_once: "one of them had stopped faster than any brakes can", jumped: "one of them had jumped sideways, or turned, within one step",
+  tracking: "the tracker erred",
+};
+
+/** How near to a crash it was, what that would have meant, and whether it is traffic; empty for a log of an earlier version. */
+function labelWords(row) {
+  const artefact = artefactOf(row);
+  const [nearness, consequence] = [nearnessOf(row), consequenceOf(row)].map(inWords);
+  const labels = column.collision[row] ? `The crash was ${consequence}.` : `A crash was ${nearness}, and would have been ${consequence}.`;
+  const parts = [consequence && labels, artefact && `Not traffic: ${ARTEFACTS[artefact] || inWords(artefact)}.`];
+  return parts.filter(Boolean).join(" ");
+}
+
 /** The log's row of a conflict as sentences: what happened, why, and how much time was left. */
 function storyOf(row) {
   const value = (name) => column[name][row];
@@ -118,7 +136,7 @@ function storyOf(row) {
   } else if (typeof left === "number") {
     sentences.push(`The ego had ${number(left, 1)} s left to respond, and a driver needs ${number(responseOf(row), 2)} s.`);
   }
-  return sentences.join(" ");
+  return [...sentences, labelWords(row)].filter(Boolean).join(" ");
 }
 
 /** The measures of a conflict as sentences. */
@@ -152,6 +170,7 @@ function tipOf(row) {
   const lines = [
     `${egoId(row)} → ${foeId(row)}`,
     `${KINDS[value("kind")]}, ${SEVERITIES[value("severity")]}${value("collision") ? ", collision" : ""}`,
+    labelWords(row),
     whyWords(row),
     `${number(value("time"), 1)} s, ${conflicts.spots[spotOf(row)] || "no lane"}`,
     `gap ${maybe("gap", 2, "m")}, μ ${maybe("mu", 2, "m")}, margin ${maybe("margin", 2, "m")}`,

@@ -20,7 +20,7 @@ const MEASURES: [QuantileRow; 4] = [
 
 /// All tables of the statistics, in reading order.
 pub fn tables(statistics: &Statistics) -> Vec<Table> {
-    let mut tables = vec![traffic(statistics), rates(&statistics.groups), ratios(statistics)];
+    let mut tables = vec![traffic(statistics), set_aside(statistics), rates(&statistics.groups), ratios(statistics)];
     tables.push(quantiles(&statistics.groups));
     tables.push(spots("edges", &statistics.edges));
     tables.push(spots("junctions", &statistics.junctions));
@@ -74,6 +74,17 @@ fn traffic(statistics: &Statistics) -> Table {
         columns: several.then_some("variant").into_iter().chain(names).collect(),
         rows: statistics.variants.iter().map(row).collect(),
         notes: several.then_some(differ).into_iter().chain(statistics.notes.clone()).chain(left_out).collect(),
+    }
+}
+
+/// The conflicts that are not counted.
+fn set_aside(statistics: &Statistics) -> Table {
+    let row = |(artefact, count): (&String, &u64)| vec![Cell::Text(artefact.clone()), Cell::Count(*count)];
+    Table {
+        title: "set aside",
+        columns: vec!["artefact", "conflicts"],
+        rows: statistics.set_aside.iter().map(row).collect(),
+        notes: Vec::new(),
     }
 }
 

@@ -1,0 +1,134 @@
+"""What is not traffic stays in the log, is not counted anywhere, and is told in a line; `--artefacts` counts it in."""
+
+from __future__ import annotations
+
+import csv
+import html
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import closecall as module
+import pytest
+from conftest import closecall, rows
+from report_page import ALL, Opened, made_up
+
+ARTEFACTS = ["drawn_overlap", "", "jumped", "", "drawn_overlap", ""]
+WHY = "set aside 3 that are not traffic's: 2 drawn_overlap, 1 jumped"
+COUNTS = "(--artefacts counts them in)"
+
+
+@pytest.fixture
+def log(tmp_path: Path) -> Path:
+    """A log of six conflicts, of which three are traffic; the other three are the worst."""
+    folder = made_up(tmp_path / "log", len(ARTEFACTS))
+    found = rows(folder / "conflicts.csv")
+    for row, artefact in zip(found, ARTEFACTS):
+        row |= {"artefact": artefact, "nearness": "near_certain", "consequence": "moderate"}
+        row["severity"] = "critical" if artefact else "caution"
+    with (folder / "conflicts.csv").open("w", newline="", encoding="utf-8") as file:
+        table = csv.DictWriter(file, list(found[0]), lineterminator="\n")
+        table.writeheader()
+        table.writerows(found)
+    counts: dict[tuple[str, str], int] = {}
+    for row in found:
+        if not row["artefact"]:
+            counts[row["kind"], row["severity"]] = counts.get((row["kind"], row["severity"]), 0) + 1
+    summary: dict[str, Any] = {
+        "begin": 0.0,
+        "end": 3599.9,
+        "steps": 36000,
+        "conflicts": [{"kind": kind, "severity": severity, "count": n} for (kind, severity), n in counts.items()],
+        "set_aside": {"drawn_overlap": 2, "jumped": 1},
+        "collisions": 0,
+        "left_out": [],
+        "exposure": {"vehicles": 100, "persons": 0, "vehicle_kilometres": 50.0, "vehicle_hours": 2.0},
+    }
+    record = {
+        "versions": {"closecall": "0.1.0", "sumo": None},
+        "scenario": "made",
+        "seed": None,
+        "step_length": 0.1,
+        "sumo_words": [],
+        "inputs": [],
+        "options": {},
+        "complete": True,
+        "summary": summary,
+    }
+    (folder / "run.json").write_text(json.dumps(record), encoding="utf-8")
+    return folder
+
+
+def test_statistics_leave_it_out_and_say_why(log: Path) -> None:
+    for words, count, aside in (((), 3, {"drawn_overlap": 2, "jumped": 1}), (("--artefacts",), 6, {})):
+        done = closecall("stats", log, "--format", "json", *words)
+        assert (done.returncode, done.stderr) == (0, "")
+        found = json.loads(done.stdout)
+        assert (found["groups"][0]["count"], found["set_aside"]) == (count, aside)
+        assert {one["artefact"] for one in found["worst"]} == (set(ARTEFACTS) if words else {""})
+        assert (f"{WHY} {COUNTS}" in found["notes"]) == (not words)
+    for form in ("text", "html"):
+        assert f"{WHY} {COUNTS}" in html.unescape(closecall("stats", log, "--format", form).stdout), form
+    lines = closecall("stats", log, "--format", "csv").stdout.splitlines()
+    for line in ("set aside,1,drawn_overlap,conflicts,2", "set aside,2,jumped,conflicts,1"):
+        assert line in lines
+
+
+def test_a_report_leaves_it_out_and_says_why(browser: Any, log: Path, tmp_path: Path) -> None:
+    page = tmp_path / "r.html"
+    done = closecall("report", log, "-o", page)
+    assert done.stdout.startswith("3 conflicts of 1 run") and done.stdout.endswith(f"\n{WHY} {COUNTS}\n")
+    opened = Opened(browser, page, view=ALL)
+    assert opened.text("#shown") == "3 of 3 conflicts"
+    assert f"{WHY} {COUNTS}." in opened.text("#notes")
+    cards = opened.text("#worst")
+    assert "A crash was near certain, and would have been moderate." in cards and "Not traffic" not in cards
+    done = closecall("report", log, "-o", page, "--artefacts")
+    assert done.stdout.startswith("6 conflicts of 1 run") and WHY not in done.stdout
+    opened = Opened(browser, page, view=ALL)
+    texts = [card.inner_text() for card in opened.page.locator("#worst li").all()]
+    assert ["Not traffic: " in text for text in texts] == [False] * 3 + [True] * 3, "traffic first"
+    assert opened.complaints == []
+
+
+def test_a_report_of_nothing_else_says_so(browser: Any, tmp_path: Path) -> None:
+    log = made_up(tmp_path / "log", 1)
+    text = (log / "conflicts.csv").read_text().splitlines()
+    (log / "conflicts.csv").write_text(f"{text[0]},artefact\n{text[1]},appeared\n")
+    assert closecall("report", log, "-o", tmp_path / "r.html").returncode == 0
+    assert "No conflict is traffic’s." in Opened(browser, tmp_path / "r.html").text("#nothing")
+
+
+def test_pictures_and_exports_leave_it_out(log: Path, tmp_path: Path) -> None:
+    assert closecall("plot", log, "-o", tmp_path / "plots").stdout.endswith(f"\n{WHY} {COUNTS}\n")
+    for words, count in (((), 3), (("--artefacts",), 6)):
+        out = tmp_path / "places.poi.xml"
+        done = closecall("export", log, "--format", "poi", "--out", out, *words)
+        assert done.stdout.startswith(f"{count} conflict") and (WHY in done.stdout) == (not words)
+        assert len(re.findall("<poi ", out.read_text())) == count
+
+
+def test_the_worst_are_of_traffic_and_an_id_names_any(log: Path, tmp_path: Path) -> None:
+    done = closecall("clip", log, "--worst", "4", "-o", tmp_path / "clip.svg")
+    assert done.returncode == 2
+    assert f"--worst 4: {log} has 3 conflicts, and has {WHY}; name one by its id" in done.stderr
+    done = closecall("clip", log, "1", "-o", tmp_path / "clip.svg")
+    assert "it is not traffic's (drawn_overlap); run it again with --artefacts" in done.stderr
+
+
+def test_alarms_and_rewards_leave_out_who_has_just_appeared() -> None:
+    for artefacts in (False, True):
+        checker = module.Checker(artefacts=artefacts)
+        reward = module.Reward(checker)
+        for step in range(12):
+            checker.step(0.1 * step, {"id": ["a"], "x": [2.0 * step], "y": [0.0], "heading": [0.0], "speed": [20.0]})
+        one = {"id": ["a", "b"], "x": [24.0, 40.0], "y": [0.0, 0.0], "heading": [0.0, 0.0], "speed": [20.0, 0.0]}
+        checker.step(1.2, one)
+        [conflict] = checker.conflicts
+        assert conflict.artefact == "appeared"
+        assert (len(checker.active), reward.total() > 0) == ((1, True) if artefacts else (0, False))
+        summary = checker.summary
+        assert summary.get("set_aside", {}) == ({} if artefacts else {"appeared": 1})
+        assert sum(count["count"] for count in summary["conflicts"]) == artefacts
+        assert (summary["expected_crashes"] > 0) == artefacts
