@@ -15,6 +15,7 @@ mod hostile;
 mod lane_lengths;
 mod lanes;
 mod levels;
+mod net_faults;
 mod path;
 mod replay;
 #[path = "../common/street.rs"]

@@ -54,6 +54,11 @@ impl Net {
     pub fn overlaps(&self) -> Overlaps {
         Overlaps::of(self)
     }
+
+    /// Whether the centre lines of two lanes cross.
+    pub fn cross_as_drawn(&self, one: LaneIndex, other: LaneIndex) -> bool {
+        cross_each_other(&lane_of(self, one).shape, &lane_of(self, other).shape)
+    }
 }
 
 impl Overlaps {
