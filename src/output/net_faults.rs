@@ -22,7 +22,7 @@ pub enum FaultKind {
     WaitsInside,
     /// Two links of one junction are no foes of each other.
     NotFoes,
-    /// Two lanes of one edge, one of them narrower than the vehicles.
+    /// Two lanes have room beside each other, and vehicles are wider than they are.
     NarrowLane,
     /// Two lanes of different edges cross where no junction is.
     NoJunction,
@@ -48,8 +48,8 @@ impl FaultKind {
                  connections"
             }
             Self::NarrowLane => {
-                "vehicles are wider than their lanes: wider lanes (width, netconvert --default.lanewidth), or closed to wide \
-                 vehicles"
+                "vehicles need more room than their lanes have: wider lanes (width, netconvert --default.lanewidth), or \
+                 lanes that are closed to wide vehicles"
             }
             Self::NoJunction => {
                 "lanes cross where no junction is: a node there (netconvert --junctions.join where two lie on each other), \

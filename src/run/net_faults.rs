@@ -105,7 +105,7 @@ fn kind(net: &Net, [one, other]: [LaneIndex; 2]) -> FaultKind {
     match () {
         () if both().any(|lane| !net.lanes[lane.0 as usize].has_vehicles) => FaultKind::OnFoot,
         () if net.relates(one, other) => FaultKind::WaitsInside,
-        () if edge(one) == edge(other) => FaultKind::NarrowLane,
+        () if edge(one) == edge(other) || net.have_room(one, other) => FaultKind::NarrowLane,
         () if junction(one).is_some() && junction(one) == junction(other) => FaultKind::NotFoes,
         () if net.cross_as_drawn(one, other) => FaultKind::NoJunction,
         () => FaultKind::TooNear,

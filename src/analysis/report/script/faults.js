@@ -5,7 +5,7 @@ const MOST_FAULTS = 20;
 /** The side of a fault's mark on the map, in pixels. */
 const FAULT_SIDE = 9;
 const FAULT_WORDS = { on_foot: "persons are driven over", waits_inside: "waits inside the junction", not_foes: "no foes, but drawn over each other",
-  narrow_lane: "lanes narrower than vehicles", no_junction: "cross without a junction", too_near: "edges too near" };
+  narrow_lane: "lanes are too narrow", no_junction: "cross without a junction", too_near: "edges too near" };
 
 const faults = {
   worst: data.net_faults.worst,
