@@ -5,12 +5,14 @@
 //! sets the placement of the rows that the run asks for. A [`recorded::RecordedRun`] adds the log around the steps.
 
 mod entering;
+mod net_faults;
 mod obstacles;
 mod ordinary_driving;
 pub mod recorded;
 mod results;
 mod settings;
 pub mod step;
+mod touching_lanes;
 mod warm_up;
 mod writing;
 
@@ -18,6 +20,7 @@ use std::collections::VecDeque;
 use std::sync::Arc;
 
 use entering::Entering;
+use net_faults::NetFaults;
 use ordinary_driving::OrdinaryDriving;
 use rustc_hash::FxHashSet;
 
@@ -82,6 +85,7 @@ pub struct Run {
     summary: Summary,
     ordinary_driving: OrdinaryDriving,
     entering: Entering,
+    net_faults: NetFaults,
 }
 
 impl Run {
@@ -125,6 +129,7 @@ impl Run {
             summary: Summary::default(),
             ordinary_driving: OrdinaryDriving::default(),
             entering: Entering::default(),
+            net_faults: NetFaults::default(),
         })
     }
 

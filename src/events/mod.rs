@@ -29,4 +29,5 @@ pub use moment::Moment;
 pub use snapshot::Snapshot;
 pub use tracker::Tracker;
 pub use under_way::CLOSES_AFTER;
+pub(crate) use why::STANDS;
 pub use why::{Artefact, Cause, Causes, Manoeuvre, Surroundings};

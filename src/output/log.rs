@@ -1,4 +1,5 @@
-//! The log of a run: `conflicts.csv`, `series.csv` or `series.parquet` on request, `clips.jsonl.gz`, `run.json`.
+//! The log of a run: `conflicts.csv`, `series.csv` or `series.parquet` on request, `clips.jsonl.gz`,
+//! `net_faults.csv` where there are any, `run.json`.
 //!
 //! Rows of a CSV file are written as conflicts close, those of a step in one call, so that a kill loses no conflict that had
 //! closed. A kill during that call may cut the last row short (Linux then ends a write between two pages);
@@ -11,6 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::clips::{CLIPS, ClipsFile};
 use super::csv_file::CsvFile;
+use super::net_faults::{self, NET_FAULTS, NetFault};
 #[cfg(feature = "parquet")]
 use super::parquet_file::ParquetFile;
 use super::record::RunRecord;
@@ -41,7 +43,7 @@ fn columns(measures: Measures) -> impl Iterator<Item = &'static Column> {
 
 /// The files of the log in a folder.
 pub(crate) fn files(folder: &Path) -> impl Iterator<Item = PathBuf> {
-    [CONFLICTS, PARQUET].into_iter().chain(SERIES_FILES).chain([CLIPS, RUN]).map(|name| folder.join(name))
+    [CONFLICTS, PARQUET].into_iter().chain(SERIES_FILES).chain([CLIPS, NET_FAULTS, RUN]).map(|name| folder.join(name))
 }
 
 /// The log of one run.
@@ -161,6 +163,19 @@ impl Log {
     /// The SHA-256 of `conflicts.csv`.
     pub fn digest(&self) -> String {
         self.conflicts.digest()
+    }
+
+    /// Writes `net_faults.csv`, unless there are none.
+    ///
+    /// # Errors
+    /// [`Error::File`] where it cannot be written.
+    pub fn write_net_faults(&self, faults: &[NetFault]) -> Result<()> {
+        if faults.is_empty() { Ok(()) } else { net_faults::write(&self.folder, faults, self.conflicts.is_safe) }
+    }
+
+    /// Where it is.
+    pub fn folder(&self) -> &Path {
+        &self.folder
     }
 
     /// Writes `run.json`, whole or not at all.

@@ -9,6 +9,7 @@ pub mod font;
 pub mod formats;
 pub mod input_hash;
 pub mod log;
+pub mod net_faults;
 pub mod palette;
 #[cfg(feature = "parquet")]
 pub mod parquet_columns;

@@ -13,6 +13,7 @@ use crate::output::folder::LogFolder;
 use crate::output::formats::{OutputFiles, Outputs};
 use crate::output::input_hash::Input;
 use crate::output::log::{self, Log};
+use crate::output::net_faults;
 use crate::output::record::RunRecord;
 use crate::output::summary::Summary;
 use crate::util::output_file::same_file;
@@ -106,9 +107,13 @@ impl RecordedRun {
         let Ending { error, left_out, remarks, spent } = ending;
         let finished = self.run.finish();
         let error = self.run.log_error().map(str::to_owned).or(error);
+        let (faults, road_users) = self.run.net_faults();
+        let log = self.run.writing.log.as_ref();
+        let faults_written = log.map_or(Ok(()), |log| log.write_net_faults(&faults));
+        let faults = net_faults::in_words(&faults, road_users, log.map(Log::folder));
         let mut summary = self.run.summary.clone();
         summary.left_out.extend(left_out);
-        summary.remarks.extend(remarks.into_iter().chain(self.earlier_log()));
+        summary.remarks.extend(faults.into_iter().chain(remarks).chain(self.earlier_log()));
         summary.spent = spent;
         self.run.summary.clone_from(&summary);
         let recorded = match (self.run.writing.log.take(), self.record.take()) {
@@ -124,7 +129,7 @@ impl RecordedRun {
             _ => Ok(()),
         };
         self.folder = None;
-        finished.and(recorded).map(|()| summary)
+        finished.and(faults_written).and(recorded).map(|()| summary)
     }
 
     /// Removes the log and the other files: the input could not be used after all.

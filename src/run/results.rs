@@ -7,6 +7,7 @@ use crate::Result;
 use crate::detection::encounter::Encounter;
 use crate::events::{Alarm, Conflict, PetSoFar};
 use crate::geometry::Point;
+use crate::output::net_faults::NetFault;
 use crate::output::summary::{Skipped, Summary};
 use crate::traffic::net::Net;
 use crate::traffic::roster::UserIndex;
@@ -21,6 +22,11 @@ impl Run {
     pub fn path(&self, user: UserIndex) -> Vec<Point> {
         let row = self.frame.row_of(user);
         row.map_or_else(Vec::new, |row| self.detector.path(&self.frame, &self.roster, row))
+    }
+
+    /// The faults of the net so far, the worst first, and the number of road users that overlap only as drawn.
+    pub(super) fn net_faults(&self) -> (Vec<NetFault>, usize) {
+        (self.net().map(|net| self.net_faults.found(net)).unwrap_or_default(), self.net_faults.road_users())
     }
 
     /// The conflicts that are still open in this step.
@@ -86,6 +92,7 @@ impl Run {
         let closed = self.tracker.finish(&self.roster);
         let clips = self.clips.as_mut().map_or_else(Vec::new, |clips| clips.finish(closed, first));
         let written = self.writing.finish(closed, &clips, &self.roster, self.net.as_deref());
+        self.net_faults.take(closed, first, self.net.as_deref(), &self.roster);
         count(closed, self.counts_artefacts, &mut self.summary, &mut self.conflicts, self.most_conflicts);
         closed.iter().for_each(|conflict| self.ordinary_driving.count(conflict, &self.roster));
         self.summary.entered = self.net.as_deref().map(|net| self.entering.by_junction(net)).unwrap_or_default();

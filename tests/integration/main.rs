@@ -16,6 +16,7 @@ mod lane_lengths;
 mod lanes;
 mod levels;
 mod one_between;
+mod net_faults;
 mod path;
 mod replay;
 #[path = "../common/street.rs"]

@@ -43,6 +43,13 @@ pub(crate) fn conflicts(net: &Net, drives: &[Drive], signals: &[(f64, &str)], la
 
 /// The same where those of these numbers have a stop.
 fn conflicts_with(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &[u32], lasts: f64) -> Vec<Conflict> {
+    let mut run = run_of(net, drives, signals, stops, lasts);
+    run.finish().unwrap();
+    run.conflicts()
+}
+
+/// The run of some seconds, which is not finished.
+pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &[u32], lasts: f64) -> Run {
     let net = Arc::new(net.clone());
     let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
     let mut enter = |(drive, number): (&Drive, u32)| {
@@ -103,8 +110,7 @@ fn conflicts_with(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &
         });
         stepped.unwrap();
     }
-    run.finish().unwrap();
-    run.conflicts()
+    run
 }
 
 /// The place and heading at a position on a lane.

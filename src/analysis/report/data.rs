@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::contact::parts;
 use super::movements::Movements;
-use super::{clips, roads};
+use super::{clips, faults, roads};
 use crate::Result;
 use crate::analysis::dataset::Conflicts;
 use crate::analysis::dataset::kept::RunConflict;
@@ -52,6 +52,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
         "net": net.map(roads::json),
+        "net_faults": faults::json(&logs)?,
         "notes": ground.notes,
         "before": before,
         "filter": filter,

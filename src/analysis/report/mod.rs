@@ -6,6 +6,7 @@
 mod clips;
 mod contact;
 mod data;
+mod faults;
 mod movements;
 mod roads;
 
@@ -27,7 +28,7 @@ const DATA: &str = "{{data}}";
 const LIBRARY: (&str, &str) = ("{{library}}", include_str!("vendor/echarts.min.js"));
 const SCRIPTS: &str = "{{scripts}}";
 /// The page's own scripts, each after those that it needs.
-const OWN_SCRIPTS: [&str; 18] = [
+const OWN_SCRIPTS: [&str; 19] = [
     include_str!("script/data.js"),
     include_str!("script/filter.js"),
     include_str!("script/colours.js"),
@@ -36,6 +37,7 @@ const OWN_SCRIPTS: [&str; 18] = [
     include_str!("script/density.js"),
     include_str!("script/signs.js"),
     include_str!("script/map.js"),
+    include_str!("script/faults.js"),
     include_str!("script/charts.js"),
     include_str!("script/movements.js"),
     include_str!("script/spots.js"),

@@ -15,8 +15,9 @@ mod waiting;
 pub use artefact::Artefact;
 pub use cause::{Cause, Causes};
 pub use manoeuvre::Manoeuvre;
+pub(super) use pair::Pair;
+pub(crate) use pair::STANDS;
 pub use pair::Surroundings;
-pub(super) use pair::{Pair, STANDS};
 pub(super) use waiting::one_will_wait;
 
 use crate::traffic::lane_change::LaneChangeReason;

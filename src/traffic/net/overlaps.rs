@@ -54,6 +54,20 @@ impl Net {
     pub fn overlaps(&self) -> Overlaps {
         Overlaps::of(self)
     }
+
+    /// Whether the centre lines of two lanes cross.
+    pub fn cross_as_drawn(&self, one: LaneIndex, other: LaneIndex) -> bool {
+        cross_each_other(&lane_of(self, one).shape, &lane_of(self, other).shape)
+    }
+
+    /// Whether two lanes have room beside each other as they are drawn, each with its width.
+    pub fn have_room(&self, one: LaneIndex, other: LaneIndex) -> bool {
+        let [a, b] = [one, other].map(|lane| lane_of(self, lane));
+        let room = (a.width + b.width) / 2.0 - ROUNDING;
+        let is_apart =
+            |points: &Lane, line: &Lane| points.shape.iter().all(|point| distance_beside(&line.shape, *point) >= room);
+        is_apart(a, b) && is_apart(b, a) && !self.cross_as_drawn(one, other)
+    }
 }
 
 impl Overlaps {

@@ -94,7 +94,7 @@ const map = {
         if (this.view.scale >= CLOSE !== wasClose) this.showLegend();
         // The table ranks the places by what happens after, not by the change.
         const badges = this.mode === "difference" ? [] : badgesOf(this.view, rows, this.mode);
-        const over = [...badges, ...scaleBar(1 / this.view.scale, this.view.height)];
+        const over = [...badges, ...faults.marks(this.view), ...scaleBar(1 / this.view.scale, this.view.height)];
         if (this.mode !== "points") {
           return { type: "group", $mergeChildren: false, children: [...density.children(this.view, rows, this.mode === "difference"), ...over] };
         }
@@ -246,6 +246,11 @@ const map = {
       difference: "Expected crashes after minus before, for as much traffic as after; only the choice of severities applies:" };
     if (net && this.view?.scale >= CLOSE) {
       entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
+    }
+    if (faults.isOnMap) {
+      const box = patch("var(--card)");
+      box.style.border = "2px solid var(--ink)";
+      entries.push(entry(box, "fault of the net"));
     }
     const circled = { points: "Circled numbers: the first places of the table, whole junctions and edges",
       density: "Circled numbers: the first places of the table, whole junctions and edges, each at its hexagon with the most" }[this.mode];

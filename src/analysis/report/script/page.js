@@ -115,6 +115,7 @@ function startPage() {
     byId("nothing").hidden = false;
     byId("filter").hidden = true;
     document.querySelectorAll("main > section, #reading, #figures").forEach((part) => { part.hidden = !part.querySelector("#runs"); });
+    faults.start(null, false);
     return;
   }
   const showSoon = quietly(show, 150);
@@ -133,6 +134,7 @@ function startPage() {
   showAgainst();
   startExport();
   map.start(show);
+  faults.start(show, true);
   times.start((from, to) => {
     if (filter.from === from && filter.to === to) return;
     Object.assign(filter, { from, to });
