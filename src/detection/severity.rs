@@ -113,13 +113,15 @@ impl NearnessLevel {
 
     /// That of a step.
     fn of(inputs: &SeverityInputs) -> Self {
-        let SeverityInputs { ttc, drac, ttb, crash_probability, braking, collision, .. } = *inputs;
+        let SeverityInputs { ttc, drac, ttb, crash_probability, braking, delta_v, collision, .. } = *inputs;
         // The braking that was needed: without contact ahead none is, and what is beyond the need is caution.
         let needed = braking.min(drac.unwrap_or(0.0));
+        let brakes_fully = braking >= FULL && ttc.is_some();
         match () {
             () if collision || ttb == Some(0.0) || crash_probability >= NEAR_CERTAIN => Self::NearCertain,
-            () if braking >= FULL && ttc.is_some() => Self::NearCertain,
-            () if crash_probability >= LIKELY || needed >= EVASIVE => Self::Likely,
+            // Of two about as fast as each other the DRAC is small whatever the need.
+            () if needed >= FULL || (brakes_fully && delta_v < MODERATE) => Self::NearCertain,
+            () if crash_probability >= LIKELY || needed >= EVASIVE || brakes_fully => Self::Likely,
             () => Self::Possible,
         }
     }
@@ -244,11 +246,15 @@ mod tests {
 
     #[test]
     fn hard_braking_is_evidence_only_if_needed() {
-        let nearness = |braking, drac, ttc| NearnessLevel::of(&SeverityInputs { braking, drac, ttc, ..INPUTS });
+        let of =
+            |braking, drac, ttc, delta_v| NearnessLevel::of(&SeverityInputs { braking, drac, ttc, delta_v, ..INPUTS });
+        let nearness = |braking, drac, ttc| of(braking, drac, ttc, 3.0);
         assert_eq!(nearness(4.6, Some(4.6), Some(1.0)), NearnessLevel::Likely);
         assert_eq!(nearness(4.6, Some(3.0), Some(1.0)), NearnessLevel::Possible);
         assert_eq!(nearness(4.4, Some(9.0), Some(1.0)), NearnessLevel::Possible);
-        assert_eq!(nearness(8.0, Some(3.0), Some(1.0)), NearnessLevel::NearCertain);
+        assert_eq!(nearness(8.0, Some(7.0), Some(1.0)), NearnessLevel::NearCertain);
+        assert_eq!(nearness(8.0, Some(3.0), Some(1.0)), NearnessLevel::Likely);
+        assert_eq!(of(8.0, Some(3.0), Some(1.0), 1.0), NearnessLevel::NearCertain);
         assert_eq!(nearness(8.0, None, None), NearnessLevel::Possible);
     }
 

@@ -15,8 +15,8 @@ mod hostile;
 mod lane_lengths;
 mod lanes;
 mod levels;
-mod one_between;
 mod net_faults;
+mod one_between;
 mod path;
 mod replay;
 #[path = "../common/street.rs"]

@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use super::manoeuvre::{changes_lanes, stands_aside};
+use super::manoeuvre::changes_lanes;
 use super::pair::{Pair, Party, STANDS};
 use crate::geometry::angle_between;
 use crate::geometry::rectangle::direction;
@@ -131,8 +131,8 @@ fn is_drawn(pair: &Pair) -> bool {
         [Category::Vehicle, Category::Vehicle] => {
             pair.both().into_iter().any(|(one, other)| waits_inside(net, one, other)) || are_unrelated(net, pair)
         }
-        [Category::Person, Category::Vehicle] => is_off_the_road(net, pair, &pair.ego),
-        [Category::Vehicle, Category::Person] => is_off_the_road(net, pair, &pair.foe),
+        [Category::Person, Category::Vehicle] => is_off_the_road(net, &pair.ego),
+        [Category::Vehicle, Category::Person] => is_off_the_road(net, &pair.foe),
         _ => false,
     }
 }
@@ -165,11 +165,8 @@ fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
     passes.speed >= STANDS && passes.course.deceleration < UNBRAKED && passes.course.of(lane).is_none()
 }
 
-/// Whether a person is where only persons go, and not about to step on a crossing where the two would meet: SUMO's persons
-/// leave pavements for nothing else, whatever their heading.
-fn is_off_the_road(net: &Net, pair: &Pair, person: &Party) -> bool {
-    let meets_at = person.front + direction(person.heading) * person.way;
-    !person.is_on_crossing(net)
-        && net.is_off_the_road(person.front, BESIDE)
-        && (stands_aside(pair, person) || !net.is_on_crossing(meets_at))
+/// Whether a person is where only persons go. SUMO's persons leave pavements for nothing but crossings, whatever their heading,
+/// and do so when it is their turn.
+fn is_off_the_road(net: &Net, person: &Party) -> bool {
+    !person.is_on_crossing(net) && net.is_off_the_road(person.front, BESIDE)
 }

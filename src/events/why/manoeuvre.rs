@@ -144,7 +144,7 @@ impl Manoeuvre {
 }
 
 /// Whether a person stands, and not on a crossing.
-pub(super) fn stands_aside(pair: &Pair, party: &Party) -> bool {
+fn stands_aside(pair: &Pair, party: &Party) -> bool {
     let is_on_crossing = || pair.around.net.is_some_and(|net| party.is_on_crossing(net));
     party.category == Category::Person && party.speed < STANDS && !is_on_crossing()
 }
