@@ -11,18 +11,18 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, python, rows, wait_for_rows
+from conftest import begin, closecall, counted, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
-    "id,ego,foe,kind,severity,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
+    "id,ego,foe,kind,severity,nearness,consequence,artefact,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
     "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,collision_sumo,ego_type,foe_type,"
     "ego_x,ego_y,ego_heading,ego_length,ego_width,ego_path,foe_x,foe_y,foe_heading,foe_length,foe_width,foe_path,"
     "headway,overlap,response_left,ttb,crash_probability,crash_probability_braking,injury_probability,extended_delta_v,"
     "manoeuvre,cause,lane_change_reason,ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
 )
 SERIES_COLUMNS = (
-    "conflict,ego,foe,kind,severity,time,gap,mu,margin,clearance,ttc,drac,unavoidable,ego_delta_v,foe_delta_v,ego_speed,foe_speed,"
-    "angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap,response_left,ttb,"
+    "conflict,ego,foe,kind,severity,nearness,consequence,artefact,time,gap,mu,margin,clearance,ttc,drac,unavoidable,"
+    "ego_delta_v,foe_delta_v,ego_speed,foe_speed,angle,x,y,lane,collision,ego_x,ego_y,ego_heading,foe_x,foe_y,foe_heading,headway,overlap,response_left,ttb,"
     "crash_probability,crash_probability_braking,injury_probability,extended_delta_v,manoeuvre,cause,"
     "lane_change_reason,ego_lane,ego_lane_position,foe_lane,foe_lane_position,edge,junction,lon,lat"
 )
@@ -57,7 +57,7 @@ def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: P
         "rear_end.net.xml",
         "rear_end.rou.xml",
     }
-    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(counted(out))
     steps = rows(out / "series.csv")
     assert all(float(row["margin"]) < 0 for row in steps)
     conflict = rows(out / "conflicts.csv")[0]
@@ -178,7 +178,7 @@ def test_ctrl_c_and_sigterm_end_a_run_cleanly(asked: signal.Signals, scenario: C
     assert "Traceback" not in message
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is False
-    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(counted(out))
 
 
 def test_a_seed_chosen_by_sumo_is_recorded_as_unknown(scenario: Copy, tmp_path: Path) -> None:

@@ -188,7 +188,7 @@ READERS = {
 @pytest.mark.parametrize("reader", READERS)
 def test_other_tools_read_the_data_set(reader: str, done: Path) -> None:
     counts, margins, collisions, scale = read(READERS[reader], done)
-    overall = [group for group in stats(done)["groups"] if group["group"] == "all"]
+    overall = [group for group in stats(done, "--artefacts")["groups"] if group["group"] == "all"]
     assert sum(counts.values()) == sum(group["count"] for group in overall) > 20
     assert set(counts) <= set(files(done))
     assert collisions == sum(group["collisions"] for group in overall) and scale == [1.0, 1.5]
