@@ -130,10 +130,7 @@ def test_the_filter_of_stats_chooses_what_is_exported(log: Path, tmp_path: Path)
     expected = [row["id"] for row in counted(log) if row["kind"] == "side" and float(row["time"]) <= 40]
     out = tmp_path / "side.geojson"
     done = closecall("export", log, "--format", "geojson", "--out", out, *words)
-    assert (
-        done.stdout.startswith(f"{len(expected)} conflict")
-        and f" of {len(counted(log))} in" in done.stdout
-    )
+    assert done.stdout.startswith(f"{len(expected)} conflict") and f" of {len(counted(log))} in" in done.stdout
     assert [str(feature["id"]) for feature in json.loads(out.read_text())["features"]] == expected != []
     # A log whose first conflict does not pass still has degrees, and a log of which none passes gives an empty file.
     assert closecall("export", log, "--format", "geojson", "--out", out, "--type", "tram").returncode == 0

@@ -25,7 +25,9 @@ READ = """if True:
         file = parquet.ParquetFile(path)
         record = json.loads(file.schema_arrow.metadata[b"closecall.run.json"])
         time = json.loads(file.schema_arrow.metadata[b"closecall.run_time"])
-        found.append({"rows": [row for row in file.read(["severity", "ttc", "artefact"]).to_pylist() if not row["artefact"]], "summary": record["summary"],
+        table = file.read(["severity", "ttc", "artefact"]).to_pylist()
+        counted = [row for row in table if not row["artefact"]]
+        found.append({"rows": counted, "summary": record["summary"],
             "name": path.parent.name.removeprefix("run=").rsplit("seed-")[0], "time": time})
     print(json.dumps(found))
 """

@@ -26,8 +26,8 @@ from ._closecall import Conflict, read_log, scenario
 class ScenarioRun:
     """The log of a run of a scenario.
 
-    `conflicts` has those that count, `set_aside` those that are not traffic's (docs/artefacts.md); the option `artefacts`
-    counts them, too.
+    `conflicts` has those that count, `set_aside` those that are not traffic's (docs/artefacts.md).
+    The option `artefacts` counts all.
     """
 
     conflicts: list[Conflict]
