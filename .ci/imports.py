@@ -38,6 +38,7 @@ LAYER_OF = {name: height for height, names in enumerate(LAYERS) for name in name
 USE = re.compile(r"^\s*(pub(?:\([^)]*\))?\s+)?use\s+([^;]+);", re.MULTILINE)
 PATH = re.compile(r"\b(?:crate|super|self|[a-z_][a-z0-9_]*)(?:::\w+)+")
 TEST_MODULE = re.compile(r"^#\[cfg\(test\)\]\nmod \w+ \{\n.*?^\}$", re.DOTALL | re.MULTILINE)
+VISIBILITY = re.compile(r"\bpub\(in [^)]*\)")
 STRING_OR_COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
 
 Tree = dict[str, Path]
@@ -53,7 +54,7 @@ def module_of(path: Path, source: Path) -> str:
 
 def without_tests(text: str) -> str:
     """The text without its test module and comments, and with empty strings."""
-    text = TEST_MODULE.sub("", text)
+    text = VISIBILITY.sub("pub", TEST_MODULE.sub("", text))
     return STRING_OR_COMMENT.sub(lambda found: '""' if found.group(0).startswith('"') else "", text)
 
 

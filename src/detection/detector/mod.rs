@@ -14,6 +14,7 @@ mod driving;
 mod encounter_values;
 mod encounters;
 mod jump;
+mod lane_jumps;
 mod last_speed;
 mod left_out;
 mod level;

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use super::Said;
+use super::said::Said;
 use super::sample::{FcdWriter, PEDESTRIAN, Sample};
 use super::table::maybe_cut;
 use crate::geometry::{Point, Vector};

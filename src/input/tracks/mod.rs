@@ -15,10 +15,12 @@ mod headings;
 mod inspect;
 mod jumps;
 mod layouts;
+mod mapped_table;
 mod mapping;
 mod matching;
 mod meta;
 mod rows;
+mod said;
 mod sample;
 mod smooth;
 mod spill;
@@ -37,9 +39,10 @@ use crate::{Error, Result};
 pub use filter::USUAL_NOISE;
 pub use format::RecordingFormat;
 pub use inspect::inspect;
+use mapped_table::Table;
 pub use mapping::{NOISE, Origin as TrackOrigin, TrackOptions};
 use matching::LaneFinder;
-use rows::Table;
+use said::Said;
 use sample::FcdWriter;
 
 /// A recording as files that replay reads; they are gone when it is dropped.
@@ -58,15 +61,6 @@ pub struct Converted {
     types: TempPath,
     format: RecordingFormat,
     said: Said,
-}
-
-/// What had to be assumed, a line each.
-#[derive(Debug, Default)]
-pub(crate) struct Said {
-    /// For lack of columns that the files or the format do not have at all.
-    pub missing: Vec<String>,
-    /// Because of what is in the files.
-    pub doubtful: Vec<String>,
 }
 
 impl Opened {

@@ -5,11 +5,12 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::path::Path;
 
-use super::Said;
 use super::field::Field;
 use super::layouts::hint;
+use super::mapped_table::Table;
 use super::mapping::{Mapping, Origin, Places};
 use super::meta::{Meta, name_beside, read_meta};
+use super::said::Said;
 use super::sample::{FcdWriter, Sample};
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
@@ -25,14 +26,6 @@ use crate::{Error, Result};
 const MOVES: MetrePerSecond = 0.1;
 /// Rows after which a wish to stop is asked for.
 const ASKED: u64 = 4096;
-
-/// A file, and how it is read.
-pub(super) struct Table<'a> {
-    pub path: &'a Path,
-    pub mapping: Mapping,
-    /// The names of its columns.
-    pub names: Vec<String>,
-}
 
 /// Turns tables into SUMO's fcd-output, smoothed if their places have this noise; returns what had to be assumed.
 pub(super) fn convert(

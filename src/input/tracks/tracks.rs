@@ -8,7 +8,7 @@ use super::field::Field;
 use super::filter::JumpFinder;
 use super::headings::Headings;
 use super::jumps::Jumps;
-use super::rows::Table;
+use super::mapped_table::Table;
 use super::smooth::Smoother;
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::users::Users;

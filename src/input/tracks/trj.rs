@@ -9,7 +9,7 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::Said;
+use super::said::Said;
 use super::sample::{FcdWriter, Sample};
 use crate::geometry::{Point, Vector};
 use crate::output::formats::{FAR, origin_of_trajectories};

@@ -2,9 +2,9 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::Said;
 use super::classes::Class;
 use super::mapping::Mapping;
+use super::said::Said;
 
 /// Names that a remark has at most.
 const NAMED: usize = 5;

@@ -64,6 +64,18 @@ fn distance(lane: &Lane, place: Point) -> Metre {
     pieces.fold(f64::INFINITY, f64::min)
 }
 
+/// The distance of a place from a line, if it is neither before its beginning nor beyond its end.
+pub(super) fn distance_beside(line: &[Point], place: Point) -> Metre {
+    let last = line.len() - 2;
+    let pieces = line.windows(2).enumerate().filter_map(|(number, ends)| {
+        let along = ends[1] - ends[0];
+        let part = (place - ends[0]).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+        let is_outside = (number == 0 && part < 0.0) || (number == last && part > 1.0);
+        (!is_outside).then(|| (place - (ends[0] + along * part.clamp(0.0, 1.0))).norm())
+    });
+    pieces.fold(f64::INFINITY, f64::min)
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;

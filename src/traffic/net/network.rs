@@ -8,8 +8,7 @@ use rustc_hash::FxHashMap;
 use super::elements::{
     Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
 };
-use super::finder::Finder;
-use super::overlaps::distance_beside;
+use super::finder::{Finder, distance_beside};
 use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
 use crate::geometry::{Bounds, Point, Vector};

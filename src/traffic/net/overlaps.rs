@@ -14,7 +14,7 @@
 use rustc_hash::FxHashMap;
 
 use super::elements::{EdgeFunction, Lane, LaneIndex};
-use super::finder::aabb;
+use super::finder::{aabb, distance_beside};
 use super::network::Net;
 use crate::geometry::{Bounds, Point, cross};
 use crate::util::units::Metre;
@@ -252,18 +252,6 @@ fn cross_each_other(one: &[Point], other: &[Point]) -> bool {
             side(a, b[0]) != side(a, b[1]) && side(b, a[0]) != side(b, a[1])
         })
     })
-}
-
-/// The distance of a place from a line, if it is neither before its beginning nor beyond its end.
-pub(super) fn distance_beside(line: &[Point], place: Point) -> Metre {
-    let last = line.len() - 2;
-    let pieces = line.windows(2).enumerate().filter_map(|(number, ends)| {
-        let along = ends[1] - ends[0];
-        let part = (place - ends[0]).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
-        let is_outside = (number == 0 && part < 0.0) || (number == last && part > 1.0);
-        (!is_outside).then(|| (place - (ends[0] + along * part.clamp(0.0, 1.0))).norm())
-    });
-    pieces.fold(f64::INFINITY, f64::min)
 }
 
 #[cfg(test)]
