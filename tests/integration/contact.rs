@@ -111,7 +111,7 @@ fn oncoming_vehicles_that_will_only_graze_have_no_ttc() {
             let nearness = oncoming.unwrap().nearness.unwrap();
             assert_eq!(nearness.ttc.is_some(), touches, "{aside} m aside");
             assert_eq!(nearness.drac.is_some(), touches, "{aside} m aside");
-            assert_eq!(nearness.severity, if touches { Severity::Critical } else { Severity::Caution });
+            assert_eq!(nearness.assessment.severity, if touches { Severity::Critical } else { Severity::Caution });
         }
     }
 }

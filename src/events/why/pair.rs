@@ -6,7 +6,6 @@ use crate::detection::kind::Kind;
 use crate::events::past::Past;
 use crate::geometry::Point;
 use crate::geometry::polylines::Vertex;
-use crate::geometry::rectangle::direction;
 use crate::options::measures::ChosenValues;
 use crate::traffic::frame::Frame;
 use crate::traffic::net::{EdgeIndex, LaneIndex, Net, Passage};
@@ -93,11 +92,10 @@ impl Party {
         self.category == Category::Vehicle
     }
 
-    /// Whether it is a person on a crossing. At the kerb SUMO's ways over a walking area lead over the ends of crossings: there
-    /// only one that goes along is on it.
+    /// Whether it is a person on a crossing. At the kerb it is not known: SUMO's ways over a walking area lead over the ends of
+    /// crossings.
     pub fn is_on_crossing(&self, net: &Net) -> bool {
-        let along = Some(direction(self.heading)).filter(|_| self.speed >= STANDS);
-        net.is_within_crossing(self.front, along, KERB)
+        net.is_within_crossing(self.front, KERB)
     }
 
     /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,

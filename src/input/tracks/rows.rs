@@ -8,7 +8,7 @@ use std::path::Path;
 use super::field::Field;
 use super::layouts::hint;
 use super::mapped_table::Table;
-use super::mapping::{Mapping, Origin, Places};
+use super::mapping::{Origin, Places};
 use super::meta::{Meta, name_beside, read_meta};
 use super::said::Said;
 use super::sample::{FcdWriter, Sample};

@@ -11,7 +11,7 @@ use super::elements::{
 use super::finder::{Finder, distance_beside};
 use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
-use crate::geometry::{Bounds, Point, Vector};
+use crate::geometry::{Bounds, Point};
 use crate::util::units::{Degree, Metre};
 
 /// A road network.
@@ -45,9 +45,6 @@ pub struct Net {
     /// The lowest and the highest point of all lanes, in m.
     pub(super) heights: [Metre; 2],
 }
-
-/// The cosine of the angle up to which a person goes along a crossing: 45°.
-const ALONG: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// No [`Passage`].
 pub(super) const NO_PASSAGE: u32 = u32::MAX;
@@ -94,14 +91,14 @@ impl Net {
         self.crossings_under(place).next().is_some()
     }
 
-    /// Whether a place is on a crossing, and, unless this is a direction along it, further from its ends than `kerb`.
-    pub fn is_within_crossing(&self, place: Point2<Metre>, along: Option<Vector>, kerb: Metre) -> bool {
+    /// Whether a place is on a crossing, further from its ends than `kerb`, or than a quarter of a short one.
+    pub fn is_within_crossing(&self, place: Point2<Metre>, kerb: Metre) -> bool {
         self.crossings_under(place).any(|lane| {
             let Some((first, last)) = lane.shape.first().zip(lane.shape.last()) else { return false };
-            let way = last - first;
-            let (length, passed) = (way.norm(), (place - first).dot(&way) / way.norm().max(f64::MIN_POSITIVE));
-            let is_along = along.is_some_and(|along| along.dot(&way).abs() >= length * ALONG);
-            is_along || (kerb..=length - kerb).contains(&passed)
+            let length = (last - first).norm();
+            let passed = (place - first).dot(&(last - first)) / length.max(f64::MIN_POSITIVE);
+            let kerb = kerb.min(length / 4.0);
+            (kerb..=length - kerb).contains(&passed)
         })
     }
 
