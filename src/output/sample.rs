@@ -12,7 +12,7 @@ pub fn sample(values: &[(&str, &str)]) -> LoggedConflict {
             "kind" => "side",
             "severity" => "caution",
             "collision" => "false",
-            "unavoidable" | "collision_sumo" => "",
+            "unavoidable" | "collision_sumo" | "artefact" => "",
             _ => "1",
         }))
     };

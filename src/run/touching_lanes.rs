@@ -69,8 +69,15 @@ fn places(
 
 /// The walking area or pavement at a place, or else the crossing.
 fn lane_on_foot(net: &Net, place: Point) -> Option<LaneIndex> {
-    let on_foot = net.lanes_at(place, BESIDE).filter(|lane| !net.lanes[lane.0 as usize].has_vehicles);
-    on_foot.min_by_key(|lane| (net.function(*lane) == EdgeFunction::Crossing, *lane))
+    // The shape of a walking area is its outline, that of other lanes their middle.
+    let is_on_foot =
+        |lane: &LaneIndex| net.function(*lane) != EdgeFunction::WalkingArea && !net.lanes[lane.0 as usize].has_vehicles;
+    let lanes = net.lanes_at(place, BESIDE).filter(is_on_foot);
+    let pavement = lanes.min_by_key(|lane| (net.function(*lane) == EdgeFunction::Crossing, *lane));
+    pavement
+        .filter(|lane| net.function(*lane) == EdgeFunction::Normal)
+        .or_else(|| net.walking_area_at(place))
+        .or(pavement)
 }
 
 /// A lane and those that are reached from its end within a distance.

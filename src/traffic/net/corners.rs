@@ -18,15 +18,17 @@ use crate::util::units::Metre;
 const BESIDE: Metre = 4.0;
 
 impl Net {
-    /// Whether a place is on a walking area or just beside it.
-    pub fn has_walking_area_at(&self, place: Point) -> bool {
-        let is_at = |lane: LaneIndex| {
+    /// The walking area at a place, or the nearest just beside it.
+    pub fn walking_area_at(&self, place: Point) -> Option<LaneIndex> {
+        let away = |lane: LaneIndex| {
             let area = &self.lanes[lane.0 as usize].shape;
-            is_inside(sides(area), place) || sides(area).any(|side| distance(side, place) <= BESIDE)
+            let beside = || sides(area).map(|side| distance(side, place)).fold(f64::INFINITY, f64::min);
+            if is_inside(sides(area), place) { 0.0 } else { beside() }
         };
         let window = aabb(&Bounds { low: place, high: place }.grown(BESIDE));
-        let mut near = self.finder.lanes_in(&window);
-        near.any(|lane| self.function(lane) == EdgeFunction::WalkingArea && is_at(lane))
+        let areas = self.finder.lanes_in(&window).filter(|lane| self.function(*lane) == EdgeFunction::WalkingArea);
+        let near = areas.map(|lane| (away(lane), lane)).filter(|(away, _)| *away <= BESIDE);
+        near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, lane)| lane)
     }
 }
 
@@ -138,7 +140,7 @@ mod tests {
         let places = [(7.0, 2.5, true), (8.5, 7.0, true), (-3.9, 0.0, true), (4.0, -3.9, true)];
         let others = [(-4.1, 0.0, false), (0.0, 8.0, false), (13.5, 1.5, false), (20.0, 1.0, false)];
         for (x, y, is_on) in places.into_iter().chain(others) {
-            assert_eq!(net.has_walking_area_at(Point::new(x, y)), is_on, "{x}, {y}");
+            assert_eq!(net.walking_area_at(Point::new(x, y)).is_some(), is_on, "{x}, {y}");
         }
     }
 }

@@ -124,7 +124,7 @@ impl Net {
     pub fn is_off_the_road(&self, place: Point2<Metre>, within: Metre) -> bool {
         let is_pavement =
             |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane.0 as usize].has_vehicles;
-        self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.has_walking_area_at(place)
+        self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.walking_area_at(place).is_some()
     }
 
     /// The lane with this id.
