@@ -184,7 +184,7 @@ def test_a_mapping_may_ask_its_own_checker() -> None:
 
 
 def test_only_the_latest_conflicts_are_kept_if_so_wanted(tmp_path: Path) -> None:
-    with cc.Checker(out=tmp_path, keep=2) as checker:
+    with cc.Checker(out=tmp_path, keep=2, artefacts=True) as checker:
         for step in range(5):
             foe = {**PAIR, "id": [f"a{step}", f"b{step}"]}
             checker.step(step * 10.0, foe)
