@@ -130,8 +130,7 @@ impl Tracker {
         self.alarms_of(&self.waiting)
     }
 
-    #[expect(clippy::vec_box, reason = "as above")]
-    fn alarms_of<'a>(&'a self, events: &'a Vec<Box<Event>>) -> impl Iterator<Item = Alarm> + 'a {
+    fn alarms_of<'a>(&'a self, events: &'a [Box<Event>]) -> impl Iterator<Item = Alarm> + 'a {
         let alarms = events.iter().filter_map(|event| event.alarm);
         alarms.filter(|alarm| alarm.artefact.is_none() || self.rules.counts_artefacts)
     }

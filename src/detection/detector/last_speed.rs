@@ -67,13 +67,9 @@ impl LastSpeed {
     fn reference(&self) -> Option<(Second, MetrePerSecond)> {
         let [least, most] = SUSTAINED;
         let known = self.past.iter().copied().filter(|(ago, _)| ago.is_finite());
-        let beyond = known.clone().find(|(ago, _)| *ago >= least - SAME_MOMENT);
-        known
-            .clone()
-            .filter(|(ago, _)| *ago <= most + SAME_MOMENT && *ago >= least - SAME_MOMENT)
-            .last()
-            .or(beyond)
-            .or(known.last())
+        let is_long = |(ago, _): &(Second, _)| *ago >= least - SAME_MOMENT;
+        let within = known.clone().rev().find(|past| is_long(past) && past.0 <= most + SAME_MOMENT);
+        within.or_else(|| known.clone().find(is_long)).or_else(|| known.clone().next_back())
     }
 
     /// How long ago its speed fell by more than brakes can do within a step; infinite where it never did.

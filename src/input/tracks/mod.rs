@@ -3,6 +3,7 @@
 //! They come without lanes and types: each road user gets a type of its class and size, and on a net the lane beneath it
 //! that leads where it heads.
 
+mod by_track;
 mod classes;
 mod complete;
 mod detect;
@@ -25,7 +26,6 @@ mod sample;
 mod smooth;
 mod spill;
 mod table;
-mod tracks;
 mod trj;
 mod users;
 

@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use std::f64::consts::PI;
 use std::path::Path;
 
+use super::by_track::Tracks;
 use super::field::Field;
 use super::layouts::hint;
 use super::mapped_table::Table;
@@ -14,7 +15,6 @@ use super::said::Said;
 use super::sample::{FcdWriter, Sample};
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
-use super::tracks::Tracks;
 use super::users::Users;
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
@@ -67,7 +67,7 @@ pub(super) fn convert(
 /// Counts a row, and asks now and then whether to stop.
 fn ask(rows: &mut u64, stopped: &mut dyn FnMut() -> bool) -> Result<()> {
     *rows += 1;
-    if *rows % ASKED == 0 && stopped() { Err(Error::Stopped) } else { Ok(()) }
+    if rows.is_multiple_of(ASKED) && stopped() { Err(Error::Stopped) } else { Ok(()) }
 }
 
 /// Reads the rows of all files, sorted by road user.

@@ -70,6 +70,12 @@ impl Users {
         }
     }
 
+    /// Another road user that has the id of this one.
+    pub fn again_as(&mut self, known: u32) -> u32 {
+        let id = self.original(known).to_owned();
+        self.again(&id)
+    }
+
     /// The number of one more road user with this id.
     pub fn again(&mut self, id: &str) -> u32 {
         let count = self.of_id.entry(id.to_owned()).or_default();

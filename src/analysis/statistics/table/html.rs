@@ -23,7 +23,7 @@ pub fn html(title: &str, tables: &[Table]) -> String {
             |column: usize| table.rows.iter().any(|row| !matches!(row.get(column), Some(Cell::Text(_) | Cell::None)));
         for (place, column) in table.columns.iter().enumerate() {
             let class = if is_number(place) { " class=\"number\"" } else { "" };
-            page += &format!("<th scope=\"col\"{class}>{}</th>", escaped(*column));
+            page += &format!("<th scope=\"col\"{class}>{}</th>", escaped(column));
         }
         page += "</tr></thead>\n";
         for row in &table.rows {

@@ -77,7 +77,7 @@ impl Tracks {
         let user = match self.last {
             Some((user, known, time)) if user == row.user => {
                 let is_another = self.are_reused && row.time - time > AWAY;
-                if is_another { users.again(&users.original(known).to_owned()) } else { known }
+                if is_another { users.again_as(known) } else { known }
             }
             _ => row.user,
         };
