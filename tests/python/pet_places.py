@@ -28,7 +28,7 @@ Array = NDArray[np.float64]
 EVERY = 0.025
 """Between two samples, in s."""
 CROSSING, PARALLEL = math.radians(30), math.radians(5)
-"""Two whose headings differ by less than the first may be on one path; by less than the second, they drive in parallel."""
+"""Two whose headings differ by less than the first may be on one path; by less than the second, they are parallel."""
 TOLERANCE = 0.08
 """In s: of two samples, and of a step that bends."""
 LONGEST = 5.0
@@ -110,7 +110,7 @@ def crossings(first: Course, second: Course) -> list[Crossing]:
 
 
 def beside(first: Course, second: Course, run: NDArray[np.int64]) -> tuple[Array, Array, NDArray[np.bool_]]:
-    """How far the front of the second is beside the way of the first's (left above 0), the angle there, and whether the two
+    """How far the front of the second is beside the path of the first (left above 0), the angle there, whether the two
     are on one path."""
     begin = first.at[0]
     back = np.arange(0.0, first.length, 0.1)[::-1, None] * np.array([math.cos(begin[3]), math.sin(begin[3])])
@@ -132,7 +132,7 @@ def beside(first: Course, second: Course, run: NDArray[np.int64]) -> tuple[Array
 
 
 class Checked(NamedTuple):
-    """The conflicts with a PET, those of them that places do not confirm, and those without although places have one."""
+    """The conflicts with a PET, those that places do not confirm, and those without one although places have it."""
 
     pets: list[Row]
     wrong: list[tuple[Row, list[Crossing]]]
@@ -144,12 +144,13 @@ def check(conflicts: list[Row], courses: dict[str, Array], longest: float = LONG
     checked = Checked([], [], [])
     for row in conflicts:
         begin, end = float(row["begin"]), float(row["end"])
-        both = []
+        both: list[Course] = []
         for user in ("ego", "foe"):
             size = float(row[f"{user}_length"] or 0), float(row[f"{user}_width"] or 0)
             if row[user] in courses:
-                both.append(sampled(courses[row[user]], begin - longest, end + 2 * longest + 2, *size))
-        if len(both) < 2 or both[0] is None or both[1] is None:
+                course = sampled(courses[row[user]], begin - longest, end + 2 * longest + 2, *size)
+                both += [course] if course is not None else []
+        if len(both) < 2:
             continue
         ego, foe = both
         found = [one for one in crossings(ego, foe) + crossings(foe, ego) if one.pet <= longest + TOLERANCE]

@@ -32,10 +32,7 @@ def change(once: Once) -> Path:
 
 def test_before_and_after_are_a_sentence_and_a_plot(browser: Any, change: Path) -> None:
     opened = Opened(browser, change / "report.html")
-    counts = [
-        sum(len(severe(counted(change / name / seed))) for seed in ("1", "2"))
-        for name in ("after", "before")
-    ]
+    counts = [sum(len(severe(counted(change / name / seed))) for seed in ("1", "2")) for name in ("after", "before")]
     assert f"{counts[0]} and {counts[1]} conflicts in 2 runs after, 2 before" in opened.text("#sentence")
     first = opened.text("#forest tbody tr:first-child").split("\t")
     assert [int(cell.replace(",", "")) for cell in first[1:3]] == counts

@@ -30,7 +30,7 @@ def test_a_condition_may_ask_for_a_longer_pet(tmp_path: Path) -> None:
 def pets(folder: Path, log: str, end: int) -> dict[frozenset[str], list[float]]:
     """The PETs of each pair in the roundabout."""
     config = NETS / "roundabout" / "roundabout.sumocfg"
-    done = closecall("run", config, "--log", log, "--out", folder, "--end", end, "--quiet", "--", "--no-warnings")
+    done = closecall("run", config, "--log", log, "--out", folder, "--end", str(end), "--quiet", "--", "--no-warnings")
     assert done.returncode == 0, done.stderr
     found: dict[frozenset[str], list[float]] = {}
     for row in rows(folder / "conflicts.csv"):

@@ -85,7 +85,9 @@ def test_the_exact_name_is_preferred_to_another_case(tmp_path: Path) -> None:
 
 
 def test_things_are_left_out_and_counted(tmp_path: Path) -> None:
-    things = "".join(f"{kind},{t},{x},0,0,{kind}\n" for t in range(3) for kind, x in (("static", 20), ("background", 25)))
+    things = "".join(
+        f"{kind},{t},{x},0,0,{kind}\n" for t in range(3) for kind, x in (("static", 20), ("background", 25))
+    )
     file = written(tmp_path, lines(",vehicle", name="kind") + things)
     said, found = replay(file, "--columns", COLUMNS + ",class=kind")
     assert '"static", "background" are no road users, so their rows are left out: 6' in said
@@ -148,8 +150,12 @@ def test_ids_of_ngsim_are_used_again(tmp_path: Path) -> None:
 
 
 def test_inspect_tells_units_from_the_values(tmp_path: Path) -> None:
-    cells = [f"{n},{1000 + 100 * n},{who},{x + vx * n / 10},{y + vy * n / 10},{yaw},{vx},{vy}"
-             for n in range(20) for who, x, y, yaw, vx, vy in (("a", 0, 0, 0, 10, 0), ("b", 50, -30, 90, 0, 10))]  # fmt: skip
+    users = (("a", 0, 0, 0, 10, 0), ("b", 50, -30, 90, 0, 10))
+    cells = [
+        f"{n},{1000 + 100 * n},{who},{x + vx * n / 10},{y + vy * n / 10},{yaw},{vx},{vy}"
+        for n in range(20)
+        for who, x, y, yaw, vx, vy in users
+    ]
     names = "frame,timestamp,actor,x,y,yaw,vx,vy"
     file = written(tmp_path, "\n".join([names, *cells]) + "\n")
     told = closecall("inspect", file).stdout

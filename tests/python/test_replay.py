@@ -259,8 +259,10 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
 PARKS = """<routes><vType id="d" sigma="0" speedDev="0"/>
 <vehicle id="beside" type="d" depart="0" departSpeed="10"><route edges="east"/>
     <stop lane="east_0" endPos="60" duration="20" parking="true"/></vehicle>
-<vehicle id="area" type="d" depart="4" departSpeed="10"><route edges="east"/><stop parkingArea="off" duration="20"/></vehicle>
-<vehicle id="road" type="d" depart="8" departSpeed="10"><route edges="east"/><stop parkingArea="on" duration="20"/></vehicle>
+<vehicle id="area" type="d" depart="4" departSpeed="10"><route edges="east"/>
+    <stop parkingArea="off" duration="20"/></vehicle>
+<vehicle id="road" type="d" depart="8" departSpeed="10"><route edges="east"/>
+    <stop parkingArea="on" duration="20"/></vehicle>
 <vehicle id="by" type="d" depart="24" departSpeed="13"><route edges="east"/></vehicle></routes>"""
 AREAS = """<additional><parkingArea id="off" lane="east_0" startPos="80" endPos="110" roadsideCapacity="2"/>
 <parkingArea id="on" lane="east_0" startPos="130" endPos="150" roadsideCapacity="2" onRoad="true"/></additional>"""
@@ -270,7 +272,15 @@ def test_vehicles_parked_off_the_road_are_left_out_as_live(tmp_path: Path) -> No
     net, routes, areas = (tmp_path / name for name in ("n.net.xml", "r.rou.xml", "a.add.xml"))
     (tmp_path / "n.nod.xml").write_text('<nodes><node id="w" x="0" y="0"/><node id="e" x="200" y="0"/></nodes>')
     (tmp_path / "n.edg.xml").write_text('<edges><edge id="east" from="w" to="e" numLanes="1"/></edges>')
-    made = (Path(sys.executable).with_name("netconvert"), "-n", tmp_path / "n.nod.xml", "-e", tmp_path / "n.edg.xml", "-o", net)
+    made = (
+        Path(sys.executable).with_name("netconvert"),
+        "-n",
+        tmp_path / "n.nod.xml",
+        "-e",
+        tmp_path / "n.edg.xml",
+        "-o",
+        net,
+    )
     subprocess.run(made, check=True, capture_output=True)
     routes.write_text(PARKS)
     areas.write_text(AREAS)

@@ -179,7 +179,9 @@ def test_a_linked_folder_is_not_written_into(scenario: Copy, log: Path, tmp_path
     assert [(path.name, path.read_text()) for path in mine.iterdir()] == [("summary.json", "mine")]
 
 
-@pytest.mark.parametrize("setting", ['ssm-output = "FILE"', 'trj_output = "FILE"', '[regress]\nsumo_options = ["--log", "FILE"]'])
+@pytest.mark.parametrize(
+    "setting", ['ssm-output = "FILE"', 'trj_output = "FILE"', '[regress]\nsumo_options = ["--log", "FILE"]']
+)
 def test_a_scenarios_settings_name_no_file_to_write(setting: str, scenario: Copy, tmp_path: Path) -> None:
     precious, config = tmp_path / "precious", scenario("side")
     precious.write_text("mine")

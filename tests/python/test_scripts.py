@@ -90,7 +90,8 @@ for step in range(60):
             if way == "step": assert "fork" in checker.log_error, checker.log_error
             os._exit(0)
         assert os.waitpid(child, 0)[1] == 0
-    checker.step(step * 0.1, {"id": [f"v{n}" for n in range(10)], "x": [7.0 * n + n % 7 * 2.0 * step for n in range(10)],
+    checker.step(step * 0.1, {"id": [f"v{n}" for n in range(10)],
+                              "x": [7.0 * n + n % 7 * 2.0 * step for n in range(10)],
                               "y": [n % 3 * 3.5 for n in range(10)], "heading": [0.0] * 10,
                               "speed": [20.0 * (n % 7) for n in range(10)]})
 checker.close()
@@ -123,7 +124,7 @@ def test_ctrl_c_ends_a_replay_in_python(after: float, tmp_path: Path) -> None:
         file.write("i,t,x,y\n")
         for step in range(3_000):
             file.writelines(f"{who},{step / 10},{who * 60 + step % 7 / 10},0\n" for who in range(100))
-    command = [sys.executable, "-c", REPLAYS, path]
+    command = [sys.executable, "-c", REPLAYS, str(path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
         assert process.stdout is not None and process.stdout.readline() == "begun\n"
         time.sleep(after)

@@ -45,7 +45,7 @@ def log(tmp_path: Path) -> Path:
         "left_out": [],
         "exposure": {"vehicles": 100, "persons": 0, "vehicle_kilometres": 50.0, "vehicle_hours": 2.0},
     }
-    record = {
+    record: dict[str, object] = {
         "versions": {"closecall": "0.1.0", "sumo": None},
         "scenario": "made",
         "seed": None,
