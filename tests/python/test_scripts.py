@@ -117,7 +117,7 @@ except KeyboardInterrupt: print("interrupted")
 """
 
 
-@pytest.mark.parametrize("after", [0.3, 1.5])
+@pytest.mark.parametrize("after", [0.0, 0.3])
 def test_ctrl_c_ends_a_replay_in_python(after: float, tmp_path: Path) -> None:
     path = tmp_path / "many.csv"
     with path.open("w") as file:

@@ -9,8 +9,8 @@ from typing import Any
 def unsubscribe_at_removal(domain: Any) -> None:
     """End the subscription of a vehicle or person before a script removes it, in all connections.
 
-    SUMO asks in the next step for all that is subscribed, and prints an error for each value of one that is gone. It tells
-    the checker of that step only afterwards.
+    SUMO asks in the next step for all that is subscribed, and prints an error for each value of one that is gone. It
+    tells the checker of that step only afterwards.
     """
     kind = type(domain)
     remove = getattr(kind, "remove", None)
