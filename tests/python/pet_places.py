@@ -30,7 +30,7 @@ EVERY = 0.025
 CROSSING, PARALLEL = math.radians(30), math.radians(5)
 """Two whose headings differ by less than the first may be on one path; by less than the second, they are parallel."""
 TOLERANCE = 0.1
-"""In s: of two samples, and of a bend in the half seconds between places that are kept of the time before a conflict."""
+"""In s: of two samples, and of a bend in the half seconds between places kept of the time before a conflict."""
 LONGEST = 5.0
 """The longest PET that closecall looks for where no condition asks for a longer one, in s."""
 
