@@ -24,7 +24,7 @@ fn one_that_waits_inside_a_junction_is_passed() {
         "{passed:?}"
     );
     // One that brakes has seen the other.
-    let braked = set_aside(&net, &[waits(), comes(|time| (14.0 - 3.0 * time).max(0.0))], 6.0);
+    let braked = set_aside(&net, &[waits(), comes(|time| (18.0 - 3.0 * time).max(0.0))], 6.0);
     assert!(braked.iter().any(|(artefact, _)| artefact.is_none()), "{braked:?}");
 }
 
