@@ -204,7 +204,7 @@ def test_the_pet_so_far_grows_to_the_pet_while_sumo_runs() -> None:
     assert len(known) >= 5
     for pair, pet in known.items():
         below = bounds[pair]
-        # Until then the second is expected along its lane, which it leaves by decimetres.
+        # Until then the second is expected along its lane, and may drive a little beside it (docs/limits.md).
         assert below == sorted(below) and below[-1] <= pet + 0.15, (pair, below, pet)
         # The last step before the second enters.
         assert pet - below[-1] < 0.6 and pets.get(pair, pet) == pytest.approx(pet), (pair, below, pet)
