@@ -18,6 +18,8 @@ use crate::util::units::{Metre, Radian, Second};
 const PARALLEL: Radian = 0.0873;
 /// How often it is looked where the second is beside the path of the first, in m: a fraction of a width.
 const OFTEN: Metre = 0.5;
+/// … and at most this often in a step: that of 100 m. One that went further has jumped.
+const MOST_OFTEN: f64 = 200.0;
 
 /// A crossing of the first's corridor.
 pub(super) struct Passage {
@@ -193,7 +195,7 @@ fn cleared(
 impl Crossing {
     /// Since when it has gone on with the first, if it does by this part of a step.
     fn joins(&mut self, step: &Step, until: f64, track: &Track) -> Option<Second> {
-        let parts = (step.way() / OFTEN).ceil().max(1.0);
+        let parts = (step.way() / OFTEN).ceil().clamp(1.0, MOST_OFTEN);
         let begin = step.part_at(self.enters);
         for part in (1..=parts as u32).map(|part| begin + (until - begin) * (f64::from(part) / parts)) {
             let beside = track.beside(&step.pose(part), step.to);

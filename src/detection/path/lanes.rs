@@ -363,9 +363,8 @@ fn lanes_behind(
         let from = net.lanes[current.0 as usize].from.iter().copied();
         let before = from.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         let Some(before) = before else { break };
-        if covered < start.chord
-            && (rear - straight_back(net, current, start.chord - covered)).norm() + BEND < distance(before)
-        {
+        let back = (covered < start.chord).then(|| straight_back(net, current, start.chord - covered)).flatten();
+        if back.is_some_and(|back| (rear - back).norm() + BEND < distance(before)) {
             break;
         }
         lanes.push(before);
@@ -376,8 +375,8 @@ fn lanes_behind(
     lanes
 }
 
-/// The place at a distance straight behind the begin of a lane.
-fn straight_back(net: &Net, lane: LaneIndex, distance: Metre) -> Point {
-    let first = net.lines.segment(net.lines.range(lane.0).0);
-    first.at(first.begins_at - distance)
+/// The place at a distance straight behind the begin of a lane; none if the lane has no length.
+fn straight_back(net: &Net, lane: LaneIndex, distance: Metre) -> Option<Point> {
+    let (begin, end) = net.lines.range(lane.0);
+    (end - begin > 1).then(|| net.lines.segment(begin)).map(|first| first.at(first.begins_at - distance))
 }
