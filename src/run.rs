@@ -33,7 +33,7 @@ use crate::output::summary::Summary;
 use crate::traffic::frame::{Frame, Row, State};
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::filter::Filter;
-use crate::traffic::net::{LaneIndex, Net};
+use crate::traffic::net::{EdgeIndex, LaneIndex, Net};
 use crate::traffic::placement::Placement;
 use crate::traffic::profile::{Category, obstacle_name};
 use crate::traffic::roster::{ProfileIndex, Roster, UserIndex};
@@ -70,6 +70,8 @@ pub struct Run {
     signals: Signals,
     /// The vehicles that stand because of a stop, of those of [`Run::standing`].
     stopped: Vec<UserIndex>,
+    /// The edges of persons, of those of [`Run::persons_in_conflict`].
+    edges: Vec<(UserIndex, EdgeIndex)>,
     /// All such pairs so far, each in the order of the ids.
     collided_so_far: FxHashSet<[String; 2]>,
     /// Placements asked for so far.
@@ -119,6 +121,7 @@ impl Run {
             collided: None,
             signals: Signals::default(),
             stopped: Vec::new(),
+            edges: Vec::new(),
             collided_so_far: FxHashSet::default(),
             lane_lookups: 0,
             contact_tolerance: options.contact_tolerance,
@@ -164,6 +167,7 @@ impl Run {
         self.summary.steps += u64::from(self.warm_up.is_over());
         self.summary.end = time;
         self.stopped.clear();
+        self.edges.clear();
         self.frame.begin(time);
         for &(user, corner) in &self.obstacles {
             self.frame.push(user, State { x: corner.x, y: corner.y, z: 0.0, heading: 0.0, speed: 0.0 });
@@ -199,6 +203,19 @@ impl Run {
     /// States that one of [`Run::standing`] stands because of a stop, and does not park off the road.
     pub fn set_stopped(&mut self, user: UserIndex) {
         self.stopped.push(user);
+    }
+
+    /// The persons that are there and were in conflict in the last step, if there is a net: the edge on which SUMO has them
+    /// tells whether they are on a crossing.
+    pub fn persons_in_conflict(&self) -> Vec<UserIndex> {
+        let is_person = |user: &UserIndex| self.roster.profile_of(*user).category == Category::Person;
+        let is_there = |user: &UserIndex| self.net.is_some() && self.frame.row_of(*user).is_some();
+        self.tracker.in_conflict().filter(is_there).filter(is_person).collect()
+    }
+
+    /// States the edge on which SUMO has one of [`Run::persons_in_conflict`].
+    pub fn set_edge(&mut self, person: UserIndex, edge: &str) {
+        self.edges.extend(self.net.as_ref().and_then(|net| net.edge(edge)).map(|edge| (person, edge)));
     }
 
     /// The time of the step under way, if one has begun.

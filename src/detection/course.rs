@@ -2,8 +2,9 @@
 
 use smallvec::SmallVec;
 
+use crate::geometry::Point;
 use crate::traffic::lane_change::LaneChangeReason;
-use crate::traffic::net::LaneIndex;
+use crate::traffic::net::{EdgeIndex, LaneIndex, Net};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// A lane of a [`Course`].
@@ -71,6 +72,14 @@ impl Default for Course {
 }
 
 impl Course {
+    /// The same of a person of which SUMO tells the edge.
+    pub fn on_edge(mut self, net: Option<&Net>, edge: Option<EdgeIndex>, front: Point) -> Self {
+        if let Some(lane) = net.zip(edge).and_then(|(net, edge)| net.lane_of_edge_at(edge, front)) {
+            self.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });
+        }
+        self
+    }
+
     /// The lane at a distance ahead of the front bumper; the first or last beyond either end.
     pub fn at(&self, way: Metre) -> Option<LaneIndex> {
         let found = self.stretches.iter().find(|stretch| stretch.end > way);

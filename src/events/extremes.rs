@@ -259,6 +259,7 @@ impl Extremes {
             // Who enters a junction first, and on what light, may show only after the smallest margin.
             self.why.causes.add(Why::of(&pair).causes.at_the_entry());
         }
+        self.learn_edges(seen);
         if let (Some(chosen), Some(step)) = (&mut self.chosen, seen.chosen_step()) {
             chosen.take(&step, is_worst);
         }
@@ -288,6 +289,17 @@ impl Extremes {
 }
 
 impl Extremes {
+    /// Takes the edges of persons, which SUMO is asked for from the second step of a conflict on.
+    fn learn_edges(&mut self, seen: &Observation) {
+        let Encounter { ego, foe, ego_row, foe_row, .. } = *seen.found;
+        for (user, lane) in [self.worst.ego, self.worst.foe].into_iter().zip(&mut self.why.lanes) {
+            if lane.is_none() && seen.roster.profile_of(user).category == Category::Person {
+                let row = [(ego, ego_row), (foe, foe_row)].into_iter().find(|(known, _)| *known == user);
+                *lane = row.and_then(|(_, row)| (seen.around.course)(row, 0.0).at(0.0));
+            }
+        }
+    }
+
     /// Whether the two came closer than in any step so far.
     pub fn is_closer(&self, closest: &Closest) -> bool {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()

@@ -97,6 +97,11 @@ impl Tracker {
         self.events.iter().flat_map(|event| event.standing(self.last_time))
     }
 
+    /// The road users that were in conflict in the last step; one in several conflicts comes several times.
+    pub fn in_conflict(&self) -> impl Iterator<Item = UserIndex> {
+        self.events.iter().filter(|event| event.is_met_at(self.last_time)).flat_map(|event| event.pair())
+    }
+
     /// Forgets where a road user was that has left the scene, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
         self.past.forget(user);
@@ -175,7 +180,7 @@ impl Tracker {
     ) {
         let collisions = encounters.filter(|found| found.collision).map(pair_of).collect::<SmallVec<[Pair; 4]>>();
         let has_jumped = |user: UserIndex| {
-            let course = frame.row_of(user).map(around.course);
+            let course = frame.row_of(user).map(|row| (around.course)(row, 0.0));
             course.is_some_and(|course| course.has_jumped || course.change.is_some_and(|change| change.time >= before))
         };
         let Self { events, rules, past, .. } = self;
@@ -237,7 +242,7 @@ mod tests {
             signals: &SIGNALS,
             stopped: &[],
             path: &|_| Vec::new(),
-            course: &|_| Default::default(),
+            course: &|_, _| Default::default(),
             chosen: &|_| None,
             tadv: &|_| None,
         }

@@ -226,6 +226,11 @@ impl Event {
         expected.or(known.map(|pet| PetSoFar::Known(pet.lasts)))
     }
 
+    /// Whether the condition is met at this time, that of its last step.
+    pub fn is_met_at(&self, time: Second) -> bool {
+        self.followed.extremes.end == time
+    }
+
     /// The vehicles that stood at this time, its last step, and of which a stop would be a cause.
     pub fn standing(&self, time: Second) -> impl Iterator<Item = UserIndex> {
         let spans = [&self.followed].into_iter().chain(self.met.iter().filter_map(|met| met.last()));

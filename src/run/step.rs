@@ -113,7 +113,11 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let course = |row| detector.course(frame, roster, row);
+        let course = |row, way| {
+            let user = frame.user(row);
+            let edge = self.edges.iter().find(|(known, _)| *known == user).map(|(_, edge)| *edge);
+            detector.course(frame, roster, row, way).on_edge(self.net.as_deref(), edge, frame.state(row).front())
+        };
         let chosen = |found: &Encounter| detector.chosen(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
         let net = self.net.as_deref();

@@ -20,6 +20,7 @@ pub struct Libsumo {
     vehicles: LibsumoDomain,
     persons: LibsumoDomain,
     stop_state: Py<PyAny>,
+    edge_of_person: Py<PyAny>,
     /// Whether the lists of a step do not name all that entered or left since the last one.
     looks_up_all: bool,
     /// The getters of the vehicles that begin and end to park.
@@ -64,6 +65,7 @@ impl Libsumo {
                 function("simulation_getParkingEndingVehiclesIDList")?,
             ],
             stop_state: function("vehicle_getStopState")?,
+            edge_of_person: function("person_getRoadID")?,
             types: TypeProfiles::new(module, options)?,
             step_length: module.getattr("simulation")?.call_method0("getDeltaT")?.extract()?,
             lights: [function("trafficlight_getIDList")?, function("trafficlight_getRedYellowGreenState")?],
@@ -131,7 +133,8 @@ impl Libsumo {
         self.park(py, run, jumped)?;
         self.vehicles.read(py, run)?;
         self.persons.read(py, run)?;
-        self.read_stops(py, run)
+        self.read_stops(py, run)?;
+        simulation::edges_of_persons(run, |id| self.edge_of_person.bind(py).call1((id,)))
     }
 
     /// Asks which vehicles in conflict stand because of a stop; those that park off the road are not in the frame.

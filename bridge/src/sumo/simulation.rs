@@ -138,6 +138,16 @@ pub fn lights(run: &Run, ids: &Bound<PyAny>) -> PyResult<Vec<(u32, Py<PyString>)
     Ok(known.map(|(light, id)| (light, PyString::new(py, id).unbind())).collect())
 }
 
+/// States the edges of the persons in conflict, which `edge` asks for by id.
+pub fn edges_of_persons<'py>(run: &mut Run, edge: impl Fn(&str) -> PyResult<Bound<'py, PyAny>>) -> PyResult<()> {
+    for person in run.persons_in_conflict() {
+        let id: &str = run.roster.id(person);
+        let edge = edge(id)?;
+        run.set_edge(person, edge.extract::<&str>()?);
+    }
+    Ok(())
+}
+
 /// The pairs of ids of the collisions that SUMO reports.
 pub fn collisions(reported: &Bound<PyAny>) -> PyResult<Vec<[String; 2]>> {
     let py = reported.py();

@@ -120,7 +120,9 @@ impl Traci {
         let types = &mut self.types;
         self.vehicles.read(py, run, &self.variable, |run, name| types.vehicle(py, run, name))?;
         let types = &mut self.types;
-        self.persons.read(py, run, &self.variable, |run, name| types.person(py, run, name))
+        self.persons.read(py, run, &self.variable, |run, name| types.person(py, run, name))?;
+        let persons = self.persons.domain.bind(py);
+        simulation::edges_of_persons(run, |id| persons.call_method1(intern!(py, "getRoadID"), (id,)))
     }
 
     /// Reads what the traffic lights show.

@@ -1,11 +1,13 @@
 //! The course of a road user, from the path that the detector keeps for it.
 
 use super::Detector;
+use super::cover::reach;
 use crate::detection::course::{Course, LaneChange, Stretch};
 use crate::detection::path::lanes::KEPT_BEHIND;
 use crate::traffic::frame::Frame;
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::{EdgeFunction, LaneIndex};
+use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::Metre;
 
@@ -13,13 +15,13 @@ use crate::util::units::Metre;
 const ON_THE_PATH: Metre = 1.0;
 
 impl Detector {
-    /// The course of the road user of a row.
-    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32) -> Course {
+    /// The course of the road user of a row, until it stands, or until it has gone this far if that is further.
+    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32, way: Metre) -> Course {
         let (user, state) = (frame.user(row), frame.state(row));
         let profile = roster.profile_of(user);
-        // Beyond, how far a path leads depends on when it was last extended.
+        // Beyond, how far a path leads depends on the log's condition and on when it was last extended.
         let behind = -(profile.length + KEPT_BEHIND);
-        let ahead = self.cover().reach(state, profile, self.options.epsilon);
+        let ahead = reach(state, profile, self.options.epsilon).max(way);
         let last = self.speeds.get(user.0 as usize).copied().unwrap_or_default();
         let (deceleration, since_impossible_stop) = (last.deceleration(), last.since_impossible_stop());
         let mut course = Course { deceleration, since_impossible_stop, ..Course::default() };
@@ -40,7 +42,9 @@ impl Detector {
             course.lateral_speed = path.lateral_speed();
             // One that jumps at the end of this step is still on its former lane.
             course.change = self.lane_change(user).filter(|change| !is_before_jump || change.time < self.time);
-        } else if let (false, Some(lane)) = (state.moves(), net.lane_at(state.front())) {
+        } else if profile.category != Category::Person
+            && let (false, Some(lane)) = (state.moves(), net.lane_at(state.front()))
+        {
             // One that has not moved since it entered the scene has no path.
             course.stretches.push(Stretch { lane, begin: f64::NEG_INFINITY, end: f64::INFINITY });
         }

@@ -28,8 +28,6 @@ const CONTRADICTS: MetrePerSecond = 2.0;
 const SWAYS: Radian = 1.0;
 /// Two whose speeds differ by less than this go along with each other, in m/s.
 const ALIKE: MetrePerSecond = 1.0;
-/// A person may be this far beside a pavement or a crossing, in m.
-const BESIDE: Metre = 0.3;
 
 /// Why a conflict is none of traffic's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -131,8 +129,8 @@ fn is_drawn(pair: &Pair) -> bool {
         [Category::Vehicle, Category::Vehicle] => {
             pair.both().into_iter().any(|(one, other)| waits_inside(net, one, other)) || are_unrelated(net, pair)
         }
-        [Category::Person, Category::Vehicle] => is_off_the_road(net, &pair.ego),
-        [Category::Vehicle, Category::Person] => is_off_the_road(net, &pair.foe),
+        [Category::Person, Category::Vehicle] => pair.ego.is_off_the_road(net),
+        [Category::Vehicle, Category::Person] => pair.foe.is_off_the_road(net),
         _ => false,
     }
 }
@@ -143,12 +141,8 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     if [ego, foe].into_iter().any(|party| party.course.stretches.is_empty() || party.course.is_against) {
         return false;
     }
-    let lanes = |party: &Party, from: Metre| {
-        let stretches = party.course.stretches.iter();
-        let under = stretches.filter(move |stretch| stretch.end > from - party.length && stretch.begin <= party.way);
-        under.map(|stretch| stretch.lane).collect::<Vec<LaneIndex>>()
-    };
-    let (of_ego, of_foe) = (lanes(ego, ego.way), lanes(foe, 0.0));
+    let of_ego = ego.lanes_over([ego.way; 2]).collect::<Vec<LaneIndex>>();
+    let of_foe = foe.lanes_over([0.0, foe.way]).collect::<Vec<LaneIndex>>();
     let is_known = !of_ego.is_empty() && !of_foe.is_empty();
     let relates = |one: LaneIndex, other: LaneIndex| {
         let is_beside = net.lanes[one.0 as usize].edge == net.lanes[other.0 as usize].edge;
@@ -157,16 +151,18 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     is_known && !of_ego.iter().any(|one| of_foe.iter().any(|other| relates(*one, *other)))
 }
 
-/// Whether one stands inside a junction and the other, which takes another way, passes it without braking.
+/// Whether one stands inside a junction and the other, which takes another way, passes it without braking. One that comes to
+/// its rear, on the lane behind the junction's, does not pass it.
 fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
     let Some(lane) = waits.course.at(0.0).filter(|lane| waits.speed < STANDS && net.is_internal(*lane)) else {
         return false;
     };
-    passes.speed >= STANDS && passes.course.deceleration < UNBRAKED && passes.course.of(lane).is_none()
-}
-
-/// Whether a person is where only persons go. SUMO's persons leave pavements for nothing but crossings, whatever their heading,
-/// and do so when it is their turn.
-fn is_off_the_road(net: &Net, person: &Party) -> bool {
-    !person.is_on_crossing(net) && net.is_off_the_road(person.front, BESIDE)
+    let comes_from_behind = || {
+        let front = passes.course.at(passes.way);
+        front.is_some_and(|front| waits.lanes_over([0.0; 2]).any(|under| under == front))
+    };
+    passes.speed >= STANDS
+        && passes.course.deceleration < UNBRAKED
+        && passes.course.of(lane).is_none()
+        && !comes_from_behind()
 }

@@ -8,7 +8,7 @@ use crate::geometry::Point;
 use crate::geometry::polylines::Vertex;
 use crate::options::measures::ChosenValues;
 use crate::traffic::frame::Frame;
-use crate::traffic::net::{EdgeIndex, LaneIndex, Net, Passage};
+use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net, Passage};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::traffic::signals::Signals;
@@ -19,6 +19,9 @@ pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
 
 /// Up to this distance from the end of a crossing a person may still be at the kerb, in m.
 const KERB: Metre = 2.0;
+
+/// A person may be this far beside a pavement or a crossing, in m.
+const BESIDE: Metre = 0.3;
 
 /// One that is slower than this stands, in m/s: what SUMO takes for halting.
 pub(crate) const STANDS: MetrePerSecond = 0.1;
@@ -38,8 +41,8 @@ pub struct Surroundings<'a> {
     pub stopped: &'a [UserIndex],
     /// The path of the front bumper of a row's road user, from where it is.
     pub path: &'a dyn Fn(u32) -> Vec<Point>,
-    /// The course of the road user of a row.
-    pub course: &'a dyn Fn(u32) -> Course,
+    /// The course of the road user of a row, at least this far ahead.
+    pub course: &'a dyn Fn(u32, Metre) -> Course,
     /// The chosen measures of an encounter, if any is chosen.
     pub chosen: &'a dyn Fn(&Encounter) -> Option<Box<ChosenValues>>,
     /// The time advantage of an encounter.
@@ -92,10 +95,27 @@ impl Party {
         self.category == Category::Vehicle
     }
 
-    /// Whether it is a person on a crossing. At the kerb it is not known: SUMO's ways over a walking area lead over the ends of
-    /// crossings.
+    /// Whether it is a person on a crossing. Where SUMO does not tell its edge, that is not known at the kerb: SUMO's ways over
+    /// a walking area lead over the ends of crossings.
     pub fn is_on_crossing(&self, net: &Net) -> bool {
-        net.is_within_crossing(self.front, KERB)
+        match self.course.at(0.0) {
+            Some(lane) => net.function(lane) == EdgeFunction::Crossing,
+            None => net.is_within_crossing(self.front, KERB),
+        }
+    }
+
+    /// Whether it is a person where only persons go. They leave pavements for nothing but crossings, whatever their heading,
+    /// and do so when it is their turn.
+    pub fn is_off_the_road(&self, net: &Net) -> bool {
+        let is_in_walking_area = |lane| net.function(lane) == EdgeFunction::WalkingArea;
+        self.course.at(0.0).is_some_and(is_in_walking_area)
+            || (!self.is_on_crossing(net) && net.is_off_the_road(self.front, BESIDE))
+    }
+
+    /// The lanes that it is on when its front bumper is between these distances ahead.
+    pub fn lanes_over(&self, [from, to]: [Metre; 2]) -> impl Iterator<Item = LaneIndex> {
+        let stretches = self.course.stretches.iter();
+        stretches.filter(move |on| on.end > from - self.length && on.begin <= to).map(|on| on.lane)
     }
 
     /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,
@@ -125,7 +145,7 @@ impl<'a> Pair<'a> {
         past: &'a Past,
     ) -> Self {
         let party = |user, row, way| {
-            let mut course = (around.course)(row);
+            let mut course = (around.course)(row, way);
             if past.is_new(user, frame.time) {
                 // It has not driven the lanes behind it.
                 course.stretches.retain(|stretch| stretch.end > 0.0);

@@ -219,6 +219,7 @@ impl Replay {
         }
         self.fill(run)?;
         self.stops.show(run, self.step.time);
+        self.show_edges(run);
         run.step(|run, rows| rows.iter().try_for_each(|row| self.place(run, *row)))?;
         Ok(Some(self.step.time))
     }
@@ -285,6 +286,16 @@ impl Replay {
         Ok(())
     }
 
+    /// States the edges of persons in conflict.
+    fn show_edges(&self, run: &mut Run) {
+        for person in run.persons_in_conflict() {
+            let row = run.frame.row_of(person).and_then(|row| self.rows.get(row as usize));
+            if let Some(recorded) = row.and_then(|index| self.step.rows().get(*index as usize)) {
+                run.set_edge(person, self.recorded_steps.lane(recorded.lane));
+            }
+        }
+    }
+
     /// A road user enters the scene.
     fn enter(&mut self, row: &RecordedRow, run: &mut Run) -> Result<UserIndex> {
         let type_name = match self.recorded_steps.type_name(row) {
@@ -324,7 +335,8 @@ impl Replay {
     /// Sets the placement of a row of the frame, if the net has its lane.
     fn place(&mut self, run: &mut Run, row: u32) -> Result<()> {
         let Some(&index) = self.rows.get(row as usize) else { return Ok(()) };
-        let (Some(recorded), Some(net)) = (self.step.rows().get(index as usize), run.net()) else { return Ok(()) };
+        let recorded = self.step.rows().get(index as usize).filter(|recorded| !recorded.person);
+        let (Some(recorded), Some(net)) = (recorded, run.net()) else { return Ok(()) };
         let Some(Some(user)) = self.users.get_mut(recorded.user as usize) else { return Ok(()) };
         let Some(lane) = self.lanes.lane(recorded.lane, |lane| self.recorded_steps.lane(lane), net) else {
             return Ok(());

@@ -120,7 +120,7 @@ impl Recording {
         self.users.types.text(row.type_name)
     }
 
-    /// The id of a lane by [`RecordedRow::lane`]; empty if it is not given.
+    /// The id of a lane, or of a person's edge, by [`RecordedRow::lane`]; empty if it is not given.
     pub fn lane(&self, lane: u32) -> &str {
         self.users.lanes.text(lane)
     }

@@ -18,7 +18,7 @@ pub struct RecordedRow {
     pub person: bool,
     /// Its type: see [`Recording::type_name`](super::recording::Recording::type_name).
     pub type_name: u32,
-    /// Its lane: see [`Recording::lane`](super::recording::Recording::lane).
+    /// Its lane, or a person's edge: see [`Recording::lane`](super::recording::Recording::lane).
     pub lane: u32,
     /// Front-bumper centre, x in m.
     pub x: Metre,
@@ -109,7 +109,8 @@ impl RecordedStep {
     /// Adds a row; `holder` is what the format calls the holder of a value.
     #[inline]
     pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, holder: &str) -> std::result::Result<(), String> {
-        let [id, type_name, lane, _] = fields.texts;
+        let [id, type_name, lane, edge] = fields.texts;
+        let lane = if fields.person { edge } else { lane };
         if id.is_empty() {
             fields.check(&fields.numbers, holder)?;
         }

@@ -55,7 +55,7 @@ pub(super) fn aabb(bounds: &Bounds) -> Aabb {
 }
 
 /// The distance of a place from a lane's centre line.
-fn distance(lane: &Lane, place: Point) -> Metre {
+pub(super) fn distance(lane: &Lane, place: Point) -> Metre {
     let pieces = lane.shape.windows(2).map(|ends| {
         let along = ends[1] - ends[0];
         let part = (place - ends[0]).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);

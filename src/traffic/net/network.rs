@@ -8,7 +8,7 @@ use rustc_hash::FxHashMap;
 use super::elements::{
     Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
 };
-use super::finder::{Finder, distance_beside};
+use super::finder::{Finder, distance, distance_beside};
 use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
 use crate::geometry::{Bounds, Point};
@@ -125,6 +125,13 @@ impl Net {
         let is_pavement =
             |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane.0 as usize].has_vehicles;
         self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.walking_area_at(place).is_some()
+    }
+
+    /// The lane of an edge with the centre line nearest to a place.
+    pub fn lane_of_edge_at(&self, edge: EdgeIndex, place: Point2<Metre>) -> Option<LaneIndex> {
+        let away = |lane: LaneIndex| distance(&self.lanes[lane.0 as usize], place);
+        let lanes = self.edges[edge.0 as usize].lanes.iter().copied();
+        lanes.min_by(|one, other| away(*one).total_cmp(&away(*other)))
     }
 
     /// The lane with this id.
