@@ -11,6 +11,7 @@ mod counts;
 mod effects;
 mod extremes;
 mod gpd;
+mod gpd_posterior;
 mod group;
 mod hot_spots;
 mod of_run;
