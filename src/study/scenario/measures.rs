@@ -126,6 +126,11 @@ impl RunFigures {
 }
 
 impl Measure {
+    /// Whether its values may be below 0: of counts, rates, times and decelerations none is.
+    pub fn may_be_negative(&self) -> bool {
+        self.name.starts_with("margin")
+    }
+
     /// Whether the same per vehicle-hour is a measure too.
     pub fn has_rate(&self) -> bool {
         self.form == Form::Count || self.name == EXPECTED_CRASHES
