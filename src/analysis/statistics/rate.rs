@@ -15,7 +15,7 @@ pub const CONFIDENCE: f64 = 0.95;
 pub const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
 
 /// Runs whose rates spread by less than this, relatively, are equal: the order of a sum changes its last digits.
-const EQUAL: f64 = 1e-9;
+pub(super) const EQUAL: f64 = 1e-9;
 
 /// How an interval was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -82,7 +82,7 @@ fn relative_spread(counts: &[f64], traffic: &[f64]) -> Option<f64> {
 
 /// What each run's count differs from that of its traffic at the common rate, divided by the mean count; none with a single
 /// run, without conflicts or without traffic.
-fn relative_deviations(counts: &[f64], traffic: &[f64]) -> Option<Vec<f64>> {
+pub(super) fn relative_deviations(counts: &[f64], traffic: &[f64]) -> Option<Vec<f64>> {
     let count = counts.iter().sum::<f64>();
     let total = traffic.iter().sum::<f64>();
     if counts.len() < 2 || count <= 0.0 || total <= 0.0 {
