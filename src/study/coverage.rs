@@ -18,6 +18,7 @@ use crate::analysis::statistics::planning::{Spread, power};
 use crate::analysis::statistics::rate::{CONFIDENCE, paired_ratio, rate, rate_ratio};
 use crate::analysis::statistics::weighted::WeightedEvents;
 use crate::util::threads::processors;
+use crate::util::units::counted;
 
 /// The mean size of a cluster.
 const CLUSTER: f64 = 3.0;
@@ -241,9 +242,9 @@ fn cases(quick: bool) -> Vec<Case> {
     let sizes = if quick { &[100, 300][..] } else { &[100, 300, 1000, 5000] };
     for conflicts in sizes {
         for (shape, scale) in [(-0.3, 0.3), (-0.1, 0.15), (0.0, 0.15), (0.2, 0.1)] {
-            cases.push(of_tail(Gpd { shape, scale }, *conflicts, if quick { 40 } else { 200 }));
+            cases.push(of_tail(Gpd { shape, scale }, *conflicts, if quick { 40 } else { 300 }));
         }
-        cases.push(of_weibull(*conflicts, if quick { 40 } else { 200 }));
+        cases.push(of_weibull(*conflicts, if quick { 40 } else { 300 }));
     }
     cases
 }
@@ -258,7 +259,7 @@ fn case(
 }
 
 fn named(process: Process, total: u32, runs: usize) -> String {
-    format!("{}, {total} conflicts in {runs} runs", process.name())
+    format!("{}, {total} conflicts in {}", process.name(), counted(runs as u64, "run"))
 }
 
 fn of_rate(process: Process, total: u32, runs: usize, samples: usize) -> Case {

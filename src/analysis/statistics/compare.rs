@@ -8,7 +8,7 @@ use super::pairs::{Unit, pairs, ratio};
 use super::permutation::{Test, holm, p_value, splits};
 use super::planning::{Spread, detectable};
 use super::quantiles::{cliffs_delta, quantile};
-use super::rate::Ratio;
+use super::rate::{IntervalMethod, Ratio};
 use crate::detection::kind::{Kind, Severity};
 
 /// How two sets of runs differ.
@@ -20,7 +20,7 @@ pub struct Comparison {
     pub against_runs: usize,
     /// The unit of traffic: `vehicle_kilometre`, or `hour` if the runs have no kilometres.
     pub rates_per: &'static str,
-    /// Rates overall, by kind and by severity.
+    /// Rates overall, by kind and by severity, and the risk index.
     pub rates: Vec<RateDifference>,
     /// Medians of the measures.
     pub measures: Vec<MeasureDifference>,
@@ -31,7 +31,7 @@ pub struct Comparison {
 /// How a rate differs.
 #[derive(Clone, Debug, Serialize)]
 pub struct RateDifference {
-    /// `all`, a kind or a severity.
+    /// `all`, a kind, a severity or `risk_index`.
     pub group: &'static str,
     /// The first set's rate.
     pub rate: f64,
@@ -90,6 +90,7 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
             rate_difference(group, [first, other].map(|set| set.counts(kind, severity)), &traffics, pairs.as_deref())
         })
         .collect::<Vec<_>>();
+    rates.push(risk_difference([first, other], &traffics, pairs.as_deref()));
     let mut measures = (0..MEASURES.len()).map(|measure| measure_difference(measure, first, other)).collect::<Vec<_>>();
     let found = rates.iter_mut().map(|row| &mut row.significance);
     let tested = found.chain(measures.iter_mut().map(|row| &mut row.significance)).flatten().collect::<Vec<_>>();
@@ -151,6 +152,14 @@ fn rate_difference(
             .zip(Spread::of(&counts[1], &traffic[1]))
             .and_then(|(first, other)| detectable(first, other)),
     }
+}
+
+/// How the risk index differs. Without a spread over runs it has no interval, because it is no count.
+fn risk_difference(sets: [&Collection; 2], traffic: &[Vec<f64>; 2], pairs: Option<&[usize]>) -> RateDifference {
+    let sums = sets.map(|set| set.risk.per_run(set.runs.len()));
+    let row = rate_difference("risk_index", sums, traffic, pairs);
+    let is_counted = row.ratio.is_some_and(|ratio| ratio.method == IntervalMethod::PoissonExact);
+    if is_counted { RateDifference { ratio: None, detectable: None, ..row } } else { row }
 }
 
 fn measure_difference(measure: usize, first: &Collection, other: &Collection) -> MeasureDifference {

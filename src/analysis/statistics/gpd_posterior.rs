@@ -31,6 +31,8 @@ const NEGLIGIBLE: f64 = 18.0;
 const THETAS: usize = 120;
 const SCALES: usize = 16;
 const NUMBERS: usize = 32;
+/// The places of σ and Λ are shifted from θ to θ, by this many parts of their distance: so all of them together are dense.
+const SHIFTS: usize = 16;
 
 /// The 2.5, 50 and 97.5 % quantiles of the frequency of excesses of at least `threshold`, from these in so many hours.
 pub fn crash_frequency(excesses: Excesses, threshold: f64, hours: f64) -> Option<[f64; 3]> {
@@ -50,21 +52,25 @@ pub fn crash_frequency(excesses: Excesses, threshold: f64, hours: f64) -> Option
     let mut likely = coarse.iter().filter(|(_, density)| *density > most - NEGLIGIBLE).map(|(place, _)| *place);
     let first = likely.next()?;
     let (low, high) = (first - COARSE, likely.next_back().unwrap_or(first) + COARSE);
-    let inverse_scales = quantiles(count - 1.0, SCALES)?;
-    let numbers = quantiles(count + excesses.censored + 0.5, NUMBERS)?;
+    let inverse_scales = quantiles(count - 1.0, SHIFTS * SCALES)?;
+    let numbers = quantiles(count + excesses.censored + 0.5, SHIFTS * NUMBERS)?;
     let mut weighted = Vec::with_capacity(THETAS * SCALES * NUMBERS);
-    for place in (0..THETAS).map(|place| low + (high - low) * (place as f64 + 0.5) / THETAS as f64) {
+    for at in 0..THETAS {
+        let place = low + (high - low) * (at as f64 + 0.5) / THETAS as f64;
+        // Two odd factors, so that neighbours are far apart and σ and Λ are not shifted alike.
+        let [shift, other_shift] = [5, 7].map(|factor| at * factor % SHIFTS);
         let theta = theta(place);
         let slope = excesses.slope(theta);
         let likelihood = (of_place(place) - most).exp();
-        for inverse in &inverse_scales {
+        for inverse in inverse_scales.iter().skip(shift).step_by(SHIFTS) {
             let scale = slope / inverse;
             let shape = theta * scale;
             let weight = likelihood / ((1.0 + shape) * (1.0 + 2.0 * shape).sqrt());
             // NaN where ξ ≤ −1/2.
             if weight > 0.0 && weight.is_finite() {
                 let share = survival(theta, scale, threshold);
-                weighted.extend(numbers.iter().map(|number| (number * share / hours, weight)));
+                let numbers = numbers.iter().skip(other_shift).step_by(SHIFTS);
+                weighted.extend(numbers.map(|number| (number * share / hours, weight)));
             }
         }
     }

@@ -100,9 +100,12 @@ pub struct Statistics {
     pub by: By,
     /// For each variant all conflicts as one group, then each group.
     pub groups: Vec<GroupStatistics>,
-    /// Edges with the most expected crashes.
+    /// The sum of crash probabilities per vehicle-kilometre, of runs of one variant: compares plans with the same steps, and
+    /// is no number of crashes.
+    pub risk_index_per_vehicle_kilometre: Option<Rate>,
+    /// Edges with the largest risk index.
     pub edges: Vec<HotSpot>,
-    /// Junctions with the most expected crashes.
+    /// Junctions with the largest risk index.
     pub junctions: Vec<HotSpot>,
     /// The worst conflicts, the worst first.
     pub worst: Vec<RankedConflict>,
@@ -156,6 +159,7 @@ impl Statistics {
             Ok(traffic.hours)
         };
         let variants = set.variants.clone();
+        let kilometres = set.runs.iter().map(|run| run.summary.exposure.vehicle_kilometres).collect::<Vec<_>>();
         Ok(Self {
             name: set.runs.first().map_or_else(|| "closecall".to_owned(), LoggedRun::name),
             runs: set.runs.len(),
@@ -168,6 +172,7 @@ impl Statistics {
             set_aside: std::mem::take(&mut set.set_aside),
             filter: (!request.filter.is_empty()).then(|| request.filter.to_string()),
             by: request.by,
+            risk_index_per_vehicle_kilometre: set.risk.rate(&kilometres).filter(|_| !variants.are_several()),
             edges: hot_spots::edges(&set, request.worst),
             junctions: hot_spots::junctions(&set, request.worst),
             extremes: set.tails.extrapolate(hours),

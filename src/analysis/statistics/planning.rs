@@ -8,7 +8,8 @@
 //! ```
 //!
 //! (Chow, Shao, Wang and Lokhnygina 2018, *Sample Size Calculations in Clinical Research*, ch. 3). The permutation test of the
-//! comparison has nearly this power; `closecall study --only coverage` measures it.
+//! comparison has nearly this power, where α is the largest level up to 5 % that its number of splits allows;
+//! `closecall study --only coverage` measures it.
 
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
@@ -16,6 +17,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 use super::collect::Collection;
 use super::compare::{LEVEL, groups};
 use super::pairs::Unit;
+use super::permutation::splits;
 use super::rate::{EQUAL, TAIL, relative_deviations};
 
 /// The power that is planned for.
@@ -84,13 +86,21 @@ impl Spread {
 /// runs in either.
 pub(super) fn detectable(first: Spread, other: Spread) -> Option<f64> {
     let freedom = freedom(first.runs, other.runs)?;
-    Some(((freedom.inverse_cdf(1.0 - LEVEL / 2.0) + freedom.inverse_cdf(POWER)) * error(first, other)).exp())
+    Some(((critical(&freedom, first.runs, other.runs) + freedom.inverse_cdf(POWER)) * error(first, other)).exp())
 }
 
 /// The power of a comparison of sets with these spreads to find a ratio.
 pub(crate) fn power(ratio: f64, first: Spread, other: Spread) -> Option<f64> {
     let freedom = freedom(first.runs, other.runs)?;
-    Some(1.0 - freedom.cdf(freedom.inverse_cdf(1.0 - LEVEL / 2.0) - ratio.ln().abs() / error(first, other)))
+    let critical = critical(&freedom, first.runs, other.runs);
+    Some(1.0 - freedom.cdf(critical - ratio.ln().abs() / error(first, other)))
+}
+
+/// What the permutation test needs at least: Student's quantile of the largest level up to [`LEVEL`] that it can have.
+fn critical(freedom: &StudentsT, first: usize, other: usize) -> f64 {
+    let least = splits(first + other, first).smallest_p();
+    let level = if least > LEVEL { least } else { (LEVEL / least * (1.0 + EQUAL)).floor() * least };
+    freedom.inverse_cdf(1.0 - level / 2.0)
 }
 
 /// The standard error of the logarithm of the ratio.

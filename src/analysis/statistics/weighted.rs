@@ -1,4 +1,4 @@
-//! Sums of weighted rare events, such as the expected crashes of a place, and their 95 % intervals.
+//! Sums of weighted rare events, such as the risk index of a place, and their 95 % intervals.
 
 use statrs::distribution::{ContinuousCDF, Gamma};
 
@@ -45,13 +45,18 @@ impl WeightedEvents {
     /// run, or for runs that do not differ, the gamma interval of a sum of weighted Poisson counts (Fay and Feuer 1997,
     /// doi:10.1002/(SICI)1097-0258(19970415)16:7<791::AID-SIM500>3.0.CO;2-#), which is Poisson's where all weights are equal.
     pub fn rate(&self, traffic: &[f64]) -> Option<Rate> {
-        let mut sums = vec![0.0; traffic.len()];
-        self.per_run.iter().for_each(|(run, sum)| sums[*run as usize] += sum);
-        let over_runs = rate(&sums, traffic)?;
+        let over_runs = rate(&self.per_run(traffic.len()), traffic)?;
         if over_runs.method == IntervalMethod::TOverRuns {
             return Some(over_runs);
         }
         Some(self.of_events()?.times(1.0 / traffic.iter().sum::<f64>()))
+    }
+
+    /// The sum of each of so many runs.
+    pub fn per_run(&self, runs: usize) -> Vec<f64> {
+        let mut sums = vec![0.0; runs];
+        self.per_run.iter().for_each(|(run, sum)| sums[*run as usize] += sum);
+        sums
     }
 
     /// The sum with the interval of independent events.

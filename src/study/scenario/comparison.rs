@@ -14,7 +14,7 @@ use crate::{Error, Result};
 /// The measure by which steps are recommended.
 pub const HEADLINE: &str = "conflicts_per_vehicle_hour";
 /// Measures that are shown beside it.
-pub const SHOWN: [&str; 3] = [HEADLINE, "serious_or_critical_per_vehicle_hour", "expected_crashes_per_vehicle_hour"];
+pub const SHOWN: [&str; 3] = [HEADLINE, "serious_or_critical_per_vehicle_hour", "risk_index_per_vehicle_kilometre"];
 
 /// The runs of a plan, read back.
 #[derive(Debug)]

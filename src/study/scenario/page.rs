@@ -187,8 +187,8 @@ fn steps(text: &mut String, study: &Study, axis: &Axis) {
 }
 
 /// The head of a table of settings, after its first column.
-const TABLE: &str = " conflicts per run | per vehicle-hour | error | serious or critical per vehicle-hour | error | expected \
-                     crashes per vehicle-hour | error | time, s | processor time, s | |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+const TABLE: &str = " conflicts per run | per vehicle-hour | error | serious or critical per vehicle-hour | error | risk \
+                     index per vehicle-km | error | time, s | processor time, s | |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 
 /// The cells of a setting in such a table; on an axis of steps their errors include what the finest may be off by.
 fn figures(study: &Study, choice: &Choice, reference: usize, steps: Option<&Axis>) -> String {

@@ -97,7 +97,8 @@ function riskInterval(rows, traffic = () => 1) {
     const squares = [...ofRun].reduce((total, [run, value]) => total + (value - (sum / all) * traffic(run)) ** 2, 0);
     const error = Math.sqrt((squares * many) / (many - 1));
     const reach = studentsT(many - 1) * error;
-    if (error > EQUAL * sum) return [Math.max(0, sum - reach), sum + reach];
+    const differ = [...ofRun.values()].some((value) => Math.abs(value * many - sum) > EQUAL * sum);
+    if (differ && error > EQUAL * sum) return [Math.max(0, sum - reach), sum + reach];
   }
   let [squares, greatest] = [0, 0];
   for (const row of rows) {

@@ -21,6 +21,7 @@ const MEASURES: [QuantileRow; 4] = [
 /// All tables of the statistics, in reading order.
 pub fn tables(statistics: &Statistics) -> Vec<Table> {
     let mut tables = vec![traffic(statistics), set_aside(statistics), rates(&statistics.groups), ratios(statistics)];
+    tables.extend(statistics.risk_index_per_vehicle_kilometre.map(risk));
     tables.push(quantiles(&statistics.groups));
     tables.push(spots("edges", &statistics.edges));
     tables.push(spots("junctions", &statistics.junctions));
@@ -156,6 +157,18 @@ fn rates(groups: &[GroupStatistics]) -> Table {
     }
 }
 
+fn risk(rate: Rate) -> Table {
+    Table {
+        title: "risk index",
+        columns: vec!["per", "risk index", "low", "high"],
+        rows: vec![std::iter::once("vehicle-km".into()).chain(with_interval(Some(rate))).collect()],
+        notes: vec![
+            "the sum of crash probabilities: compares plans with the same steps, and is no number of crashes"
+                .to_owned(),
+        ],
+    }
+}
+
 fn quantiles(groups: &[GroupStatistics]) -> Table {
     let names = ["group", "measure", "conflicts", "5 %", "25 %", "50 %", "75 %", "95 %"];
     let rows = groups.iter().flat_map(|group| {
@@ -175,15 +188,15 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
 }
 
 fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
-    let is_entered = spots.iter().any(|spot| spot.expected_crashes_per_1000_entering.is_some());
+    let is_entered = spots.iter().any(|spot| spot.risk_index_per_1000_entering.is_some());
     let rates: [SpotRate; 4] = [
-        ("expected crashes", |spot| spot.expected_crashes),
-        ("crashes per 1000 entering", |spot| spot.expected_crashes_per_1000_entering),
+        ("risk index", |spot| spot.risk_index),
+        ("risk per 1000 entering", |spot| spot.risk_index_per_1000_entering),
         ("per hour", |spot| spot.per_hour),
         ("per 1000 vehicles", |spot| spot.per_1000_vehicles),
     ];
     let rates =
-        rates.into_iter().filter(|(name, _)| is_entered || *name != "crashes per 1000 entering").collect::<Vec<_>>();
+        rates.into_iter().filter(|(name, _)| is_entered || *name != "risk per 1000 entering").collect::<Vec<_>>();
     let row = |spot: &HotSpot| {
         let counts = [spot.count, spot.serious, spot.critical].map(Cell::Count);
         let rates = rates.iter().flat_map(|(_, rate)| with_interval(rate(spot)));
