@@ -242,9 +242,13 @@ fn cases(quick: bool) -> Vec<Case> {
     let sizes = if quick { &[100, 300][..] } else { &[100, 300, 1000, 5000] };
     for conflicts in sizes {
         for (shape, scale) in [(-0.3, 0.3), (-0.1, 0.15), (0.0, 0.15), (0.2, 0.1)] {
-            cases.push(of_tail(Gpd { shape, scale }, *conflicts, if quick { 40 } else { 300 }));
+            cases.push(of_tail(Process::Single, Gpd { shape, scale }, *conflicts, if quick { 40 } else { 300 }));
         }
         cases.push(of_weibull(*conflicts, if quick { 40 } else { 300 }));
+    }
+    for conflicts in sizes {
+        let tail = Gpd { shape: 0.0, scale: 0.15 };
+        cases.push(of_tail(Process::Clusters, tail, *conflicts, if quick { 40 } else { 300 }));
     }
     cases
 }
@@ -348,6 +352,7 @@ fn of_power(process: Process, runs: usize, samples: usize) -> Case {
 
 /// Values whose distance below 1 has a known distribution, and are 0 where it is more.
 fn of_values(
+    of: Process,
     name: String,
     conflicts: u32,
     samples: usize,
@@ -355,9 +360,9 @@ fn of_values(
     below: impl Fn(f64) -> f64 + Sync + 'static,
 ) -> Case {
     let truth = f64::from(conflicts) * crash;
-    let process = format!("{name}, {conflicts} conflicts, {} crashes per hour", number(truth));
+    let process = format!("{}, {name}, {conflicts} conflicts, {} crashes per hour", of.name(), number(truth));
     case("crash frequency, extreme values", process, samples, move |chance| {
-        let count = poisson(f64::from(conflicts), chance) as usize;
+        let count = of.count(f64::from(conflicts), chance) as usize;
         let mut values = (0..count).map(|_| (1.0 - below(uniform(chance))).max(0.0)).collect::<Vec<_>>();
         values.sort_unstable_by(f64::total_cmp);
         crashes(&values, count, 1.0).map_or(Told::Refused, |found| Told::Interval {
@@ -369,8 +374,8 @@ fn of_values(
     })
 }
 
-fn of_tail(tail: Gpd, conflicts: u32, samples: usize) -> Case {
-    of_values(format!("tail with ξ = {}", tail.shape), conflicts, samples, tail.survival(1.0), move |probability| {
+fn of_tail(of: Process, tail: Gpd, conflicts: u32, samples: usize) -> Case {
+    of_values(of, format!("tail with ξ = {}", tail.shape), conflicts, samples, tail.survival(1.0), move |probability| {
         tail.exceeded(probability)
     })
 }
@@ -380,7 +385,7 @@ fn of_weibull(conflicts: u32, samples: usize) -> Case {
     const SCALE: f64 = 0.25;
     const SHAPE: f64 = 1.3;
     let crash = (-(1.0 / SCALE).powf(SHAPE)).exp();
-    of_values("Weibull tail".to_owned(), conflicts, samples, crash, |probability| {
+    of_values(Process::Single, "Weibull tail".to_owned(), conflicts, samples, crash, |probability| {
         SCALE * (-probability.ln()).powf(1.0 / SHAPE)
     })
 }
