@@ -11,7 +11,7 @@ pub mod analysis {
     #[cfg(feature = "plot")]
     pub use crate::analysis::plot;
     pub use crate::analysis::report;
-    pub use crate::analysis::statistics::{Request, Statistics};
+    pub use crate::analysis::statistics::{Observed, Request, Statistics};
 }
 
 #[cfg(feature = "cli")]

@@ -9,7 +9,7 @@ use super::say::{say, value};
 use crate::Result;
 use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{check_keeps_logs, check_none_lost};
-use crate::analysis::statistics::{By, Request, Statistics, table};
+use crate::analysis::statistics::{By, Observed, Request, Statistics, table};
 use crate::util::output_file;
 
 /// Which logs to analyse, and how to print the result.
@@ -36,8 +36,32 @@ pub struct StatsArgs {
     /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
+    /// Ratio of rates that a comparison is to find: say how many runs that takes, by the spread of these runs.
+    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    plan: Option<f64>,
+    /// Crashes observed in reality where the runs of --against were made of: say how many the first set may have.
+    #[arg(long, value_name = "CRASHES", requires_all = ["against", "years"])]
+    observed: Option<u64>,
+    /// Years in which the crashes were observed.
+    #[arg(long, value_name = "YEARS", value_parser = years, requires = "observed")]
+    years: Option<f64>,
     #[command(flatten)]
     filter: ConflictFilter,
+}
+
+/// A ratio above 0 that is not 1.
+fn ratio(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(ratio) if ratio > 0.0 && ratio != 1.0 && ratio.is_finite() => Ok(ratio),
+        _ => Err("it must be a ratio above 0 other than 1, such as 1.3".to_owned()),
+    }
+}
+
+fn years(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(years) if years > 0.0 && years.is_finite() => Ok(years),
+        _ => Err("it must be a number of years above 0".to_owned()),
+    }
 }
 
 /// How statistics are printed.
@@ -55,14 +79,20 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, csv_safe, out, worst, filter } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, out, worst, plan, observed, years, filter } = arguments;
     if let Some(out) = &out {
         check_keeps_logs(out, &[&folders[..], &against].concat(), None)?;
     }
     let mut bar = CountBar::new("conflicts", true);
-    let statistics =
-        Statistics::of(&Request { folders, by, against, filter, worst }, &mut |read, all| bar.show(read, all))?;
+    let observed = observed.zip(years).map(|(crashes, years)| Observed { crashes, years });
+    let request = Request { folders, by, against, filter, worst, plan, observed };
+    let statistics = Statistics::of(&request, &mut |read, all| bar.show(read, all))?;
     drop(bar);
+    if observed.is_some() && statistics.transferred.is_none() {
+        eprintln!(
+            "closecall: the ratio of conflicts has no finite interval, so the observed crashes tell nothing of the first set"
+        );
+    }
     for log in &statistics.left_out {
         eprintln!("closecall: {}: {}", log.folder.display(), log.why);
     }

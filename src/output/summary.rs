@@ -32,9 +32,10 @@ pub struct Summary {
     pub set_aside: SetAside,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// The sum of all crash probabilities: an index for comparing plans, not a forecast.
-    #[serde(default)]
-    pub expected_crashes: f64,
+    /// The sum of all crash probabilities: compares plans with the same steps, and is no number of crashes. Earlier versions
+    /// called it `expected_crashes`.
+    #[serde(default, alias = "expected_crashes")]
+    pub risk_index: f64,
     /// The collisions that SUMO itself reported; none where it was not asked.
     #[serde(default)]
     pub collisions_sumo: Option<SumoCollisions>,
@@ -191,7 +192,7 @@ impl Summary {
             return;
         }
         self.collisions += u64::from(conflict.collision);
-        self.expected_crashes += conflict.crash_probability;
+        self.risk_index += conflict.crash_probability;
         if let Some(of_sumo) = &mut self.collisions_sumo {
             of_sumo.in_conflict += u64::from(conflict.collision_sumo == Some(true));
         }
@@ -258,8 +259,8 @@ impl fmt::Display for Summary {
         }
         writeln!(
             f,
-            "expected crashes {:.2}: the sum of all crash probabilities, to compare plans with, not a forecast",
-            self.expected_crashes
+            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; no number of crashes",
+            self.risk_index
         )?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
         write!(f, "collisions {}", self.collisions)?;

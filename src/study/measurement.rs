@@ -37,11 +37,13 @@ pub enum Axis {
     Tolerance,
     /// The measures that are logged only if they are chosen.
     Measures,
+    /// The intervals and tests of statistics, on known processes.
+    Coverage,
 }
 
 impl Axis {
     /// All axes, in the order of tables and charts.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Volume,
         Self::Candidates,
         Self::Time,
@@ -55,6 +57,7 @@ impl Axis {
         Self::Recording,
         Self::Tolerance,
         Self::Measures,
+        Self::Coverage,
     ];
 
     /// Whether its items are recordings of SUMO runs.
@@ -78,6 +81,7 @@ impl Axis {
             Self::Recording => "recording",
             Self::Tolerance => "tolerance",
             Self::Measures => "measures",
+            Self::Coverage => "coverage",
         }
     }
 }

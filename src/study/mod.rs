@@ -8,6 +8,7 @@ mod candidates;
 mod chart;
 mod chosen_measures;
 mod clock;
+mod coverage;
 mod curvature;
 mod decisions;
 mod driven;
@@ -52,6 +53,7 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
         Axis::Numbers => numbers::measure(plan),
         Axis::Turning => turning::measure(plan),
         Axis::Curvature => curvature::measure(plan),
+        Axis::Coverage => coverage::measure(plan),
         Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => {
             let record = record.ok_or_else(|| Error::Value(format!("the {} axis needs SUMO", axis.name())))?;
             let measure = match axis {
@@ -82,7 +84,8 @@ pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
     table.finish()?;
     for axis in Axis::ALL {
         let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
-        if !of_axis.is_empty() {
+        // Shares of intervals that hold the truth are a table.
+        if !of_axis.is_empty() && axis != Axis::Coverage {
             chart::draw(folder, axis.name(), &chart::panels(axis, &of_axis), chart::note(axis))?;
         }
     }

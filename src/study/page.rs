@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::clock::machine;
+use super::coverage;
 use super::in_short::{self, number};
 use super::measurement::{Axis, Measurement, distinct};
 
@@ -21,6 +22,7 @@ fn question(axis: Axis) -> [&'static str; 2] {
         Axis::Recording => ["What must be recorded?", "a recording of every 0.1 s with nine decimals"],
         Axis::Tolerance => ["How deep an overlap is a collision?", "the pairs that SUMO reports as colliding"],
         Axis::Measures => ["What do the added measures cost?", "a recording with nine decimals"],
+        Axis::Coverage => ["Do intervals hold what they say?", "known processes"],
         Axis::Path => ["Where will a road user go?", "where the recorded vehicles really drove"],
     }
 }
@@ -37,6 +39,14 @@ pub(super) fn of(rows: &[Measurement], quick: bool) -> String {
         }
         let [question, reference] = question(axis);
         let name = axis.name();
+        if axis == Axis::Coverage {
+            let _ = writeln!(
+                text,
+                "\n## {name}\n\n{question} On {reference}: too low, the whole interval is below the truth, or a test finds nothing."
+            );
+            coverage::table(&mut text, &of_axis);
+            continue;
+        }
         let _ = write!(
             text,
             "\n## {name}\n\n{question} Errors against {reference}. **Bold**: closecall's choice; ●: on the Pareto front of \

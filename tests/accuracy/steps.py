@@ -26,7 +26,7 @@ IN_RATES = ("left_turn", "signals", "roundabout", "reckless", "town")
 ALIGN = ("never", "auto")
 STEPS = ("1", "0.5", "0.2", "0.1")
 TRUTH = "0.1"
-MEASURES = ("conflicts", "serious or critical", "TTC below 1.5 s", "DRAC above 3.4 m/s²", "expected crashes")
+MEASURES = ("conflicts", "serious or critical", "TTC below 1.5 s", "DRAC above 3.4 m/s²", "risk index")
 RATE = "conflicts_per_vehicle_hour"
 
 
@@ -70,7 +70,7 @@ def counts(out: Path, step: str) -> Counter[str]:
         found["TTC below 1.5 s"] += sum(row["ttc"] is not None and row["ttc"] < 1.5 for row in table)
         strong = (row["unavoidable"] or (row["drac"] is not None and row["drac"] > 3.4) for row in table)
         found["DRAC above 3.4 m/s²"] += sum(strong)
-        found["expected crashes"] += sum(row["crash_probability"] for row in table)
+        found["risk index"] += sum(row["crash_probability"] for row in table)
     return Counter({name: value / len(folders) for name, value in found.items()})
 
 

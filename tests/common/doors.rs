@@ -7,7 +7,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use closecall::internals::analysis::{
-    ConflictFilter, ConflictReader, LoggedRun, Place, Playback, Request, Statistics, Which, export, plot, report, svg,
+    ConflictFilter, ConflictReader, LoggedRun, Observed, Place, Playback, Request, Statistics, Which, export, plot,
+    report, svg,
 };
 use closecall::internals::input::{
     OpenedTracks, RecordedLights, RecordedStep, Recording, TrackOptions, check_xml, demand, fault, inspect_tracks,
@@ -163,6 +164,8 @@ fn of_log(files: &[(&str, &[u8])]) {
         against: folders.clone(),
         filter: filter.clone(),
         worst: 3,
+        plan: Some(1.3),
+        observed: Some(Observed { crashes: 14, years: 5.0 }),
     };
     let _ = Statistics::of(&request, &mut |_, _| ());
     let report = report::Request { folders: &folders, against: &folders, net: None, filter: &filter };

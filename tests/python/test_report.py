@@ -236,7 +236,7 @@ def test_an_old_log_without_places_has_no_drawings(browser: Any, tmp_path: Path)
     assert opened.complaints == []
 
 
-def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, town: Path) -> None:
+def test_hot_spots_are_ranked_by_risk_index_and_sortable(browser: Any, town: Path) -> None:
     opened = Opened(browser, town / "report.html")
     crashes: dict[str, float] = {}
     for row in severe(counted(town / "log")):
@@ -260,7 +260,7 @@ def test_hot_spots_are_ranked_by_expected_crashes_and_sortable(browser: Any, tow
     opened.page.locator(".unfold").first.click()
     assert opened.page.get_attribute(".unfold", "aria-expanded") == "true"
     label = str(opened.page.get_attribute("svg.movements", "aria-label"))
-    assert label.startswith("Movements at junction") and "1: " in label and "expected crashes" in label
+    assert label.startswith("Movements at junction") and "1: " in label and "risk index" in label
     assert opened.page.locator(".diagram tbody tr").count() == opened.page.locator("svg.movements .dot").count() > 0
     assert "from the" in opened.text(".diagram")
     opened.page.locator(".unfold").first.click()

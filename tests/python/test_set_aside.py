@@ -131,4 +131,4 @@ def test_alarms_and_rewards_leave_out_who_has_just_appeared() -> None:
         summary = checker.summary
         assert summary.get("set_aside", {}) == ({} if artefacts else {"appeared": 1})
         assert sum(count["count"] for count in summary["conflicts"]) == artefacts
-        assert (summary["expected_crashes"] > 0) == artefacts
+        assert (summary["risk_index"] > 0) == artefacts

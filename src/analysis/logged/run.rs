@@ -42,6 +42,9 @@ pub struct LoggedRun {
     pub csv_safe: bool,
     /// What it found.
     pub summary: Summary,
+    /// Whether its risk index has the name of earlier versions, `expected_crashes`.
+    #[serde(skip)]
+    pub has_old_names: bool,
 }
 
 /// Versions of what took part in a run.
@@ -83,9 +86,10 @@ impl LoggedRun {
     /// # Errors
     /// [`Error::Line`] or [`Error::Content`] where closecall did not write it.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
-        let run: Self = serde_json::from_str(text)
+        let mut run: Self = serde_json::from_str(text)
             .map_err(|error| Error::line(path, error.line() as u64, error.to_string().replace('\n', " ")))?;
         run.check().map_err(|why| Error::content(path, why))?;
+        run.has_old_names = text.contains("\"expected_crashes\"");
         Ok(run)
     }
 
@@ -137,6 +141,22 @@ mod tests {
     use crate::traffic::frame::State;
     use crate::traffic::profile::Profile;
     use crate::traffic::sumo_type::SumoType;
+
+    #[test]
+    fn the_risk_index_is_read_by_its_old_name_too() {
+        for (name, is_old) in [("risk_index", false), ("expected_crashes", true)] {
+            let summary = format!(
+                r#"{{"begin": 0, "end": 1, "steps": 2, "conflicts": [], "collisions": 0, "{name}": 4.5, "exposure":
+                {{"vehicles": 1, "persons": 0, "vehicle_kilometres": 1, "vehicle_hours": 1}}}}"#
+            );
+            let text = format!(
+                r#"{{"versions": {{"closecall": "0.1.0", "sumo": null}}, "scenario": "a", "seed": null, "step_length": 1,
+                "sumo_words": [], "inputs": [], "options": {{}}, "complete": true, "summary": {summary}}}"#
+            );
+            let run = LoggedRun::parse(Path::new("run.json"), &text).unwrap();
+            assert_eq!((run.summary.risk_index, run.has_old_names), (4.5, is_old));
+        }
+    }
 
     /// A run of a car at 10 m/s with a step at each of these times, read back.
     fn logged(times: &[Second], step_length: Option<Second>) -> LoggedRun {

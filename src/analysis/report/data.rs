@@ -77,7 +77,7 @@ fn push(text: &mut String, json: &str) {
 /// The runs that the report compares with: how the rates differ, and where their conflicts are.
 pub fn before(effects: &Effects, found: &Conflicts) -> Value {
     let conflicts = || found.conflicts.iter().map(|one| &one.conflict);
-    let probability = |conflict: &LoggedConflict| rounded(conflict.crash_probability.unwrap_or_default(), 3);
+    let probability = |conflict: &LoggedConflict| rounded(conflict.crash_probability.unwrap_or_default(), 5);
     json!({
         "effects": effects,
         "x": conflicts().map(|conflict| rounded(conflict.x, 1)).collect::<Vec<_>>(),

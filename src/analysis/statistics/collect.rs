@@ -16,6 +16,7 @@ use super::counts::{ConflictGroup, Counts, MEASURES, Spot};
 use super::extremes::Tails;
 use super::group::By;
 use super::of_run::OfRun;
+use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
 use crate::analysis::filter::{ConflictFilter, set_aside_in_words};
 use crate::analysis::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
@@ -52,6 +53,8 @@ pub struct Collection {
     pub edges: FxHashMap<String, Spot>,
     /// Counts by junction.
     pub junctions: FxHashMap<String, Spot>,
+    /// All conflicts with their crash probabilities.
+    pub risk: WeightedEvents,
     /// The median of each measure, per run.
     pub medians: Vec<[Option<f64>; MEASURES.len()]>,
     /// The worst conflicts.
@@ -77,6 +80,7 @@ impl Collection {
         runs.iter_mut().for_each(|(_, run)| filter.clip(run));
         let (folders, runs) = runs.into_iter().unzip::<_, _, Vec<Arc<Path>>, Vec<_>>();
         let mut found = Self {
+            risk: WeightedEvents::default(),
             medians: Vec::with_capacity(runs.len()),
             groups: variants.all.iter().map(|_| FxHashMap::default()).collect(),
             runs,
@@ -129,6 +133,7 @@ impl Collection {
         }
         self.passed += of_run.passed;
         self.lost.extend(of_run.lost);
+        self.risk.append(of_run.risk);
         self.medians.push(of_run.medians);
         for (name, group) in of_run.groups {
             self.groups[variant].entry(name).or_default().append(group);
@@ -143,18 +148,20 @@ impl Collection {
         self.tails.append(of_run.tails);
     }
 
-    /// What was set aside, and what the filter left, in words; none without either.
+    /// What was set aside, what the filter left, and which names are old, in words.
     pub fn filtered(&self, filter: &ConflictFilter) -> Vec<String> {
-        let set_aside = set_aside_in_words(&self.set_aside);
+        let are_old = self.runs.iter().any(|run| run.has_old_names);
+        let old = are_old.then(|| "logs of earlier versions call the risk index expected_crashes".to_owned());
+        let set_aside = set_aside_in_words(&self.set_aside).into_iter().chain(old);
         if filter.is_empty() {
-            return set_aside.into_iter().collect();
+            return set_aside.collect();
         }
         let counts = match (self.passed, self.read) {
             (0, 1..) => format!("none of {} conflicts passes {filter}", self.read),
             (passed, read) => format!("{passed} of {read} conflicts pass {filter}"),
         };
         let period = "the traffic of the period alone is not known: its rates are per hour only".to_owned();
-        set_aside.into_iter().chain([counts]).chain(filter.has_period().then_some(period)).collect()
+        set_aside.chain([counts]).chain(filter.has_period().then_some(period)).collect()
     }
 
     /// Checks that the runs have one setting: a comparison tells two settings apart.

@@ -9,19 +9,22 @@ mod collect;
 mod compare;
 mod counts;
 mod effects;
-mod extremes;
-mod gpd;
+pub(crate) mod extremes;
+pub(crate) mod gpd;
+mod gpd_posterior;
 mod group;
 mod hot_spots;
+mod observed;
 mod of_run;
 mod pairs;
 pub(crate) mod permutation;
+pub(crate) mod planning;
 mod quantiles;
-mod rate;
+pub(crate) mod rate;
 mod rates;
 pub mod table;
 mod variant;
-mod weighted;
+pub(crate) mod weighted;
 mod worst;
 
 use std::path::PathBuf;
@@ -40,7 +43,9 @@ pub use effects::Effects;
 pub use extremes::{Crashes, Extrapolation};
 pub use group::By;
 pub use hot_spots::HotSpot;
+pub use observed::{Observed, PerYear, Transferred};
 pub use permutation::Test;
+pub use planning::{PlannedGroup, RunPlan};
 pub use quantiles::{Quantiles, quantile};
 pub use rate::{IntervalMethod, Rate, Ratio, rate, t_quantile};
 pub use rates::Traffic;
@@ -60,6 +65,10 @@ pub struct Request {
     pub filter: ConflictFilter,
     /// The number of worst conflicts, and of hot spots, to list.
     pub worst: usize,
+    /// The ratio of rates for which runs are to be planned.
+    pub plan: Option<f64>,
+    /// The crashes observed where the runs to compare with were made of.
+    pub observed: Option<Observed>,
 }
 
 /// Statistics of a set of runs.
@@ -91,9 +100,12 @@ pub struct Statistics {
     pub by: By,
     /// For each variant all conflicts as one group, then each group.
     pub groups: Vec<GroupStatistics>,
-    /// Edges with the most expected crashes.
+    /// The sum of crash probabilities per vehicle-kilometre, of runs of one variant: compares plans with the same steps, and
+    /// is no number of crashes.
+    pub risk_index_per_vehicle_kilometre: Option<Rate>,
+    /// Edges with the largest risk index.
     pub edges: Vec<HotSpot>,
-    /// Junctions with the most expected crashes.
+    /// Junctions with the largest risk index.
     pub junctions: Vec<HotSpot>,
     /// The worst conflicts, the worst first.
     pub worst: Vec<RankedConflict>,
@@ -101,6 +113,10 @@ pub struct Statistics {
     pub extremes: Vec<Extrapolation>,
     /// The comparison with the other set, if there is one.
     pub comparison: Option<Comparison>,
+    /// The runs that a comparison needs, if it was asked.
+    pub plan: Option<RunPlan>,
+    /// The crashes to be expected, from observed ones; none where the ratio of conflicts has no finite interval.
+    pub transferred: Option<Transferred>,
 }
 
 impl Statistics {
@@ -117,7 +133,12 @@ impl Statistics {
         let mut set = Collection::read(&request.folders, request.by, &request.filter, request.worst, progress)?;
         let mut left_out = std::mem::take(&mut set.left_out);
         let mut lost = std::mem::take(&mut set.lost);
+        let mut plan = None;
         let comparison = if request.against.is_empty() {
+            if let Some(ratio) = request.plan {
+                set.check_alike(&request.folders)?;
+                plan = Some(planning::plan(ratio, &set, None));
+            }
             None
         } else {
             let mut other = Collection::read(&request.against, request.by, &request.filter, 0, progress)?;
@@ -125,8 +146,12 @@ impl Statistics {
             lost.append(&mut other.lost);
             set.check_alike(&request.folders)?;
             other.check_alike(&request.against)?;
+            plan = request.plan.map(|ratio| planning::plan(ratio, &set, Some(&other)));
             Some(compare(&set, &other))
         };
+        let ratio = comparison.as_ref().and_then(|comparison| comparison.rates.first()?.ratio);
+        let transferred =
+            request.observed.zip(ratio).and_then(|(observed, ratio)| observed::transfer(observed, &ratio));
         let traffic = Traffic::of(set.runs.iter());
         let hours = if set.variants.are_several() {
             Err("the runs differ in their settings: name those of one variant")
@@ -134,6 +159,7 @@ impl Statistics {
             Ok(traffic.hours)
         };
         let variants = set.variants.clone();
+        let kilometres = set.runs.iter().map(|run| run.summary.exposure.vehicle_kilometres).collect::<Vec<_>>();
         Ok(Self {
             name: set.runs.first().map_or_else(|| "closecall".to_owned(), LoggedRun::name),
             runs: set.runs.len(),
@@ -146,10 +172,13 @@ impl Statistics {
             set_aside: std::mem::take(&mut set.set_aside),
             filter: (!request.filter.is_empty()).then(|| request.filter.to_string()),
             by: request.by,
+            risk_index_per_vehicle_kilometre: set.risk.rate(&kilometres).filter(|_| !variants.are_several()),
             edges: hot_spots::edges(&set, request.worst),
             junctions: hot_spots::junctions(&set, request.worst),
             extremes: set.tails.extrapolate(hours),
             comparison,
+            plan,
+            transferred,
             groups: variant::groups(&mut set, request.by),
             worst: set.worst.into_sorted(&set.runs, &variants),
         })

@@ -9,6 +9,7 @@ use super::counts::{ConflictGroup, Counts, MEASURES, Spot, measures};
 use super::extremes::Tails;
 use super::group::By;
 use super::quantiles::select;
+use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
 use crate::analysis::filter::ConflictFilter;
 use crate::analysis::logged::{ConflictReader, LoggedConflict, LostRows};
@@ -59,6 +60,8 @@ pub struct OfRun {
     pub edges: FxHashMap<String, Spot>,
     /// Conflicts by junction.
     pub junctions: FxHashMap<String, Spot>,
+    /// All conflicts with their crash probabilities.
+    pub risk: WeightedEvents,
     /// The median of each measure.
     pub medians: [Option<f64>; MEASURES.len()],
     /// The worst conflicts.
@@ -97,6 +100,7 @@ impl OfRun {
             tallies: Default::default(),
             edges: FxHashMap::default(),
             junctions: FxHashMap::default(),
+            risk: WeightedEvents::default(),
             medians: Default::default(),
             worst: WorstOf::new(worst),
             tails: Tails::default(),
@@ -140,12 +144,14 @@ impl OfRun {
         let kind = rank(&Kind::ALL, conflict.kind);
         let severity = rank(&Severity::ALL, conflict.severity);
         self.tallies[kind][severity].add(run);
+        let probability = conflict.crash_probability.unwrap_or_default();
+        self.risk.add(run, probability);
         for (spots, name) in [(&mut self.edges, conflict.edge()), (&mut self.junctions, conflict.junction())] {
             if !name.is_empty() {
                 update(spots, name, |spot: &mut Spot| {
                     spot.counts.add(run);
                     spot.severities[severity] += 1;
-                    spot.crashes.add(run, conflict.crash_probability.unwrap_or_default());
+                    spot.crashes.add(run, probability);
                 });
             }
         }

@@ -15,7 +15,7 @@ pub const CONFIDENCE: f64 = 0.95;
 pub const TAIL: f64 = (1.0 - CONFIDENCE) / 2.0;
 
 /// Runs whose rates spread by less than this, relatively, are equal: the order of a sum changes its last digits.
-const EQUAL: f64 = 1e-9;
+pub(super) const EQUAL: f64 = 1e-9;
 
 /// How an interval was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -81,14 +81,17 @@ fn relative_spread(counts: &[f64], traffic: &[f64]) -> Option<f64> {
 }
 
 /// What each run's count differs from that of its traffic at the common rate, divided by the mean count; none with a single
-/// run, without conflicts or without traffic.
-fn relative_deviations(counts: &[f64], traffic: &[f64]) -> Option<Vec<f64>> {
+/// run, without conflicts or without traffic, and for equal counts, whose traffic alone would tell how exact they are.
+pub(super) fn relative_deviations(counts: &[f64], traffic: &[f64]) -> Option<Vec<f64>> {
     let count = counts.iter().sum::<f64>();
     let total = traffic.iter().sum::<f64>();
     if counts.len() < 2 || count <= 0.0 || total <= 0.0 {
         return None;
     }
     let mean = count / counts.len() as f64;
+    if counts.iter().all(|one| (one / mean - 1.0).abs() < EQUAL) {
+        return None;
+    }
     let value = count / total;
     Some(counts.iter().zip(traffic).map(|(count, traffic)| (count - value * traffic) / mean).collect())
 }
@@ -208,9 +211,12 @@ mod tests {
     #[test]
     fn one_run_or_equal_runs_get_the_poisson_interval() {
         // The last two traffics are sums of the same numbers in different orders.
-        for (counts, traffic) in
-            [(&[5.0][..], &[2.0][..]), (&[0.0, 0.0], &[1.0, 1.0]), (&[3.0, 3.0], &[0.1 + 0.2 + 0.3, 0.3 + 0.2 + 0.1])]
-        {
+        for (counts, traffic) in [
+            (&[5.0][..], &[2.0][..]),
+            (&[0.0, 0.0], &[1.0, 1.0]),
+            (&[3.0, 3.0], &[0.1 + 0.2 + 0.3, 0.3 + 0.2 + 0.1]),
+            (&[4.0, 4.0], &[1.0, 1.01]),
+        ] {
             assert_eq!(rate(counts, traffic).unwrap().method, IntervalMethod::PoissonExact);
         }
         assert_eq!(rate(&[0.0], &[0.0]), None);

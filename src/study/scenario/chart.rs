@@ -74,5 +74,5 @@ fn title(measure: &str, axis: &Axis) -> String {
 }
 
 fn in_words(measure: &str) -> String {
-    measure.trim_end_matches("_per_vehicle_hour").replace('_', " ")
+    measure.trim_end_matches("_per_vehicle_hour").trim_end_matches("_per_vehicle_kilometre").replace('_', " ")
 }

@@ -1,10 +1,10 @@
 //! The runs of a plan, read back and compared over pairs with the same seed.
 
-use super::estimate::{Estimate, relative_error};
+use super::estimate::{Estimate, mean, relative_error};
 use super::measures::{Measure, RunFigures, measures};
 use super::plan::{Axis, Plan};
 use super::recommendation::coarsest;
-use super::richardson::{Convergence, convergence};
+use super::richardson::{Convergence, convergence, own_error};
 use crate::analysis::logged::RunTime;
 use crate::batch::sweep::Task;
 use crate::study::pareto::is_on_front;
@@ -14,7 +14,7 @@ use crate::{Error, Result};
 /// The measure by which steps are recommended.
 pub const HEADLINE: &str = "conflicts_per_vehicle_hour";
 /// Measures that are shown beside it.
-pub const SHOWN: [&str; 3] = [HEADLINE, "serious_or_critical_per_vehicle_hour", "expected_crashes_per_vehicle_hour"];
+pub const SHOWN: [&str; 3] = [HEADLINE, "serious_or_critical_per_vehicle_hour", "risk_index_per_vehicle_kilometre"];
 
 /// The runs of a plan, read back.
 #[derive(Debug)]
@@ -83,10 +83,26 @@ impl Study {
         relative_error(&values, &of)
     }
 
-    /// The errors on an axis against its first choice.
+    /// The errors on an axis against its first choice; of a step also with what the finest step itself may be off by.
     pub fn errors(&self, axis: &Axis, measure: usize) -> Vec<Option<Estimate>> {
         let reference = axis.choices[0].setting;
-        axis.choices.iter().map(|choice| self.error(choice.setting, reference, measure)).collect()
+        let own = self.own_error(axis, measure).unwrap_or_default();
+        let error = |setting: usize| Some(self.error(setting, reference, measure)?.widened(own));
+        axis.choices.iter().map(|choice| error(choice.setting)).collect()
+    }
+
+    /// What the finest step of an axis of steps may be off by, relative to its value.
+    pub fn own_error(&self, axis: &Axis, measure: usize) -> Option<f64> {
+        let (steps, values) = self.steps_and_values(axis, measure);
+        let means = values.iter().map(|values| mean(values).map(|mean| mean.value)).collect::<Option<Vec<_>>>()?;
+        own_error(&steps, &means, self.convergence(axis, measure))
+    }
+
+    /// The steps of an axis, none if it has no steps, and the values at each.
+    fn steps_and_values(&self, axis: &Axis, measure: usize) -> (Vec<Second>, Vec<Vec<f64>>) {
+        let steps = axis.choices.iter().filter_map(|choice| choice.step).collect();
+        let settings = axis.choices.iter().map(|choice| choice.setting).collect::<Vec<_>>();
+        (steps, self.values(&settings, measure))
     }
 
     /// The values of these settings, for the seeds with which all of them have one.
@@ -116,9 +132,8 @@ impl Study {
 
     /// What the finest steps of an axis tell of a measure.
     pub fn convergence(&self, axis: &Axis, measure: usize) -> Convergence {
-        let steps = axis.choices.iter().filter_map(|choice| choice.step).collect::<Vec<_>>();
-        let settings = axis.choices.iter().map(|choice| choice.setting).collect::<Vec<_>>();
-        convergence(&steps, &self.values(&settings, measure))
+        let (steps, values) = self.steps_and_values(axis, measure);
+        convergence(&steps, &values, self.measures[measure].may_be_negative())
     }
 
     /// Whether each choice of an axis of steps is on the Pareto front of processor time and error.

@@ -20,6 +20,14 @@ impl Estimate {
         Self { value, interval: reach.map(|reach| [value - reach, value + reach]) }
     }
 
+    /// Widened by an independent error of this size to either side; without an interval as it was.
+    pub fn widened(self, error: f64) -> Self {
+        let ends = |[low, high]: [f64; 2]| {
+            [self.value - error.hypot(self.value - low), self.value + error.hypot(high - self.value)]
+        };
+        Self { interval: self.interval.map(ends), ..self }
+    }
+
     /// Whether the interval contains 0.
     pub fn may_be_zero(&self) -> bool {
         self.interval.is_some_and(|[low, high]| low <= 0.0 && high >= 0.0)
@@ -81,6 +89,15 @@ mod tests {
         let found = relative_error(&[values[2], values[0], values[1]], &reference).unwrap();
         near(found.value, 0.1);
         assert!(found.may_be_zero());
+    }
+
+    #[test]
+    fn an_independent_error_widens_both_ends() {
+        let found = Estimate { value: -0.03, interval: Some([-0.07, -0.0]) }.widened(0.03);
+        let [low, high] = found.interval.unwrap();
+        near(low, -0.03 - 0.05);
+        near(high, -0.03 + 0.03 * 2.0_f64.sqrt());
+        assert_eq!(Estimate { value: 1.0, interval: None }.widened(2.0).interval, None);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The measures of a run: counts and rates by kind and severity, expected crashes, quantiles.
+//! The measures of a run: counts and rates by kind and severity, the risk index, quantiles.
 
 use std::iter::once;
 
@@ -14,7 +14,8 @@ use crate::output::schema::{Column, Value};
 const COLUMNS: [&str; 4] = ["ttc", "drac", "ttb", "margin"];
 /// The quantiles.
 const SHARES: [(&str, f64); 3] = [("q05", 0.05), ("q50", 0.5), ("q95", 0.95)];
-const EXPECTED_CRASHES: &str = "expected_crashes";
+/// The sum of crash probabilities, and the same per vehicle-kilometre.
+const RISK_INDEX: &str = "risk_index";
 /// The end of the names of rates.
 const PER_VEHICLE_HOUR: &str = "_per_vehicle_hour";
 
@@ -80,9 +81,9 @@ pub fn measures() -> Vec<Measure> {
         let per_hour = format!("{}{PER_VEHICLE_HOUR}", tally.name);
         [measure(tally.name, Form::Count), measure(per_hour, Form::Rate)]
     });
-    let crashes = ["", PER_VEHICLE_HOUR].map(|per| measure(format!("{EXPECTED_CRASHES}{per}"), Form::Value));
+    let risk = ["", "_per_vehicle_kilometre"].map(|per| measure(format!("{RISK_INDEX}{per}"), Form::Value));
     let quantiles = COLUMNS.iter().flat_map(|column| SHARES.map(|(name, _)| format!("{column}_{name}")));
-    counts.chain(crashes).chain(quantiles.map(|name| measure(name, Form::Value))).collect()
+    counts.chain(risk).chain(quantiles.map(|name| measure(name, Form::Value))).collect()
 }
 
 impl RunFigures {
@@ -114,8 +115,9 @@ impl RunFigures {
         for count in counts {
             values.extend([Some(count), per_hour(count)]);
         }
-        let crashes = run.summary.expected_crashes;
-        values.extend([Some(crashes), per_hour(crashes)]);
+        let risk = run.summary.risk_index;
+        let kilometres = run.summary.exposure.vehicle_kilometres;
+        values.extend([Some(risk), (kilometres > 0.0).then(|| risk / kilometres)]);
         for mut sample in samples {
             sample.sort_unstable_by(f64::total_cmp);
             values.extend(SHARES.map(|(_, share)| quantile(&sample, share)));
@@ -126,9 +128,14 @@ impl RunFigures {
 }
 
 impl Measure {
-    /// Whether the same per vehicle-hour is a measure too.
+    /// Whether its values may be below 0: of counts, rates, times and decelerations none is.
+    pub fn may_be_negative(&self) -> bool {
+        self.name.starts_with("margin")
+    }
+
+    /// Whether the same per traffic is a measure too.
     pub fn has_rate(&self) -> bool {
-        self.form == Form::Count || self.name == EXPECTED_CRASHES
+        self.form == Form::Count || self.name == RISK_INDEX
     }
 
     /// The measure over the runs of a setting, one per seed, with its interval: that of a rate for counts, or else

@@ -20,7 +20,7 @@ pub(super) fn of(study: &Study, scenario: &str, answer: &str, charts: &[&str]) -
     };
     if study.steps().is_some() {
         text += "\n## The step\n\nRelative errors are against the finest step of the same table, in pairs of runs with the same \
-                 seed. **Bold**: the recommended step; ●: on the Pareto front of processor time and error in conflicts.\n";
+                 seed; their intervals include what the finest step itself may be off by. **Bold**: the recommended step; ●: on the Pareto front of processor time and error in conflicts.\n";
         draw(&mut text, "steps");
         for axis in study.plan.axes.iter().filter(|axis| axis.has_steps()) {
             steps(&mut text, study, axis);
@@ -53,9 +53,10 @@ pub(super) fn answer(study: &Study) -> String {
     if let Some(axis) = study.steps() {
         sentences.extend(needed(study, axis));
         let own = axis.choices.iter().position(|choice| choice.setting == 0).unwrap_or_default();
-        let own_error = study.errors(axis, place)[own].filter(|_| own > 0);
-        let against = own_error
-            .map_or(String::new(), |error| format!(", {} against {} s", signed(&error), axis.choices[0].value));
+        let error = study.errors(axis, place)[own].filter(|_| own > 0);
+        let against = error.map_or(String::new(), |error| {
+            format!(", {} against steps of {} s", signed(&error), axis.choices[0].value)
+        });
         sentences.push(format!(
             "At the present setting (steps of {} s) a run finds {} conflicts per vehicle-hour{against}.",
             study.plan.own_step,
@@ -106,7 +107,7 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
         } else {
             "; more seeds could show it to be enough"
         };
-        format!("the next, {} s, is off by {}{may}", choice.value, signed(&error))
+        format!("the next, {} s, differs from {} s by {}{may}", choice.value, finest.value, signed(&error))
     });
     let mut sentences = Vec::new();
     let how = match errors[at] {
@@ -115,7 +116,7 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
                 Verdict::Shown => "",
                 _ => ", which these seeds make likely, but do not show",
             };
-            format!("its error against {} s is {}{shown}", finest.value, signed(&error))
+            format!("it differs from {} s by {}{shown}", finest.value, signed(&error))
         }
         _ => "no coarser step has it".to_owned(),
     };
@@ -140,22 +141,25 @@ fn left_at_the_finest(study: &Study, axis: &Axis) -> Option<String> {
     let place = study.place(HEADLINE);
     let finest = &axis.choices[0];
     let convergence = study.convergence(axis, place);
+    let value = &finest.value;
+    let own = study.own_error(axis, place)?;
+    let enough = if own > study.accuracy { "; finer steps are needed to be sure" } else { "" };
     let Convergence::Order { order, limit, half_width } = convergence else {
-        let is_needed = study.recommended(axis, place) == 0;
-        let value = &finest.value;
-        return is_needed.then(|| {
-            format!("Whether {value} s is fine enough these runs cannot tell (order: {}).", convergence.why_none())
-        });
+        return Some(format!(
+            "These runs show no order of convergence ({}); by three times what its neighbours differ from it, {value} s itself \
+             may be off by {:.0} %, which the intervals include{enough}.",
+            convergence.why_none().trim_start_matches("none: "),
+            100.0 * own
+        ));
     };
     let found = study.estimate(finest.setting, place)?.value;
-    let off = found / limit - 1.0;
-    let (order, limit) = (number(order), number(limit));
-    let enough = if off.abs() > study.accuracy { "; finer steps are needed to be sure" } else { "" };
     Some(format!(
-        "Extrapolated to a step of 0 with the observed order {order} it is {limit} ± {}: {} s itself is off by {}{enough}.",
+        "Extrapolated to a step of 0 with the observed order {} it is {} ± {} conflicts per vehicle-hour, against which {value} s \
+         itself is off by {}; the intervals include this{enough}.",
+        number(order),
+        number(limit),
         number(half_width),
-        finest.value,
-        per_cent(off)
+        per_cent(found / limit - 1.0)
     ))
 }
 
@@ -169,7 +173,7 @@ fn steps(text: &mut String, study: &Study, axis: &Axis) {
         let value =
             if at == recommended { format!("**{}**{own}", choice.value) } else { format!("{}{own}", choice.value) };
         let dot = if front[at] { "●" } else { "" };
-        let _ = writeln!(text, "| {value} |{} {dot} |", figures(study, choice, axis.choices[0].setting));
+        let _ = writeln!(text, "| {value} |{} {dot} |", figures(study, choice, axis.choices[0].setting, Some(axis)));
     }
     let own = study.plan.axes[0].choices[0].setting;
     if let Some(error) = study.error(axis.choices[0].setting, own, place).filter(|_| axis.choices[0].setting != own) {
@@ -183,16 +187,17 @@ fn steps(text: &mut String, study: &Study, axis: &Axis) {
 }
 
 /// The head of a table of settings, after its first column.
-const TABLE: &str = " conflicts per run | per vehicle-hour | error | serious or critical per vehicle-hour | error | expected \
-                     crashes per vehicle-hour | error | time, s | processor time, s | |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
+const TABLE: &str = " conflicts per run | per vehicle-hour | error | serious or critical per vehicle-hour | error | risk \
+                     index per vehicle-km | error | time, s | processor time, s | |\n|---|---|---|---|---|---|---|---|---|---|---|\n";
 
-/// The cells of a setting in such a table.
-fn figures(study: &Study, choice: &Choice, reference: usize) -> String {
+/// The cells of a setting in such a table; on an axis of steps their errors include what the finest may be off by.
+fn figures(study: &Study, choice: &Choice, reference: usize, steps: Option<&Axis>) -> String {
     let cell = |estimate: Option<Estimate>| estimate.map_or("–".to_owned(), |estimate| shown(&estimate));
     let mut text = format!(" {} |", cell(study.estimate(choice.setting, study.place("conflicts"))));
     for measure in SHOWN.map(|measure| study.place(measure)) {
+        let own = steps.and_then(|axis| study.own_error(axis, measure)).unwrap_or_default();
         let error = study.error(choice.setting, reference, measure).filter(|_| choice.setting != reference);
-        let error = error.map_or("–".to_owned(), |error| signed(&error));
+        let error = error.map(|error| error.widened(own)).map_or("–".to_owned(), |error| signed(&error));
         let _ = write!(text, " {} | {error} |", cell(study.estimate(choice.setting, measure)));
     }
     let time = study.run_time(choice.setting);
@@ -240,11 +245,11 @@ fn convergence(text: &mut String, study: &Study) {
 fn choices(text: &mut String, study: &Study) {
     let _ = write!(text, "\n| choice |{TABLE}");
     let own = Choice { value: String::new(), setting: 0, step: None };
-    let _ = writeln!(text, "| present setting |{} |", figures(study, &own, 0));
+    let _ = writeln!(text, "| present setting |{} |", figures(study, &own, 0, None));
     for axis in study.plan.axes.iter().filter(|axis| !axis.has_steps()) {
         for choice in &axis.choices[1..] {
             let name = axis.name.trim_start_matches("sumo:");
-            let _ = writeln!(text, "| {name}={} |{} |", choice.value, figures(study, choice, 0));
+            let _ = writeln!(text, "| {name}={} |{} |", choice.value, figures(study, choice, 0, None));
         }
     }
 }

@@ -6,7 +6,8 @@
 //! (f₃ − f₂) / (f₂ − f₁) = (h₃ᵖ − h₂ᵖ) / (h₂ᵖ − h₁ᵖ)
 //! ```
 //!
-//! which grows with p. A sequence that turns, or whose changes do not shrink, has no order.
+//! which grows with p. A sequence that turns, or whose changes do not shrink, has no order; nor has one whose order or limit
+//! is known to no better than its own size, or whose limit is negative although the measure cannot be.
 
 use super::estimate::mean;
 use crate::analysis::statistics::t_quantile;
@@ -15,6 +16,8 @@ use crate::analysis::statistics::t_quantile;
 const MOST: f64 = 6.0;
 /// The factor of safety of the grid convergence index with three grids (Roache 1994; ASME V&V 20-2009).
 const SAFETY: f64 = 1.25;
+/// The same without an observed order, with which convergence of order 1 is assumed (Roache 1994).
+const SAFETY_WITHOUT_ORDER: f64 = 3.0;
 
 /// What the three finest steps tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +32,10 @@ pub enum Convergence {
     NoPower,
     /// The seeds do not agree on an order.
     SeedsDisagree,
+    /// The order or the limit has an error larger than its value.
+    Uncertain,
+    /// The limit is below 0, where the measure cannot be.
+    Negative,
     /// There are less than three steps.
     TooFew,
 }
@@ -42,6 +49,8 @@ impl Convergence {
             Self::NotMonotone => "none: not monotone",
             Self::NoPower => "none: the changes do not shrink like a power of the step",
             Self::SeedsDisagree => "none: the seeds do not agree on one",
+            Self::Uncertain => "none: its error is larger than its value",
+            Self::Negative => "none: it would end below 0",
             Self::TooFew => "none: it takes three steps",
         }
     }
@@ -50,8 +59,8 @@ impl Convergence {
 /// The convergence over steps, the finest first, each with one value per seed in the same order.
 ///
 /// The interval of the limit joins two errors as independent: 1.25 times the change from the finest step to the limit, and
-/// the jackknife's standard error over seeds.
-pub fn convergence(steps: &[f64], runs: &[Vec<f64>]) -> Convergence {
+/// the jackknife's over seeds.
+pub fn convergence(steps: &[f64], runs: &[Vec<f64>], may_be_negative: bool) -> Convergence {
     let ([one, two, three, ..], [first, second, third, ..]) = (steps, runs) else { return Convergence::TooFew };
     let (steps, runs) = ([*one, *two, *three], [first, second, third]);
     let seeds = first.len().min(second.len()).min(third.len());
@@ -74,22 +83,46 @@ pub fn convergence(steps: &[f64], runs: &[Vec<f64>]) -> Convergence {
         Err(none) => return none,
     };
     let limit = limit(steps, values, order);
-    let mut noise = 0.0;
+    let [mut order_noise, mut noise] = [0.0; 2];
     if seeds > 1 {
-        let mut limits = Vec::with_capacity(seeds);
+        let (mut orders, mut limits) = (Vec::with_capacity(seeds), Vec::with_capacity(seeds));
         for seed in 0..seeds {
             let values = without(Some(seed));
-            match self::order(steps, values) {
-                Ok(order) => limits.push(self::limit(steps, values, order)),
-                Err(_) => return Convergence::SeedsDisagree,
-            }
+            let Ok(order) = self::order(steps, values) else { return Convergence::SeedsDisagree };
+            orders.push(order);
+            limits.push(self::limit(steps, values, order));
         }
-        let count = seeds as f64;
-        let middle = limits.iter().sum::<f64>() / count;
-        let squares = limits.iter().map(|limit| (limit - middle).powi(2)).sum::<f64>();
-        noise = t_quantile(count - 1.0).unwrap_or_default() * (squares * (count - 1.0) / count).sqrt();
+        (order_noise, noise) = (jackknife(&orders), jackknife(&limits));
     }
-    Convergence::Order { order, limit, half_width: noise.hypot(SAFETY * (limit - values[0])) }
+    let half_width = noise.hypot(SAFETY * (limit - values[0]));
+    if limit < 0.0 && !may_be_negative {
+        Convergence::Negative
+    } else if order_noise > order || half_width > limit.abs() {
+        Convergence::Uncertain
+    } else {
+        Convergence::Order { order, limit, half_width }
+    }
+}
+
+/// Half the 95 % interval of an estimate, from those that leave out one seed each.
+fn jackknife(without_one: &[f64]) -> f64 {
+    let count = without_one.len() as f64;
+    let middle = without_one.iter().sum::<f64>() / count;
+    let squares = without_one.iter().map(|one| (one - middle).powi(2)).sum::<f64>();
+    t_quantile(count - 1.0).unwrap_or_default() * (squares * (count - 1.0) / count).sqrt()
+}
+
+/// What the finest step itself may be off by, relative to its value: half the limit's interval where there is an order; else
+/// three times the change that an order of 1 leaves, by the next step or the one after it, whichever says more. None with a
+/// single step, or with nothing at the finest.
+pub fn own_error(steps: &[f64], means: &[f64], convergence: Convergence) -> Option<f64> {
+    let (finest, value) = (*steps.first()?, means.first().copied().filter(|value| *value != 0.0)?);
+    if let Convergence::Order { half_width, .. } = convergence {
+        return Some(half_width / value.abs());
+    }
+    let left = |(step, mean): (&f64, &f64)| SAFETY_WITHOUT_ORDER * (mean - value).abs() / (step / finest - 1.0);
+    let others = steps.iter().zip(means).skip(1).take(2).map(left);
+    others.max_by(f64::total_cmp).map(|left| left / value.abs())
 }
 
 /// The order p of f(h) = f₀ + C hᵖ through three values at three steps, the finest first.
@@ -127,7 +160,7 @@ mod tests {
     use super::*;
 
     fn of(steps: [f64; 3], value: impl Fn(f64) -> f64) -> Convergence {
-        convergence(&steps, &steps.map(|step| vec![value(step)]))
+        convergence(&steps, &steps.map(|step| vec![value(step)]), true)
     }
 
     #[test]
@@ -151,11 +184,11 @@ mod tests {
     #[test]
     fn a_sequence_that_turns_or_does_not_shrink_has_no_order() {
         let steps = [0.1, 0.2, 0.4];
-        let of_values = |values: [f64; 3]| convergence(&steps, &values.map(|value| vec![value]));
+        let of_values = |values: [f64; 3]| convergence(&steps, &values.map(|value| vec![value]), true);
         assert_eq!(of_values([10.0, 12.0, 11.0]), Convergence::NotMonotone);
         assert_eq!(of_values([10.0, 13.0, 15.0]), Convergence::NoPower);
         assert_eq!(of_values([10.0, 10.0, 15.0]), Convergence::NoPower);
-        assert_eq!(convergence(&steps[..2], &[vec![1.0], vec![2.0]]), Convergence::TooFew);
+        assert_eq!(convergence(&steps[..2], &[vec![1.0], vec![2.0]], true), Convergence::TooFew);
     }
 
     #[test]
@@ -163,19 +196,54 @@ mod tests {
         let steps = [0.1, 0.2, 0.4];
         let with = |noise: [f64; 4]| {
             let of = |step: f64, sign: f64| noise.map(|noise| 50.0 + 100.0 * step + sign * noise).to_vec();
-            convergence(&steps, &[of(0.1, 1.0), of(0.2, -1.0), of(0.4, 0.5)])
+            convergence(&steps, &[of(0.1, 1.0), of(0.2, -1.0), of(0.4, 0.5)], true)
         };
         let Convergence::Order { limit, half_width, .. } = with([0.5, -0.5, 0.5, -0.5]) else { panic!() };
         assert!((limit - 50.0).abs() < 1e-6 && half_width > 1.25 * 10.0 && half_width < 20.0, "{half_width}");
         // Neighbours that differ by less than the noise, in a row that does not.
         let slow = [[0.0, 6.0, 0.0, 6.0], [5.0, 5.0, 5.0, 9.0], [8.0, 13.0, 5.0, 12.0]].map(|values| values.to_vec());
-        assert_eq!(convergence(&steps, &slow), Convergence::SeedsDisagree);
+        assert_eq!(convergence(&steps, &slow, true), Convergence::SeedsDisagree);
         assert_eq!(with([300.0, -300.0, 300.0, -300.0]), Convergence::WithinNoise);
         assert_eq!(with([0.0; 4]), of(steps, |step| 50.0 + 100.0 * step));
     }
 
+    /// The steps and values f₀ + C hᵖ of a slow convergence, with a little noise over three seeds.
+    fn slow(limit: f64, order: f64, noise: f64) -> ([f64; 3], [Vec<f64>; 3]) {
+        let steps = [0.05_f64, 0.1, 0.2];
+        let of = |step: f64| limit + (48.0 - limit) * (step / 0.05).powf(order);
+        (steps, steps.map(|step| [-1.0, 0.0, 1.0].map(|sign| of(step) + sign * noise * step).to_vec()))
+    }
+
+    #[test]
+    fn an_order_whose_error_is_larger_than_its_value_is_none() {
+        // 48.0 conflicts per vehicle-hour at 0.05 s, extrapolated to 9.48 ± 303; of rear-end ones to −7.6 ± 219.
+        for (limit, wanted) in [(9.48, Convergence::Uncertain), (-7.6, Convergence::Negative)] {
+            let (steps, runs) = slow(limit, 0.3, 1.0);
+            assert_eq!(convergence(&steps, &runs, false), wanted);
+        }
+        // A margin may be negative.
+        let (steps, runs) = slow(-30.0, 1.0, 0.0);
+        assert!(matches!(convergence(&steps, &runs, true), Convergence::Uncertain));
+        let (steps, runs) = slow(45.1, 1.0, 0.1);
+        assert!(matches!(convergence(&steps, &runs, false), Convergence::Order { .. }));
+    }
+
+    #[test]
+    fn the_finest_step_has_an_error_of_its_own() {
+        // 0.1 s is off by −3.0 % against 0.05 s, which is itself off by −8.7 % against 0.02 s.
+        let off = own_error(&[0.05, 0.1], &[100.0, 97.0], Convergence::TooFew).unwrap();
+        assert!((0.087..0.1).contains(&off), "{off}");
+        // Two finest steps that agree by chance.
+        let off = own_error(&[0.05, 0.1, 0.2], &[100.0, 100.0, 80.0], Convergence::NotMonotone).unwrap();
+        assert!((off - 0.2).abs() < 1e-12, "{off}");
+        let found = Convergence::Order { order: 1.0, limit: 45.1, half_width: 4.0 };
+        assert_eq!(own_error(&[0.05, 0.1, 0.2], &[50.0, 55.0, 65.0], found), Some(0.08));
+        assert_eq!(own_error(&[0.05], &[100.0], Convergence::TooFew), None);
+        assert_eq!(own_error(&[0.05, 0.1], &[0.0, 1.0], Convergence::TooFew), None);
+    }
+
     #[test]
     fn equal_values_are_converged_within_noise() {
-        assert_eq!(convergence(&[0.1, 0.2, 0.4], &[vec![3.0], vec![3.0], vec![3.0]]), Convergence::WithinNoise);
+        assert_eq!(convergence(&[0.1, 0.2, 0.4], &[vec![3.0], vec![3.0], vec![3.0]], true), Convergence::WithinNoise);
     }
 }

@@ -23,7 +23,7 @@ struct Row<'a> {
     mean: Option<f64>,
     low: Option<f64>,
     high: Option<f64>,
-    /// Against the finest step, or the user's own value on other axes.
+    /// Against the finest step, whose own error is in the interval, or the user's own value on other axes.
     relative_error: Option<f64>,
     error_low: Option<f64>,
     error_high: Option<f64>,
@@ -69,7 +69,8 @@ pub(super) fn write(study: &Study, path: &Path) -> Result<()> {
             if let (true, Convergence::Order { order, limit, half_width }) =
                 (axis.has_steps(), study.convergence(axis, place))
             {
-                let (low, high) = (Some(limit - half_width), Some(limit + half_width));
+                let least = if measure.may_be_negative() { f64::NEG_INFINITY } else { 0.0 };
+                let (low, high) = (Some((limit - half_width).max(least)), Some(limit + half_width));
                 let row = Row { value: EXTRAPOLATED, mean: Some(limit), low, high, order: Some(order), ..row() };
                 writer.serialize(row).map_err(failed)?;
             }

@@ -19,7 +19,7 @@ const options = (data.runs.find((run) => run.options) || {}).options || data.def
 const variantOf = [];
 data.variants.forEach((variant, place) => variant.runs.forEach((run) => { variantOf[run] = place; }));
 
-/** The probability of a crash in each conflict; their sum is the number of expected crashes. Logs of early versions have none. */
+/** The probability of a crash in each conflict; their sum is the risk index. Logs of early versions have none. */
 const risk = Float64Array.from(column.crash_probability, (value) => value || 0);
 
 /** Whether the log has crash probabilities: then places are ranked, and the map is coloured, by their sum. */

@@ -1,4 +1,4 @@
-// Where crashes are to be expected: hexagons on the map, coloured by the sum of the crash probabilities in each; with runs
+// Where the risk is: hexagons on the map, coloured by the sum of the crash probabilities in each; with runs
 // to compare with, by the difference per unit of traffic.
 
 /** The wanted radius of a hexagon on a wide map and on a narrow one, in pixels; in metres it is a power of 2, so that it stays while one pans. */
@@ -115,7 +115,7 @@ const density = {
     return colours[`${value < 0 ? "fewer" : "more"}-${heat < 2 ? 1 : heat < 4 ? 2 : 3}`];
   },
 
-  /** The centre of the hexagon with the most expected crashes of a spot. */
+  /** The centre of the hexagon with the largest risk index of a spot. */
   heaviest(spot, scale) {
     const radius = this.radius(scale);
     if (spot.heaviest?.radius !== radius) {

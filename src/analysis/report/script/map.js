@@ -1,11 +1,11 @@
-// The map: on the net, a sign for each conflict by kind and severity, or hexagons coloured by the crashes to be expected; the
+// The map: on the net, a sign for each conflict by kind and severity, or hexagons coloured by the risk index; the
 // most dangerous places are numbered as in the table. A click filters by the place.
 
 /** From more conflicts than this on, the map shows the density at first. */
 const FEW = 200;
 /** This many of the most dangerous places have a number on the map. */
 const MOST_BADGES = 3;
-const MODE_WORDS = { density: "expected crashes", points: "each conflict", difference: "after − before" };
+const MODE_WORDS = { density: "risk index", points: "each conflict", difference: "after − before" };
 
 /** The numbers of the most dangerous places, each above its heaviest hexagon or in the middle of its conflicts. */
 function badgesOf(view, rows, mode) {
@@ -149,7 +149,7 @@ const map = {
   },
 
   cellTip([x, y, value]) {
-    const what = this.mode === "difference" ? "expected crashes, after − before" : "expected crashes";
+    const what = this.mode === "difference" ? "risk index, after − before" : "risk index";
     const text = `${value > 0 && this.mode === "difference" ? "+" : ""}${number(value, 3)} ${what}`;
     const many = this.rows.filter((row) => Math.hypot(column.x[row] - x, column.y[row] - y) <= density.radius(this.view.scale)).length;
     return make("div", { className: "tip" }, make("b", { textContent: text }),
@@ -242,8 +242,8 @@ const map = {
         density.ends.forEach((end, heat) => entries.push(entry(patch(`var(--heat-${heat + 1})`), heat ? `${upTo(heat - 1)} to ${upTo(heat)}` : `below ${upTo(0)}`)));
       }
     }
-    const words = { points: "", density: `Expected crashes in each hexagon, ${number(2 * density.radius(this.view?.scale || 1), 0)} m across:`,
-      difference: "Expected crashes after minus before, for as much traffic as after; only the choice of severities applies:" };
+    const words = { points: "", density: `Risk index of each hexagon, ${number(2 * density.radius(this.view?.scale || 1), 0)} m across:`,
+      difference: "Risk index after minus before, for as much traffic as after; only the choice of severities applies:" };
     if (net && this.view?.scale >= CLOSE) {
       entries.push(entry(patch("var(--signal)"), "stop line of a signal"), entry(patch("var(--yield)"), "has to yield"));
     }

@@ -1,4 +1,4 @@
-// Movement diagrams: which ways through a junction meet in its conflicts, and how many crashes are to be expected of each pair.
+// Movement diagrams: which ways through a junction meet in its conflicts, and the risk index of each pair.
 
 /** In the drawing's own units: its size, and the circle on which the approaches lie. */
 const DIAGRAM = { width: 380, height: 270, ring: 84 };
@@ -14,7 +14,7 @@ const [INTO, OUT_OF, ON_FOOT] = [0, 1, 2];
 const approachesOf = (place) => conflicts.movements.approaches[conflicts.spots[place]];
 const compass = (angle) => COMPASS[((Math.round(angle / (Math.PI / 4)) % 8) + 8) % 8];
 
-/** The pairs of movements of some rows, the most expected crashes first. */
+/** The pairs of movements of some rows, the largest risk index first. */
 function movementPairs(rows) {
   const known = rows.filter((row) => column.ego_movement[row] !== null);
   const keys = (row) => [column.ego_movement[row], column.foe_movement[row]].sort((a, b) => a - b).join();
@@ -144,16 +144,16 @@ function movementDiagram(spot) {
     parts.push(drawing("circle", { cx: x, cy: y, r: 8, class: "dot" }), drawing("text", { x, y: y + 4, "text-anchor": "middle", class: "rank" }, String(rank + 1)));
   }
   const svg = drawing("svg", { viewBox: `0 0 ${DIAGRAM.width} ${DIAGRAM.height}`, role: "img", class: "movements" }, ...parts, ...roadLabels(approaches, angles));
-  const said = shown.map((pair, rank) => `${rank + 1}: ${pairWords(pair, approaches)}, ${number(pair.risk, 2)} expected crashes.`);
+  const said = shown.map((pair, rank) => `${rank + 1}: ${pairWords(pair, approaches)}, risk index ${number(pair.risk, 2)}.`);
   describeChart(svg, `Movements at ${spotName(spot)} that meet in conflicts. ${said.join(" ")}`);
-  const head = make("tr", {}, ...["", "Which with which", "Expected crashes", "critical", "serious"].map((textContent, place) =>
+  const head = make("tr", {}, ...["", "Which with which", "Risk index", "critical", "serious"].map((textContent, place) =>
     Object.assign(make(textContent ? "th" : "td", { textContent, className: place > 1 ? "number" : "" }), textContent ? { scope: "col" } : {})));
   const lines = shown.map((pair, rank) => make("tr", {}, numberCell(String(rank + 1)), textCell(pairWords(pair, approaches)),
     ...[number(pair.risk, 2), number(pair.counts[2]), number(pair.counts[1])].map(numberCell)));
   const unknown = spot.rows.length - all.reduce((sum, pair) => sum + pair.rows.length, 0);
-  const notes = [all.length > shown.length && `${all.length - shown.length} more pairs, with ${number(all.slice(MOST_PAIRS).reduce((sum, pair) => sum + pair.risk, 0), 2)} expected crashes.`,
+  const notes = [all.length > shown.length && `${all.length - shown.length} more pairs, with ${number(all.slice(MOST_PAIRS).reduce((sum, pair) => sum + pair.risk, 0), 2)} together.`,
     unknown && `Of ${number(unknown)} conflicts the lanes are not known.`,
-    "Width: expected crashes. Colour: the worst severity."];
+    "Width: risk index. Colour: the worst severity."];
   return make("div", { className: "diagram" }, svg, make("div", {}, make("table", {}, make("thead", {}, head), make("tbody", {}, ...lines)),
     make("p", { className: "note", textContent: notes.filter(Boolean).join(" ") })));
 }

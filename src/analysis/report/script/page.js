@@ -32,7 +32,7 @@ function showFigures(rows) {
   const runs = data.runs.filter((_, run) => (filter.run === null || filter.run === run) && (filter.variant === null || filter.variant === variantOf[run]));
   const kilometres = runs.reduce((sum, run) => sum + (run.summary?.exposure.vehicle_kilometres || 0), 0);
   const of_all = all > crashes + 0.005 ? `of ${number(all, 1)} in all; ` : "";
-  const figures = hasRisk ? [["expected crashes", number(crashes, crashes < 10 ? 2 : 1), `${of_all}an index, no forecast: the sum of the probabilities that a driver brakes too late`]] : [];
+  const figures = hasRisk ? [["risk index", number(crashes, crashes < 10 ? 2 : 1), `${of_all}the sum of the probabilities that a driver brakes too late: compares places and plans, no number of crashes`]] : [];
   [2, 1, 0].forEach((severity) => {
     if (filter.severities[severity]) figures.push([SEVERITIES[severity], number(counts[severity]), "", SEVERITIES[severity]]);
   });
@@ -59,7 +59,7 @@ function showVerdict(rows) {
   const element = byId("verdict");
   if (!spots.length) {
     element.textContent = !rows.length ? "No conflict passes the filter."
-      : hasRisk ? "No crash is to be expected from the conflicts that are shown." : "";
+      : hasRisk ? "The conflicts that are shown have no risk index." : "";
     return;
   }
   const all = rows.reduce((sum, row) => sum + risk[row], 0);
@@ -67,7 +67,7 @@ function showVerdict(rows) {
   const share = Math.round((100 * most.reduce((sum, spot) => sum + spot.risk, 0)) / all);
   const places = most.length === 1 ? "one place" : `these ${most.length} places`;
   const doubt = most.some((spot, rank) => rank && mayOutrank(spot, most[rank - 1])) ? " They overlap, so the order of these places may be chance." : "";
-  element.replaceChildren(`Most dangerous: ${share} % of the expected crashes are at ${places}, numbered on the map.`,
+  element.replaceChildren(`Most dangerous: ${share} % of the risk index is at ${places}, numbered on the map.`,
     make("ol", {}, ...most.map((spot, rank) => make("li", {}, make("b", { textContent: rank + 1 }),
       make("span", {}, make("strong", { textContent: spotName(spot) }), spotWords(spot))))),
     make("p", { className: "note", textContent: `In brackets: 95 % intervals.${doubt}` }));

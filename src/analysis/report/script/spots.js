@@ -1,8 +1,8 @@
-// Where and why: tables of places, manoeuvres and causes by the crashes to be expected. A click filters by a row.
+// Where and why: tables of places, manoeuvres and causes by the risk index. A click filters by a row.
 
 const MOST_SPOTS = 15;
 
-/** Sums over the rows of a group: counts by severity, expected crashes, their interval. */
+/** Sums over the rows of a group: counts by severity, the risk index. */
 function sums(rows) {
   const counts = SEVERITIES.map(() => 0);
   let all = 0;
@@ -35,47 +35,87 @@ function usual(rows, name) {
 const manoeuvreOf = (row) => conflicts.manoeuvres[column.manoeuvre[row]];
 const causeNames = (row) => CAUSES.filter((_, cause) => causesOf[column.cause[row]][cause]);
 
-/** Quantiles of Student's t for 95 % by degrees of freedom from 1 on; then the normal distribution's. */
-const T = [12.71, 4.3, 3.18, 2.78, 2.57, 2.45, 2.36, 2.31, 2.26, 2.23, 2.2, 2.18, 2.16, 2.14, 2.13, 2.12, 2.11, 2.1, 2.09, 2.09];
-const Z = 1.96;
+/** Quantiles of Student's t for 95 % by degrees of freedom from 1 on. */
+const T = [12.7062, 4.3027, 3.1824, 2.7764, 2.5706, 2.4469, 2.3646, 2.306, 2.2622];
+const Z = 1.959964;
 
-/** A quantile of χ² (Wilson and Hilferty 1931), z standard deviations from the middle. */
-const chiSquared = (freedom, z) => freedom * Math.max(0, 1 - 2 / (9 * freedom) + z * Math.sqrt(2 / (9 * freedom))) ** 3;
+/** The same for any degrees of freedom: beyond the table by Cornish and Fisher's expansion, right to 1e-4. */
+function studentsT(freedom) {
+  const [z3, z5, z7] = [Z ** 3, Z ** 5, Z ** 7];
+  return T[freedom - 1] || Z + (z3 + Z) / (4 * freedom) + (5 * z5 + 16 * z3 + 3 * Z) / (96 * freedom ** 2)
+    + (3 * z7 + 19 * z5 + 17 * z3 - 15 * Z) / (384 * freedom ** 3);
+}
+
+/** ln Γ(x + 1) (Stirling's series, above 10). */
+function logFactorial(x) {
+  let [at, shift] = [x + 1, 0];
+  while (at < 10) shift += Math.log(at++);
+  return (at - 0.5) * Math.log(at) - at + 0.5 * Math.log(2 * Math.PI) + 1 / (12 * at) - 1 / (360 * at ** 3) - shift;
+}
+
+/** The share of a gamma distribution of this shape, and scale 1, below x. */
+function gammaShare(shape, x) {
+  let [term, sum] = [1, 1];
+  for (let n = 1; term > 1e-12 * sum; n++) {
+    term *= x / (shape + n);
+    sum += term;
+  }
+  return sum * Math.exp(shape * Math.log(x) - x - logFactorial(shape));
+}
+
+/** The value below which this share, 0.025 or 0.975, of a gamma distribution of this shape and scale 1 is. */
+function gammaQuantile(shape, share) {
+  // Wilson and Hilferty's (1931) is right to 1e-5 there.
+  if (shape > 200) return shape * (1 - 1 / (9 * shape) + Math.sign(share - 0.5) * Z * Math.sqrt(1 / (9 * shape))) ** 3;
+  let [low, high] = [0, shape + 10 * Math.sqrt(shape) + 20];
+  for (let halving = 0; halving < 60; halving++) {
+    const middle = (low + high) / 2;
+    if (gammaShare(shape, middle) < share) low = middle;
+    else high = middle;
+  }
+  return low;
+}
+
+/** Sums of runs that spread by less than this, relatively, are equal. */
+const EQUAL = 1e-9;
 
 /**
- * The 95 % interval of the expected crashes of some conflicts: over the runs, where there are several of one variant;
- * otherwise that of a sum of independent rare events, each with its weight (Fay and Feuer 1997).
+ * The 95 % interval of the risk index of some conflicts, that of `closecall stats`: over the runs by the ratio estimator,
+ * where there are several of one variant that differ; otherwise that of a sum of independent rare events, each with its
+ * weight (Fay and Feuer 1997). `traffic` of each run: equal, or the vehicles that entered.
  */
-function crashInterval(rows) {
+function riskInterval(rows, traffic = () => 1) {
   const runs = filter.run === null && (data.variants.length < 2 || filter.variant !== null)
     ? data.runs.map((_, run) => run).filter((run) => filter.variant === null || variantOf[run] === filter.variant) : [];
   const sum = rows.reduce((all, row) => all + risk[row], 0);
+  if (sum <= 0) return [0, 0];
   if (runs.length > 1) {
-    const of_run = new Map(runs.map((run) => [run, 0]));
-    for (const row of rows) of_run.set(column.run[row], (of_run.get(column.run[row]) || 0) + risk[row]);
-    const many = of_run.size;
-    const mean = sum / many;
-    const variance = [...of_run.values()].reduce((all, of_one) => all + (of_one - mean) ** 2, 0) / (many - 1);
-    const reach = (T[many - 2] || Z) * Math.sqrt(variance * many);
-    return [Math.max(0, sum - reach), sum + reach];
+    const ofRun = new Map(runs.map((run) => [run, 0]));
+    for (const row of rows) ofRun.set(column.run[row], (ofRun.get(column.run[row]) || 0) + risk[row]);
+    const many = ofRun.size;
+    const all = [...ofRun.keys()].reduce((total, run) => total + traffic(run), 0);
+    const squares = [...ofRun].reduce((total, [run, value]) => total + (value - (sum / all) * traffic(run)) ** 2, 0);
+    const error = Math.sqrt((squares * many) / (many - 1));
+    const reach = studentsT(many - 1) * error;
+    const differ = [...ofRun.values()].some((value) => Math.abs(value * many - sum) > EQUAL * sum);
+    if (differ && error > EQUAL * sum) return [Math.max(0, sum - reach), sum + reach];
   }
   let [squares, greatest] = [0, 0];
   for (const row of rows) {
     squares += risk[row] ** 2;
     greatest = Math.max(greatest, risk[row]);
   }
-  if (sum <= 0) return [0, 0];
-  const low = (squares / (2 * sum)) * chiSquared((2 * sum ** 2) / squares, -Z);
+  const low = (squares / sum) * gammaQuantile(sum ** 2 / squares, 0.025);
   const [more_squares, more] = [squares + greatest ** 2, sum + greatest];
-  return [low, (more_squares / (2 * more)) * chiSquared((2 * more ** 2) / more_squares, Z)];
+  return [low, (more_squares / more) * gammaQuantile(more ** 2 / more_squares, 0.975)];
 }
 
 /** The interval of a group, computed once. */
-const intervalOf = (group) => (group.interval ||= crashInterval(group.rows));
+const intervalOf = (group) => (group.interval ||= riskInterval(group.rows));
 /** Whether chance may have put a spot behind another: their intervals overlap. */
 const mayOutrank = (spot, other) => intervalOf(spot)[1] >= intervalOf(other)[0];
 
-/** The spots of some rows, the most expected crashes first; kept until the rows change. */
+/** The spots of some rows, the largest risk index first; kept until the rows change. */
 function spotRows(rows) {
   if (spotRows.rows !== rows) {
     const spots = [...grouped(rows, (row) => [spotOf(row)])].map(([place, of_place]) => {
@@ -113,13 +153,14 @@ function enteringByPlace() {
   return entered;
 }
 
-/** Expected crashes per this many entering vehicles. */
+/** The risk index is given per this many entering vehicles. */
 const PER_ENTERING = 1000;
 
-/** The expected crashes per entering vehicles with their interval. */
-function rateWords({ rate, entered, ...group }) {
+/** The risk index per entering vehicles with its interval. */
+function rateWords({ rate, entered, ...spot }) {
   if (rate === null) return "–";
-  const ends = intervalOf(group).map((end) => (PER_ENTERING * end) / entered);
+  const junction = spotName(spot).replace(/^junction /, "");
+  const ends = riskInterval(spot.rows, (run) => data.runs[run].summary.entered[junction] || 0).map((end) => (PER_ENTERING * end) / entered);
   const [middle, low, high] = [rate, ...ends].map((value) => number(value, value < 10 ? 1 : 0));
   return `${middle} (${low} to ${high})`;
 }
@@ -133,10 +174,10 @@ function spotWords(spot) {
   const why = [manoeuvre && `mostly ${OFTEN[manoeuvre] || inWords(manoeuvre)}`, cause && (WHY[cause] || inWords(cause))].filter(Boolean).join("; ");
   const counts = [[2, "critical"], [1, "serious"]].filter(([severity]) => spot.counts[severity]).map(([severity, name]) => `${number(spot.counts[severity])} ${name}`);
   const [low, high] = intervalOf(spot).map((end) => number(end, 1));
-  return `: ${number(spot.risk, 1)} (${low} to ${high}) expected crashes${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
+  return `: risk index ${number(spot.risk, 1)} (${low} to ${high})${counts.length ? `, ${counts.join(", ")}` : ""}${why ? `, ${why}` : ""}.`;
 }
 
-/** A bar as long as the expected crashes, in the shares of the severities. */
+/** A bar as long as the risk index, in the shares of the severities. */
 function shareBar(group, most) {
   const cell = make("td", { className: "share" });
   cell.setAttribute("aria-hidden", "true");
@@ -204,9 +245,9 @@ class SortedTable {
 const textCell = (text) => make("td", { textContent: text });
 const numberCell = (text) => make("td", { className: "number", textContent: text });
 
-/** The columns that all tables have: expected crashes with their interval, counts, and a bar. */
+/** The columns that all tables have: the risk index with its interval, counts, and a bar. */
 const COMMON = [
-  { heading: "Expected crashes", value: (group) => group.risk, cell: (group) => numberCell(number(group.risk, 2)) },
+  { heading: "Risk index", value: (group) => group.risk, cell: (group) => numberCell(number(group.risk, 2)) },
   { heading: "95 % interval", cell: (group) => numberCell(intervalOf(group).map((end) => number(end, 2)).join(" to ")) },
   ...[2, 1, 0].map((severity) => ({ heading: SEVERITIES[severity], severity, value: (group) => group.counts[severity],
     cell: (group) => numberCell(number(group.counts[severity])) })),

@@ -1,9 +1,10 @@
 //! The contents of the tables.
 
 use super::cells::{Cell, Table};
+use super::compared::{measure_differences, planned, rate_differences, transferred};
 use crate::analysis::statistics::{
-    Comparison, Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Ratio,
-    Significance, Statistics, Test, VariantStatistics,
+    Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Ratio, Statistics,
+    VariantStatistics,
 };
 
 /// A measure's name in the table, and its quantiles.
@@ -21,6 +22,7 @@ const MEASURES: [QuantileRow; 4] = [
 /// All tables of the statistics, in reading order.
 pub fn tables(statistics: &Statistics) -> Vec<Table> {
     let mut tables = vec![traffic(statistics), set_aside(statistics), rates(&statistics.groups), ratios(statistics)];
+    tables.extend(statistics.risk_index_per_vehicle_kilometre.map(risk));
     tables.push(quantiles(&statistics.groups));
     tables.push(spots("edges", &statistics.edges));
     tables.push(spots("junctions", &statistics.junctions));
@@ -35,6 +37,8 @@ pub fn tables(statistics: &Statistics) -> Vec<Table> {
     if let Some(comparison) = &statistics.comparison {
         tables.extend([rate_differences(comparison), measure_differences(comparison)]);
     }
+    tables.extend(statistics.plan.as_ref().map(planned));
+    tables.extend(statistics.transferred.as_ref().map(transferred));
     tables.retain(|table| !table.rows.is_empty());
     tables
 }
@@ -154,6 +158,18 @@ fn rates(groups: &[GroupStatistics]) -> Table {
     }
 }
 
+fn risk(rate: Rate) -> Table {
+    Table {
+        title: "risk index",
+        columns: vec!["per", "risk index", "low", "high"],
+        rows: vec![std::iter::once("vehicle-km".into()).chain(with_interval(Some(rate))).collect()],
+        notes: vec![
+            "the sum of crash probabilities: compares plans with the same steps, and is no number of crashes"
+                .to_owned(),
+        ],
+    }
+}
+
 fn quantiles(groups: &[GroupStatistics]) -> Table {
     let names = ["group", "measure", "conflicts", "5 %", "25 %", "50 %", "75 %", "95 %"];
     let rows = groups.iter().flat_map(|group| {
@@ -173,15 +189,15 @@ fn quantiles(groups: &[GroupStatistics]) -> Table {
 }
 
 fn spots(title: &'static str, spots: &[HotSpot]) -> Table {
-    let is_entered = spots.iter().any(|spot| spot.expected_crashes_per_1000_entering.is_some());
+    let is_entered = spots.iter().any(|spot| spot.risk_index_per_1000_entering.is_some());
     let rates: [SpotRate; 4] = [
-        ("expected crashes", |spot| spot.expected_crashes),
-        ("crashes per 1000 entering", |spot| spot.expected_crashes_per_1000_entering),
+        ("risk index", |spot| spot.risk_index),
+        ("risk per 1000 entering", |spot| spot.risk_index_per_1000_entering),
         ("per hour", |spot| spot.per_hour),
         ("per 1000 vehicles", |spot| spot.per_1000_vehicles),
     ];
     let rates =
-        rates.into_iter().filter(|(name, _)| is_entered || *name != "crashes per 1000 entering").collect::<Vec<_>>();
+        rates.into_iter().filter(|(name, _)| is_entered || *name != "risk per 1000 entering").collect::<Vec<_>>();
     let row = |spot: &HotSpot| {
         let counts = [spot.count, spot.serious, spot.critical].map(Cell::Count);
         let rates = rates.iter().flat_map(|(_, rate)| with_interval(rate(spot)));
@@ -269,42 +285,5 @@ fn extremes(extremes: &[Extrapolation]) -> Table {
         ],
         rows: extremes.iter().map(row).collect(),
         notes: refused.collect(),
-    }
-}
-
-fn significance(found: Option<Significance>) -> [Cell; 3] {
-    let test = found.map_or(Cell::None, |found| match found.test {
-        Test::ExactPermutation => "exact permutation".into(),
-        Test::SampledPermutation => "sampled permutation".into(),
-    });
-    [Cell::maybe(found.map(|found| found.p)), Cell::maybe(found.map(|found| found.p_holm)), test]
-}
-
-fn rate_differences(comparison: &Comparison) -> Table {
-    let rows = comparison.rates.iter().map(|row| {
-        let ratio =
-            |get: fn(&crate::analysis::statistics::Ratio) -> Option<f64>| Cell::maybe(row.ratio.as_ref().and_then(get));
-        let values = [row.rate, row.against, row.difference].map(Cell::Number);
-        let ratio = [ratio(|ratio| ratio.value), ratio(|ratio| Some(ratio.low)), ratio(|ratio| ratio.high)];
-        std::iter::once(row.group.into()).chain(values).chain(ratio).chain(significance(row.significance)).collect()
-    });
-    Table {
-        title: "compared rates",
-        columns: vec!["group", "rate", "against", "difference", "ratio", "low", "high", "p", "p (Holm)", "test"],
-        rows: rows.collect(),
-        notes: std::iter::once(format!("rates per {}", comparison.rates_per)).chain(comparison.note.clone()).collect(),
-    }
-}
-
-fn measure_differences(comparison: &Comparison) -> Table {
-    let rows = comparison.measures.iter().map(|row| {
-        let values = [row.median, row.against, row.difference, row.cliffs_delta].map(Cell::maybe);
-        std::iter::once(row.measure.into()).chain(values).chain(significance(row.significance)).collect()
-    });
-    Table {
-        title: "compared medians",
-        columns: vec!["measure", "median", "against", "difference", "Cliff's delta", "p", "p (Holm)", "test"],
-        rows: rows.collect(),
-        notes: Vec::new(),
     }
 }

@@ -1,6 +1,7 @@
 //! Statistics as tables, printed as text, CSV or HTML.
 
 mod cells;
+mod compared;
 mod contents;
 mod csv;
 mod html;
