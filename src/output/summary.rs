@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use super::rank::Rank;
 use crate::detection::detector::{LeftOut, Work};
 use crate::detection::kind::{Kind, Severity};
-use crate::events::Conflict;
+use crate::events::{Artefact, Conflict};
 use crate::util::units::Second;
 
 /// How many conflicts are none of traffic's, by what they are.
@@ -25,11 +25,8 @@ pub struct Summary {
     pub end: Second,
     /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,
-    /// Conflicts by kind and severity; without those that are set aside.
+    /// All logged conflicts, by kind and severity; those that are set aside by why they are.
     pub conflicts: Vec<Count>,
-    /// Logged conflicts that are not traffic's, and so are not counted.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub set_aside: SetAside,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
     /// The sum of all crash probabilities: compares plans with the same steps, and is no number of crashes. Earlier versions
@@ -61,13 +58,16 @@ pub struct Summary {
     pub spent: Vec<(&'static str, f64)>,
 }
 
-/// The number of conflicts of one kind and severity.
+/// The number of conflicts of one kind and severity that count, or that are set aside for one reason.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Count {
     /// The kind.
     pub kind: Kind,
     /// The severity.
     pub severity: Severity,
+    /// Why they are none of traffic's, and so are set aside; none of those that count.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub artefact: Option<Artefact>,
     /// The number of conflicts.
     pub count: u64,
 }
@@ -187,23 +187,20 @@ impl fmt::Display for Skipped {
 impl Summary {
     /// Counts a conflict; one that is none of traffic's only with `counts_artefacts`.
     pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
-        if let Some(artefact) = conflict.artefact.filter(|_| !counts_artefacts) {
-            *self.set_aside.entry(artefact.name().to_owned()).or_default() += 1;
+        let Conflict { kind, severity, .. } = *conflict;
+        let artefact = conflict.artefact.filter(|_| !counts_artefacts);
+        let of = |count: &Count| (count.kind, count.severity, count.artefact);
+        match self.conflicts.binary_search_by_key(&(kind, severity, artefact), of) {
+            Ok(known) => self.conflicts[known].count += 1,
+            Err(place) => self.conflicts.insert(place, Count { kind, severity, artefact, count: 1 }),
+        }
+        if artefact.is_some() {
             return;
         }
         self.collisions += u64::from(conflict.collision);
         self.risk_index += conflict.crash_probability;
         if let Some(of_sumo) = &mut self.collisions_sumo {
             of_sumo.in_conflict += u64::from(conflict.collision_sumo == Some(true));
-        }
-        let known =
-            self.conflicts.iter_mut().find(|known| known.kind == conflict.kind && known.severity == conflict.severity);
-        match known {
-            Some(known) => known.count += 1,
-            None => {
-                self.conflicts.push(Count { kind: conflict.kind, severity: conflict.severity, count: 1 });
-                self.conflicts.sort_by_key(|count| (count.kind, count.severity));
-            }
         }
         if self.worst.as_ref().is_none_or(|worst| worst.rank < conflict.into()) {
             self.worst = Some(WorstConflict::of(conflict, self.logged()));
@@ -212,13 +209,24 @@ impl Summary {
 
     /// The number of conflicts that are logged, with those that are set aside.
     pub fn logged(&self) -> u64 {
-        self.count(None, None) + self.set_aside.values().sum::<u64>()
+        self.conflicts.iter().map(|count| count.count).sum()
     }
 
-    /// The number of conflicts of a kind, of a severity, or of both; of all where neither is given.
+    /// The conflicts that are set aside.
+    pub fn set_aside(&self) -> SetAside {
+        let mut found = SetAside::new();
+        for (artefact, count) in self.conflicts.iter().filter_map(|count| Some((count.artefact?, count.count))) {
+            *found.entry(artefact.name().to_owned()).or_default() += count;
+        }
+        found
+    }
+
+    /// The number of conflicts that count, of a kind, of a severity, or of both; of all where neither is given.
     pub fn count(&self, kind: Option<Kind>, severity: Option<Severity>) -> u64 {
         let wanted = |count: &&Count| {
-            kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)
+            count.artefact.is_none()
+                && kind.is_none_or(|kind| kind == count.kind)
+                && severity.is_none_or(|severity| severity == count.severity)
         };
         self.conflicts.iter().filter(wanted).map(|count| count.count).sum()
     }
@@ -227,7 +235,7 @@ impl Summary {
 impl Summary {
     /// How many conflicts are set aside, and why; none where none is.
     pub fn set_aside_in_words(&self) -> Option<String> {
-        in_words(&self.set_aside).map(|words| format!("{words} (docs/artefacts.md)"))
+        in_words(&self.set_aside()).map(|words| format!("{words} (docs/artefacts.md)"))
     }
 }
 

@@ -134,6 +134,6 @@ fn a_person_on_a_walking_area_is_not_in_the_way() {
         stepped.unwrap();
         let summary = run.finish().unwrap();
         assert_eq!([summary.logged(), summary.collisions], [1, u64::from(!is_on)]);
-        assert_eq!(summary.set_aside.get("drawn_overlap").copied(), is_on.then_some(1));
+        assert_eq!(summary.set_aside().get("drawn_overlap").copied(), is_on.then_some(1));
     }
 }

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, counted, rows, wait_for_rows
+from conftest import begin, closecall, rows, wait_for_rows
 from recordings import record, replay, same
 
 Copy = Callable[[str], Path]
@@ -253,7 +253,9 @@ def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     assert re.fullmatch(r"closecall: interrupted at [0-9.]+ s; what was found so far is in the log\n", message), message
     found = json.loads((tmp_path / "out" / "run.json").read_text())
     assert found["complete"] is False and found["summary"]["steps"] < 400
-    assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(counted(tmp_path / "out"))
+    assert sum(count["count"] for count in found["summary"]["conflicts"]) == len(
+        rows(tmp_path / "out" / "conflicts.csv")
+    )
 
 
 PARKS = """<routes><vType id="d" sigma="0" speedDev="0"/>

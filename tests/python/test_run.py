@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, counted, python, rows, wait_for_rows
+from conftest import begin, closecall, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,nearness,consequence,artefact,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
@@ -57,7 +57,7 @@ def test_the_log_has_the_promised_columns_and_counts(scenario: Copy, tmp_path: P
         "rear_end.net.xml",
         "rear_end.rou.xml",
     }
-    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(counted(out))
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
     steps = rows(out / "series.csv")
     assert all(float(row["margin"]) < 0 for row in steps)
     conflict = rows(out / "conflicts.csv")[0]
@@ -178,7 +178,7 @@ def test_ctrl_c_and_sigterm_end_a_run_cleanly(asked: signal.Signals, scenario: C
     assert "Traceback" not in message
     record = json.loads((out / "run.json").read_text())
     assert record["complete"] is False
-    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(counted(out))
+    assert sum(count["count"] for count in record["summary"]["conflicts"]) == len(rows(out / "conflicts.csv"))
 
 
 def test_a_seed_chosen_by_sumo_is_recorded_as_unknown(scenario: Copy, tmp_path: Path) -> None:

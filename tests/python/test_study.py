@@ -94,9 +94,7 @@ def test_its_figures_are_those_of_the_logs(done: Path, runs: dict[str, Any]) -> 
         assert float(found["cpu_seconds"]) > 0 and float(found["seconds"]) > 0
         assert found["own"] == ("true" if value == "0.2" else "false")
         crashes = row(done, "step-length", value, "risk_index")
-        assert float(crashes["mean"]) == pytest.approx(
-            statistics.mean(run["summary"]["risk_index"] for run in of)
-        )
+        assert float(crashes["mean"]) == pytest.approx(statistics.mean(run["summary"]["risk_index"] for run in of))
         ttc = [[row["ttc"] for row in run["rows"] if row["ttc"] is not None] for run in of]
         median = row(done, "step-length", value, "ttc_q50")
         assert float(median["mean"]) == pytest.approx(statistics.mean(map(statistics.median, ttc)))

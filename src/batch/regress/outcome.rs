@@ -13,7 +13,7 @@ use crate::analysis::logged::{LoggedRun, SUMMARY};
 use crate::detection::kind::{Kind, Severity};
 use crate::output::log;
 use crate::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
-use crate::output::summary::{Count, Exposure, SetAside};
+use crate::output::summary::{Count, Exposure};
 use crate::util::units::Second;
 use crate::util::{input_file, output_file};
 use crate::{Error, Result};
@@ -57,11 +57,8 @@ pub struct SeedSummary {
     pub seed: u32,
     /// Steps that were checked.
     pub steps: u64,
-    /// Conflicts by kind and severity; without those that are set aside.
+    /// Conflicts by kind and severity; those that are set aside by why they are.
     pub conflicts: Vec<Count>,
-    /// The conflicts that are none of traffic's, and are not counted.
-    #[serde(default, skip_serializing_if = "SetAside::is_empty")]
-    pub set_aside: SetAside,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
     /// The amount of traffic.
@@ -121,7 +118,7 @@ impl RunsSummary {
 impl SeedSummary {
     /// The number of conflicts that count.
     pub fn counted(&self) -> u64 {
-        self.conflicts.iter().map(|count| count.count).sum()
+        self.conflicts.iter().filter(|count| count.artefact.is_none()).map(|count| count.count).sum()
     }
 }
 
@@ -140,7 +137,6 @@ impl Outcome {
                 seed: *seed,
                 steps: record.summary.steps,
                 conflicts: record.summary.conflicts,
-                set_aside: record.summary.set_aside,
                 collisions: record.summary.collisions,
                 exposure: rounded(record.summary.exposure),
             };

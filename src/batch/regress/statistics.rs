@@ -132,7 +132,9 @@ impl RunMeasure {
     fn of(self, seed: &SeedSummary, rows: &[&SeedConflict]) -> Option<f64> {
         let count = |kind: Option<Kind>, severity: Option<Severity>| {
             let wanted = seed.conflicts.iter().filter(|count| {
-                kind.is_none_or(|kind| kind == count.kind) && severity.is_none_or(|severity| severity == count.severity)
+                count.artefact.is_none()
+                    && kind.is_none_or(|kind| kind == count.kind)
+                    && severity.is_none_or(|severity| severity == count.severity)
             });
             wanted.map(|count| count.count).sum::<u64>() as f64
         };

@@ -20,6 +20,8 @@ const PARALLEL: Radian = 0.0873;
 const OFTEN: Metre = 0.5;
 /// … and at most this often in a step: that of 100 m. One that went further has jumped.
 const MOST_OFTEN: f64 = 200.0;
+/// How often the distance between two looks is halved to find where it joins that path: to 2 cm.
+const HALVES: u32 = 5;
 
 /// A crossing of the first's corridor.
 pub(super) struct Passage {
@@ -91,6 +93,16 @@ impl<'a> Track<'a> {
     /// When the record of the first ends.
     pub fn ends(&self) -> Second {
         self.course.poses.last().map_or(Second::NEG_INFINITY, |last| last.time)
+    }
+
+    /// When a step comes onto one path with the first, between a part where it is not and one where it is.
+    fn joined_at(&self, step: &Step, [mut off, mut on]: [f64; 2]) -> f64 {
+        for _ in 0..HALVES {
+            let middle = (off + on) / 2.0;
+            let side = if self.beside(&step.pose(middle), step.to).is_on { &mut on } else { &mut off };
+            *side = middle;
+        }
+        on
     }
 
     /// Where a pose is beside the track as far as it was driven before a time.
@@ -197,14 +209,16 @@ impl Crossing {
     fn joins(&mut self, step: &Step, until: f64, track: &Track) -> Option<Second> {
         let parts = (step.way() / OFTEN).ceil().clamp(1.0, MOST_OFTEN);
         let begin = step.part_at(self.enters);
+        let mut off = begin;
         for part in (1..=parts as u32).map(|part| begin + (until - begin) * (f64::from(part) / parts)) {
             let beside = track.beside(&step.pose(part), step.to);
             self.widest = self.widest.max(beside.angle);
             if !beside.is_on {
                 self.on_since = None;
+                off = part;
                 continue;
             }
-            let since = *self.on_since.get_or_insert(step.time(part));
+            let since = *self.on_since.get_or_insert_with(|| step.time(track.joined_at(step, [off, part])));
             if beside.angle < PARALLEL {
                 return Some(since);
             }

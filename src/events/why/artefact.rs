@@ -4,7 +4,7 @@
 //! rectangles may overlap where no driver had to notice anything. What appears, stops or jumps within one step was not driven
 //! either. docs/artefacts.md has the rules.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::manoeuvre::changes_lanes;
 use super::pair::{Pair, Party, STANDS};
@@ -30,7 +30,7 @@ const SWAYS: Radian = 1.0;
 const ALIKE: MetrePerSecond = 1.0;
 
 /// Why a conflict is none of traffic's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
 pub enum Artefact {
