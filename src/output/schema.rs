@@ -264,7 +264,7 @@ columns! { |conflict, context|
     [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
     /// steer threat number: `a_lat_req` over the ego's braking deceleration
     [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
-    /// time to accident: the TTC when the first of both brakes with at least 1.3 m/s²
+    /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none then
     [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
     /// speed of the one that brakes then, before it does
     [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);
