@@ -60,7 +60,11 @@ impl PairInStep<'_> {
         let has_onset = [ChosenMeasure::Ta, ChosenMeasure::TaLevel].into_iter().any(|measure| measures.has(measure));
         ChosenMeasure::ALL.map(|measure| {
             let is_needed = has_onset && measure == ChosenMeasure::ConflictingSpeed;
-            if measures.has(measure) || is_needed { self.value(measure, advantage).filter(|value| value.is_finite()) } else { None }
+            if measures.has(measure) || is_needed {
+                self.value(measure, advantage).filter(|value| value.is_finite())
+            } else {
+                None
+            }
         })
     }
 
