@@ -1,6 +1,7 @@
 //! Errors: each names the file, the place in it and what is wrong there.
 
 use std::path::{Path, PathBuf};
+use crate::util::decimal::Written;
 
 /// The result of the library's functions.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -39,7 +40,7 @@ pub enum Error {
     #[error("{0}")]
     Lost(String),
     /// A recording ends early; the steps before that were checked.
-    #[error("{}: cut short after time {time} s: {message}", path.display())]
+    #[error("{}: cut short after time {} s: {message}", path.display(), Written(*time))]
     CutShort {
         /// The file.
         path: PathBuf,
@@ -55,7 +56,7 @@ pub enum Error {
     #[error("{0}")]
     Exceeded(String),
     /// A step that cannot be checked; the steps before it were.
-    #[error("at {time} s: {message}")]
+    #[error("at {} s: {message}", Written(*time))]
     Step {
         /// The simulated time.
         time: f64,
@@ -74,7 +75,7 @@ pub enum Error {
         message: String,
     },
     /// SUMO failed while it ran.
-    #[error("SUMO failed at {time} s: {message}")]
+    #[error("SUMO failed at {} s: {message}", Written(*time))]
     Failed {
         /// The simulated time that was reached.
         time: f64,
@@ -82,7 +83,7 @@ pub enum Error {
         message: String,
     },
     /// The user ended the run.
-    #[error("interrupted at {time} s; what was found so far is in the log")]
+    #[error("interrupted at {} s; what was found so far is in the log", Written(*time))]
     Interrupted {
         /// The simulated time that was reached.
         time: f64,
