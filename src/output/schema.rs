@@ -160,8 +160,8 @@ columns! { |conflict, context|
     [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
     /// width of the ego
     [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
-    /// where the ego's front bumper would go until it has braked to a stand, `x y x y …`, to the centimetre; empty for a
-    /// road user that stands
+    /// where the ego's front bumper would go until it has braked to a stand, and ε further (the reserve that is searched
+    /// too), `x y x y …`, to the centimetre; empty for a road user that stands
     [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
     /// the foe's front bumper; a corner of an obstacle
     [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
