@@ -5,6 +5,11 @@ use std::path::{Path, PathBuf};
 /// The result of the library's functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
+/// A time in s as people write it: sums of steps differ from it by rounding.
+fn in_microseconds(time: f64) -> f64 {
+    (time * 1e6).round() / 1e6
+}
+
 /// An error of closecall. Its `Display` is one line for standard error.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -39,7 +44,7 @@ pub enum Error {
     #[error("{0}")]
     Lost(String),
     /// A recording ends early; the steps before that were checked.
-    #[error("{}: cut short after time {time} s: {message}", path.display())]
+    #[error("{}: cut short after time {} s: {message}", path.display(), in_microseconds(*time))]
     CutShort {
         /// The file.
         path: PathBuf,
@@ -55,7 +60,7 @@ pub enum Error {
     #[error("{0}")]
     Exceeded(String),
     /// A step that cannot be checked; the steps before it were.
-    #[error("at {time} s: {message}")]
+    #[error("at {} s: {message}", in_microseconds(*time))]
     Step {
         /// The simulated time.
         time: f64,
@@ -74,7 +79,7 @@ pub enum Error {
         message: String,
     },
     /// SUMO failed while it ran.
-    #[error("SUMO failed at {time} s: {message}")]
+    #[error("SUMO failed at {} s: {message}", in_microseconds(*time))]
     Failed {
         /// The simulated time that was reached.
         time: f64,
@@ -82,7 +87,7 @@ pub enum Error {
         message: String,
     },
     /// The user ended the run.
-    #[error("interrupted at {time} s; what was found so far is in the log")]
+    #[error("interrupted at {} s; what was found so far is in the log", in_microseconds(*time))]
     Interrupted {
         /// The simulated time that was reached.
         time: f64,

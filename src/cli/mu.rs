@@ -8,6 +8,7 @@ use crate::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use crate::detection::kind::Kind;
 use crate::options::{BUILD_UP, EPSILON, RESPONSE, angle, deceleration, duration, reserve, speed};
 use crate::traffic::sumo_type::SumoType;
+use crate::util::decimal::Written;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// Two braking road users.
@@ -63,9 +64,11 @@ pub fn run(arguments: &MuArgs) -> Result<()> {
         object.extend(found.map(|(name, mu)| (name.replace('-', "_"), mu.into())));
         say(format_args!("{}\n", serde_json::Value::Object(object)))?;
     } else {
-        say(format_args!("sigma {sigma}, stopping distances {} m and {} m\n", stops[0], stops[1]))?;
+        let [own, other] = [(ego.speed, stops[0]), (foe.speed, stops[1])]
+            .map(|(speed, stop)| format!("{} m/s stops within {} m", Written(speed), Written(stop)));
+        say(format_args!("sigma {}; the ego at {own}, the foe at {other}\n", Written(sigma)))?;
         for (name, mu) in found {
-            say(format_args!("{name:<8} {mu} m\n"))?;
+            say(format_args!("{name:<8} {} m\n", Written(mu)))?;
         }
     }
     Ok(())

@@ -15,7 +15,7 @@ use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
 use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::profile::{Category, Profile};
-use crate::util::units::{Metre, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
 
 /// One road user of a pair in a step.
 #[derive(Clone, Copy)]
@@ -56,8 +56,15 @@ impl PairInStep<'_> {
     pub fn values(&self, measures: Measures) -> ChosenValues {
         let is_ahead = measures.has(ChosenMeasure::Tadv) || measures.has(ChosenMeasure::T2);
         let advantage = if is_ahead { self.advantage() } else { None };
+        // It tells an event in which step braking begins.
+        let has_onset = [ChosenMeasure::Ta, ChosenMeasure::TaLevel].into_iter().any(|measure| measures.has(measure));
         ChosenMeasure::ALL.map(|measure| {
-            if measures.has(measure) { self.value(measure, advantage).filter(|value| value.is_finite()) } else { None }
+            let is_needed = has_onset && measure == ChosenMeasure::ConflictingSpeed;
+            if measures.has(measure) || is_needed {
+                self.value(measure, advantage).filter(|value| value.is_finite())
+            } else {
+                None
+            }
         })
     }
 
@@ -86,9 +93,11 @@ impl PairInStep<'_> {
             ChosenMeasure::ALatReq => self.required_steering(),
             ChosenMeasure::Btn => self.required_braking().map(|needed| needed / ego.of.brakes.deceleration),
             ChosenMeasure::Stn => self.required_steering().map(|needed| needed / ego.of.brakes.deceleration),
-            ChosenMeasure::Ta => self.evasion().map(|(ta, _)| ta),
-            ChosenMeasure::ConflictingSpeed => self.evasion().map(|(_, speed)| speed),
-            ChosenMeasure::TaLevel => self.evasion().map(|(ta, speed)| accident::level(ta, speed)),
+            ChosenMeasure::Ta => self.conflicting_speed().and(self.time_to_accident()),
+            ChosenMeasure::ConflictingSpeed => self.conflicting_speed(),
+            ChosenMeasure::TaLevel => {
+                self.conflicting_speed().zip(self.time_to_accident()).map(|(speed, ta)| accident::level(ta, speed))
+            }
             ChosenMeasure::MaxS => Some(speeds[0].max(speeds[1])),
             ChosenMeasure::DeltaS => self.ttc().map(|_| delta_s(&ego.moving, &foe.moving)),
             ChosenMeasure::Dr | ChosenMeasure::MaxD => Some(ego.acceleration),
@@ -160,16 +169,20 @@ impl PairInStep<'_> {
 
     fn required_steering(&self) -> Option<MetrePerSecondSquared> {
         let (ego, foe) = (self.ego.course?, self.foe.course?);
-        let ttc = self.ttc().filter(|ttc| *ttc > 0.0)?;
+        let ttc = self.time_to_accident()?;
         self.in_plane().filter(|_| self.found.kind != Kind::Side)?;
         Some(threat::aside(&ego.at(ttc), &foe.at(ttc), ttc))
     }
 
-    /// TA and conflicting speed, if one evades.
-    fn evasion(&self) -> Option<(Second, f64)> {
+    /// The TTC, if they do not touch yet.
+    fn time_to_accident(&self) -> Option<Second> {
+        self.ttc().filter(|ttc| *ttc > 0.0)
+    }
+
+    /// The conflicting speed, if one evades.
+    fn conflicting_speed(&self) -> Option<MetrePerSecond> {
         let Self { ego, foe, .. } = self;
         let speeds = [ego.moving.speed, foe.moving.speed];
-        let speed = conflicting_speed(speeds, [ego.acceleration, foe.acceleration], self.step)?;
-        Some((self.ttc().filter(|ttc| *ttc > 0.0)?, speed))
+        conflicting_speed(speeds, [ego.acceleration, foe.acceleration], self.step)
     }
 }

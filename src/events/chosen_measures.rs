@@ -14,8 +14,8 @@ enum Over {
     Worst,
     /// That of the step with the smallest TTC.
     LeastTtc,
-    /// That of the first step that has one.
-    First,
+    /// That of the step in which braking begins: the first with a conflicting speed.
+    Onset,
     /// The first below 0, or else the smallest.
     FirstBelowZero,
     /// Their integral over time.
@@ -44,7 +44,7 @@ fn over(measure: ChosenMeasure) -> Over {
         | ChosenMeasure::Ei => Over::Most,
         ChosenMeasure::RssDistance | ChosenMeasure::RssLateralDistance => Over::Worst,
         ChosenMeasure::DeltaS => Over::LeastTtc,
-        ChosenMeasure::Ta | ChosenMeasure::ConflictingSpeed | ChosenMeasure::TaLevel => Over::First,
+        ChosenMeasure::Ta | ChosenMeasure::ConflictingSpeed | ChosenMeasure::TaLevel => Over::Onset,
         ChosenMeasure::Dr => Over::FirstBelowZero,
         ChosenMeasure::RssViolation | ChosenMeasure::Tet | ChosenMeasure::Tit => Over::Integral,
         ChosenMeasure::Cpi => Over::Mean,
@@ -80,6 +80,8 @@ impl ChosenMeasures {
 
     /// Adds a step, which may be the one with the smallest margin so far.
     pub fn take(&mut self, step: &Step, is_worst: bool) {
+        let [known_speed, speed] = [&self.values, step.values].map(|of| of[ChosenMeasure::ConflictingSpeed as usize]);
+        let begins_to_brake = known_speed.is_none() && speed.is_some();
         let has_least_ttc = step.ttc.is_some_and(|ttc| ttc < self.ttc);
         self.ttc = step.ttc.map_or(self.ttc, |ttc| ttc.min(self.ttc));
         self.lasted += step.lasted;
@@ -87,11 +89,12 @@ impl ChosenMeasures {
             *known = match (over(measure), *known, *now) {
                 (Over::Worst, _, now) if is_worst => now,
                 (Over::LeastTtc, _, now) if has_least_ttc => now,
+                (Over::Onset, _, now) if begins_to_brake => now,
                 (Over::Integral | Over::Mean, known, Some(now)) => Some(known.unwrap_or(0.0) + now * step.lasted),
                 (Over::Least, Some(known), Some(now)) => Some(known.min(now)),
                 (Over::FirstBelowZero, Some(known), Some(now)) if known >= 0.0 => Some(known.min(now)),
                 (Over::Most, Some(known), Some(now)) => Some(known.max(now)),
-                (Over::Least | Over::Most | Over::First | Over::FirstBelowZero, None, now) => now,
+                (Over::Least | Over::Most | Over::FirstBelowZero, None, now) => now,
                 (_, known, _) => known,
             };
         }
@@ -112,7 +115,9 @@ impl ChosenMeasures {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::measures::ChosenMeasure::{Cpi, DeltaS, Dr, MaxD, RssDistance, RssViolation, Ta, Tadv, Tet};
+    use crate::options::measures::ChosenMeasure::{
+        ConflictingSpeed, Cpi, DeltaS, Dr, MaxD, RssDistance, RssViolation, Ta, Tadv, Tet,
+    };
 
     /// A measure over steps of 0.1 s, the first of them the first of the run; each has a TTC and a margin.
     fn over_steps(measure: ChosenMeasure, steps: &[(Option<f64>, f64)]) -> Option<f64> {
@@ -139,13 +144,33 @@ mod tests {
         let found = |measure| over_steps(measure, &steps);
         assert_eq!(found(Tadv), Some(1.0));
         assert_eq!(found(RssDistance), Some(1.0));
-        assert_eq!(found(Ta), Some(2.0));
         // The TTCs are 5, 3, 1 and 6 s.
         assert_eq!(found(DeltaS), Some(1.0));
         let close = |measure, expected: f64| assert!((found(measure).unwrap() - expected).abs() < 1e-12);
         close(Tet, 0.5);
         close(Cpi, 0.5 / 0.3);
         assert_eq!(over_steps(Tadv, &[(None, -1.0)]), None);
+    }
+
+    #[test]
+    fn the_time_to_accident_is_that_of_the_step_in_which_braking_begins() {
+        let ta = |steps: &[(Option<f64>, Option<f64>)]| {
+            let mut chosen: Option<ChosenMeasures> = None;
+            for (ta, speed) in steps {
+                let mut values = [None; ChosenMeasure::ALL.len()];
+                (values[Ta as usize], values[ConflictingSpeed as usize]) = (*ta, *speed);
+                let step = Step { values: &values, ttc: None, lasted: 0.1 };
+                match &mut chosen {
+                    Some(chosen) => chosen.take(&step, false),
+                    None => chosen = Some(ChosenMeasures::of(&step)),
+                }
+            }
+            [Ta, ConflictingSpeed].map(|measure| chosen.as_ref().unwrap().values()[measure as usize])
+        };
+        let braking = [(Some(2.0), Some(9.0)), (Some(1.0), Some(8.0))];
+        assert_eq!(ta(&[&[(None, None)], &braking[..]].concat()), [Some(2.0), Some(9.0)]);
+        // Not on a collision course when the braking began.
+        assert_eq!(ta(&[&[(None, None), (None, Some(10.0))], &braking[..]].concat()), [None, Some(10.0)]);
     }
 
     #[test]

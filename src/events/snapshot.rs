@@ -21,7 +21,7 @@ pub struct Snapshot {
     pub length: Metre,
     /// Width in m; 0 for an obstacle.
     pub width: Metre,
-    /// The path of its front bumper from here until it has braked to a stand; empty where it stands.
+    /// The path of its front bumper from here until it has braked to a stand, and ε further; empty where it stands.
     pub path: Arc<[Point]>,
 }
 

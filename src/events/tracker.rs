@@ -6,7 +6,7 @@ use super::alarm::{Alarm, PetSoFar};
 use super::event::Conflict;
 use super::extremes::Observation;
 use super::past::Past;
-use super::under_way::{Event, Keeps, Pair, Pets, Rules, SevereEvent};
+use super::under_way::{Event, Keeps, Pair, Pets, Rules, SevereEvent, in_order};
 use super::why::Surroundings;
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Severity;
@@ -142,7 +142,7 @@ impl Tracker {
 
     /// The PET of an open or waiting conflict, or its lower bound so far; `ahead` has the poses that a road user will go through.
     pub fn pet_so_far(&self, alarm: &Alarm, ahead: impl Fn(UserIndex) -> Vec<Pose>) -> Option<PetSoFar> {
-        let pair = [alarm.ego.min(alarm.foe), alarm.ego.max(alarm.foe)];
+        let pair = in_order([alarm.ego, alarm.foe]);
         let event = self.events.iter().chain(&self.waiting).find(|event| event.pair() == pair)?;
         event.pet_so_far(self.last_time, ahead, self.pets)
     }
@@ -165,7 +165,7 @@ impl Tracker {
         let pair = pair_of(seen.found);
         match self.events.binary_search_by_key(&pair, |event| event.pair()) {
             Ok(place) => self.events[place].take(seen, self.keeps),
-            Err(place) => self.events.insert(place, Box::new(Event::of(pair, seen, self.keeps))),
+            Err(place) => self.events.insert(place, Box::new(Event::of(seen, self.keeps))),
         }
     }
 
@@ -211,7 +211,7 @@ impl Tracker {
 
 /// The two of an encounter, in their order.
 fn pair_of(found: &Encounter) -> Pair {
-    [found.ego.min(found.foe), found.ego.max(found.foe)]
+    in_order([found.ego, found.foe])
 }
 
 fn sort(conflicts: &mut [Conflict]) {

@@ -27,13 +27,14 @@ use crate::util::units::{Metre, Radian, SAME_MOMENT, Second};
 /// How long the condition must not be met before an event closes, in s (docs/log.md).
 pub const CLOSES_AFTER: Second = 1.0;
 
-/// Two road users, in their order.
+/// Two road users, in the order of their indices.
 pub(super) type Pair = [UserIndex; 2];
 
 /// An event under way, or closed and waiting for its PET.
 #[derive(Debug)]
 pub(super) struct Event {
-    pair: Pair,
+    /// The ego and the foe of the first step: the order of their indices decides nothing.
+    pair: [UserIndex; 2],
     /// None while the pair is only followed for its PET.
     pub alarm: Option<Alarm>,
     /// All steps that meet the condition if the PET is short enough.
@@ -102,7 +103,8 @@ pub(super) struct Keeps {
 
 impl Event {
     /// That of a first step.
-    pub fn of(pair: Pair, seen: &Observation, keeps: Keeps) -> Self {
+    pub fn of(seen: &Observation, keeps: Keeps) -> Self {
+        let pair = [seen.found.ego, seen.found.foe];
         let followed = Span::of(seen, keeps.steps);
         let last = Seen::of(seen.frame, &pair).unwrap_or_default();
         let met = keeps.met.then(Vec::new);
@@ -142,7 +144,7 @@ impl Event {
 
     /// The two road users.
     pub fn pair(&self) -> Pair {
-        self.pair
+        in_order(self.pair)
     }
 
     /// Its parts that are at least this severe, and count.
@@ -153,7 +155,7 @@ impl Event {
             assessment.severity >= least && (artefact.is_none() || rules.counts_artefacts)
         });
         let worst = severe.map(|extremes| (extremes.worst.time, Point::new(extremes.worst.x, extremes.worst.y)));
-        SevereEvent { pair: self.pair, worst: worst.collect() }
+        SevereEvent { pair: self.pair(), worst: worst.collect() }
     }
 
     /// The conflicts that it is, by the PET so far.
@@ -298,6 +300,11 @@ impl Event {
         let is_under_way = found.is_some_and(|pet| !pet.is_final) && since < wait + pets.longest;
         pet.is_some() || has_ended || (since >= wait && !is_under_way)
     }
+}
+
+/// Two road users in the order of their indices.
+pub(super) fn in_order([one, other]: [UserIndex; 2]) -> Pair {
+    [one.min(other), one.max(other)]
 }
 
 /// The contact of the two between two steps as an encounter of the second.

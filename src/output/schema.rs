@@ -160,8 +160,8 @@ columns! { |conflict, context|
     [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
     /// width of the ego
     [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
-    /// where the ego's front bumper would go until it has braked to a stand, `x y x y …`, to the centimetre; empty for a
-    /// road user that stands
+    /// where the ego's front bumper would go until it has braked to a stand, and ε further (the reserve that is searched
+    /// too), `x y x y …`, to the centimetre; empty for a road user that stands
     [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
     /// the foe's front bumper; a corner of an obstacle
     [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
@@ -264,7 +264,7 @@ columns! { |conflict, context|
     [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
     /// steer threat number: `a_lat_req` over the ego's braking deceleration
     [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
-    /// time to accident: the TTC when the first of both brakes with at least 1.3 m/s²
+    /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none then
     [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
     /// speed of the one that brakes then, before it does
     [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);

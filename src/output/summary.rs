@@ -10,6 +10,7 @@ use super::rank::Rank;
 use crate::detection::detector::{LeftOut, Work};
 use crate::detection::kind::{Kind, Severity};
 use crate::events::{Artefact, Conflict};
+use crate::util::decimal::Written;
 use crate::util::units::Second;
 
 /// How many conflicts are none of traffic's, by what they are.
@@ -133,7 +134,7 @@ impl fmt::Display for WorstConflict {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let Self { id, ego, foe, kind, severity, collision, time, .. } = self;
         let what = if *collision { "collision" } else { "conflict" };
-        let (severity, kind, time) = (severity.name(), kind.name(), rounded(*time));
+        let (severity, kind, time) = (severity.name(), kind.name(), Written(*time));
         write!(f, "no. {id}, a {severity} {kind} {what} of {ego} (ego) and {foe} (foe) at {time} s")
     }
 }
@@ -282,16 +283,11 @@ impl fmt::Display for Summary {
             f,
             "{vehicles} vehicles, {persons} persons, {vehicle_kilometres:.1} vehicle-km, {} steps from {} to {} s",
             self.steps,
-            rounded(self.begin),
-            rounded(self.end)
+            Written(self.begin),
+            Written(self.end)
         )?;
         self.remarks.iter().try_for_each(|remark| writeln!(f, "{remark}"))
     }
-}
-
-/// A time without the digits that adding up steps leaves behind.
-fn rounded(time: Second) -> f64 {
-    (time * 1e6).round() / 1e6
 }
 
 #[cfg(test)]

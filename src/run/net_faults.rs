@@ -50,12 +50,10 @@ impl NetFaults {
         let known = self.pairs.entry(lanes).or_default();
         known.conflicts += 1;
         let Conflict { ego, foe, ego_speed, foe_speed, overlap, x, y, .. } = conflict;
-        let mut who = [(ego, ego_speed), (foe, foe_speed)];
-        who.sort_unstable_by_key(|(id, _)| *id);
-        let stands = who.iter().find(|(_, speed)| **speed < STANDS);
-        known
-            .times
-            .insert(stands.map_or_else(|| who.map(|(id, _)| id.clone()), |(id, _)| [(*id).clone(), EcoString::new()]));
+        // Of two that stand it is the foe: the ego came to it.
+        let stands = [(foe, foe_speed), (ego, ego_speed)].into_iter().find(|(_, speed)| **speed < STANDS);
+        let both = || [ego.min(foe).clone(), ego.max(foe).clone()];
+        known.times.insert(stands.map_or_else(both, |(id, _)| [id.clone(), EcoString::new()]));
         known.road_users.extend([ego.clone(), foe.clone()]);
         if *overlap > known.overlap {
             (known.overlap, known.deepest) = (*overlap, (number, [*x, *y]));

@@ -7,6 +7,7 @@ use crate::options::ClipLevel;
 use crate::options::measures::Measures;
 use crate::output::formats::Outputs;
 use crate::output::log::Log;
+use crate::util::decimal::Written;
 use crate::util::units::Second;
 
 /// Steps longer than this are worth a remark, in s: on our nets the rate of conflicts at 0.2 s is off by 2 to 24 %, at 0.1 s
@@ -19,8 +20,9 @@ impl Run {
         let net = self.net.iter().flat_map(|net| net.remarks(self.detector.overlaps(), self.contact_tolerance));
         let steps = step_length.filter(|length| *length > LONG_STEP).map(|length| {
             format!(
-                "steps of {length} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
-                 step length; 0.1 s is better (SUMO's --step-length), and closecall study SCENARIO measures by how much"
+                "steps of {} s are long: what happens within a step is not seen, so that counts and TTC depend on the \
+                 step length; 0.1 s is better (SUMO's --step-length), and closecall study SCENARIO measures by how much",
+                Written(length)
             )
         });
         net.chain(steps).collect()

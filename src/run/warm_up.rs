@@ -2,6 +2,7 @@
 
 use crate::output::summary::Exposure;
 use crate::traffic::profile::Category;
+use crate::util::decimal::Written;
 use crate::util::units::{SAME_MOMENT, Second};
 
 /// How far a run is in its warm-up.
@@ -75,6 +76,8 @@ impl WarmUp {
     /// What to tell at the end of a run that never left it.
     pub fn remark(&self) -> Option<String> {
         let lasted = !self.is_over && self.has_begun();
-        lasted.then(|| format!("warmup: the run ended before {} s had passed, so that nothing was counted", self.lasts))
+        lasted.then(|| {
+            format!("warmup: the run ended before {} s had passed, so that nothing was counted", Written(self.lasts))
+        })
     }
 }

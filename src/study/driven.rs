@@ -206,7 +206,7 @@ fn judge(a: &DrivenUser, b: &DrivenUser, options: &Options) -> Truth {
         let collide = side::overlap_now(&first, &second) > options.contact_tolerance;
         return if collide { Truth::Conflict(0.0) } else { Truth::Unknown };
     }
-    let Some(approach) = narrow_phase::meet(&first, &second, &|| true) else { return Truth::None };
+    let Some(approach) = narrow_phase::meet(&first, &second) else { return Truth::None };
     let [ego, foe] = approach.ego.then_foe([a, b]);
     let point = approach.conflict_point;
     let sigma = point.angle().cos();

@@ -91,9 +91,9 @@ fn meet(method: Method, bisection: &mut Bisection, pair: &[Circling; 2]) -> Opti
     let (first, second) = (from_ref(&first), from_ref(&second));
     bisection.clear();
     if method.after_coarse {
-        side::meet(bisection, first, second, &|| true)?;
+        side::meet(bisection, first, second)?;
     }
-    let found = side::refine(bisection, method.sweep, first, second, &|| true)?;
+    let found = side::refine(bisection, method.sweep, first, second)?;
     Some((found.ego.then_foe([true, false])[0], found.conflict_point.ego_distance))
 }
 

@@ -3,7 +3,7 @@
 //! The crates for this (ryu, dtoa and what builds on them) write as many digits as a number needs; rounding those once
 //! more is not rounding the number.
 
-use std::fmt::Write;
+use std::fmt::{self, Write};
 
 /// Powers of ten, by the number of decimals.
 const TENS: [f64; 7] = [1.0, 10.0, 100.0, 1e3, 1e4, 1e5, 1e6];
@@ -57,6 +57,16 @@ pub fn shortest(value: f64, text: &mut String) -> &str {
     if text == "-0" { "0" } else { text }
 }
 
+/// A number in a sentence, as people write it: [`shortest`].
+#[derive(Clone, Copy, Debug)]
+pub struct Written(pub f64);
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(shortest(self.0, &mut String::new()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use crate::util::decimal::*;
@@ -99,5 +109,11 @@ mod tests {
             [text(1.0), text(0.1 + 0.2), text(-1e-9), text(-12.25), text(100.0)],
             ["1", "0.3", "0", "-12.25", "100"]
         );
+    }
+
+    #[test]
+    fn a_time_that_adds_up_steps_is_written_without_their_rounding() {
+        assert_eq!(Written(109.699_999_999_999_99).to_string(), "109.7");
+        assert_eq!([Written(1e300).to_string().len(), Written(-0.25).to_string().len()], [301, 5]);
     }
 }

@@ -92,7 +92,7 @@ fn a_conflict_with_the_tail_of_a_tram_is_where_its_tail_is() {
     assert!((found.gap - 6.0).abs() < 0.3, "{found:?}");
     let across = State { x: 104.0, y: 1.0, z: 0.0, heading: -std::f64::consts::FRAC_PI_2, speed: 6.0 };
     let [found] = meet(&way, &tram, &[(140.0, 8.0, across)], &Options::default())[..] else { panic!() };
-    assert!(found.collision && found.ego.0 == 0, "{found:?}");
+    assert!(found.collision && found.ego.0 == 1, "{found:?}");
     assert!((Point::new(found.x, found.y) - Point::new(104.0, 1.0)).norm() < 6.0, "{found:?}");
 }
 

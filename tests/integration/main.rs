@@ -15,6 +15,7 @@ mod hostile;
 mod lane_lengths;
 mod lanes;
 mod levels;
+mod names;
 mod net_faults;
 mod one_between;
 mod path;

@@ -205,6 +205,13 @@ impl Collection {
     }
 }
 
+/// The groups of which rates are compared: all, each kind, each severity.
+pub(super) fn groups() -> impl Iterator<Item = (&'static str, Option<Kind>, Option<Severity>)> {
+    let kinds = Kind::ALL.into_iter().map(|kind| (kind.name(), Some(kind), None));
+    let severities = Severity::ALL.into_iter().map(|severity| (severity.name(), None, Some(severity)));
+    std::iter::once(("all", None, None)).chain(kinds).chain(severities)
+}
+
 /// What is read of each of these runs, each in a thread of its own; how many conflicts of a run are read more is reported
 /// to its last argument.
 fn side_by_side<T: Send>(

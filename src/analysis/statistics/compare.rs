@@ -2,14 +2,13 @@
 
 use serde::Serialize;
 
-use super::collect::Collection;
+use super::collect::{Collection, groups};
 use super::counts::MEASURES;
 use super::pairs::{Unit, pairs, ratio};
-use super::permutation::{Test, holm, p_value, splits};
+use super::permutation::{LEVEL, Test, holm, p_value, splits};
 use super::planning::{Spread, detectable};
 use super::quantiles::{cliffs_delta, quantile};
 use super::rate::{IntervalMethod, Ratio};
-use crate::detection::kind::{Kind, Severity};
 
 /// How two sets of runs differ.
 #[derive(Clone, Debug, Serialize)]
@@ -65,9 +64,6 @@ pub struct MeasureDifference {
     pub significance: Option<Significance>,
 }
 
-/// A difference with a corrected p-value above this may be chance.
-pub(super) const LEVEL: f64 = 0.05;
-
 /// The significance of a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Significance {
@@ -106,13 +102,6 @@ pub fn compare(first: &Collection, other: &Collection) -> Comparison {
     });
     correct(tested);
     Comparison { runs, against_runs, rates_per: unit.name, rates, measures, note }
-}
-
-/// The groups that are compared: all, each kind, each severity.
-pub(super) fn groups() -> impl Iterator<Item = (&'static str, Option<Kind>, Option<Severity>)> {
-    let kinds = Kind::ALL.into_iter().map(|kind| (kind.name(), Some(kind), None));
-    let severities = Severity::ALL.into_iter().map(|severity| (severity.name(), None, Some(severity)));
-    std::iter::once(("all", None, None)).chain(kinds).chain(severities)
 }
 
 fn rate_difference(

@@ -6,6 +6,9 @@
 
 use serde::Serialize;
 
+/// A difference with a corrected p-value above this may be chance.
+pub(super) const LEVEL: f64 = 0.05;
+
 /// Up to this many ways to split the runs, `closecall stats` examines all of them.
 const MOST_SPLITS: f64 = 20_000.0;
 /// The number of random splits where there are more.

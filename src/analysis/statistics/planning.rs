@@ -14,10 +14,9 @@
 use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF, StudentsT};
 
-use super::collect::Collection;
-use super::compare::{LEVEL, groups};
+use super::collect::{Collection, groups};
 use super::pairs::Unit;
-use super::permutation::splits;
+use super::permutation::{LEVEL, splits};
 use super::rate::{EQUAL, TAIL, relative_deviations};
 
 /// The power that is planned for.

@@ -83,7 +83,7 @@ pub fn differences(expected: &Outcome, found: &Outcome) -> Differences {
 /// A conflict in one line: the pair, when, where, how bad.
 pub fn described(row: &SeedConflict) -> String {
     let measures = MEASURES.into_iter().filter_map(Column::named).filter(|column| !row.text(column.name).is_empty());
-    let told = measures.map(|column| format!("{} {} {}", column.name, row.text(column.name), column.unit()));
+    let told = measures.map(|column| with_unit(column, row.text(column.name)));
     let told = told.collect::<Vec<_>>().join(", ");
     let hit = if row.text("collision") == "true" { ", collision" } else { "" };
     let artefact = match row.text("artefact") {
@@ -91,6 +91,12 @@ pub fn described(row: &SeedConflict) -> String {
         artefact => format!(", set aside: {artefact}"),
     };
     format!("{}: {}, {told}{hit}{artefact}", place(row), row.severity.name())
+}
+
+/// A value as it is written: a number without unit has none.
+fn with_unit(column: &Column, value: &str) -> String {
+    let unit = if column.unit() == "1" { String::new() } else { format!(" {}", column.unit()) };
+    format!("{} {value}{unit}", column.name)
 }
 
 /// Seed, kind, pair, time and place.

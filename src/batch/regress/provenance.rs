@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use serde_json::Value;
 
 use super::outcome::RunsSummary;
+use crate::util::decimal::Written;
 
 /// The differences in how the runs were made, one line each.
 pub fn changes(before: &RunsSummary, now: &RunsSummary) -> Vec<String> {
@@ -30,7 +31,7 @@ pub fn changes(before: &RunsSummary, now: &RunsSummary) -> Vec<String> {
     );
     option_changes("option ", &before.options, &now.options, &mut changes);
     if before.step_length.to_bits() != now.step_length.to_bits() {
-        changes.push(format!("step length {} s → {} s", before.step_length, now.step_length));
+        changes.push(format!("step length {} s → {} s", Written(before.step_length), Written(now.step_length)));
     }
     let old = sorted(&before.sumo_options);
     let new = sorted(&now.sumo_options);

@@ -192,9 +192,11 @@ impl StepInputs<'_> {
     }
 
     /// The ego's longest response time with which μ still fits into the gap; none if the ego stands, or if a foe that brakes
-    /// now is never in the way. It is below the ego's
-    /// response time exactly if the margin is below 0.
+    /// now is never in the way. It is below the ego's response time exactly if the margin is below 0.
     fn response_left(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> Option<Second> {
+        if ego.speed == 0.0 {
+            return None;
+        }
         if encounter.collision {
             return Some(0.0);
         }
@@ -208,7 +210,8 @@ impl StepInputs<'_> {
         Some(left).filter(|left| left.is_finite())
     }
 
-    /// The probability that the ego's driver does not brake in time for contact, if the foe brakes fully now.
+    /// The probability that the ego's driver does not brake in time for contact, if the foe brakes fully now. As in μ and
+    /// [`Self::response_left`], the ego keeps its speed until its driver responds, and a foe for σ ≤ 0 responds as always.
     fn crash_probability_braking(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> f64 {
         if encounter.collision {
             return 1.0;
@@ -218,9 +221,11 @@ impl StepInputs<'_> {
         }
         let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
         let braking = self.late_braking(met.slots[0], ego);
+        let has_responded = braking.present >= BRAKES;
+        let braking = LateBraking { present: if has_responded { braking.present } else { 0.0 }, ..braking };
         let driver = &self.profile(self.user(met.slots[0])).driver;
         let wait = |deceleration| driver.braking_with(deceleration, &braking).longest_wait_behind(&leader);
-        crash_probability(driver, braking.present >= BRAKES, wait)
+        crash_probability(driver, has_responded, wait)
     }
 
     /// How a road user brakes if it goes on as now for a while.

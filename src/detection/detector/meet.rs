@@ -25,6 +25,9 @@ use crate::util::units::Metre;
 /// takes nearly twice as long in a jam of 10⁵ road users.
 const BLOCK: usize = 32;
 
+/// Two of which neither is further ahead than this are side by side, or mirror images, in m: rounding.
+const ALIKE: Metre = 1e-9;
+
 /// What is known of a pair that has to be swept.
 #[derive(Clone, Copy)]
 pub(super) struct Unsettled {
@@ -83,7 +86,7 @@ impl StepInputs<'_> {
                 if !is_pair(users.map(|user| (user, self.state(user))), self.options.mode, work) {
                     continue;
                 }
-                let slots = if users[0].row < users[1].row { [a, b] } else { [b, a] };
+                let slots = if self.comes_first(users) { [a, b] } else { [b, a] };
                 match self.options.mode {
                     Mode::Closecall => {
                         found.meets = false;
@@ -171,7 +174,7 @@ impl StepInputs<'_> {
         let [first, second] = &unsettled.shrunk(*pair);
         work.in_line += 1;
         work.frontal += u64::from(narrow_phase::drive_opposed(first, second));
-        let approach = narrow_phase::meet_in_one_dimension(first, second, &|| self.has_smaller_id(slots));
+        let approach = narrow_phase::meet_in_one_dimension(first, second);
         if let Some(approach) = approach {
             let roles = Roles::new(approach.ego, slots, [first, second]);
             self.met(work, found, &roles, &approach.conflict_point, overlap);
@@ -188,7 +191,7 @@ impl StepInputs<'_> {
         overlap: Overlap,
         found: &mut Findings,
     ) {
-        let ego = Ego::first_if(!second.shape.is_empty() || self.has_smaller_id(slots));
+        let ego = if second.shape.is_empty() { Ego::of_equals([first, second]) } else { Ego::First };
         let roles = Roles::new(ego, slots, [first, second]);
         let conflict_point = ConflictPoint {
             ego_distance: 0.0,
@@ -234,10 +237,8 @@ impl StepInputs<'_> {
         found: &mut Findings,
     ) {
         work.swept += 1;
-        let has_smaller_id = || self.has_smaller_id(slots);
         let swept = self.swept(slots, [from_ref(first), from_ref(second)], found);
-        let approach =
-            if in_line { narrow_phase::meet_in_one_dimension(first, second, &has_smaller_id) } else { swept };
+        let approach = if in_line { narrow_phase::meet_in_one_dimension(first, second) } else { swept };
         if let Some(approach) = approach {
             let roles = Roles::new(approach.ego, slots, [first, second]);
             self.met(work, found, &roles, &approach.conflict_point, overlap);
@@ -246,8 +247,8 @@ impl StepInputs<'_> {
 
     /// How a pair meets: swept coarsely, and finely if that finds a conflict.
     fn swept(&self, slots: [u32; 2], [a, b]: [&[Participant]; 2], found: &mut Findings) -> Option<Approach> {
-        let (halves, has_smaller_id) = (&mut found.scratch.halves, || self.has_smaller_id(slots));
-        let coarse = side::meet(halves, a, b, &has_smaller_id)?;
+        let halves = &mut found.scratch.halves;
+        let coarse = side::meet(halves, a, b)?;
         let roles = Roles::new(coarse.ego, slots, [a.first()?, b.first()?]);
         let point = &coarse.conflict_point;
         let sigma = narrow_phase::sigma(point.angle());
@@ -256,13 +257,22 @@ impl StepInputs<'_> {
         if gap >= mu && !(point.foe_leaves(sigma) && self.may_leave_late(&roles, point, sigma, mu)) {
             return Some(coarse);
         }
-        side::refine(halves, FINE, a, b, &has_smaller_id)
+        side::refine(halves, FINE, a, b)
     }
 
-    /// Whether the first of the two has the smaller id.
-    fn has_smaller_id(&self, slots: [u32; 2]) -> bool {
-        let [first, second] = slots.map(|slot| self.roster.id(self.user(slot).index));
-        first <= second
+    /// Whether the first of the two is the first of the pair, so that neither ids nor the order of the rows decide anything: the
+    /// faster one, then the one that is behind, then the longer and the wider one. Only of mirror images the order decides.
+    fn comes_first(&self, [a, b]: [&User; 2]) -> bool {
+        let (of_a, of_b) = (self.state(a), self.state(b));
+        if of_a.speed != of_b.speed {
+            return of_a.speed > of_b.speed;
+        }
+        let along = (of_b.front() - of_a.front()).dot(&(a.axis + b.axis));
+        if along.abs() > ALIKE {
+            return along > 0.0;
+        }
+        let size = |user| [self.profile(user).length, self.profile(user).width];
+        (size(a), b.row) > (size(b), a.row)
     }
 
     /// Whether two road users that go straight on in the same direction surely pass beside each other, or one follows the

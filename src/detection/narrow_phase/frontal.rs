@@ -7,25 +7,19 @@ use crate::geometry::rectangle::Rectangle;
 use crate::util::units::Metre;
 
 /// The conflict point of two that drive towards each other with `ahead` m between their fronts. The distance of each
-/// ends where the area that the other needs to stop begins. The ego is the one with the longer distance; if equal, the
-/// one with the smaller id.
-pub(super) fn in_line(
-    a: &Participant,
-    b: &Participant,
-    ahead: Metre,
-    a_has_smaller_id: &impl Fn() -> bool,
-) -> Option<Approach> {
+/// ends where the area that the other needs to stop begins. The ego is the one with the longer distance.
+pub(super) fn in_line(a: &Participant, b: &Participant, ahead: Metre) -> Option<Approach> {
     let distance = |ego: &Participant, foe: &Participant| {
         let distance = (ahead - foe.stop.min(foe.reach)).max(0.0);
         (distance <= ego.reach).then_some(distance)
     };
-    let (a_is_ego, ego_distance) = match (distance(a, b), distance(b, a)) {
+    let (roles, ego_distance) = match (distance(a, b), distance(b, a)) {
         (None, None) => return None,
-        (Some(a), Some(b)) => (a > b || (a == b && a_has_smaller_id()), a.max(b)),
-        (Some(a), None) => (true, a),
-        (None, Some(b)) => (false, b),
+        (Some(of_a), Some(of_b)) if of_a == of_b => (Ego::of_equals([a, b]), of_a),
+        (Some(a), Some(b)) => (Ego::first_if(a > b), a.max(b)),
+        (Some(a), None) => (Ego::First, a),
+        (None, Some(b)) => (Ego::Second, b),
     };
-    let roles = Ego::first_if(a_is_ego);
     let [ego, foe] = roles.then_foe([a, b]);
     let centre = ego.rectangle.centre + ego.rectangle.axis * ego_distance;
     let conflict_point = ConflictPoint {

@@ -30,14 +30,14 @@ use crate::util::units::{Metre, Radian};
 const PARALLEL: Metre = 1e-3;
 
 /// How a pair that does not touch now would meet. The ego is the one with the longer distance to the conflict point; if
-/// equal, the one with the smaller id.
-pub fn meet(a: &Participant, b: &Participant, a_has_smaller_id: &impl Fn() -> bool) -> Option<Approach> {
+/// equal, the one that moves faster towards the other, and of mirror images the first.
+pub fn meet(a: &Participant, b: &Participant) -> Option<Approach> {
     if drive_in_line(a, b) {
-        meet_in_one_dimension(a, b, a_has_smaller_id)
+        meet_in_one_dimension(a, b)
     } else {
         let (mut bisection, a, b) = (Bisection::default(), from_ref(a), from_ref(b));
-        side::meet(&mut bisection, a, b, a_has_smaller_id)?;
-        side::refine(&mut bisection, FINE, a, b, a_has_smaller_id)
+        side::meet(&mut bisection, a, b)?;
+        side::refine(&mut bisection, FINE, a, b)
     }
 }
 
@@ -60,11 +60,7 @@ pub fn drive_opposed(a: &Participant, b: &Participant) -> bool {
 }
 
 /// How two that drive in line would meet.
-pub fn meet_in_one_dimension(
-    a: &Participant,
-    b: &Participant,
-    a_has_smaller_id: &impl Fn() -> bool,
-) -> Option<Approach> {
+pub fn meet_in_one_dimension(a: &Participant, b: &Participant) -> Option<Approach> {
     let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {
@@ -77,7 +73,7 @@ pub fn meet_in_one_dimension(
         let [ego, foe] = roles.then_foe([a, b]);
         rear_end::in_line(ego, foe, ahead).map(|conflict_point| Approach { ego: roles, conflict_point })
     } else if along > 0.0 {
-        frontal::in_line(a, b, ahead, a_has_smaller_id)
+        frontal::in_line(a, b, ahead)
     } else {
         None
     }

@@ -20,30 +20,19 @@ const INEXACT: Metre = 2.0 * TOLERANCE;
 
 /// How a pair meets, each as its carriages, of which most have one: at the first pose on the ego's path at which its
 /// rectangle touches the area that the foe covers now and still needs to stop. The ego is the one with the longer distance
-/// there; if equal, the one with the smaller id. An obstacle is never the ego.
+/// there; if equal, the one that moves faster towards the other. An obstacle is never the ego.
 ///
 /// Swept to [`TOLERANCE`], which covers a little too much: what does not meet does not meet, and no gap is too
 /// large.
-pub fn meet(
-    bisection: &mut Bisection,
-    a: &[Participant],
-    b: &[Participant],
-    a_has_smaller_id: &impl Fn() -> bool,
-) -> Option<Approach> {
+pub fn meet(bisection: &mut Bisection, a: &[Participant], b: &[Participant]) -> Option<Approach> {
     bisection.clear();
-    find(bisection, a, b, a_has_smaller_id)
+    find(bisection, a, b)
 }
 
 /// The same for a pair that [`meet`] has just found to meet, swept to `tolerance`.
-pub fn refine(
-    bisection: &mut Bisection,
-    tolerance: Metre,
-    a: &[Participant],
-    b: &[Participant],
-    a_has_smaller_id: &impl Fn() -> bool,
-) -> Option<Approach> {
+pub fn refine(bisection: &mut Bisection, tolerance: Metre, a: &[Participant], b: &[Participant]) -> Option<Approach> {
     bisection.sweep_to(tolerance);
-    find(bisection, a, b, a_has_smaller_id)
+    find(bisection, a, b)
 }
 
 /// How far an ego goes until it touches a foe, each of whose carriages stands where it is now, and its axis there.
@@ -54,20 +43,20 @@ pub fn distance_to(bisection: &mut Bisection, ego: &Participant, foe: &[Particip
 }
 
 /// How a pair meets, swept to the bisection's tolerance.
-fn find(
-    bisection: &mut Bisection,
-    a: &[Participant],
-    b: &[Participant],
-    a_has_smaller_id: &impl Fn() -> bool,
-) -> Option<Approach> {
+fn find(bisection: &mut Bisection, a: &[Participant], b: &[Participant]) -> Option<Approach> {
     // The movements of all are numbered one after the other.
     let [of_a, of_b] = [0, a.iter().map(movement_count).sum()];
     let a_touches = touch(bisection, [of_a, of_b], a, b);
     let b_touches = touch(bisection, [of_b, of_a], b, a);
     let (roles, Touch { ego_distance, ego_rectangle, ego_behind }) = match (a_touches, b_touches) {
-        (Some(a), Some(b)) => {
-            let b_is_ego = b.ego_distance > a.ego_distance || (b.ego_distance == a.ego_distance && !a_has_smaller_id());
-            if b_is_ego { (Ego::Second, b) } else { (Ego::First, a) }
+        (Some(of_a), Some(of_b)) => {
+            let roles = if of_a.ego_distance == of_b.ego_distance {
+                Ego::of_equals([a.first()?, b.first()?])
+            } else {
+                Ego::first_if(of_a.ego_distance > of_b.ego_distance)
+            };
+            let [ego, _] = roles.then_foe([of_a, of_b]);
+            (roles, ego)
         }
         (Some(a), None) => (Ego::First, a),
         (None, b) => (Ego::Second, b?),
@@ -402,7 +391,7 @@ mod tests {
             let parts = |poses: &[Pose]| poses.windows(2).map(whole).collect::<Vec<_>>();
             let (ego_parts, foe_parts) = (parts(&ego), parts(&foe));
             let mut bisection = Bisection::default();
-            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, from_ref(ego), from_ref(foe), &|| true);
+            let mut meet = |ego: &Participant, foe: &Participant| meet(&mut bisection, from_ref(ego), from_ref(foe));
             let slow = meet(&participant(&ego, &all, &SweptBounds::EVERYWHERE), &participant(&foe, &all, &SweptBounds::EVERYWHERE));
             let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
             let (ego, foe) = (participant(&ego, &ego_parts, &ego_whole), participant(&foe, &foe_parts, &foe_whole));
@@ -420,10 +409,10 @@ mod tests {
             let (ego_whole, foe_whole) = (whole(&ego), whole(&foe));
             let (ego, foe) = (participant(&ego, &[], &ego_whole), participant(&foe, &[], &foe_whole));
             let (ego, foe, mut bisection) = (from_ref(&ego), from_ref(&foe), Bisection::default());
-            let coarse = meet(&mut bisection, ego, foe, &|| true);
-            let after = coarse.and_then(|_| refine(&mut bisection, FINE, ego, foe, &|| true));
+            let coarse = meet(&mut bisection, ego, foe);
+            let after = coarse.and_then(|_| refine(&mut bisection, FINE, ego, foe));
             bisection.clear();
-            prop_assert_eq!(after, refine(&mut bisection, FINE, ego, foe, &|| true));
+            prop_assert_eq!(after, refine(&mut bisection, FINE, ego, foe));
             if let (Some(coarse), Some(fine)) = (coarse, after) {
                 prop_assert!(coarse.ego != fine.ego || coarse.conflict_point.ego_distance <= fine.conflict_point.ego_distance + 0.02);
             }

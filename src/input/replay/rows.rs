@@ -6,6 +6,7 @@ use super::fields::{Fields, SPEED_PLACE, Scope, are_possible};
 use super::names::{Numbers, Users};
 use crate::Error;
 use crate::traffic::net::projection::Projection;
+use crate::util::decimal::Written;
 use crate::util::limits::{TIME, is_noise};
 use crate::util::units::{Metre, MetrePerSecond, Second};
 
@@ -141,7 +142,7 @@ impl RecordedStep {
 /// Checks that times increase.
 pub(super) fn in_order(last: Option<Second>, time: Second) -> std::result::Result<(), String> {
     match last {
-        Some(last) if time <= last => Err(format!("time {time} s follows {last} s")),
+        Some(last) if time <= last => Err(format!("time {} s follows {} s", Written(time), Written(last))),
         _ => TIME.check("time", time).map(|_| ()),
     }
 }

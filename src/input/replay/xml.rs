@@ -11,6 +11,7 @@ use super::names::Users;
 use super::rows::{RecordedStep, cut_short, in_order};
 use super::source::{ByteWindow, find};
 use super::tags::{Tag, TagFault, next_tag};
+use crate::util::decimal::Written;
 use crate::util::units::Second;
 use crate::{Error, Result};
 
@@ -138,7 +139,7 @@ impl XmlRecording {
 }
 
 fn unclosed(time: Second) -> String {
-    format!("the timestep of {time} s is not closed: its </timestep> is missing")
+    format!("the timestep of {} s is not closed: its </timestep> is missing", Written(time))
 }
 
 fn time(attributes: &[u8]) -> std::result::Result<Second, String> {

@@ -1,6 +1,7 @@
 //! Jumps of tracks, and identities that two road users exchange: counted, and told with the first of each.
 
 use super::filter::Jump;
+use crate::util::decimal::Written;
 
 /// Jumps that are compared with each other: a recording with more is useless.
 const COMPARED: usize = 1 << 16;
@@ -50,7 +51,7 @@ impl Jumps {
                 "jumps: {jumps} {times} a road user is where it cannot have driven, first \"{}\" at {} s, {way:.1} m from where its \
                  movement led; nothing is mended",
                 id(jump.user),
-                jump.time
+                Written(jump.time)
             ));
         }
         if let Some([a, b]) = pairs.first().map(|pair| pair.map(|place| self.jumps[place])) {
@@ -61,7 +62,7 @@ impl Jumps {
                 pairs.len(),
                 id(a.user),
                 id(b.user),
-                a.time
+                Written(a.time)
             ));
         }
         remarks

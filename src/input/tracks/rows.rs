@@ -19,6 +19,7 @@ use super::users::Users;
 use crate::geometry::rectangle::direction;
 use crate::geometry::{Point, Vector};
 use crate::traffic::sumo_type::SumoType;
+use crate::util::decimal::Written;
 use crate::util::units::{Metre, MetrePerSecond};
 use crate::{Error, Result};
 
@@ -56,7 +57,7 @@ pub(super) fn convert(
         let front = if origin == Origin::Front { place } else { place + direction(heading) * (length / 2.0) };
         let written =
             out.write(&Sample { time, id, class, front, height: 0.0, heading, speed, length, width, lane: None });
-        written.map_err(|why| Error::content(path, format!("\"{id}\" at {time} s: {why}")))?;
+        written.map_err(|why| Error::content(path, format!("\"{id}\" at {} s: {why}", Written(time))))?;
         ask(&mut rows, stopped)?;
     }
     users.counts.say(&mut said);

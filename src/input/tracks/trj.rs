@@ -14,6 +14,7 @@ use super::sample::{FcdWriter, Sample};
 use crate::geometry::{Point, Vector};
 use crate::output::formats::{FAR, origin_of_trajectories};
 use crate::traffic::net::{LaneIndex, Net};
+use crate::util::decimal::Written;
 use crate::util::input_file;
 use crate::util::units::Metre;
 use crate::{Error, Result};
@@ -69,7 +70,11 @@ pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Re
                 // The shortest decimals of 32 bits are those that the simulation wrote.
                 let now = shortest(reader.float()?);
                 if time.is_some_and(|before| now <= before) {
-                    return Err(reader.wrong(format!("time {now} s follows {} s", time.unwrap_or_default())));
+                    return Err(reader.wrong(format!(
+                        "time {} s follows {} s",
+                        Written(now),
+                        Written(time.unwrap_or_default())
+                    )));
                 }
                 time = Some(now);
             }
@@ -101,7 +106,7 @@ pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Re
                     width,
                     lane: net.and_then(|net| told(net, link, lane)),
                 });
-                written.map_err(|why| reader.wrong(format!("vehicle {number} at {time} s: {why}")))?;
+                written.map_err(|why| reader.wrong(format!("vehicle {number} at {} s: {why}", Written(time))))?;
             }
             other => return Err(reader.wrong(format!("a record begins with {other}; 1, 2 and 3 are known"))),
         }

@@ -1,7 +1,7 @@
 //! The methods of statistics, each on processes that it may meet.
 
+use super::case::{Case, LEVEL, Told, case};
 use super::process::{Process, uniform};
-use super::{Case, LEVEL, Told, case};
 use crate::analysis::statistics::Ratio;
 use crate::analysis::statistics::extremes::crashes;
 use crate::analysis::statistics::gpd::Gpd;

@@ -3,6 +3,7 @@
 //! Conflicts come one by one (Poisson), or in clusters of a geometric size of three on average, so that the variance of
 //! a run's count is 2 · 3 − 1 = 5 times its mean. Values of a measure have tails of several shapes and are 0 at a crash.
 
+mod case;
 mod cases;
 mod process;
 
@@ -16,37 +17,8 @@ use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
 use crate::analysis::statistics::rate::CONFIDENCE;
 use crate::util::threads::processors;
+use case::{Case, LEVEL, Told};
 use cases::cases;
-
-/// The level of tests.
-const LEVEL: f64 = 0.05;
-
-/// What one sample told.
-enum Told {
-    /// An interval, an estimate, and the truth.
-    Interval { low: f64, high: f64, estimate: f64, truth: f64 },
-    /// Whether a test rejected, where it had reason to, and the power that it says it has.
-    Rejected(bool, Option<f64>),
-    /// The method refused.
-    Refused,
-}
-
-/// One method on one process.
-struct Case {
-    method: &'static str,
-    process: String,
-    samples: usize,
-    draw: Box<dyn Fn(&mut Chance) -> Told + Sync>,
-}
-
-fn case(
-    method: &'static str,
-    process: String,
-    samples: usize,
-    draw: impl Fn(&mut Chance) -> Told + Sync + 'static,
-) -> Case {
-    Case { method, process, samples, draw: Box::new(draw) }
-}
 
 /// Measures every case, several at a time.
 pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
@@ -173,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_row_counts_what_an_interval_misses_on_either_side() {
-        let told = case("rate", "process".to_owned(), 100, |chance| match chance.below(4) {
+        let told = super::case::case("rate", "process".to_owned(), 100, |chance| match chance.below(4) {
             0 => Told::Refused,
             1 => Told::Interval { low: 2.0, high: 3.0, estimate: 2.5, truth: 1.0 },
             _ => Told::Interval { low: 0.0, high: 3.0, estimate: 1.0, truth: 1.0 },
