@@ -111,7 +111,7 @@ impl RecordedStep {
     #[inline]
     pub(super) fn add(&mut self, fields: &Fields, users: &mut Users, holder: &str) -> std::result::Result<(), String> {
         let [id, type_name, lane, edge] = fields.texts;
-        let lane = if fields.person { edge } else { lane };
+        let lane = if fields.person && !edge.is_empty() { edge } else { lane };
         if id.is_empty() {
             fields.check(&fields.numbers, holder)?;
         }
