@@ -260,15 +260,17 @@ def test_a_conflict_has_the_extremes_and_integrals_of_its_steps(measured: Callab
 
 
 def evasion(steps: list[Row], run: Run) -> dict[str, float | None]:
-    """TA, conflicting speed and severity level of the first step in which the ego brakes."""
+    """TA, conflicting speed and severity level of the first step in which one brakes; TA only if they would meet."""
     for row in steps:
         time = round(float(row["time"]), 3)
         changes = {who: run.accelerations.get((time, row[who]), 0.0) for who in ("ego", "foe")}
         before = [
             float(row[f"{who}_speed"]) - change * run.step_length for who, change in changes.items() if change <= -1.3
         ]
-        if before and float(row["ttc"] or 0) > 0:
-            ta, speed = float(row["ttc"]), max(before)
+        if before:
+            ta, speed = number(row, "ttc"), max(before)
+            if not ta:
+                return {"ta": None, "conflicting_speed": speed, "ta_level": None}
             border = 1.5 * speed / (16.7 * math.exp(-0.0306 * 0.5 * speed))
             level = min(max(26 + math.floor((border - ta) / 0.5), 1), 30)
             return {"ta": ta, "conflicting_speed": speed, "ta_level": float(level)}
