@@ -11,7 +11,7 @@ use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::Pet;
-use crate::detection::severity::{Assessment, Consequence, LIKELY_CLEARANCE, LIKELY_PET, NearnessLevel};
+use crate::detection::severity::{Assessment, Consequence, NearnessLevel};
 use crate::options::measures::{ChosenMeasure, ChosenValues};
 use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::lane_change::LaneChangeReason;
@@ -143,7 +143,7 @@ impl Conflict {
             is_tracked: _,
             begins_in_contact: _,
             artefact: _,
-            passed_at,
+            passed_at: _,
             collision,
             collision_sumo,
             overlap,
@@ -171,13 +171,7 @@ impl Conflict {
             measures::delta_v((ego_speed, ego_type.mass), (foe_speed, foe_type.mass), angle);
         let injury_probability =
             injury_probability(kind, Body::of(ego_type, ego_delta_v), Body::of(foe_type, foe_delta_v));
-        let (mut assessment, artefact) = extremes.verdict();
-        let crosses = !matches!(manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
-        if kind == Kind::Side && crosses && artefact.is_none() {
-            let is_near = pet.is_some_and(|pet| pet.lasts < LIKELY_PET) || passed_at < LIKELY_CLEARANCE;
-            assessment = if is_near { assessment.at_least(NearnessLevel::Likely, rule) } else { assessment };
-        }
-        let Assessment { severity, nearness, consequence } = assessment;
+        let (Assessment { severity, nearness, consequence }, artefact) = extremes.verdict_with(pet, rule);
         let entered = pet.map(|pet| Moment { time: pet.enters, x, y, speed: ego_speed });
         Self {
             ego: roster.id(ego).clone(),

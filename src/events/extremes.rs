@@ -7,10 +7,11 @@ use super::chosen_measures::{ChosenMeasures, Step};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
-use super::why::{Artefact, Pair, STANDS, Surroundings, Why, one_will_wait};
+use super::why::{Artefact, Manoeuvre, Pair, STANDS, Surroundings, Why, one_will_wait};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
-use crate::detection::severity::{AT_SPEED, Assessment, Consequence, NearnessLevel};
+use crate::detection::measures::pet::Pet;
+use crate::detection::severity::{AT_SPEED, Assessment, Consequence, LIKELY_CLEARANCE, LIKELY_PET, NearnessLevel};
 use crate::options::measures::ChosenValues;
 use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::frame::Frame;
@@ -330,6 +331,16 @@ impl Extremes {
             None if self.collision_sumo == Some(true) => (self.assessed, None),
             None => (self.assessed, self.artefact),
         }
+    }
+
+    /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near.
+    pub fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
+        let (assessment, artefact) = self.verdict();
+        let crosses = !matches!(self.why.manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
+        let is_near = pet.is_some_and(|pet| pet.lasts < LIKELY_PET) || self.passed_at < LIKELY_CLEARANCE;
+        let is_passing = self.worst.kind == Kind::Side && crosses && artefact.is_none();
+        let raised = || assessment.at_least(NearnessLevel::Likely, rule);
+        (if is_passing && is_near { raised() } else { assessment }, artefact)
     }
 
     /// Whether it is over within a single frame of tracked road users: one bad frame, no conflict.

@@ -33,6 +33,9 @@ pub struct Tracker {
     #[expect(clippy::vec_box, reason = "as above")]
     waiting: Vec<Box<Event>>,
     closed: Vec<Conflict>,
+    /// The events that these were.
+    #[expect(clippy::vec_box, reason = "as above")]
+    settled: Vec<Box<Event>>,
 }
 
 impl Tracker {
@@ -51,6 +54,7 @@ impl Tracker {
             events: Vec::new(),
             waiting: Vec::new(),
             closed: Vec::new(),
+            settled: Vec::new(),
         }
     }
 
@@ -115,11 +119,12 @@ impl Tracker {
     /// Forgets them and frees their memory, which a step in which many close would otherwise keep for the rest of the run.
     pub fn forget_closed(&mut self) {
         self.closed = Vec::new();
+        self.settled = Vec::new();
     }
 
     /// Closes all open events at the end of the run.
     pub fn finish(&mut self, roster: &Roster) -> &[Conflict] {
-        self.closed.clear();
+        self.forget_closed();
         self.waiting.append(&mut self.events);
         self.settle(f64::INFINITY, roster);
         &self.closed
@@ -147,9 +152,10 @@ impl Tracker {
         event.pet_so_far(self.last_time, ahead, self.pets)
     }
 
-    /// The events that are not settled yet and of which a part is at least this severe.
+    /// The events of which a part is at least this severe, with those that this step has settled: by the PET some become so
+    /// only then.
     pub(super) fn severe(&self, least: Severity) -> impl Iterator<Item = SevereEvent> {
-        let events = self.events.iter().chain(&self.waiting);
+        let events = self.events.iter().chain(&self.waiting).chain(&self.settled);
         events.map(move |event| event.severe(least, self.rules)).filter(|event| !event.worst.is_empty())
     }
 
@@ -203,8 +209,8 @@ impl Tracker {
         // One for the step, not kept: a long wait in small steps would otherwise hold its memory for the rest of the run.
         let mut halves = Bisection::default();
         let rule = self.rules.severity;
-        let settled = self.waiting.extract_if(.., |event| event.settles(time, &mut halves, self.pets));
-        self.closed.extend(settled.flat_map(|event| event.conflicts(roster, rule).collect::<Vec<_>>()));
+        self.settled.extend(self.waiting.extract_if(.., |event| event.settles(time, &mut halves, self.pets)));
+        self.closed.extend(self.settled.iter().flat_map(|event| event.conflicts(roster, rule)));
         sort(&mut self.closed);
     }
 }

@@ -150,8 +150,9 @@ impl Event {
     /// Its parts that are at least this severe, and count.
     pub fn severe(&self, least: Severity, rules: Rules) -> SevereEvent {
         let spans = [&self.followed].into_iter().chain(self.met.iter().flatten());
+        let pet = self.driven.as_ref().and_then(|driven| driven.pet);
         let severe = spans.map(|span| &span.extremes).filter(|extremes| {
-            let (assessment, artefact) = extremes.verdict();
+            let (assessment, artefact) = extremes.verdict_with(pet, rules.severity);
             assessment.severity >= least && (artefact.is_none() || rules.counts_artefacts)
         });
         let worst = severe.map(|extremes| (extremes.worst.time, Point::new(extremes.worst.x, extremes.worst.y)));

@@ -19,6 +19,11 @@ fn second_step(detector: &mut Detector, net: Option<(&Net, f64)>, steps: [&[Stat
 
 /// The same after steps 1 s apart.
 fn last_step(detector: &mut Detector, net: Option<(&Net, f64)>, steps: &[&[State]]) -> (Vec<State>, Option<f64>) {
+    steps_at(detector, net.map(|(net, position)| (net, vec![position; steps.len()])), steps)
+}
+
+/// The same with the position along the lane in each step.
+fn steps_at(detector: &mut Detector, net: Option<(&Net, Vec<f64>)>, steps: &[&[State]]) -> (Vec<State>, Option<f64>) {
     let (mut roster, mut frame) = (Roster::default(), Frame::default());
     let profile = roster.profile(car()).unwrap();
     let users = steps[0].iter().enumerate().map(|(number, _)| roster.enter(&number.to_string(), profile));
@@ -29,10 +34,10 @@ fn last_step(detector: &mut Detector, net: Option<(&Net, f64)>, steps: &[&[State
             frame.push(*user, *state);
         }
         for row in detector.track_paths(&frame, &roster).to_vec() {
-            let Some((net, position)) = net else { continue };
+            let Some((net, positions)) = &net else { continue };
             let placement = Placement {
                 lane: net.lane("e_0").unwrap(),
-                position,
+                position: positions[time],
                 route: Some([net.edge("e").unwrap()].into()),
                 route_position: 0,
                 lateral_speed: 0.0,
@@ -261,11 +266,13 @@ proptest! {
         let (way, car) = (Way::bend(), car());
         let last = way.vehicle(&car, front, speed);
         let last = State { heading: last.heading + before, ..last };
-        let to = way.vehicle(&car, (front + speed + further).max(6.0), speed);
+        let ahead = (front + speed + further).max(6.0);
+        let to = way.vehicle(&car, ahead, speed);
         let across = Vector::new(-to.heading.sin(), to.heading.cos()) * aside;
         let to = State { x: to.x + across.x, y: to.y + across.y, heading: to.heading + turned, ..to };
         let net = has_net.then_some(&way);
-        let (found, _) = second_step(&mut aligning(net), net.map(|way| (&*way.net, front)), [&[last], &[to]]);
+        let places = net.map(|way| (&*way.net, vec![front, ahead]));
+        let (found, _) = steps_at(&mut aligning(net), places, &[&[last], &[to]]);
         let (from, to, found) = (last.front(), to.front(), found[0]);
         let middle = from + (to - from) / 2.0;
         let outside = (found.front() - middle).norm() - (to - from).norm() / 2.0;

@@ -18,7 +18,7 @@ struct Scene(Vec<State>);
 
 impl Scene {
     /// The conflicts, in the order of their times and of the vehicles, each of which is known by its place in the scene.
-    /// `names` has the place of each vehicle's name, `rows` the order in which they enter and stand in a frame.
+    /// `names` has the place of each vehicle's name, `rows` the order in which they enter and are listed in a frame.
     fn conflicts(&self, names: &[usize], rows: &[usize]) -> Vec<Conflict> {
         let options = Options { log: "margin < 0".parse().unwrap(), ..Options::default() };
         let mut run = Run::new(&options, None).unwrap();

@@ -53,7 +53,7 @@ fn of(pairs: &[[&str; 2]]) -> Vec<(String, String)> {
     pairs.iter().map(|[ego, foe]| ((*ego).to_owned(), (*foe).to_owned())).collect()
 }
 
-/// The last car of three in a lane, before one that stands.
+/// The last car of three in a lane, before a vehicle that stands.
 const LAST: Car = ("last", [0.0, -1.6], 0.0, 25.0, CAR);
 
 #[test]

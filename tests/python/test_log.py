@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import xml.etree.ElementTree as ET
 from pathlib import Path
@@ -166,3 +167,13 @@ def test_entered_counts_the_vehicles_of_each_junction(net: str, tmp_path: Path) 
         last[name] = edge
     assert json.loads((tmp_path / "run.json").read_text())["summary"]["entered"] == expected
     assert sum(expected.values()) > 20
+
+
+@pytest.mark.parametrize("net", ["priority", "side"])
+def test_each_severe_conflict_has_a_clip(net: str, tmp_path: Path) -> None:
+    # Some are severe only by their PET, which is known after they close, or by how close they passed.
+    found = logged(net, tmp_path, "--log-clips", "serious")
+    severe = {row["id"] for row in found if row["severity"] != "caution" and not row["artefact"]}
+    with gzip.open(tmp_path / "clips.jsonl.gz", "rt") as lines:
+        clips = {str(json.loads(line)["conflict"]) for line in lines}
+    assert clips == severe != set()

@@ -1,10 +1,11 @@
-"""What is not traffic stays in the log, is not counted anywhere, and is told in a line; `--artefacts` counts it in."""
+"""What is not traffic stays in the log, is not counted anywhere, and a line reports it; `--artefacts` counts it in."""
 
 from __future__ import annotations
 
 import csv
 import html
 import json
+import math
 import re
 from collections import Counter
 from pathlib import Path
@@ -131,3 +132,21 @@ def test_alarms_and_rewards_leave_out_who_has_just_appeared() -> None:
         summary = checker.summary
         assert [count.get("artefact") for count in summary["conflicts"]] == [None if artefacts else "appeared"]
         assert (summary["risk_index"] > 0) == artefacts
+
+
+@pytest.mark.parametrize(("name", "artefact"), [("steady", ""), ("swings once", ""), ("sways", "tracking")])
+def test_a_tracked_heading_that_sways_is_an_error_not_one_swing(name: str, artefact: str, tmp_path: Path) -> None:
+    def heading(time: float) -> float:
+        swing = 0.7 * math.sin(math.pi * min(time, 1.0))
+        return {"steady": 0.0, "swings once": swing, "sways": -0.2 if int(2 * time) % 2 else 0.2}[name]
+
+    lines = ["id,time,x,y,heading,speed"]
+    for time in (step / 10 for step in range(60)):
+        lines += [f"ego,{time},{15 * time - 10},0,0,15", f"foe,{time},{50 + 5 * time},0,{heading(time)},5"]
+    (tmp_path / "tracks.csv").write_text("\n".join(lines) + "\n")
+    columns = "id=id,time=time,x=x,y=y,heading=heading[rad],speed=speed"
+    done = closecall(
+        "replay", tmp_path / "tracks.csv", "--columns", columns, "--path", "straight", "--out", tmp_path / "log"
+    )
+    assert done.returncode == 0, done.stderr
+    assert [row["artefact"] for row in rows(tmp_path / "log" / "conflicts.csv")] == [artefact]

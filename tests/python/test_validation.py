@@ -91,7 +91,7 @@ def test_the_tables_replace_what_stands_between_their_marks(tmp_path: Path) -> N
         write_tables(page, list(csv.DictReader(lines)))
     text = page.read_text()
     assert text.startswith("before\n") and "old" not in text
-    assert "| `crash_probability` | 0.9" in text and "| TTC < 1.5 s | 5, 5, 4 |" in text
+    assert "| `crash_probability` | 0.9" in text and "| TTC < 1.5 s | 6, 6, 5 |" in text
 
 
 def raw_event(trip: int, behind: bool) -> str:

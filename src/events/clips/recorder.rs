@@ -70,7 +70,9 @@ impl Clips {
             if let Some(take) = takes.iter_mut().find(|take| take.is_open && take.pair == pair) {
                 take.add_moments(&worst);
             } else if takes.len() < MOST_AT_ONCE && *made + takes.len() < MOST {
-                takes.push(Take::of(pair, frame.time, &worst, &source));
+                let mut take = Take::of(pair, frame.time, &worst, &source);
+                (first..).zip(closed).for_each(|(number, conflict)| take.close(number, conflict, *least));
+                takes.push(take);
             }
         }
         for take in takes.iter_mut() {

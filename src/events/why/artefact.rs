@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manoeuvre::changes_lanes;
 use super::pair::{Pair, Party, STANDS};
+use crate::detection::path::turn;
 use crate::geometry::angle_between;
 use crate::geometry::rectangle::direction;
 use crate::traffic::net::{LaneIndex, Net};
@@ -26,6 +27,10 @@ const LEAST_TURN: Radian = 0.35;
 const CONTRADICTS: MetrePerSecond = 2.0;
 /// A tracked heading may sway by this within 5 s, besides what it turns, in rad.
 const SWAYS: Radian = 1.0;
+/// A tracked heading that changes by less from half a second to the next is steady, in rad.
+const STEADY: Radian = 0.05;
+/// One that swerves turns back up to twice, whatever the angle; one whose heading sways turns back more often.
+const SWERVES: usize = 2;
 /// Two whose speeds differ by less than this go along with each other, in m/s.
 const ALIKE: MetrePerSecond = 1.0;
 
@@ -105,10 +110,14 @@ fn is_mistracked(pair: &Pair, party: &Party) -> bool {
         let displaced = (to - from).norm() / (now - before);
         (displaced - party.speed).abs() > f64::max(CONTRADICTS, party.speed / 2.0)
     };
-    let turn = |one: Radian, other: Radian| angle_between(&direction(one), &direction(other));
-    let swayed = places.windows(2).map(|ends| turn(ends[0].2, ends[1].2)).sum::<Radian>();
-    let turned = places.first().map_or(0.0, |first| turn(first.2, party.heading));
-    party.category != Category::Obstacle && (contradicts || swayed - turned > SWAYS)
+    let turn_between = |one: Radian, other: Radian| turn(&direction(one), &direction(other));
+    let turns = places.windows(2).map(|ends| turn_between(ends[0].2, ends[1].2)).collect::<Vec<_>>();
+    let swayed = turns.iter().map(|turn| turn.abs()).sum::<Radian>();
+    let turned = places.first().map_or(0.0, |first| turn_between(first.2, party.heading).abs());
+    let swings = turns.into_iter().filter(|turn| turn.abs() > STEADY).collect::<Vec<_>>();
+    let turns_back = swings.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+    let sways = swayed - turned > SWAYS && turns_back > SWERVES;
+    party.category != Category::Obstacle && (contradicts || sways)
 }
 
 /// Whether a person goes along with one who rides: most likely one road user that was tracked twice.
