@@ -3,7 +3,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 # Where the environment forbids bytecode, every simulation compiles libsumo's Python modules again: 0.3 s.
 export PYTHONDONTWRITEBYTECODE :=
-SOURCES := $(shell find src bridge/src bridge/python -type f -not -name '*.pyc') \
+SOURCES := $(shell find src crates bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
 .PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation bench quick docs clean help
@@ -47,6 +47,7 @@ soak: $(VENV)/wheel ## 10^8 vehicle-steps in one process: memory and open files 
 lint: $(VENV)/wheel $(VENV)/tests ## formatting, clippy, ruff, mypy, imports between files, licences
 	cargo fmt --all --check
 	PYO3_PYTHON=$(CURDIR)/$(BIN)/python cargo clippy --workspace --all-targets -- -D warnings
+	cargo check --package closecall
 	cp Cargo.lock fuzz/Cargo.lock
 	cargo check --quiet --manifest-path fuzz/Cargo.toml --no-default-features --target-dir target
 	$(BIN)/ruff format --check bridge/python tests benches

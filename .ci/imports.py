@@ -1,39 +1,27 @@
-"""Checks the imports between the files of the crate: none runs up the list of layers, and no two files import each other
-in a circle.
+"""Checks the imports between the files of each crate and of the Python package: none runs up the list of layers, and no two
+files import each other in a circle. Between crates, Cargo itself allows neither.
 
     python3 .ci/imports.py [ROOT]
 
-An import is a `use` or a path through `crate::`, `super::` or a module of the file's own, outside of test modules. A name
+In Rust an import is a `use` or a path through `crate::`, `super::` or a module of the file's own, outside of test modules. A name
 that a module re-exports counts as an import of the file that defines it. `mod` declarations are not imports. Standard
 library only; prints each fault with its file and exits with 1 if there is one.
 """
 
 from __future__ import annotations
 
+import ast
 import re
 import sys
 from pathlib import Path
 
-# From the ground up: a file may import what stands before it or beside it.
-LAYERS = [
-    ["error"],
-    ["util"],
-    ["geometry"],
-    ["braking"],
-    ["options"],
-    ["traffic"],
-    ["detection"],
-    ["events"],
-    ["output"],
-    ["run"],
-    ["input"],
-    ["analysis"],
-    ["batch"],
-    ["study"],
-    ["cli"],
-    ["internals", "", "main"],
-]
-LAYER_OF = {name: height for height, names in enumerate(LAYERS) for name in names}
+# From the ground up: a file may import what stands before it or beside it. Elsewhere only circles are looked for.
+LAYERS = {
+    "src": [["util"], ["error"], ["geometry"], ["braking"], ["options"], ["traffic"], ["detection"], ["events"], [""]],
+    "crates/run/src": [["error"], ["util"], ["net", "options"], ["output"], ["run"], ["input"], [""]],
+}
+CRATES = ["src", "crates/run/src", "crates/analysis/src", "crates/study/src", "crates/cli/src", "bridge/src"]
+PACKAGE = "bridge/python/closecall"
 
 USE = re.compile(r"^\s*(pub(?:\([^)]*\))?\s+)?use\s+([^;]+);", re.MULTILINE)
 PATH = re.compile(r"\b(?:crate|super|self|[a-z_][a-z0-9_]*)(?:::\w+)+")
@@ -131,8 +119,24 @@ class Crate:
         return {target for target in targets if target is not None} - {module}
 
 
-def layer(module: str) -> int | None:
-    return LAYER_OF.get(module.partition("::")[0])
+def python_imports(package: Path) -> dict[str, set[str]]:
+    """The modules of a Python package, with those that each imports; imports for types alone do not count."""
+    found = {}
+    for path in sorted(package.glob("*.py")):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        only_types = {
+            inner
+            for node in ast.walk(tree)
+            if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.dump(node.test)
+            for inner in ast.walk(node)
+        }
+        relative = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) and node.level]
+        imported: set[str] = set()
+        for node in relative:
+            if node not in only_types:
+                imported.update([node.module] if node.module else [name.name for name in node.names])
+        found[path.stem] = imported
+    return {module: targets & found.keys() - {module} for module, targets in found.items()}
 
 
 def circles(edges: dict[str, set[str]]) -> list[list[str]]:
@@ -163,22 +167,36 @@ def circles(edges: dict[str, set[str]]) -> list[list[str]]:
     return found
 
 
-def main() -> int:
-    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
-    crate = Crate(root / "src")
-    edges = {module: crate.imports(module) for module in crate.files}
+def faults_of(crate: Crate, layers: list[list[str]], edges: dict[str, set[str]]) -> list[str]:
+    """Modules without a layer, and imports that run up."""
+    height = {name: height for height, names in enumerate(layers) for name in names}
     faults = []
     for module, targets in edges.items():
-        if layer(module) is None:
+        own = height.get(module.partition("::")[0])
+        if own is None:
             faults.append(f"{crate.files[module]}: no layer in .ci/imports.py")
             continue
         for target in sorted(targets):
-            if (height := layer(target)) is not None and height > layer(module):
+            if height.get(target.partition("::")[0], 0) > own:
                 faults.append(f"{crate.files[module]}: imports {target or 'the root'}, which stands above it")
-    for group in circles(edges):
-        names = ", ".join(f"{module} -> {', '.join(sorted(edges[module] & set(group)))}" for module in group)
-        faults.append(f"a circle of imports: {names}")
-    print("\n".join(faults) if faults else f"{len(edges)} files: no import runs up, none in a circle")
+    return faults
+
+
+def main() -> int:
+    root = Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent.parent
+    graphs = {PACKAGE: python_imports(root / PACKAGE)}
+    faults = []
+    for folder in CRATES:
+        crate = Crate(root / folder)
+        graphs[folder] = {module: crate.imports(module) for module in crate.files}
+        if folder in LAYERS:
+            faults += faults_of(crate, LAYERS[folder], graphs[folder])
+    for folder, edges in graphs.items():
+        for group in circles(edges):
+            names = ", ".join(f"{module} -> {', '.join(sorted(edges[module] & set(group)))}" for module in group)
+            faults.append(f"{folder}: a circle of imports: {names}")
+    files = sum(map(len, graphs.values()))
+    print("\n".join(faults) if faults else f"{files} files: no import runs up, none in a circle")
     return 1 if faults else 0
 
 

@@ -18,12 +18,12 @@ APACHE = ROOT / "LICENSE"
 NAMES = ("license", "licence", "copying", "notice", "unlicense", "copyright")
 
 EMBEDDED = {
-    "Apache ECharts 6.1.0 (Apache-2.0)": ["analysis/report/vendor/NOTICE-echarts", "analysis/report/vendor/LICENSE-echarts"],
-    "ZRender 6.1.0, in Apache ECharts (BSD-3-Clause)": ["analysis/report/vendor/LICENSE-zrender"],
-    "d3, in Apache ECharts (BSD-3-Clause)": ["analysis/report/vendor/LICENSE-d3"],
-    "DejaVu Sans (Bitstream Vera, Arev)": ["output/font/LICENSE-dejavu"],
+    "Apache ECharts 6.1.0 (Apache-2.0)": ["crates/analysis/src/report/vendor/NOTICE-echarts", "crates/analysis/src/report/vendor/LICENSE-echarts"],
+    "ZRender 6.1.0, in Apache ECharts (BSD-3-Clause)": ["crates/analysis/src/report/vendor/LICENSE-zrender"],
+    "d3, in Apache ECharts (BSD-3-Clause)": ["crates/analysis/src/report/vendor/LICENSE-d3"],
+    "DejaVu Sans (Bitstream Vera, Arev)": ["crates/run/src/output/font/LICENSE-dejavu"],
 }
-"""What is embedded besides crates, each with its files below `src`."""
+"""What is embedded besides crates, each with its files."""
 
 STANDARD_LIBRARY = "Rust's standard library, The Rust Project contributors (MIT OR Apache-2.0)"
 
@@ -71,7 +71,7 @@ def texts(folder: Path, licence: str) -> list[Path]:
 
 def document() -> str:
     """The licences, each text below what it is of."""
-    works = {name: [ROOT / "src" / file for file in files] for name, files in EMBEDDED.items()}
+    works = {name: [ROOT / file for file in files] for name, files in EMBEDDED.items()}
     works |= {STANDARD_LIBRARY: [APACHE]} | crates()
     owners: dict[str, list[str]] = {}
     for work, files in works.items():

@@ -12,9 +12,9 @@ mod scenes;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use closecall::internals::study::Chance;
-use closecall::internals::util::{Team, processors};
+use closecall::util::threads::{Team, processors};
 use closecall::{Detector, Options, State};
+use closecall_study::reference::chance::Chance;
 use scenes::{Scene, TIMES, detector, wake};
 
 /// Steps are measured for at least this long.

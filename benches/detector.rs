@@ -16,8 +16,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use clap::ValueEnum;
-use closecall::internals::study::Chance;
 use closecall::{Detector, Options, Profile, Shortcut, State};
+use closecall_study::reference::chance::Chance;
 
 use rivals::{AllPairs, AllTested, Boxes, Making, Tree};
 use scenes::{Scene, TIMES, detector, wake};

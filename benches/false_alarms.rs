@@ -5,7 +5,9 @@
 
 use std::path::PathBuf;
 
-use closecall::internals::batch::{Outcome, RegressSettings, comparisons};
+use closecall_analysis::batch::regress::outcome::Outcome;
+use closecall_analysis::batch::regress::scenario::RegressSettings;
+use closecall_analysis::batch::regress::statistics::comparisons;
 
 const TRIALS: usize = 10_000;
 const SEEDS: usize = 6;

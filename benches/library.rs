@@ -8,10 +8,12 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use closecall::Point;
-use closecall::internals::geometry::{
-    ConvexOutline, Rectangle, Vector, distance, plainly_touches, slide, touches, translation,
-};
-use closecall::internals::study::Chance;
+use closecall::geometry::Vector;
+use closecall::geometry::contact::{distance, plainly_touches, touches};
+use closecall::geometry::convex::ConvexOutline;
+use closecall::geometry::rectangle::Rectangle;
+use closecall::geometry::separating_axes::{slide, translation};
+use closecall_study::reference::chance::Chance;
 use parry2d_f64::math::{Pose, Rotation, Vector as ParryVector};
 use parry2d_f64::query::{self, ShapeCastOptions};
 use parry2d_f64::shape::Cuboid;

@@ -18,9 +18,9 @@ fn main() {
     let folder = tempfile::tempdir().unwrap();
     let before = counting::live_bytes();
     let mut day = day::Day::new(
-        Path::new("sumo_nets/left_turn/left_turn.net.xml"),
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../sumo_nets/left_turn/left_turn.net.xml")),
         folder.path(),
-        closecall::internals::study::car(),
+        closecall_study::stress::car(),
     );
     println!("what,scene,method,size,value,unit");
     for hour in 1..=24 {

@@ -15,8 +15,10 @@ use std::process::Command;
 use std::sync::Arc;
 use std::time::Instant;
 
-use closecall::internals::input::{RecordedStep, Recording};
-use closecall::{Net, Options, Replay, Run};
+use closecall::{Net, Options};
+use closecall_run::input::replay::recording::Recording;
+use closecall_run::input::replay::rows::RecordedStep;
+use closecall_run::{Replay, Run};
 
 /// Parallel roads, far enough apart that their traffic never meets.
 const ROADS: usize = 20;
@@ -90,7 +92,7 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
 
 /// Runs closecall with these words and prints its peak memory, in kB, if the system reports it (Linux).
 fn alone(words: &[&str]) {
-    assert_eq!(closecall::cli::main(words.iter().map(OsString::from), None), 0);
+    assert_eq!(closecall_cli::main(words.iter().map(OsString::from), None), 0);
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     println!("{}", most.map_or("NaN", |most| most.trim_end_matches("kB").trim()));
@@ -131,7 +133,7 @@ impl Measured {
         let options = Options::default();
         let seconds = seconds(|| {
             let mut replay = Replay::open(&self.path, &[], Some(net), &options).unwrap();
-            let mut run = Run::new(&options, Some(net.clone())).unwrap();
+            let mut run = Run::new(&options.clone().into(), Some(net.clone())).unwrap();
             run.set_fixed_routes(true);
             while let Ok(Some(_)) = replay.next(&mut run) {}
         });
@@ -141,7 +143,7 @@ impl Measured {
 
 /// Measures the recordings in turns, because the machine's speed changes every few seconds.
 fn measure(mut recordings: Vec<Measured>, net: Option<&Path>) {
-    let net = net.map(|net| Arc::new(Net::read(net).unwrap()));
+    let net = net.map(|net| Arc::new(closecall_run::net::read(net).unwrap()));
     for _ in 0..ROUNDS {
         for recording in &mut recordings {
             recording.read();

@@ -2,7 +2,8 @@
 //!
 //!     cargo run --example frame_by_hand
 
-use closecall::{Detector, Frame, Options, Profile, Result, Roster, State, SumoType};
+use closecall::Result;
+use closecall::{Detector, Frame, Options, Profile, Roster, State, SumoType};
 
 fn main() -> Result<()> {
     let options = Options::default();

@@ -2,7 +2,8 @@
 //!
 //!     cargo run --example own_source
 
-use closecall::{Options, Profile, Result, Run, State, SumoType};
+use closecall::{Options, Profile, State, SumoType};
+use closecall_run::{Result, Run};
 
 /// Length of a step in s.
 const STEP: f64 = 0.1;
@@ -11,7 +12,7 @@ const SPEED: f64 = 12.0;
 
 fn main() -> Result<()> {
     let options = Options::default();
-    let mut run = Run::new(&options, None)?;
+    let mut run = Run::new(&options.clone().into(), None)?;
     let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options))?;
     let eastbound = run.enter("eastbound", car);
     let northbound = run.enter("northbound", car);
@@ -23,7 +24,7 @@ fn main() -> Result<()> {
         let north = std::f64::consts::FRAC_PI_2;
         run.frame.push(northbound, State { x: 0.0, y: driven - 50.0, z: 0.0, heading: north, speed: SPEED });
         // Without a net, no placement has to be set.
-        run.step(|_, _| Ok::<(), closecall::Error>(()))?;
+        run.step(|_, _| Ok::<(), closecall_run::Error>(()))?;
     }
     run.finish()?;
     for conflict in run.conflicts() {

@@ -5,7 +5,8 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::{Error, Net, Options, Replay, Result, Run};
+use closecall::Options;
+use closecall_run::{Error, Replay, Result, Run};
 
 fn main() -> Result<()> {
     let mut paths = std::env::args_os().skip(1).map(PathBuf::from);
@@ -13,9 +14,9 @@ fn main() -> Result<()> {
         return Err(Error::Value("usage: replay RECORDING NET".to_owned()));
     };
     let options = Options::default();
-    let net = Arc::new(Net::read(&net)?);
+    let net = Arc::new(closecall_run::net::read(&net)?);
     let mut replay = Replay::open(&recording, &[], Some(&net), &options)?;
-    let mut run = Run::new(&options, Some(net))?;
+    let mut run = Run::new(&options.clone().into(), Some(net))?;
     run.set_fixed_routes(true);
     while replay.next(&mut run)?.is_some() {}
     let summary = run.finish()?;

@@ -1,143 +1,39 @@
-//! Errors: each names the file, the place in it and what is wrong there.
+//! What the method refuses.
 
-use std::path::{Path, PathBuf};
+use crate::util::units::Radian;
 
 /// The result of the library's functions.
 pub type Result<T> = std::result::Result<T, Error>;
 
-/// A time in s as people write it: sums of steps differ from it by rounding.
-fn in_microseconds(time: f64) -> f64 {
-    (time * 1e6).round() / 1e6
-}
-
-/// An error of closecall. Its `Display` is one line for standard error.
-#[derive(Debug, thiserror::Error)]
+/// An error of the method. Its `Display` is one line.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A file or folder cannot be read or written.
-    #[error("{}: {source}", path.display())]
-    File {
-        /// The file or folder.
-        path: PathBuf,
-        /// The error of the operating system.
-        source: std::io::Error,
+    /// A dimension, mass or brake value of a profile is beyond its limit.
+    #[error("type \"{name}\": {why}")]
+    Profile {
+        /// The profile's name.
+        name: String,
+        /// Which value, and what it must be.
+        why: String,
     },
-    /// The content of a file is wrong at a line.
-    #[error("{}, line {line}: {message}", path.display())]
-    Line {
-        /// The file.
-        path: PathBuf,
-        /// The line, counted from 1.
-        line: u64,
-        /// What is wrong there.
-        message: String,
+    /// The bounds between the kinds of conflict overlap.
+    #[error("rear_end_below ({rear_end_below} rad) must not be above frontal_above ({frontal_above} rad)")]
+    Kinds {
+        /// A conflict is rear-end below this angle.
+        rear_end_below: Radian,
+        /// A conflict is frontal above this angle.
+        frontal_above: Radian,
     },
-    /// The content of a file is wrong as a whole.
-    #[error("{}: {message}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        message: String,
+    /// The condition of the log needs pairs that the paper's flow chart does not find.
+    #[error(
+        "log: \"{condition}\" needs pairs beyond the paper's detection radius, within which --mode paper finds them"
+    )]
+    BeyondPaper {
+        /// The condition.
+        condition: String,
     },
-    /// A log lacks rows that its run counted; what is there was used.
-    #[error("{0}")]
-    Lost(String),
-    /// A recording ends early; the steps before that were checked.
-    #[error("{}: cut short after time {} s: {message}", path.display(), in_microseconds(*time))]
-    CutShort {
-        /// The file.
-        path: PathBuf,
-        /// The last complete step.
-        time: f64,
-        /// Where and how it ends.
-        message: String,
-    },
-    /// A value of a caller or an option is out of range.
-    #[error("{0}")]
-    Value(String),
-    /// A measured value exceeds its bound.
-    #[error("{0}")]
-    Exceeded(String),
-    /// A step that cannot be checked; the steps before it were.
-    #[error("at {} s: {message}", in_microseconds(*time))]
-    Step {
-        /// The simulated time.
-        time: f64,
-        /// What is wrong in it.
-        message: String,
-    },
-    /// A panic: a fault of closecall itself.
-    #[error("internal error: {0}; please report this line with the command and its input")]
-    Internal(String),
-    /// SUMO refused to start: its configuration, net or demand cannot be used.
-    #[error("{}: SUMO says: {message}", path.display())]
-    Refused {
-        /// The SUMO configuration.
-        path: PathBuf,
-        /// SUMO's message.
-        message: String,
-    },
-    /// SUMO failed while it ran.
-    #[error("SUMO failed at {} s: {message}", in_microseconds(*time))]
-    Failed {
-        /// The simulated time that was reached.
-        time: f64,
-        /// SUMO's message.
-        message: String,
-    },
-    /// The user ended the run.
-    #[error("interrupted at {} s; what was found so far is in the log", in_microseconds(*time))]
-    Interrupted {
-        /// The simulated time that was reached.
-        time: f64,
-    },
-    /// The user ended a command before it had a result.
-    #[error("interrupted; nothing was compared or written")]
-    Stopped,
-    /// The user ended a sweep.
-    #[error("interrupted after {done} of {all} runs; repeat the command to continue")]
-    Paused {
-        /// Number of completed runs.
-        done: usize,
-        /// Number of runs.
-        all: usize,
-    },
-}
-
-impl Error {
-    /// An unusable file, with the error of the operating system.
-    pub fn file(path: &Path, source: std::io::Error) -> Self {
-        Self::File { path: path.to_owned(), source }
-    }
-
-    /// Wrong content at a line of a file.
-    pub fn line(path: &Path, line: u64, message: impl Into<String>) -> Self {
-        Self::Line { path: path.to_owned(), line, message: message.into() }
-    }
-
-    /// Wrong content of a file as a whole.
-    pub fn content(path: &Path, message: impl Into<String>) -> Self {
-        Self::Content { path: path.to_owned(), message: message.into() }
-    }
-
-    /// A step that cannot be checked.
-    pub fn step(time: f64, message: impl Into<String>) -> Self {
-        Self::Step { time, message: message.into() }
-    }
-
-    /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded,
-    /// 3 if a recording was cut short or a log lacks rows, 70 if closecall itself is at fault, 130 if the user interrupted it, 2 for every
-    /// other unusable input.
-    pub fn exit_status(&self) -> u8 {
-        match self {
-            Self::Failed { .. } | Self::Exceeded(_) => 1,
-            Self::CutShort { .. } | Self::Lost(_) => 3,
-            // EX_SOFTWARE of sysexits.h.
-            Self::Internal(_) => 70,
-            // The convention of shells: 128 + SIGINT.
-            Self::Interrupted { .. } | Self::Stopped | Self::Paused { .. } => 130,
-            _ => 2,
-        }
-    }
+    /// The path that is really driven is asked for where it is not known.
+    #[error("path: driven is where road users drive afterwards, which only a recording knows: see closecall replay")]
+    FutureUnknown,
 }

@@ -29,49 +29,27 @@
 //! # Ok::<(), closecall::Error>(())
 //! ```
 //!
-//! | I want to | with |
+//! | module | what is in it, in the order of the data's story |
 //! |---|---|
-//! | look at single frames | [`Detector`] |
-//! | follow conflicts over a whole run, with a log | [`Run`] |
-//! | check a recording of SUMO | [`Replay`] into a [`Run`] |
-//! | know μ of two road users | [`mu`] |
+//! | [`util`] | units, limits, numbers, threads |
+//! | [`geometry`] | rectangles, outlines, lines; whether two touch, and when |
+//! | [`braking`] | the stopping distance, and [μ](mu) by its models |
+//! | [`options`] | the settings of the method |
+//! | [`traffic`] | the road users of a step, what stays the same about them, the net |
+//! | [`detection`] | frames in, [encounters](Encounter) out |
+//! | [`events`] | encounters over several steps become a [`Conflict`] ([`Tracker`]) |
 //!
-//! The folder `examples/` has a program for each. SI units throughout; positions are front-bumper centres.
-//!
-//! # Features
-//! The default has all of them. Without any, the library has the detector, runs, the log and replay.
-//!
-//! | feature | adds |
-//! |---|---|
-//! | `cli` | the command line, options from text, logs read back, statistics, the report, regression tests |
-//! | `parquet` | sweeps, whose logs are Parquet files, and recordings in Parquet |
-//! | `plot` | charts as PNG or SVG |
-//! | `study` | the study of error against run time, and the stress cases |
+//! Files are not this crate's: `closecall-run` reads nets and recordings, and writes logs. SI units throughout; positions are
+//! front-bumper centres. The feature `clap` makes the options arguments of a command line.
 
-// With some features off, parts that only those features use are left without a caller.
-#![cfg_attr(not(all(feature = "parquet", feature = "study")), allow(dead_code, unused_imports))]
-
-#[cfg(feature = "cli")]
-mod analysis;
-#[cfg(feature = "cli")]
-mod batch;
-mod braking;
-#[cfg(feature = "cli")]
-pub mod cli;
-mod detection;
+pub mod braking;
+pub mod detection;
 mod error;
-mod events;
-mod geometry;
-mod input;
-#[doc(hidden)]
-pub mod internals;
-mod options;
-mod output;
-mod run;
-#[cfg(feature = "study")]
-mod study;
-mod traffic;
-mod util;
+pub mod events;
+pub mod geometry;
+pub mod options;
+pub mod traffic;
+pub mod util;
 
 pub use braking::{Brakes, Braking, MuModel, mu, response_left};
 pub use detection::detector::Detector;
@@ -81,17 +59,9 @@ pub use detection::severity::{Consequence, NearnessLevel};
 pub use error::{Error, Result};
 pub use events::{Alarm, Artefact, Cause, Causes, Conflict, Manoeuvre, PetSoFar, Snapshot, Surroundings, Tracker};
 pub use geometry::Point;
-pub use input::replay::Replay;
 pub use options::condition::Condition;
 pub use options::shortcut::Shortcut;
 pub use options::{Align, BrakeSystem, Deceleration, Mode, Options, PathModel, TypeOptions};
-pub use output::folder::LogFolder;
-pub use output::formats::OutputFiles;
-pub use output::palette;
-pub use output::record::RunRecord;
-pub use output::summary::Summary;
-pub use run::Run;
-pub use run::recorded::{Ending, RecordedRun};
 pub use traffic::frame::{Frame, State};
 pub use traffic::net::{EdgeIndex, LaneIndex, Net, Overlap, Overlaps};
 pub use traffic::placement::Placement;

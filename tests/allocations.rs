@@ -33,7 +33,7 @@ fn round_step(frame: &mut Frame, users: &[UserIndex], number: u32) {
 
 fn assert_warm_allocates_nothing(options: &Options, users: u32, step: impl Fn(&mut Frame, &[UserIndex], u32)) {
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::internals::study::car()).unwrap();
+    let profile = roster.profile(closecall_study::stress::car()).unwrap();
     let users = (0..users).map(|number| roster.enter(&number.to_string(), profile)).collect::<Vec<_>>();
     let mut detector = Detector::new(options, None);
     let mut frame = Frame::default();

@@ -11,7 +11,7 @@ mod doors;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use closecall::internals::util::caught;
+use closecall_run::util::panics::caught;
 
 /// What numbers are replaced by.
 const NUMBERS: [&str; 20] = [
@@ -41,7 +41,7 @@ const LONGEST: Duration = Duration::from_secs(5);
 
 /// The examples of a door.
 fn examples(door: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz").join(door);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz").join(door);
     let mut files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<PathBuf>>();
     files.sort();
     files.iter().map(|path| std::fs::read(path).unwrap()).collect()
@@ -79,7 +79,7 @@ fn change(random: &mut fastrand::Rng, bytes: &mut Vec<u8>, other: &[u8]) {
 #[test]
 fn garbage_is_an_error_or_a_result_and_no_panic() {
     // Some panics are caught on purpose: those of the library that reads Parquet.
-    closecall::cli::keep_panics_quiet();
+    closecall_cli::keep_panics_quiet();
     let each = std::env::var("CLOSECALL_GARBAGE").ok().and_then(|seconds| seconds.parse().ok());
     let each = each.map_or(Duration::from_millis(60), Duration::from_secs);
     let only = std::env::var("CLOSECALL_DOOR").ok();

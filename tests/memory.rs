@@ -15,9 +15,9 @@ const HOUR: usize = 3600;
 fn a_day_takes_no_more_memory_than_an_hour() {
     let folder = tempfile::tempdir().unwrap();
     let mut day = day::Day::new(
-        Path::new("sumo_nets/left_turn/left_turn.net.xml"),
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../sumo_nets/left_turn/left_turn.net.xml")),
         folder.path(),
-        closecall::internals::study::car(),
+        closecall_study::stress::car(),
     );
     (0..HOUR).for_each(|_| day.step());
     let (live, conflicts) = (counting::live_bytes(), day.conflicts());

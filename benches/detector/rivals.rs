@@ -1,7 +1,7 @@
 //! Alternatives to the detector. They only find the pairs that might meet, without distances along a path, kinds or μ.
 
-use closecall::internals::braking::stopping_distance;
-use closecall::internals::geometry::direction;
+use closecall::braking::stopping_distance;
+use closecall::geometry::rectangle::direction;
 use closecall::{Profile, State};
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::math::{Pose, Rotation, Vector};
@@ -92,7 +92,7 @@ impl Tree {
 
 /// The rectangle that a car covers until it stands, on a straight road.
 struct Covered {
-    axis: closecall::internals::geometry::Vector,
+    axis: closecall::geometry::Vector,
     ahead: f64,
     half: Vector,
     centre: Vector,

@@ -5,8 +5,8 @@ use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use closecall::internals::study::Chance;
 use closecall::{Detector, Frame, Options, Profile, Roster, State, SumoType, UserIndex};
+use closecall_study::reference::chance::Chance;
 
 pub type Draw = fn(&mut Chance, usize) -> Vec<State>;
 

@@ -1,7 +1,8 @@
 //! Python's `Alarm`, and the functions of a script that are called while a simulation runs.
 
-use closecall::internals::output::{Context, LoggedConflict};
-use closecall::{PetSoFar, Run, UserIndex};
+use closecall::{PetSoFar, UserIndex};
+use closecall_run::Run;
+use closecall_run::output::schema::{Context, LoggedConflict};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 

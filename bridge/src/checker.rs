@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::internals::output::COLUMNS;
-use closecall::internals::util::caught;
-use closecall::{LogFolder, Net, Options, OutputFiles, RecordedRun, Run};
+use closecall_run::output::schema::COLUMNS;
+use closecall_run::util::panics::caught;
+use closecall_run::{LogFolder, OutputFiles, RecordedRun, Run, RunOptions};
 use pyo3::exceptions::{PyRuntimeError, PyRuntimeWarning, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -73,10 +73,10 @@ impl Checker {
         options: Option<&Bound<PyDict>>,
     ) -> PyResult<Self> {
         let options = options_from(options)?;
-        options.check_future_is_unknown().map_err(exception)?;
+        options.model.check_future_is_unknown().map_err(exception)?;
         let given = net.clone();
         let net = match (net, source) {
-            (Some(path), _) => Some(std::sync::Arc::new(Net::read(&path).map_err(exception)?)),
+            (Some(path), _) => Some(std::sync::Arc::new(closecall_run::net::read(&path).map_err(exception)?)),
             (None, Some(source)) => sumo::net_of(source)?,
             (None, None) => None,
         };
@@ -84,15 +84,15 @@ impl Checker {
         run.keep_closed_conflicts(keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX }));
         let feed = match source {
             Some(source) => {
-                sumo::add_obstacles(source, &mut run, &options.obstacles)?;
+                sumo::add_obstacles(source, &mut run, &options.log.obstacles)?;
                 let identity = Box::new(Identity::of(source)?);
-                let mut source = Box::new(Source::new(source, &mut run, &options)?);
+                let mut source = Box::new(Source::new(source, &mut run, &options.model)?);
                 if let Some(remark) = source.take_remark() {
                     say::how_sumo_is_read(py, &remark)?;
                 }
                 Feed::Simulation(source, identity)
             }
-            None => Feed::Frames(Box::new(Frames::new(&options))),
+            None => Feed::Frames(Box::new(Frames::new(&options.model))),
         };
         let recorded = match out {
             Some(out) => {
@@ -257,7 +257,7 @@ impl Checker {
 }
 
 /// The options that Python keywords set.
-pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
+pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<RunOptions> {
     let mut settings = Vec::new();
     for (name, value) in keywords.into_iter().flatten() {
         let text = if let Ok(flag) = value.extract::<bool>() {
@@ -269,7 +269,7 @@ pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<Options> {
         };
         settings.push((name.to_string(), text));
     }
-    Options::from_settings(settings.iter().map(|(name, value)| (name.as_str(), value.clone()))).map_err(exception)
+    RunOptions::from_settings(settings.iter().map(|(name, value)| (name.as_str(), value.clone()))).map_err(exception)
 }
 
 /// Whether libsumo runs sumo-gui. traci is not asked, because a plain SUMO would print an error.

@@ -1,6 +1,6 @@
 //! What a step of a checker changes: the run, the source of its road users, its painter and its listeners.
 
-use closecall::{Ending, Error, RecordedRun};
+use closecall_run::{Ending, Error, RecordedRun};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 

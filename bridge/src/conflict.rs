@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use closecall::Run;
-use closecall::internals::analysis::ConflictReader;
-use closecall::internals::output::{COLUMNS, Column, Context, LoggedConflict, Presence, Value};
+use closecall_analysis::logged::ConflictReader;
+use closecall_run::Run;
+use closecall_run::output::schema::{COLUMNS, Column, Context, LoggedConflict, Presence, Value};
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
 use pyo3::types::{PyCFunction, PyDict, PyTuple};
@@ -109,7 +109,7 @@ fn documentation(column: &Column) -> String {
 ///     ValueError: it is not a log.
 #[pyfunction]
 pub fn read_log(py: Python, folder: PathBuf) -> PyResult<Vec<Conflict>> {
-    let read = || -> closecall::Result<Vec<_>> {
+    let read = || -> closecall_run::Result<Vec<_>> {
         ConflictReader::open(&folder)?.with_snapshots().map(|conflict| conflict.map(Conflict)).collect()
     };
     py.detach(read).map_err(exception)

@@ -1,12 +1,12 @@
 //! closecall's errors as Python's own kinds of exception, and Python's as closecall's.
 
-use closecall::Error;
+use closecall_run::Error;
 use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 /// The exception for an error: an `OSError` for files, a `RuntimeError` if SUMO or closecall itself failed, otherwise a `ValueError`.
-pub fn exception(error: Error) -> PyErr {
-    match error {
+pub fn exception(error: impl Into<Error>) -> PyErr {
+    match error.into() {
         Error::File { path, source } => {
             let text = source.to_string();
             match source.raw_os_error() {
@@ -15,8 +15,10 @@ pub fn exception(error: Error) -> PyErr {
                 None => PyOSError::new_err(format!("{}: {text}", path.display())),
             }
         }
-        Error::Refused { .. } | Error::Failed { .. } | Error::Internal(_) => PyRuntimeError::new_err(error.to_string()),
-        _ => PyValueError::new_err(error.to_string()),
+        error @ (Error::Refused { .. } | Error::Failed { .. } | Error::Internal(_)) => {
+            PyRuntimeError::new_err(error.to_string())
+        }
+        other => PyValueError::new_err(other.to_string()),
     }
 }
 

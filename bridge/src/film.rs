@@ -1,7 +1,7 @@
 //! Films of clips: pictures go to Python packages that few users need, and so are not part of closecall.
 
-use closecall::cli::FilmRequest;
-use closecall::{Error, Result};
+use closecall_cli::FilmRequest;
+use closecall_run::{Error, Result};
 use pyo3::exceptions::PyImportError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;

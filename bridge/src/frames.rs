@@ -2,8 +2,9 @@
 //!
 //! A frame is checked as a whole before the run takes any of it, so that one that is refused changes nothing.
 
-use closecall::internals::util::limits::{self, Limit};
-use closecall::{Category, Options, Point, Profile, ProfileIndex, Run, State, SumoType, UserIndex};
+use closecall::util::limits::{self, Limit};
+use closecall::{Category, Options, Point, Profile, ProfileIndex, State, SumoType, UserIndex};
+use closecall_run::Run;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rustc_hash::{FxHashMap, FxHashSet};

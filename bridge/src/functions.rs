@@ -1,10 +1,11 @@
 //! Single formulas on arrays: μ, and contact and distance of rectangles.
 
 use clap::ValueEnum;
-use closecall::internals::geometry::{Rectangle, Vector};
-use closecall::internals::options::{BUILD_UP, EPSILON, RESPONSE};
-use closecall::internals::util::limits::{self, Limit};
-use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType, internals};
+use closecall::geometry::Vector;
+use closecall::geometry::rectangle::Rectangle;
+use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
+use closecall::util::limits::{self, Limit};
+use closecall::{Brakes, Braking, Kind, MuModel, Point, SumoType};
 use numpy::ndarray::{ArrayD, ArrayViewD, Ix2, IxDyn};
 use numpy::{IntoPyArray, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -128,7 +129,8 @@ fn broadcast(a: &[usize], b: &[usize]) -> Option<Vec<usize>> {
 #[pyfunction]
 pub fn touches(py: Python, a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Py<PyAny>> {
     let pairs = pairs(a, b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::touches(a, b)).collect::<Vec<_>>());
+    let found =
+        py.detach(|| pairs.iter().map(|(a, b)| closecall::geometry::contact::touches(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 
@@ -138,7 +140,8 @@ pub fn touches(py: Python, a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Py<Py
 #[pyfunction]
 pub fn distance(py: Python, a: &Bound<PyAny>, b: &Bound<PyAny>) -> PyResult<Py<PyAny>> {
     let pairs = pairs(a, b)?;
-    let found = py.detach(|| pairs.iter().map(|(a, b)| internals::geometry::distance(a, b)).collect::<Vec<_>>());
+    let found =
+        py.detach(|| pairs.iter().map(|(a, b)| closecall::geometry::contact::distance(a, b)).collect::<Vec<_>>());
     Ok(found.into_pyarray(py).into_any().unbind())
 }
 

@@ -54,7 +54,7 @@ mod _closecall {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
-        closecall::cli::keep_panics_quiet();
+        closecall_cli::keep_panics_quiet();
         Conflict::add_attributes(module.py())?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }

@@ -1,7 +1,8 @@
 //! Conflicts in sumo-gui: what is painted, step by step. How it looks is decided in Python, by `closecall._paint`.
 
-use closecall::palette::{Ground, colour};
-use closecall::{Alarm, Category, Run, Severity, UserIndex};
+use closecall::{Alarm, Category, Severity, UserIndex};
+use closecall_run::Run;
+use closecall_run::palette::{Ground, colour};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 

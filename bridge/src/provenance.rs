@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::internals::output::{Input, Versions};
-use closecall::{Options, Run, RunRecord};
+use closecall_run::RunOptions;
+use closecall_run::output::input_hash::Input;
+use closecall_run::output::record::Versions;
+use closecall_run::{Run, RunRecord};
 use pyo3::prelude::*;
 
 use crate::error::exception;
@@ -43,7 +45,7 @@ pub fn files(sumo: &Bound<PyAny>) -> PyResult<SumoFiles> {
 }
 
 /// The record of a run that begins, without its inputs and SUMO's command line. Nothing is simulated without `sumo`.
-pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options: &Options) -> PyResult<RunRecord> {
+pub fn record(sumo: Option<&Bound<PyAny>>, scenario: PathBuf, run: &Run, options: &RunOptions) -> PyResult<RunRecord> {
     let version = |sumo: &Bound<PyAny>| sumo.call_method0("getVersion")?.get_item(1)?.extract::<String>();
     let seed = |sumo: &Bound<PyAny>| match option(sumo, "random").ok()?.as_str() {
         "true" => None,
@@ -65,7 +67,7 @@ pub fn record_of_script(
     sumo: Option<&Bound<PyAny>>,
     net: Option<PathBuf>,
     run: &Run,
-    options: &Options,
+    options: &RunOptions,
 ) -> PyResult<RunRecord> {
     let (scenario, paths) = match sumo {
         Some(sumo) => {
@@ -79,6 +81,6 @@ pub fn record_of_script(
     };
     // The simulation of traci may run on another machine.
     let inputs = paths.iter().filter(|path| path.is_file()).map(|path| Input::of(path));
-    let inputs = inputs.collect::<closecall::Result<_>>().map_err(exception)?;
+    let inputs = inputs.collect::<closecall_run::Result<_>>().map_err(exception)?;
     Ok(RunRecord { inputs, ..record(sumo, scenario, run, options)? })
 }

@@ -4,9 +4,12 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use clap::ValueEnum;
-use closecall::internals::input::{NOISE, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, open_tracks};
-use closecall::internals::output::COLUMNS;
-use closecall::{Error, Net, Options, Replay, Run};
+use closecall_run::RunOptions;
+use closecall_run::input::tracks::{
+    NOISE, RecordingFormat, TrackOptions, TrackOrigin, USUAL_NOISE, open as open_tracks,
+};
+use closecall_run::output::schema::COLUMNS;
+use closecall_run::{Error, Replay, Run};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
@@ -106,8 +109,8 @@ fn checked(
     tracks: &TrackOptions,
     net: Option<&Path>,
     route_files: &[PathBuf],
-    options: &Options,
-) -> PyResult<closecall::Result<Table>> {
+    options: &RunOptions,
+) -> PyResult<closecall_run::Result<Table>> {
     let mut interrupt = None;
     let mut last = Instant::now();
     let mut stopped = || {
@@ -145,13 +148,13 @@ fn check(
     tracks: &TrackOptions,
     net: Option<&Path>,
     route_files: &[PathBuf],
-    options: &Options,
+    options: &RunOptions,
     stopped: &mut dyn FnMut() -> bool,
-) -> closecall::Result<Checked> {
-    let net = net.map(Net::read).transpose()?.map(std::sync::Arc::new);
+) -> closecall_run::Result<Checked> {
+    let net = net.map(closecall_run::net::read).transpose()?.map(std::sync::Arc::new);
     let opened = open_tracks(paths, tracks, net.as_deref(), stopped)?;
     let demand = route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
-    let mut replay = Replay::open_unless(opened.recording(), &demand, net.as_deref(), options, stopped)?;
+    let mut replay = Replay::open_unless(opened.recording(), &demand, net.as_deref(), &options.model, stopped)?;
     let mut run = Run::new(options, net)?;
     run.set_fixed_routes(true);
     let opening = run.opening_remarks(Some(replay.step_length()));

@@ -4,13 +4,14 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::cli::{FilmRequest, ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
-use closecall::internals::batch::Task;
-use closecall::internals::detection::LeftOut;
-use closecall::internals::geometry::Bounds;
-use closecall::internals::input as sumo_files;
-use closecall::internals::output::Input;
-use closecall::{Ending, Error, LogFolder, RecordedRun, Result, Run, RunRecord, Summary, cli};
+use ::closecall_cli;
+use closecall::detection::detector::LeftOut;
+use closecall::geometry::Bounds;
+use closecall_analysis::batch::sweep::Task;
+use closecall_cli::{FilmRequest, ReportEnd, RunRequest, ShowRequest, Sumo, Workers};
+use closecall_run::input::sumo_files;
+use closecall_run::output::input_hash::Input;
+use closecall_run::{Ending, Error, LogFolder, RecordedRun, Result, Run, RunRecord, Summary};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -46,14 +47,14 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
     };
-    Ok(cli::main(words, Some(sumo)))
+    Ok(closecall_cli::main(words, Some(sumo)))
 }
 
 /// The scenario at a path, for the pytest plugin: its folder, the command line to run there, the SUMO options at its end,
 /// and its first seed.
 #[pyfunction]
 pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>, u32)> {
-    let scenario = cli::scenario(&path).map_err(exception)?;
+    let scenario = closecall_cli::scenario(&path).map_err(exception)?;
     let seed = scenario.settings.seeds.first().copied().unwrap_or_default();
     Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
 }
@@ -115,12 +116,12 @@ fn attach(
 fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult<Source> {
     run.set_threads(usize::from(request.threads).saturating_sub(1));
     run.drop_closed_conflicts();
-    sumo::add_obstacles(sumo, run, &request.options.obstacles)?;
+    sumo::add_obstacles(sumo, run, &request.options.log.obstacles)?;
     // In sumo-gui the user may do anything, even add a rerouter.
     if request.gui.is_none() && has_no_rerouters(sumo)? {
         run.set_fixed_routes(true);
     }
-    let mut source = Source::new(sumo, run, &request.options)?;
+    let mut source = Source::new(sumo, run, &request.options.model)?;
     if request.gui.is_none() {
         source.set_exclusive();
     }

@@ -2,10 +2,10 @@
 
 use std::time::{Duration, Instant};
 
-use closecall::cli::RunRequest;
-use closecall::cli::progress::Progress;
-use closecall::internals::util::Helper;
-use closecall::{Error, RecordedRun, Result, Run};
+use closecall::util::threads::Helper;
+use closecall_cli::RunRequest;
+use closecall_cli::progress::Progress;
+use closecall_run::{Error, RecordedRun, Result, Run};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 

@@ -5,10 +5,11 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use closecall::cli::{RunRequest, ShowRequest};
-use closecall::internals::geometry::Bounds;
-use closecall::internals::input as sumo_files;
-use closecall::{Error, Net, Result};
+use closecall::Net;
+use closecall::geometry::Bounds;
+use closecall_cli::{RunRequest, ShowRequest};
+use closecall_run::input::sumo_files;
+use closecall_run::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyModuleNotFoundError};
 use pyo3::prelude::*;
 
@@ -25,7 +26,8 @@ impl NetAhead {
     /// Begins to read the net if the request allows a second thread.
     pub fn begin(request: &RunRequest) -> Option<Self> {
         let configuration = request.scenario.clone();
-        let read = move || sumo_files::net_of(&configuration).map(|path| (path.clone(), Net::read(&path)));
+        let read =
+            move || sumo_files::net_of(&configuration).map(|path| (path.clone(), closecall_run::net::read(&path)));
         (usize::from(request.threads) > 1).then(|| Self(std::thread::spawn(read)))
     }
 
@@ -33,7 +35,7 @@ impl NetAhead {
     pub fn finish(ahead: Option<Self>, path: &Path) -> Result<Net> {
         match ahead.map(|Self(net)| net.join()) {
             Some(Ok(Some((read, net)))) if read == path => net,
-            _ => Net::read(path),
+            _ => closecall_run::net::read(path),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use closecall::internals::run::StepPart;
+use closecall_run::run::step::StepPart;
 
 /// The parts of a step, in order. Those from the broad phase on may run beside SUMO's next step.
 #[derive(Clone, Copy)]

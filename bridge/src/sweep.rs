@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use closecall::cli::{ReportEnd, Workers};
-use closecall::internals::batch::{RunTime, Task};
-use closecall::{Error, Result};
+use closecall_analysis::batch::sweep::Task;
+use closecall_analysis::logged::RunTime;
+use closecall_cli::{ReportEnd, Workers};
+use closecall_run::{Error, Result};
 use pyo3::exceptions::{PyImportError, PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
 

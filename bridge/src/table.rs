@@ -13,8 +13,8 @@ use arrow_array::{
     Array, ArrayRef, BooleanArray, Float64Array, RecordBatch, RecordBatchIterator, StringArray, UInt64Array,
 };
 use arrow_schema::{ArrowError, DataType, Field, Schema, SchemaRef};
-use closecall::internals::analysis::ConflictReader;
-use closecall::internals::output::{Column, ColumnType, LoggedConflict, Presence, Value};
+use closecall_analysis::logged::ConflictReader;
+use closecall_run::output::schema::{Column, ColumnType, LoggedConflict, Presence, Value};
 use numpy::PyArray1;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

@@ -22,7 +22,7 @@ impl Brakes {
 
 /// A model of the minimal collision distance μ.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum MuModel {
@@ -30,7 +30,7 @@ pub enum MuModel {
     #[default]
     Minimal,
     /// The room when both stand.
-    #[cfg_attr(feature = "cli", value(alias = "at_rest"))]
+    #[cfg_attr(feature = "clap", value(alias = "at_rest"))]
     AtRest,
     /// Eq. 19 and 21 as printed: always a minus sign, no floor.
     Paper,

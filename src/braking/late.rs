@@ -91,7 +91,7 @@ impl LateBraking {
 
     /// The longest wait, in s, with which it has gone no further than each of these distances at each of these times. It is
     /// quickest if the first of them is the one that decides.
-    pub fn longest_wait_at_all(&self, limits: &[(Second, Metre)]) -> Second {
+    pub(crate) fn longest_wait_at_all(&self, limits: &[(Second, Metre)]) -> Second {
         let own = self.relative(0.0, 0.0);
         let (mut longest, mut way) = (f64::INFINITY, f64::INFINITY);
         for (time, distance) in limits {

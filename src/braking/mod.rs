@@ -34,7 +34,7 @@ pub fn stopping_distance(speed: MetrePerSecond, brakes: &Brakes) -> Metre {
 }
 
 /// The stopping distance in m as printed (eq. 17): t3 at full speed, then V² at the undiminished speed.
-pub fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre {
+pub(crate) fn stopping_distance_paper(speed: MetrePerSecond, brakes: &Brakes) -> Metre {
     speed * (brakes.response + brakes.build_up) + speed / (2.0 * brakes.deceleration) * speed
 }
 

@@ -39,7 +39,7 @@ pub fn at_rest<N: Number>(ego: Braking, foe: Braking, sigma: f64) -> Needed<N> {
 }
 
 /// The room by the paper: S − Si by eq. 17 and 18.
-pub fn on_paper<N: Number>(ego: Braking, foe: Braking) -> Needed<N> {
+pub(crate) fn on_paper<N: Number>(ego: Braking, foe: Braking) -> Needed<N> {
     let n = N::from;
     let (v, a) = (n(ego.speed), n(ego.brakes.deceleration));
     let own = v * (n(ego.brakes.response) + n(ego.brakes.build_up)) + v / (n(2.0) * a) * v;

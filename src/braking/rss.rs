@@ -15,11 +15,11 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 /// Response time ρ in s.
 pub const RESPONSE: Second = 1.0;
 /// Longitudinal acceleration a⁺ during the response time, in m/s².
-pub const ACCELERATION: MetrePerSecondSquared = 3.5;
+pub(crate) const ACCELERATION: MetrePerSecondSquared = 3.5;
 /// Deceleration b with which every road user brakes at least, in m/s².
-pub const LEAST_BRAKING: MetrePerSecondSquared = 4.0;
+pub(crate) const LEAST_BRAKING: MetrePerSecondSquared = 4.0;
 /// Deceleration B with which a leader brakes at most, in m/s².
-pub const MOST_BRAKING: MetrePerSecondSquared = 8.0;
+pub(crate) const MOST_BRAKING: MetrePerSecondSquared = 8.0;
 
 /// The distance in m until a road user stands that first speeds up for its response time and then brakes.
 pub fn way(speed: MetrePerSecond) -> Metre {
@@ -33,12 +33,12 @@ fn of_foe(foe: MetrePerSecond, sigma: f64) -> Metre {
 }
 
 /// The safe distance in m behind a leader (σ = 1), of two that drive towards each other (σ = −1), and between.
-pub fn safe_distance(speed: MetrePerSecond, foe: MetrePerSecond, sigma: f64) -> Metre {
+pub(crate) fn safe_distance(speed: MetrePerSecond, foe: MetrePerSecond, sigma: f64) -> Metre {
     (way(speed) - of_foe(foe, sigma)).max(0.0)
 }
 
 /// The longest response time ρ of the ego in s with which the safe distance fits into a room; 0 where none does.
-pub fn longest_response(speed: MetrePerSecond, foe: MetrePerSecond, sigma: f64, room: Metre) -> Second {
+pub(crate) fn longest_response(speed: MetrePerSecond, foe: MetrePerSecond, sigma: f64, room: Metre) -> Second {
     // V ρ + a⁺ ρ²/2 + (V + ρ a⁺)²/(2b) = room, a quadratic equation.
     let ratio = 1.0 + ACCELERATION / LEAST_BRAKING;
     let (half, slope) = (ACCELERATION * ratio, speed * ratio);

@@ -33,7 +33,7 @@ pub struct LaneChange {
 
 impl LaneChange {
     /// Whether two changed at once between the same lanes.
-    pub fn is_with(&self, other: &Self) -> bool {
+    pub(crate) fn is_with(&self, other: &Self) -> bool {
         (self.time, self.from, self.to) == (other.time, other.from, other.to)
     }
 }

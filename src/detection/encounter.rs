@@ -85,7 +85,7 @@ impl Encounter {
     }
 
     /// Whether the paths of the two may cross or merge, so that they may have a PET; a follower's and its leader's are one.
-    pub fn may_cross(&self) -> bool {
+    pub(crate) fn may_cross(&self) -> bool {
         self.kind != Kind::RearEnd || !self.foe_leads
     }
 

@@ -7,11 +7,11 @@ use crate::util::units::Radian;
 
 /// How the two road users of a pair meet, by the angle between their headings at the conflict point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
     /// The ego runs into a foe that drives in the same direction.
-    #[cfg_attr(feature = "cli", value(alias = "rear-end"))]
+    #[cfg_attr(feature = "clap", value(alias = "rear-end"))]
     RearEnd,
     /// Both drive towards each other.
     Frontal,
@@ -55,7 +55,7 @@ impl Kind {
 
 /// How severe a conflict is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
 pub enum Severity {
     /// None of the following.

@@ -75,7 +75,7 @@ impl Between<'_> {
     /// than `tolerance`, and between the ends by as much as arcs leave the straight line besides: so well is the way known. A
     /// collision that lasts until the end of the step is one only if it `is_seen` there, as the tolerance depends on the lanes
     /// that they are on.
-    pub fn closest(&self, tolerance: Metre, is_seen: bool) -> Option<Closest> {
+    pub(crate) fn closest(&self, tolerance: Metre, is_seen: bool) -> Option<Closest> {
         let [Some(first), Some(last)] = [self.legs().next(), self.legs().last()] else { return None };
         if (0..2).any(|one| self.is_put_elsewhere(one)) {
             return None;

@@ -224,7 +224,7 @@ impl Conflict {
     }
 
     /// The value of a measure that is logged only if it is chosen.
-    pub(crate) fn chosen(&self, measure: ChosenMeasure) -> Option<f64> {
+    pub fn chosen(&self, measure: ChosenMeasure) -> Option<f64> {
         self.chosen.as_ref().and_then(|values| values[measure as usize])
     }
 }

@@ -302,7 +302,7 @@ impl Extremes {
     }
 
     /// Whether the two came closer than in any step so far.
-    pub fn is_closer(&self, closest: &Closest) -> bool {
+    pub(crate) fn is_closer(&self, closest: &Closest) -> bool {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
     }
 
@@ -334,7 +334,7 @@ impl Extremes {
     }
 
     /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near.
-    pub fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
+    pub(crate) fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
         let (assessment, artefact) = self.verdict();
         let crosses = !matches!(self.why.manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
         let is_near = pet.is_some_and(|pet| pet.lasts < LIKELY_PET) || self.passed_at < LIKELY_CLEARANCE;
@@ -344,13 +344,18 @@ impl Extremes {
     }
 
     /// Whether it is over within a single frame of tracked road users: one bad frame, no conflict.
-    pub fn is_a_bad_frame(&self) -> bool {
+    pub(crate) fn is_a_bad_frame(&self) -> bool {
         self.is_tracked && self.begin == self.end
     }
 
     /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair, `assessed` how severe a
     /// contact was, and what it is if it is none of traffic's.
-    pub fn come_closer(&mut self, closest: &Closest, ego: usize, assessed: Option<(Assessment, Option<Artefact>)>) {
+    pub(crate) fn come_closer(
+        &mut self,
+        closest: &Closest,
+        ego: usize,
+        assessed: Option<(Assessment, Option<Artefact>)>,
+    ) {
         self.clearance = self.clearance.min(closest.clearance);
         self.overlap = self.overlap.max(closest.overlap);
         let Some(FirstContact { time, fronts, speeds, delta_v }) = closest.contact else { return };

@@ -2,7 +2,7 @@
 //!
 //! An event opens at the first step that meets the condition and closes when it has not been met for [`CLOSES_AFTER`] or
 //! one of the two has left the scene. Where the paths of both may cross, it then waits for its PET, as long as one may be
-//! ([`longest_pet`](crate::options::condition::Condition::longest_pet)), and as long again while the second is in the conflict area.
+//! (`longest_pet`), and as long again while the second is in the conflict area.
 //!
 //! Where the condition asks for the PET, a pair is followed over all steps that meet it if the PET is short enough. Whether
 //! it is, is known at the end: then the whole event is one conflict. Otherwise only what meets the rest of the condition is
@@ -29,5 +29,4 @@ pub use moment::Moment;
 pub use snapshot::Snapshot;
 pub use tracker::Tracker;
 pub use under_way::CLOSES_AFTER;
-pub(crate) use why::STANDS;
-pub use why::{Artefact, Cause, Causes, Manoeuvre, Surroundings};
+pub use why::{Artefact, Cause, Causes, Manoeuvre, STANDS, Surroundings};

@@ -73,7 +73,7 @@ impl Past {
     }
 
     /// The same as far back as is known.
-    pub fn all_of(&self, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
+    pub(crate) fn all_of(&self, user: UserIndex, before: Second) -> impl Iterator<Item = (Second, Point, Radian)> {
         self.since(0, user, before)
     }
 

@@ -39,11 +39,11 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// A tracker of what is logged with these options.
-    pub fn new(options: &Options) -> Self {
+    /// A tracker of what is logged with these options; it keeps each step of a conflict if these are logged, too.
+    pub fn new(options: &Options, keeps_steps: bool) -> Self {
         Self {
             pets: Pets { widest: options.kind_bounds().rear_end_below, longest: options.log.longest_pet() },
-            keeps: Keeps { met: options.log.needs_pet(), steps: options.series_file().is_some() },
+            keeps: Keeps { met: options.log.needs_pet(), steps: keeps_steps },
             rules: Rules {
                 contact_tolerance: options.contact_tolerance,
                 severity: options.severity_thresholds(),
@@ -268,12 +268,12 @@ mod tests {
             let sumo = SumoType { width: 2.0, ..SumoType::car("car") };
             let profile = roster.profile(Profile::vehicle(&sumo, &Options::default())).unwrap();
             let users = [roster.enter("a", profile), roster.enter("b", profile)];
-            Self { tracker: Tracker::new(&Options::default()), roster, users, collided: None }
+            Self { tracker: Tracker::new(&Options::default(), false), roster, users, collided: None }
         }
 
         fn logging(condition: &str) -> Self {
-            let options = Options { log: condition.parse().unwrap(), log_encounters: true, ..Options::default() };
-            Self { tracker: Tracker::new(&options), ..Self::new() }
+            let options = Options { log: condition.parse().unwrap(), ..Options::default() };
+            Self { tracker: Tracker::new(&options, true), ..Self::new() }
         }
 
         /// A step in which both are there and their margin is this (rear-end).

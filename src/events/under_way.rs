@@ -172,7 +172,7 @@ impl Event {
     /// Takes how close the two came since the step before, if that met the condition. They collide where they overlap by
     /// more than its tolerance, and `is_seen` where they do now. `has_jumped` says whether one of them has meanwhile
     /// changed lanes, which SUMO does at once: it did not drive across.
-    pub fn come_closest(
+    pub(crate) fn come_closest(
         &mut self,
         (frame, roster, before): (&Frame, &Roster, Second),
         rules: Rules,
@@ -230,7 +230,7 @@ impl Event {
     }
 
     /// Whether the condition is met at this time, that of its last step.
-    pub fn is_met_at(&self, time: Second) -> bool {
+    pub(crate) fn is_met_at(&self, time: Second) -> bool {
         self.followed.extremes.end == time
     }
 
@@ -242,7 +242,7 @@ impl Event {
     }
 
     /// Notes which of these vehicles stood at this time, its last step, because of a stop.
-    pub fn note_stopped(&mut self, stopped: &[UserIndex], time: Second) {
+    pub(crate) fn note_stopped(&mut self, stopped: &[UserIndex], time: Second) {
         let met = self.met.as_mut().and_then(|met| met.last_mut());
         for span in [&mut self.followed].into_iter().chain(met).filter(|span| span.extremes.end == time) {
             if span.extremes.standing.iter().flatten().any(|user| stopped.contains(user)) {
@@ -288,7 +288,7 @@ impl Event {
 
     /// Whether the PET of a closed event is known at this time, or will not be. One that the second is about to make shorter
     /// is waited for as long again.
-    pub fn settles(&mut self, time: Second, halves: &mut Bisection, pets: Pets) -> bool {
+    pub(crate) fn settles(&mut self, time: Second, halves: &mut Bisection, pets: Pets) -> bool {
         let since = time - self.followed.extremes.end;
         let Some(Driven { paths, pet }) = self.driven.as_deref_mut() else { return true };
         let wait = CLOSES_AFTER + pets.longest - SAME_MOMENT;

@@ -60,7 +60,7 @@ impl Bisection {
     }
 
     /// How far apart two rectangles may be where the sweep of both finds contact, in m.
-    pub fn inexact(&self) -> Metre {
+    pub(crate) fn inexact(&self) -> Metre {
         2.0 * self.tolerance
     }
 
@@ -110,7 +110,7 @@ impl Bisection {
     }
 
     /// [`Bisection::meet`] for a numbered movement and a rectangle. A movement that does not turn needs no halving.
-    pub fn meet_rectangle(
+    pub(crate) fn meet_rectangle(
         &mut self,
         (number, movement): (usize, &Movement),
         fixed: &Rectangle,
@@ -130,7 +130,7 @@ impl Bisection {
     }
 
     /// [`Bisection::touch`] for numbered movements. Two movements that do not turn need no halving.
-    pub fn touch_numbered(
+    pub(crate) fn touch_numbered(
         &mut self,
         (number, movement): (usize, &Movement),
         (other_number, other): (usize, &Movement),

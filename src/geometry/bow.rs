@@ -9,7 +9,7 @@ use crate::util::units::{Metre, Radian};
 
 /// The way of a front bumper from one place to the next: a parabola as deep as the arc, within 3 % of it up to 1 rad.
 #[derive(Clone, Copy, Debug)]
-pub struct Bow {
+pub(crate) struct Bow {
     from: Point,
     /// To where it ends.
     moved: Vector,

@@ -81,7 +81,7 @@ impl ConvexOutline {
     }
 
     /// Whether another outline is certainly further away than `room`, in m; only edge normals are tried.
-    pub fn is_further_than(&self, room: Metre, other: &Self) -> bool {
+    pub(crate) fn is_further_than(&self, room: Metre, other: &Self) -> bool {
         self.room_to(other, room, room) > room
     }
 

@@ -46,7 +46,7 @@ pub fn touches(a: &Rectangle, b: &Rectangle) -> bool {
 
 /// Whether two rectangles are too far apart to touch, whatever their headings. Faster than [`touches`] where most pairs
 /// are far apart; wasted where they are not.
-pub fn are_far_apart(a: &Rectangle, b: &Rectangle) -> bool {
+pub(crate) fn are_far_apart(a: &Rectangle, b: &Rectangle) -> bool {
     let (sizes, longer_axis) = (sizes(a, b), a.axis.norm_squared().max(b.axis.norm_squared()));
     (b.centre - a.centre).norm_squared() > sizes * sizes * longer_axis * SURELY_MORE
 }

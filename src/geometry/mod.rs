@@ -9,7 +9,7 @@ pub mod contact;
 pub mod convex;
 pub mod exact;
 pub mod movement;
-pub(crate) mod parry;
+pub mod parry;
 pub mod polygon;
 pub mod polylines;
 pub mod rectangle;
@@ -40,7 +40,7 @@ impl Bounds {
         Self { low: Point::new(f64::INFINITY, f64::INFINITY), high: Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY) };
 
     /// Bounds that hold the whole plane.
-    pub const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
+    pub(crate) const EVERYTHING: Self = Self { low: Self::EMPTY.high, high: Self::EMPTY.low };
 
     /// Whether nothing is within these bounds.
     pub fn is_empty(&self) -> bool {
@@ -79,7 +79,7 @@ impl Bounds {
     }
 
     /// The intersection; none if the two do not meet.
-    pub fn shared_with(&self, other: &Self) -> Option<Self> {
+    pub(crate) fn shared_with(&self, other: &Self) -> Option<Self> {
         self.meet(other).then(|| Self { low: self.low.sup(&other.low), high: self.high.inf(&other.high) })
     }
 
@@ -101,7 +101,7 @@ pub fn left_of(direction: &Vector) -> Vector {
 }
 
 /// The angle between two directions, 0 to π.
-pub fn angle_between(a: &Vector, b: &Vector) -> Radian {
+pub(crate) fn angle_between(a: &Vector, b: &Vector) -> Radian {
     let (across, along) = (cross(a, b).abs(), a.dot(b));
     // As atan2 would return, but without calling it: most followers have exactly the heading of their leader.
     if across == 0.0 && along > 0.0 { 0.0 } else { across.atan2(along) }

@@ -56,12 +56,12 @@ impl Movement {
     }
 
     /// Whether the movement is a translation.
-    pub fn slides(&self) -> bool {
+    pub(crate) fn slides(&self) -> bool {
         self.from_axis == self.to_axis
     }
 
     /// The contact of a translation with a standing rectangle.
-    pub fn slide_to(&self, fixed: &Rectangle) -> Option<ContactInterval> {
+    pub(crate) fn slide_to(&self, fixed: &Rectangle) -> Option<ContactInterval> {
         slide(&self.rectangle(0.0), &(self.to - self.from), fixed)
     }
 

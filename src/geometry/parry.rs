@@ -7,7 +7,7 @@ use super::Point;
 use super::rectangle::Rectangle;
 
 /// The rectangle as parry2d's shape and its pose.
-pub(crate) fn cuboid(rectangle: &Rectangle) -> (Pose, Cuboid) {
+pub fn cuboid(rectangle: &Rectangle) -> (Pose, Cuboid) {
     let axis = rectangle.axis;
     let pose = Pose { rotation: Rotation { re: axis.x, im: axis.y }, translation: vector(rectangle.centre) };
     (pose, Cuboid::new(ParryVector::new(rectangle.half_length, rectangle.half_width)))

@@ -75,14 +75,14 @@ impl Lines {
     }
 
     /// Sets how many metres along the line a metre of the plane is, for the points that follow.
-    pub(crate) fn set_stretch(&mut self, stretch: f64) {
+    pub fn set_stretch(&mut self, stretch: f64) {
         self.stretch = stretch;
         self.most_stretch = self.most_stretch.max(stretch);
         self.is_stretched |= stretch != 1.0;
     }
 
     /// How many metres along the line a metre of the plane is, for the points that follow.
-    pub(crate) fn stretch(&self) -> f64 {
+    pub fn stretch(&self) -> f64 {
         self.stretch
     }
 
@@ -138,7 +138,7 @@ impl Lines {
     }
 
     /// Frees unused memory.
-    pub(crate) fn shrink(&mut self) {
+    pub fn shrink(&mut self) {
         self.vertices.shrink_to_fit();
         self.begins.shrink_to_fit();
     }
@@ -213,7 +213,7 @@ impl Segment {
     }
 
     /// Distance of a front bumper from the line's beginning, if it is on this segment.
-    pub fn distance_of(&self, front: Point) -> Option<Metre> {
+    pub(crate) fn distance_of(&self, front: Point) -> Option<Metre> {
         let along = (front - self.start).dot(&self.direction) / self.scale_squared();
         let aside = (front - (self.start + self.direction * along)).norm_squared();
         let is_on =
@@ -227,7 +227,7 @@ impl Segment {
     }
 
     /// Whether a metre of the line is one of the plane.
-    pub fn is_to_scale(&self) -> bool {
+    pub(crate) fn is_to_scale(&self) -> bool {
         self.scale_squared() == 1.0
     }
 
@@ -254,7 +254,7 @@ fn scale_squared(direction: &Vector) -> f64 {
 
 /// How many metres along a line of this length a metre of its shape is: 1 unless the two differ by more than a hundredth
 /// and by more than lengths are rounded.
-pub(crate) fn stretch(length: Metre, drawn: Metre) -> f64 {
+pub fn stretch(length: Metre, drawn: Metre) -> f64 {
     /// The least difference in m.
     const ROUNDED: Metre = 0.1;
     /// The least relative difference.

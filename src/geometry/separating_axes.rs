@@ -62,7 +62,7 @@ pub struct ContactInterval {
 
 impl ContactInterval {
     /// One end of the interval.
-    pub(super) fn at(&self, which: Contact) -> f64 {
+    pub fn at(&self, which: Contact) -> f64 {
         match which {
             Contact::Entry => self.enter,
             Contact::Exit => self.leave,
@@ -97,7 +97,7 @@ pub fn translation(moving: &ConvexOutline, by: &Vector, fixed: &ConvexOutline) -
 }
 
 /// Whether two outlines share a point; touching counts.
-pub fn outlines_touch(a: &ConvexOutline, b: &ConvexOutline) -> bool {
+pub(crate) fn outlines_touch(a: &ConvexOutline, b: &ConvexOutline) -> bool {
     let room = a.room_to(b, -UNSURE, UNSURE);
     if room.abs() > UNSURE {
         return room < 0.0;
@@ -133,7 +133,7 @@ pub fn slide(moving: &Rectangle, by: &Vector, fixed: &Rectangle) -> Option<Conta
 }
 
 /// The four normals that can separate two rectangles, each with the distance of the centres along it at contact.
-pub(crate) fn normals(a: &Rectangle, b: &Rectangle) -> [(Vector, Metre); 4] {
+pub fn normals(a: &Rectangle, b: &Rectangle) -> [(Vector, Metre); 4] {
     let (cosine, sine) = (a.axis.dot(&b.axis).abs(), cross(&a.axis, &b.axis).abs());
     let along = |a: &Rectangle, b: &Rectangle| a.half_length + b.half_length * cosine + b.half_width * sine;
     let across = |a: &Rectangle, b: &Rectangle| a.half_width + b.half_length * sine + b.half_width * cosine;

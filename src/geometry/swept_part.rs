@@ -65,7 +65,7 @@ impl SweptPart {
     }
 
     /// Its contact with a convex area if its middle rectangle is translated instead of turned.
-    pub fn slide_to(&mut self, fixed: &ConvexOutline) -> Option<ContactInterval> {
+    pub(crate) fn slide_to(&mut self, fixed: &ConvexOutline) -> Option<ContactInterval> {
         let axis = self.middle();
         let Movement { from, to, length, width, .. } = self.movement;
         let by = to - from;
@@ -75,7 +75,7 @@ impl SweptPart {
     }
 
     /// The part of that translation in which a contact would be better than the known one.
-    pub fn slide_before(&mut self, which: Contact, known: f64) -> Self {
+    pub(crate) fn slide_before(&mut self, which: Contact, known: f64) -> Self {
         let axis = self.middle();
         let Movement { from, to, .. } = self.movement;
         let at = from + (to - from) * known;
@@ -83,7 +83,7 @@ impl SweptPart {
         Self::new(Movement { from, from_axis: axis, to, to_axis: axis, ..self.movement })
     }
 
-    pub fn halve(&mut self) -> [Self; 2] {
+    pub(crate) fn halve(&mut self) -> [Self; 2] {
         let middle = self.middle();
         let Movement { from, to, .. } = self.movement;
         let at = |part| from + (to - from) * part;
@@ -114,7 +114,7 @@ impl SweptPart {
     }
 
     /// How far the hull of a half may reach beyond the hull of the whole: an arc beyond its chord.
-    pub fn stray(&self) -> Metre {
+    pub(crate) fn stray(&self) -> Metre {
         self.turn * self.turn / 3.0 * (self.movement.length + self.movement.width) + ROUNDING
     }
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// Whether road users are moved back by half a step.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum Align {
     /// Where SUMO's Euler update has moved them.

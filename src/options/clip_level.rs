@@ -4,7 +4,7 @@ use serde::Serialize;
 
 /// The mildest severity of which `clips.jsonl.gz` has clips.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 pub enum ClipLevel {
     /// No clips.

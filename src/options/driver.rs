@@ -7,7 +7,7 @@ use crate::util::units::{MetrePerSecondSquared, Second};
 
 /// A driver: the response time and the largest deceleration of its vehicle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum DriverModel {

@@ -57,7 +57,7 @@ measures! {
 }
 
 /// A value of each [`ChosenMeasure`], in their order; none where it is not chosen or does not exist.
-pub type ChosenValues = [Option<f64>; ChosenMeasure::ALL.len()];
+pub(crate) type ChosenValues = [Option<f64>; ChosenMeasure::ALL.len()];
 
 /// The measures that are chosen: a bit for each [`ChosenMeasure`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,18 +2,18 @@
 
 /// Work that a scene may not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum))]
 pub enum Shortcut {
     /// The broad phase leaves out pairs whose areas do not meet. If kept, every pair enters the narrow phase.
-    #[cfg_attr(feature = "cli", value(alias = "areas_apart"))]
+    #[cfg_attr(feature = "clap", value(alias = "areas_apart"))]
     AreasApart,
     /// The narrow phase leaves out pairs whose paths lie in boxes that do not meet.
-    #[cfg_attr(feature = "cli", value(alias = "paths_apart"))]
+    #[cfg_attr(feature = "clap", value(alias = "paths_apart"))]
     PathsApart,
     /// Pairs in line are not swept: one dimension is enough.
-    #[cfg_attr(feature = "cli", value(alias = "in_line"))]
+    #[cfg_attr(feature = "clap", value(alias = "in_line"))]
     InLine,
     /// A road user that is still on its known path is not asked for its lane.
-    #[cfg_attr(feature = "cli", value(alias = "known_paths"))]
+    #[cfg_attr(feature = "clap", value(alias = "known_paths"))]
     KnownPaths,
 }

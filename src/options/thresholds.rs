@@ -36,12 +36,12 @@ pub enum SeverityThresholds {
 
 impl Options {
     /// The bounds between the kinds.
-    pub fn kind_bounds(&self) -> KindBounds {
+    pub(crate) fn kind_bounds(&self) -> KindBounds {
         KindBounds { rear_end_below: self.rear_end_below, frontal_above: self.frontal_above }
     }
 
     /// The thresholds of severity.
-    pub fn severity_thresholds(&self) -> SeverityThresholds {
+    pub(crate) fn severity_thresholds(&self) -> SeverityThresholds {
         match self.severity_rule {
             SeverityRule::Levels => SeverityThresholds::Levels,
             SeverityRule::TimeLeft => {

@@ -1,39 +1,42 @@
-//! Values of options: their ranges, and the command-line form of a setting.
+//! Values of options and their ranges, as texts are read.
+//!
+//! # Errors
+//! Each says what the value must be.
 
 use crate::util::limits::{DECELERATION, DURATION, Limit, RESERVE, SPEED, TIME};
 
 /// A duration in s.
-pub(crate) fn duration(text: &str) -> std::result::Result<f64, String> {
+pub fn duration(text: &str) -> std::result::Result<f64, String> {
     within(&DURATION, text)
 }
 
 /// The length of a step in s.
-pub(crate) fn step_length(text: &str) -> std::result::Result<f64, String> {
+pub fn step_length(text: &str) -> std::result::Result<f64, String> {
     within(&Limit { is_open: true, ..DURATION }, text)
 }
 
 /// A simulated time in s, 0 or more.
-pub(crate) fn time(text: &str) -> std::result::Result<f64, String> {
+pub fn time(text: &str) -> std::result::Result<f64, String> {
     within(&Limit { least: 0.0, ..TIME }, text)
 }
 
 /// A distance in m that is kept in reserve.
-pub(crate) fn reserve(text: &str) -> std::result::Result<f64, String> {
+pub fn reserve(text: &str) -> std::result::Result<f64, String> {
     within(&RESERVE, text)
 }
 
 /// A speed in m/s.
-pub(crate) fn speed(text: &str) -> std::result::Result<f64, String> {
+pub fn speed(text: &str) -> std::result::Result<f64, String> {
     within(&SPEED, text)
 }
 
 /// A deceleration in m/s².
-pub(crate) fn deceleration(text: &str) -> std::result::Result<f64, String> {
+pub fn deceleration(text: &str) -> std::result::Result<f64, String> {
     within(&DECELERATION, text)
 }
 
 /// A threshold of decelerations in m/s²; 0 for none.
-pub(crate) fn deceleration_threshold(text: &str) -> std::result::Result<f64, String> {
+pub fn deceleration_threshold(text: &str) -> std::result::Result<f64, String> {
     within(&Limit { least: 0.0, ..DECELERATION }, text)
 }
 
@@ -43,7 +46,7 @@ fn within(limit: &Limit, text: &str) -> std::result::Result<f64, String> {
 }
 
 /// A probability, 0 to 1.
-pub(crate) fn probability(text: &str) -> std::result::Result<f64, String> {
+pub fn probability(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..=1.0).contains(&value) => Ok(value),
         _ => Err("it must be a probability, 0 to 1".to_owned()),
@@ -51,7 +54,7 @@ pub(crate) fn probability(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// A share above 0, up to 1.
-pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
+pub fn share(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
         _ => Err("it must be a share above 0, up to 1".to_owned()),
@@ -59,19 +62,9 @@ pub(crate) fn share(text: &str) -> std::result::Result<f64, String> {
 }
 
 /// An angle in rad, 0 to π.
-pub(crate) fn angle(text: &str) -> std::result::Result<f64, String> {
+pub fn angle(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..=std::f64::consts::PI).contains(&value) => Ok(value),
         _ => Err("it must be an angle in rad, 0 to π".to_owned()),
-    }
-}
-
-/// The command-line word of a setting; none for a flag that is off.
-pub(super) fn word(name: &str, value: &str) -> Option<String> {
-    let option = name.replace('_', "-");
-    match value {
-        "true" => Some(format!("--{option}")),
-        "false" => None,
-        _ => Some(format!("--{option}={value}")),
     }
 }

@@ -28,7 +28,7 @@ const FAR_RESPONSE: f64 = 5.0;
 const FAR_DECELERATION: f64 = 5.0;
 
 /// A deceleration and its weight.
-pub type Weighted = (MetrePerSecondSquared, f64);
+pub(crate) type Weighted = (MetrePerSecondSquared, f64);
 
 /// The distributions of a driver's response time (lognormal) and of its largest deceleration (normal, truncated).
 #[derive(Clone, Debug, PartialEq)]
@@ -102,7 +102,7 @@ impl Driver {
     }
 
     /// The probability that its vehicle brakes too weakly, where every deceleration below one that is too weak is, too.
-    pub fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
+    pub(crate) fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
         /// The deceleration is then right to a millionth of the range.
         const HALVINGS: u32 = 20;
         let [least, most] = self.reach();
@@ -121,12 +121,12 @@ impl Driver {
     }
 
     /// How it brakes with a deceleration, in a vehicle that brakes like this.
-    pub fn braking_with(&self, deceleration: MetrePerSecondSquared, of_vehicle: &LateBraking) -> LateBraking {
+    pub(crate) fn braking_with(&self, deceleration: MetrePerSecondSquared, of_vehicle: &LateBraking) -> LateBraking {
         LateBraking { deceleration, build_up: self.build_up.unwrap_or(of_vehicle.build_up), ..*of_vehicle }
     }
 
     /// Whether it always responds after the same time.
-    pub fn is_punctual(&self) -> bool {
+    pub(crate) fn is_punctual(&self) -> bool {
         self.response[1] <= 0.0
     }
 
@@ -146,7 +146,7 @@ impl Driver {
     }
 
     /// Decelerations that stand for a part of the distribution, ascending; the sum of their weights is the part's share.
-    pub fn decelerations_between(&self, part: [MetrePerSecondSquared; 2]) -> [Weighted; COUNT] {
+    pub(crate) fn decelerations_between(&self, part: [MetrePerSecondSquared; 2]) -> [Weighted; COUNT] {
         let [mean, deviation, ..] = self.braking;
         let scale = (deviation * TAU.sqrt() * self.within_reach()).recip();
         weighted(mean, deviation, part).map(|(value, weight)| (value, scale * weight))

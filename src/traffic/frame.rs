@@ -1,6 +1,6 @@
 //! The road users of one step, a row each.
 //!
-//! A [`Roster`] holds what does not change while a road user is in the scene (id, type, size, brakes); a [`Frame`]
+//! A `Roster` holds what does not change while a road user is in the scene (id, type, size, brakes); a [`Frame`]
 //! holds what changes in every step. Both are filled by the source of the data (the bridge from libsumo, replay
 //! from a file, a caller from arrays) and only read by the detector.
 
@@ -121,7 +121,7 @@ impl Frame {
     }
 
     /// The first road user whose state no road user can have, and why; its step cannot be checked.
-    pub(crate) fn impossible(&self) -> Option<&(UserIndex, String)> {
+    pub fn impossible(&self) -> Option<&(UserIndex, String)> {
         self.impossible.as_ref()
     }
 
@@ -134,7 +134,7 @@ impl Frame {
 
     /// Adds a road user's row. Without a valid position (SUMO's invalid value, NaN and infinities are not) or a valid
     /// speed it is absent in this step: the row is left out, and `false` returned. So is one with values that no road user
-    /// can have; [`Run::step`](crate::Run::step) then fails.
+    /// can have; `Run::step` then fails.
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
         let valid = state.is_possible();
         if valid {
@@ -222,7 +222,7 @@ impl Frame {
     }
 
     /// A row's state, to change it.
-    pub fn state_mut(&mut self, row: u32) -> &mut State {
+    pub(crate) fn state_mut(&mut self, row: u32) -> &mut State {
         &mut self.states[row as usize]
     }
 

@@ -102,13 +102,13 @@ fn carriages(shape: &str, class: &str, length: Metre) -> (Metre, u32) {
 }
 
 /// The name of a type of polygons among the types of road users.
-pub(crate) fn obstacle_name(polygon_type: &str) -> String {
+pub fn obstacle_name(polygon_type: &str) -> String {
     format!("polygon:{polygon_type}")
 }
 
 /// A type and those that it may have been made from, likeliest first. When a script sets the length of one vehicle, SUMO
 /// calls its type `TYPE@VEHICLE`, and either id may itself contain an @.
-pub(crate) fn origins(name: &str) -> impl Iterator<Item = &str> {
+pub fn origins(name: &str) -> impl Iterator<Item = &str> {
     std::iter::once(name).chain(name.rmatch_indices('@').map(|(end, _)| &name[..end]))
 }
 
@@ -130,7 +130,7 @@ impl Profile {
     /// Checks that the values are possible.
     ///
     /// # Errors
-    /// [`Error::Value`] where a dimension, mass or brake value is beyond its limit; an obstacle has none.
+    /// [`Error::Profile`] where a dimension, mass or brake value is beyond its limit; an obstacle has none.
     pub fn check(&self) -> Result<()> {
         if self.category == Category::Obstacle {
             return Ok(());
@@ -143,7 +143,7 @@ impl Profile {
             ("response time", self.brakes.response, &DURATION),
             ("build-up time", self.brakes.build_up, &DURATION),
         ] {
-            limit.check(what, value).map_err(|why| Error::Value(format!("type \"{}\": {why}", self.name)))?;
+            limit.check(what, value).map_err(|why| Error::Profile { name: self.name.to_string(), why })?;
         }
         Ok(())
     }

@@ -112,7 +112,7 @@ impl Roster {
     }
 
     /// The index of this road user's type.
-    pub fn type_of(&self, user: UserIndex) -> ProfileIndex {
+    pub(crate) fn type_of(&self, user: UserIndex) -> ProfileIndex {
         self.types[user.0 as usize]
     }
 

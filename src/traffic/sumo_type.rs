@@ -56,7 +56,7 @@ impl SumoType {
     }
 
     /// Mass in kg on the road. SUMO's default for a class that is ridden is the vehicle's alone; a rider is added.
-    pub fn mass_on_the_road(&self) -> Kilogram {
+    pub(crate) fn mass_on_the_road(&self) -> Kilogram {
         let is_default =
             CLASSES.iter().any(|(class, _, _, mass, ..)| *class == self.vehicle_class && *mass == self.mass);
         if is_default && RIDDEN.contains(&self.vehicle_class.as_str()) { self.mass + RIDER } else { self.mass }

@@ -5,7 +5,7 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What the formulas of μ need of a number: f64 and [`DoubleDouble`] have it.
+/// What the formulas of μ need of a number: f64 and `DoubleDouble` have it.
 pub trait Number:
     Copy
     + From<f64>
@@ -33,7 +33,7 @@ impl Number for f64 {
 
 /// `high + low`, where `low` is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DoubleDouble {
+pub(crate) struct DoubleDouble {
     high: f64,
     low: f64,
 }

@@ -86,17 +86,17 @@ pub const CORNERS: Limit = between(
     [3.0, 1000.0],
     "more detail is for coasts, which do not obstruct traffic",
 );
-/// Pairs of road users near each other in one step, for each road user; never fewer than [`FEWEST_PAIRS`].
+/// Pairs of road users near each other in one step, for each road user; never fewer than `FEWEST_PAIRS`.
 pub const PAIRS: Limit =
     between("pairs near each other", "per road user", [0.0, 64.0], "a vehicle in a jam is near 10 to 20 others");
-/// Pairs that would meet, in one step, for each road user; never fewer than [`FEWEST_ENCOUNTERS`].
+/// Pairs that would meet, in one step, for each road user; never fewer than `FEWEST_ENCOUNTERS`.
 pub const ENCOUNTERS: Limit =
     between("pairs that would meet", "per road user", [0.0, 32.0], "a vehicle follows one and meets a few others");
 
 /// The number of pairs near each other that a step of any size may have.
-pub const FEWEST_PAIRS: usize = 1 << 21;
+pub(crate) const FEWEST_PAIRS: usize = 1 << 21;
 /// The number of pairs that would meet that a step of any size may have.
-pub const FEWEST_ENCOUNTERS: usize = 1 << 17;
+pub(crate) const FEWEST_ENCOUNTERS: usize = 1 << 17;
 
 /// Whether a speed in m/s is below 0, but only as noise makes it; it is read as 0 then, and counted.
 pub fn is_noise(speed: f64) -> bool {

@@ -50,7 +50,7 @@ impl Team {
     }
 
     /// The number of threads worth using for what would take one of them this long.
-    pub fn busy_for(&self, alone: Duration) -> usize {
+    pub(crate) fn busy_for(&self, alone: Duration) -> usize {
         (alone.as_nanos() / LEAST_TIME.as_nanos()).clamp(1, self.threads() as u128) as usize
     }
 

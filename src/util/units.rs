@@ -23,9 +23,9 @@ pub type Degree = f64;
 /// A probability, 0 to 1.
 pub type Probability = f64;
 /// A mass in kg.
-pub type Kilogram = f64;
+pub(crate) type Kilogram = f64;
 
 /// A count in words, as in `2 runs`.
-pub(crate) fn counted(number: u64, what: &str) -> String {
+pub fn counted(number: u64, what: &str) -> String {
     format!("{number} {what}{}", if number == 1 { "" } else { "s" })
 }

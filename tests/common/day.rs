@@ -6,9 +6,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::output::Log;
-use closecall::internals::traffic::EdgeFunction;
-use closecall::{EdgeIndex, LaneIndex, Net, Options, Placement, Point, Profile, ProfileIndex, Run, State, UserIndex};
+use closecall::traffic::net::EdgeFunction;
+use closecall::{EdgeIndex, LaneIndex, Net, Placement, Point, Profile, ProfileIndex, State, UserIndex};
+use closecall_run::Run;
+use closecall_run::RunOptions;
+use closecall_run::output::log::Log;
 
 /// Steps of 1 s that a car needs from one end of its course to the other.
 const PERIOD: usize = 60;
@@ -38,10 +40,10 @@ pub struct Day {
 impl Day {
     /// A day on the net of a scenario, its conflicts logged.
     pub fn new(net: &Path, log: &Path, car: Profile) -> Self {
-        let options = Options::default();
-        let net = Arc::new(Net::read(net).unwrap());
+        let options = RunOptions::default();
+        let net = Arc::new(closecall_run::net::read(net).unwrap());
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
-        run.set_log(Log::create(log, &options).unwrap(), options.log_clips);
+        run.set_log(Log::create(log, &options).unwrap(), options.log.log_clips);
         run.drop_closed_conflicts();
         run.set_fixed_routes(true);
         let profile = run.roster.profile(car).unwrap();
@@ -82,7 +84,7 @@ impl Day {
             self.run.frame.push(self.cars[place].unwrap(), state);
             self.rows.push((place % self.courses.len(), distance));
         }
-        let place = |run: &mut Run, rows: &[u32]| -> closecall::Result<()> {
+        let place = |run: &mut Run, rows: &[u32]| -> closecall_run::Result<()> {
             for &row in rows {
                 let (course, distance) = self.rows[row as usize];
                 run.set_placement(row, &self.courses[course].placement(&self.net, distance));

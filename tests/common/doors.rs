@@ -6,18 +6,23 @@ use std::fs;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::analysis::{
-    ConflictFilter, ConflictReader, LoggedRun, Observed, Place, Playback, Request, Statistics, Which, export, plot,
-    report, svg,
-};
-use closecall::internals::input::{
-    OpenedTracks, RecordedLights, RecordedStep, Recording, TrackOptions, check_xml, demand, fault, inspect_tracks,
-    open_tracks,
-};
-use closecall::internals::options::OptionsFile;
-use closecall::internals::output::ExportFormat;
-use closecall::internals::traffic::Filter;
-use closecall::{Net, Options, Replay, Run};
+use closecall::Net;
+use closecall_analysis::filter::{ConflictFilter, Place};
+use closecall_analysis::logged::{ConflictReader, LoggedRun, Which};
+use closecall_analysis::playback::{Playback, svg};
+use closecall_analysis::statistics::{Observed, Request, Statistics};
+use closecall_analysis::{export, plot, report};
+use closecall_run::RunOptions;
+use closecall_run::input::replay::demand;
+use closecall_run::input::replay::lights::RecordedLights;
+use closecall_run::input::replay::recording::Recording;
+use closecall_run::input::replay::rows::RecordedStep;
+use closecall_run::input::sumo_files::{check_xml, fault};
+use closecall_run::input::tracks::{Opened, TrackOptions, inspect, open};
+use closecall_run::net::filter::Filter;
+use closecall_run::options::OptionsFile;
+use closecall_run::output::formats::ExportFormat;
+use closecall_run::{Replay, Run};
 
 /// A door: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
 pub type Door = (&'static str, fn(&[u8]));
@@ -51,7 +56,7 @@ const NET: &str = r#"<net>
 <connection from=":j_0" to="f" fromLane="0" toLane="0"/></net>"#;
 
 fn a_net() -> Net {
-    Net::parse(Path::new("net"), NET).unwrap()
+    closecall_run::net::parse(Path::new("net"), NET).unwrap()
 }
 
 fn text(bytes: &[u8]) -> String {
@@ -75,7 +80,7 @@ pub fn fcd(bytes: &[u8]) {
 
 /// Any bytes as a net give lanes with usable shapes or an error.
 pub fn net(bytes: &[u8]) {
-    let Ok(net) = Net::parse(Path::new("net"), bytes) else { return };
+    let Ok(net) = closecall_run::net::parse(Path::new("net"), bytes) else { return };
     for (number, lane) in (0..).zip(&net.lanes) {
         assert!(lane.shape.len() >= 2);
         assert!(net.lines.line(number).iter().all(|vertex| vertex.distance.is_finite()));
@@ -88,12 +93,12 @@ pub fn net(bytes: &[u8]) {
 /// Any text as a TOML file of options gives words or an error.
 pub fn config(bytes: &[u8]) {
     let known = ["mu", "epsilon", "obstacles", "keep-all", "response-time"].map(str::to_owned);
-    let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, Options::check_setting) else {
+    let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, RunOptions::check_setting) else {
         return;
     };
     let settings = file.words.iter().filter_map(|word| word.trim_start_matches("--").split_once('='));
     let settings = settings.map(|(name, value)| (name, value.to_owned())).collect::<Vec<_>>();
-    let _ = Options::from_settings(settings);
+    let _ = RunOptions::from_settings(settings);
 }
 
 /// Any bytes as route and additional files give types and routes or an error.
@@ -107,7 +112,7 @@ pub fn signals(bytes: &[u8]) {
     let path = folder.path().join("signals.xml");
     fs::write(&path, bytes).unwrap();
     let net = Arc::new(a_net());
-    let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
+    let mut run = Run::new(&RunOptions::default(), Some(Arc::clone(&net))).unwrap();
     run.begin_step(0.0);
     if let Ok(mut lights) = RecordedLights::open(&path, &net) {
         let _ = lights.show(&mut run, 1e9);
@@ -206,11 +211,9 @@ fn of_tracks(files: &[(&str, &[u8])], options: &TrackOptions) {
     let folder = folder();
     files.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
     let path = folder.path().join(files[0].0);
-    let _ = inspect_tracks(&path);
+    let _ = inspect(&path);
     for net in [None, Some(&a_net())] {
-        let Ok(opened @ OpenedTracks::Converted(_)) =
-            open_tracks(std::slice::from_ref(&path), options, net, &mut || false)
-        else {
+        let Ok(opened @ Opened::Converted(_)) = open(std::slice::from_ref(&path), options, net, &mut || false) else {
             return;
         };
         let mut recording = Recording::open(opened.recording()).unwrap();
@@ -272,8 +275,8 @@ pub fn replay(bytes: &[u8]) {
     fs::write(&rou, demand.strip_prefix(&[0]).unwrap_or(b"<routes/>")).unwrap();
     let net = Arc::new(a_net());
     for path in ["lanes", "arc", "driven"] {
-        let options = Options::from_settings([("path", path.to_owned())]).unwrap();
-        let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), Some(&net), &options) else { return };
+        let options = RunOptions::from_settings([("path", path.to_owned())]).unwrap();
+        let Ok(mut replay) = Replay::open(&fcd, std::slice::from_ref(&rou), Some(&net), &options.model) else { return };
         let mut run = Run::new(&options, Some(net.clone())).unwrap();
         while let Ok(Some(_)) = replay.next(&mut run) {}
         let _ = run.finish();

@@ -11,7 +11,7 @@ const STREET: &str = r#"<net>
 </net>"#;
 
 pub fn street() -> Arc<Net> {
-    Arc::new(Net::parse(Path::new("street.net.xml"), STREET).unwrap())
+    Arc::new(closecall_run::net::parse(Path::new("street.net.xml"), STREET).unwrap())
 }
 
 /// The same where traffic keeps to the left.
@@ -21,5 +21,5 @@ pub fn left_hand_street() -> Arc<Net> {
         .replace(",-1.6", ",?")
         .replace(",1.6", ",-1.6")
         .replace(",?", ",1.6");
-    Arc::new(Net::parse(Path::new("street.net.xml"), mirrored).unwrap())
+    Arc::new(closecall_run::net::parse(Path::new("street.net.xml"), mirrored).unwrap())
 }

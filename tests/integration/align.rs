@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use closecall::internals::geometry::Vector;
+use closecall::geometry::Vector;
 use closecall::{Align, Detector, Frame, Net, Options, Placement, Profile, Roster, State, SumoType};
 
 use super::way::Way;
@@ -239,7 +239,7 @@ fn a_rear_before_the_begin_of_a_lane_is_on_no_bend() {
         lane("e", "0,0 300,0", 300.0),
         lane("back", "300,3.2 0,3.2", 300.0),
     );
-    let net = std::sync::Arc::new(Net::parse(std::path::Path::new("turnaround.net.xml"), text).unwrap());
+    let net = std::sync::Arc::new(closecall_run::net::parse(std::path::Path::new("turnaround.net.xml"), text).unwrap());
     // A car beside another one, 1.4 m away.
     let both = |x: f64| [0.0, 3.2].map(|y| State { x, y, z: 0.0, heading: 0.0, speed: 10.0 });
     for front in [1.0, 2.0, 5.0, 8.0] {

@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::{Artefact, Category, Error, Net, Options, PathModel, Profile, Result, Run, Severity, State, SumoType};
+use closecall::{Artefact, Category, Net, Options, PathModel, Profile, Severity, State, SumoType};
+use closecall_run::{Error, Result, Run};
 
 use crate::why::{Drive, LEFT, ONCOMING, conflicts, drive, net_of, road};
 
@@ -49,7 +50,7 @@ fn crossing_links(foes: [&str; 2]) -> Net {
     </net>"#,
         foes[0], foes[1]
     );
-    Net::parse(Path::new("a.net.xml"), text).unwrap()
+    closecall_run::net::parse(Path::new("a.net.xml"), text).unwrap()
 }
 
 #[test]
@@ -103,7 +104,7 @@ fn a_person_on_the_pavement_is_not_in_the_way() {
         <lane id="a_1" length="200" speed="30" shape="0,0 200,0"/></edge></net>"#;
     let beside = |y: f64| {
         let shape = format!("0,{y} 200,{y}");
-        let net = Net::parse(Path::new("a.net.xml"), text.replace("0,0 200,0", &shape)).unwrap();
+        let net = closecall_run::net::parse(Path::new("a.net.xml"), text.replace("0,0 200,0", &shape)).unwrap();
         let person = Drive { category: Category::Person, ..drive(&["a_0"], 80.0, |_| 0.0) };
         set_aside(&net, &[drive(&["a_1"], 10.0, |_| 15.0), person], 6.0)
     };
@@ -119,10 +120,10 @@ fn a_person_on_the_pavement_is_not_in_the_way() {
 fn a_person_on_a_walking_area_is_not_in_the_way() {
     let text = r#"<net><edge id=":j_w0" function="walkingarea">
         <lane id=":j_w0_0" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge></net>"#;
-    let net = Arc::new(Net::parse(Path::new("net"), text.to_owned()).unwrap());
+    let net = Arc::new(closecall_run::net::parse(Path::new("net"), text.to_owned()).unwrap());
     let options = Options { path: PathModel::Straight, ..Options::default() };
     for (x, is_on) in [(5.0, true), (19.0, false)] {
-        let mut run = Run::new(&options, Some(Arc::clone(&net))).unwrap();
+        let mut run = Run::new(&options.clone().into(), Some(Arc::clone(&net))).unwrap();
         let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
         let person = run.roster.profile(Profile::person(&SumoType::car("person"), &options, 0.1)).unwrap();
         let users = [run.enter("car", car), run.enter("person", person)];

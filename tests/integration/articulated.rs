@@ -3,8 +3,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::geometry::{Rectangle, Vector, touches};
-use closecall::{Detector, Encounter, Frame, Kind, Net, Options, Placement, Point, Profile, Roster, State, SumoType};
+use closecall::geometry::Vector;
+use closecall::geometry::contact::touches;
+use closecall::geometry::rectangle::Rectangle;
+use closecall::{Detector, Encounter, Frame, Kind, Options, Placement, Point, Profile, Roster, State, SumoType};
 use proptest::prelude::*;
 
 use super::way::Way;
@@ -132,7 +134,7 @@ const MERGE: &str = r#"<net>
 
 #[test]
 fn a_trailer_is_still_on_the_road_that_it_came_from() {
-    let net = Arc::new(Net::parse(Path::new("merge.net.xml"), MERGE).unwrap());
+    let net = Arc::new(closecall_run::net::parse(Path::new("merge.net.xml"), MERGE).unwrap());
     let [truck, car] = [articulated("truck/semitrailer", "truck", 16.5), articulated("passenger", "passenger", 5.0)];
     for (from, route) in [(Point::new(96.0, 100.0), ["a", "c"]), (Point::new(100.0, 96.0), ["b", "c"])] {
         let mut roster = Roster::default();

@@ -1,9 +1,13 @@
 //! Where movements touch: equal, to the last bit, to trying all parts of both.
 
 use closecall::Point;
-use closecall::internals::geometry::{
-    Bisection, Bounds, Contact, ConvexOutline, Movement, Polygon, Rectangle, TOLERANCE, Vector, direction, translation,
-};
+use closecall::geometry::bisection::Bisection;
+use closecall::geometry::convex::ConvexOutline;
+use closecall::geometry::movement::{Movement, TOLERANCE};
+use closecall::geometry::polygon::Polygon;
+use closecall::geometry::rectangle::{Rectangle, direction};
+use closecall::geometry::separating_axes::{Contact, translation};
+use closecall::geometry::{Bounds, Vector};
 use proptest::prelude::*;
 
 /// The fraction of a movement at which it touches another's area, by all hulls of the other whose whole is touched.

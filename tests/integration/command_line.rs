@@ -37,7 +37,7 @@ fn record(folder: &Path) {
         text += "</timestep>\n";
     }
     fs::write(folder.join("fcd.xml"), text + "</fcd-export>\n").unwrap();
-    let net = Path::new(env!("CARGO_MANIFEST_DIR")).join("sumo_nets/rear_end/rear_end.net.xml");
+    let net = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../sumo_nets/rear_end/rear_end.net.xml");
     fs::copy(net, folder.join("net.xml")).unwrap();
 }
 
@@ -157,7 +157,7 @@ fn a_series_in_parquet_equals_the_one_in_csv() {
 fn a_folder_that_another_run_writes_to_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     record(&folder.path().join("recorded"));
-    let other = closecall::LogFolder::claim(&folder.path().join("out")).unwrap();
+    let other = closecall_run::LogFolder::claim(&folder.path().join("out")).unwrap();
     let done = closecall(folder.path(), &replay(&["--out", "out"]));
     assert_eq!((done.status.code(), stdout(&done).as_str()), (Some(2), ""));
     let told = format!("closecall: out: another run writes its log there (process {}, begun ", std::process::id());

@@ -5,7 +5,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::{Net, Options, Point, Replay, Run};
+use closecall::{Net, Options, Point};
+use closecall_run::RunOptions;
+use closecall_run::{Replay, Run};
 use proptest::prelude::*;
 
 /// The length of SUMO's default car in m.
@@ -35,8 +37,8 @@ fn recording(ways: &[(Way, f64)], seconds: f64, rate: f64) -> tempfile::NamedTem
 
 /// Replays with these settings; calls `each` after every step.
 fn replay(file: &Path, net: Option<&Arc<Net>>, settings: &[(&str, &str)], mut each: impl FnMut(f64, &Run)) {
-    let options = Options::from_settings(settings.iter().map(|(name, value)| (*name, (*value).to_owned()))).unwrap();
-    let mut replay = Replay::open(file, &[], net.map(|net| &**net), &options).unwrap();
+    let options = RunOptions::from_settings(settings.iter().map(|(name, value)| (*name, (*value).to_owned()))).unwrap();
+    let mut replay = Replay::open(file, &[], net.map(|net| &**net), &options.model).unwrap();
     let mut run = Run::new(&options, net.cloned()).unwrap();
     run.set_fixed_routes(true);
     while let Some(time) = replay.next(&mut run).unwrap() {
@@ -90,8 +92,8 @@ fn a_turn_to_come_is_met_with_the_right_ttc_and_mu() {
 
 #[test]
 fn without_attachment_to_a_recording_driven_is_refused() {
-    let options = Options::from_settings([("path", "driven".to_owned())]).unwrap();
-    let message = options.check_future_is_unknown().unwrap_err().to_string();
+    let options = RunOptions::from_settings([("path", "driven".to_owned())]).unwrap();
+    let message = options.model.check_future_is_unknown().unwrap_err().to_string();
     assert!(message.starts_with("path: driven") && message.contains("closecall replay"), "{message}");
     assert!(Options::default().check_future_is_unknown().is_ok());
 }
@@ -113,7 +115,7 @@ proptest! {
         }
         let shape = lane.iter().map(|point| format!("{},{}", point.x, point.y)).collect::<Vec<_>>().join(" ");
         let net = format!(r#"<net><edge id="a" from="s" to="e"><lane id="a_0" index="0" length="400" shape="{shape}"/></edge></net>"#);
-        let net = Arc::new(Net::parse(Path::new("net"), net).unwrap());
+        let net = Arc::new(closecall_run::net::parse(Path::new("net"), net).unwrap());
         let way: Way = Box::new(move |way| {
             let along = (way + 10.0) / 0.5;
             let piece = along as usize;

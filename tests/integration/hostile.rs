@@ -3,9 +3,13 @@
 use std::fs;
 use std::path::Path;
 
-use closecall::internals::analysis::ConflictReader;
-use closecall::internals::input::{RecordedStep, Recording, TrackOptions, demand, open_tracks};
-use closecall::{Options, Profile, Run, State, SumoType};
+use closecall::{Options, Profile, State, SumoType};
+use closecall_analysis::logged::ConflictReader;
+use closecall_run::Run;
+use closecall_run::input::replay::demand;
+use closecall_run::input::replay::recording::Recording;
+use closecall_run::input::replay::rows::RecordedStep;
+use closecall_run::input::tracks::{TrackOptions, open};
 
 use crate::street::street;
 
@@ -59,7 +63,7 @@ fn refused_tracks(columns: &str, text: &str) -> String {
     let file = tempfile::NamedTempFile::new().unwrap();
     fs::write(file.path(), text).unwrap();
     let options = TrackOptions { columns: columns.to_owned(), ..TrackOptions::default() };
-    let error = open_tracks(&[file.path().to_owned()], &options, None, &mut || false).unwrap_err().to_string();
+    let error = open(&[file.path().to_owned()], &options, None, &mut || false).unwrap_err().to_string();
     error.trim_start_matches(&file.path().display().to_string()).trim_start_matches(", ").to_owned()
 }
 
@@ -93,8 +97,8 @@ fn a_type_beyond_all_vehicles_is_refused_with_its_line() {
 }
 
 /// A run with `count` cars on the same spot.
-fn crowd(count: usize, state: State) -> closecall::Result<()> {
-    let mut run = Run::new(&Options::default(), None).unwrap();
+fn crowd(count: usize, state: State) -> closecall_run::Result<()> {
+    let mut run = Run::new(&closecall_run::RunOptions::default(), None).unwrap();
     let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &Options::default())).unwrap();
     run.begin_step(3.0);
     for number in 0..count {
@@ -124,7 +128,7 @@ fn too_many_in_one_place_are_refused_with_where() {
 fn after(change: impl Fn(String) -> String, digest: &str) -> (usize, Option<String>) {
     let folder = tempfile::tempdir().unwrap();
     let example = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz").join(name);
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz").join(name);
         fs::read_to_string(path).unwrap()
     };
     let record = example("run_json/run.json").replacen('{', &format!("{{\"conflicts_sha256\": {digest},"), 1);

@@ -15,7 +15,7 @@ fn net(lengths: [f64; 2]) -> Arc<Net> {
             <connection from="a" to="b" fromLane="0" toLane="0" dir="s" state="M"/>
         </net>"#
     );
-    Arc::new(Net::parse(Path::new("stretched.net.xml"), text).unwrap())
+    Arc::new(closecall_run::net::parse(Path::new("stretched.net.xml"), text).unwrap())
 }
 
 /// The encounter of two cars of 5 m at these distances along both lanes, in SUMO's metres, with these speeds.

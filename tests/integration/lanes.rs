@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::{Detector, Frame, Net, Options, Placement, Point, Roster, State};
+use closecall::{Detector, Frame, Options, Placement, Point, Roster, State};
 
 use super::street::street;
 
@@ -11,7 +11,7 @@ use super::street::street;
 fn drives_west(heading: f64, route: &[&str], route_position: usize) -> bool {
     let net = street();
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::internals::study::car()).unwrap();
+    let profile = roster.profile(closecall_study::stress::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     frame.push(roster.enter("car", profile), State { x: 120.0, y: 1.6, z: 0.0, heading, speed: 12.0 });
@@ -52,9 +52,9 @@ const APART: &str = r#"<net>
 
 #[test]
 fn a_path_leads_straight_across_between_unjoined_lanes() {
-    let net = Arc::new(Net::parse(Path::new("apart.net.xml"), APART).unwrap());
+    let net = Arc::new(closecall_run::net::parse(Path::new("apart.net.xml"), APART).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::internals::study::car()).unwrap();
+    let profile = roster.profile(closecall_study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     detector.set_fixed_routes(true);
@@ -94,9 +94,9 @@ const FORK: &str = r#"<net>
 
 #[test]
 fn a_path_is_rebuilt_only_for_another_route() {
-    let net = Arc::new(Net::parse(Path::new("fork.net.xml"), FORK).unwrap());
+    let net = Arc::new(closecall_run::net::parse(Path::new("fork.net.xml"), FORK).unwrap());
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::internals::study::car()).unwrap();
+    let profile = roster.profile(closecall_study::stress::car()).unwrap();
     let (user, mut frame) = (roster.enter("car", profile), Frame::default());
     let mut detector = Detector::new(&Options::default(), Some(net.clone()));
     // The end of the path; the car stays at the same place in every step.

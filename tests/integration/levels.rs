@@ -17,7 +17,7 @@ fn net(node: &str, heights: [&str; 2]) -> Arc<Net> {
             <junction id="e" x="200" y="0" shape="200,-2 200,2"/>
         </net>"#
     );
-    Arc::new(Net::parse(Path::new("bridge.net.xml"), text).unwrap())
+    Arc::new(closecall_run::net::parse(Path::new("bridge.net.xml"), text).unwrap())
 }
 
 const NORTH: f64 = std::f64::consts::FRAC_PI_2;

@@ -16,10 +16,17 @@ mod lane_lengths;
 mod lanes;
 mod levels;
 mod names;
+mod net_corners;
 mod net_faults;
+mod net_finder;
+mod net_links;
+mod net_overlaps;
+mod net_quality;
+mod net_relations;
 mod one_between;
 mod path;
 mod replay;
+mod route;
 #[path = "../common/street.rs"]
 mod street;
 mod sublane;

@@ -2,7 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use closecall::{Conflict, Error, Options, Profile, Run, State, SumoType};
+use closecall::{Conflict, Options, Profile, State, SumoType};
+use closecall_run::{Error, Run};
 use proptest::prelude::*;
 
 /// How long a step lasts, in s.
@@ -21,7 +22,7 @@ impl Scene {
     /// `names` has the place of each vehicle's name, `rows` the order in which they enter and are listed in a frame.
     fn conflicts(&self, names: &[usize], rows: &[usize]) -> Vec<Conflict> {
         let options = Options { log: "margin < 0".parse().unwrap(), ..Options::default() };
-        let mut run = Run::new(&options, None).unwrap();
+        let mut run = Run::new(&options.clone().into(), None).unwrap();
         let name = |vehicle: usize| char::from(b'a' + names[vehicle] as u8).to_string();
         let profiles = (0..self.0.len()).map(|vehicle| {
             let sumo = SumoType { length: 4.0 + 0.5 * vehicle as f64, ..SumoType::car(&format!("car{vehicle}")) };

@@ -4,10 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use closecall::{
-    Category, Ending, Error, LogFolder, Net, Options, OutputFiles, PathModel, Profile, RecordedRun, Result, Run,
-    RunRecord, State, SumoType,
-};
+use closecall::{Category, Net, Options, PathModel, Profile, State, SumoType};
+use closecall_run::RunOptions;
+use closecall_run::{Ending, Error, LogFolder, OutputFiles, RecordedRun, Result, Run, RunRecord};
 
 use crate::why::{Drive, LEFT, ONCOMING, drive, net_of, run_of};
 
@@ -19,7 +18,7 @@ fn rows(log: &Path) -> Vec<Vec<String>> {
 
 /// Ends a run with a log in a folder; returns the lines that it says of the net.
 fn said(run: impl FnOnce(Run) -> Run, net: &Arc<Net>, log: &Path) -> Vec<String> {
-    let options = Options { path: PathModel::Straight, ..Options::default() };
+    let options = RunOptions::from(Options { path: PathModel::Straight, ..Options::default() });
     let record = RunRecord::new(PathBuf::from("a.sumocfg"), options.clone());
     let new = Run::new(&options, Some(Arc::clone(net))).unwrap();
     let mut recorded = RecordedRun::open(new, record, LogFolder::claim(log).unwrap(), &OutputFiles::default()).unwrap();
@@ -55,7 +54,7 @@ fn one_that_stands_counts_once_however_many_pass() {
     let text = r#"<net><edge id=":j_w0" function="walkingarea">
         <lane id=":j_w0_0" allow="pedestrian" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge>
         <edge id="a"><lane id="a_0" length="200" speed="30" shape="-100,0.3 100,0.3"/></edge></net>"#;
-    let net = Arc::new(Net::parse(Path::new("net"), text.to_owned()).unwrap());
+    let net = Arc::new(closecall_run::net::parse(Path::new("net"), text.to_owned()).unwrap());
     let log = tempfile::tempdir().unwrap();
     let lines = said(|run| pass(run, 7), &net, log.path());
     let rows = rows(log.path());

@@ -3,7 +3,8 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use closecall::{Net, Options, PathModel, Placement, Profile, Run, State, SumoType};
+use closecall::{Net, Options, PathModel, Placement, Profile, State, SumoType};
+use closecall_run::Run;
 
 use crate::street::street;
 
@@ -20,7 +21,7 @@ fn car(id: &'static str, x: f64, y: f64, speed: f64) -> Car {
 /// The pairs in conflict in a step of these vehicles, which are 5 m long, as ego and foe; each is on the lane of that
 /// name, if there is a net.
 fn pairs_on(options: &Options, net: Option<Arc<Net>>, cars: &[Car], lane: &str) -> Vec<(String, String)> {
-    let mut run = Run::new(options, net.clone()).unwrap();
+    let mut run = Run::new(&options.clone().into(), net.clone()).unwrap();
     run.begin_step(0.0);
     for &(id, [x, y], heading, speed, width) in cars {
         let sumo = SumoType { width, ..SumoType::car(if width == CAR { "car" } else { "narrow" }) };
@@ -29,7 +30,7 @@ fn pairs_on(options: &Options, net: Option<Arc<Net>>, cars: &[Car], lane: &str) 
         run.frame.push(user, State { x, y, z: 0.0, heading, speed });
     }
     run.step(|run, rows| {
-        let Some(net) = &net else { return Ok::<(), closecall::Error>(()) };
+        let Some(net) = &net else { return Ok::<(), closecall_run::Error>(()) };
         for &row in rows {
             let position = run.frame.state(row).x;
             let lane = net.lane(lane).unwrap();

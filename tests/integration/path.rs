@@ -1,9 +1,10 @@
 //! Following a line gives the same distances, to the last bit, as searching all of it in every step.
 
 use closecall::Point;
-use closecall::internals::detection::Track;
-use closecall::internals::geometry::{Lines, Vector};
-use closecall::internals::traffic::Carriage;
+use closecall::detection::path::track::Track;
+use closecall::geometry::Vector;
+use closecall::geometry::polylines::Lines;
+use closecall::traffic::profile::Carriage;
 use proptest::prelude::*;
 
 /// A front bumper nearer than this to the line is on it, in m.

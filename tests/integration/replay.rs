@@ -4,8 +4,11 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use closecall::internals::input::{PlannedRoutes, RecordedStep, Recording, Routes};
-use closecall::{EdgeIndex, Net};
+use closecall::EdgeIndex;
+use closecall_run::input::replay::demand::PlannedRoutes;
+use closecall_run::input::replay::recording::Recording;
+use closecall_run::input::replay::routes::Routes;
+use closecall_run::input::replay::rows::RecordedStep;
 use proptest::prelude::*;
 
 /// One row with all its values.
@@ -387,7 +390,7 @@ fn a_vehicle_and_a_person_may_share_an_id() {
 fn read_routes(rows: impl Iterator<Item = (f64, String, usize)>) -> (tempfile::NamedTempFile, Routes) {
     let edge = |n| format!(r#"<edge id="e{n}"><lane id="e{n}_0" length="9" shape="0,{n} 9,{n}"/></edge>"#);
     let net = format!("<net>{}</net>", (0..200).map(edge).collect::<String>());
-    let net = Net::parse(Path::new("net"), net).unwrap();
+    let net = closecall_run::net::parse(Path::new("net"), net).unwrap();
     let mut text = "timestep_time;vehicle_id;vehicle_x;vehicle_y;vehicle_angle;vehicle_speed;vehicle_lane\n".to_owned();
     rows.for_each(|(time, id, edge)| writeln!(text, "{time};{id};0;0;0;1;e{edge}_0").unwrap());
     let file = tempfile::NamedTempFile::new().unwrap();

@@ -14,7 +14,7 @@ fn encounters(y: f64, drift: f64) -> usize {
 /// The same on a net; where `left` is −1, all is mirrored, but for SUMO's lateral speeds.
 fn encounters_on(net: Arc<Net>, left: f64, y: f64, drift: f64) -> usize {
     let mut roster = Roster::default();
-    let profile = roster.profile(closecall::internals::study::car()).unwrap();
+    let profile = roster.profile(closecall_study::stress::car()).unwrap();
     let mut frame = Frame::default();
     frame.begin(0.0);
     let states = [(80.0, y, 0.0), (120.0, 1.6, std::f64::consts::PI)];

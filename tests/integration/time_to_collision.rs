@@ -1,8 +1,10 @@
 //! TTC of two road users that keep their speed, compared with parry2d's linear `cast_shapes`.
 
 use closecall::Point;
-use closecall::internals::detection::{HORIZON, Pose, SteadyMotion, time_to_collision};
-use closecall::internals::geometry::{Rectangle, direction, distance};
+use closecall::detection::measures::ttc::{HORIZON, SteadyMotion, time_to_collision};
+use closecall::detection::path::Pose;
+use closecall::geometry::contact::distance;
+use closecall::geometry::rectangle::{Rectangle, direction};
 use parry2d_f64::math::{Pose as ParryPose, Rotation, Vector};
 use parry2d_f64::query::{ShapeCastOptions, cast_shapes};
 use parry2d_f64::shape::Cuboid;

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::geometry::Vector;
+use closecall::geometry::Vector;
 use closecall::{Net, Point, Profile, State};
 
 /// A lane through these points.
@@ -18,7 +18,7 @@ impl Way {
         let length = points.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();
         let lane = format!(r#"<lane id="e_0" index="0" length="{length}" width="3.2" shape="{shape}"/>"#);
         let text = format!(r#"<net><edge id="e" from="w" to="n">{lane}</edge></net>"#);
-        Self { points, net: Arc::new(Net::parse(Path::new("bend.net.xml"), text).unwrap()) }
+        Self { points, net: Arc::new(closecall_run::net::parse(Path::new("bend.net.xml"), text).unwrap()) }
     }
 
     /// 100 m to the east, a quarter circle of 20 m to the left, 100 m to the north.

@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use closecall::internals::study::car;
-use closecall::{Category, Conflict, Net, Options, Placement, Profile, Run, State};
+use closecall::{Category, Conflict, Net, Placement, Profile, State};
+use closecall_run::Run;
+use closecall_study::stress::car;
 
 /// The time between two steps, in s.
 const STEP: f64 = 0.1;
@@ -51,7 +52,7 @@ fn conflicts_with(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &
 /// The run of some seconds, which is not finished.
 pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops: &[u32], lasts: f64) -> Run {
     let net = Arc::new(net.clone());
-    let mut run = Run::new(&Options::default(), Some(Arc::clone(&net))).unwrap();
+    let mut run = Run::new(&closecall_run::RunOptions::default(), Some(Arc::clone(&net))).unwrap();
     let mut enter = |(drive, number): (&Drive, u32)| {
         let profile = run.roster.profile(Profile { category: drive.category, ..car() }).unwrap();
         run.enter(&format!("car{number}"), profile)
@@ -99,14 +100,14 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
                 run.set_stopped(user);
             }
         }
-        let stepped: closecall::Result<()> = run.step(|run, rows| {
+        let stepped: closecall_run::Result<()> = run.step(|run, rows| {
             for row in rows {
                 run.set_placement(*row, &placements[*row as usize]);
                 if let Some(lanes) = run.changed_lanes(*row) {
                     run.set_lane_change_state(*row, if lanes > 0 { 1 << 1 | 1 << 3 } else { 1 << 2 | 1 << 6 });
                 }
             }
-            Ok::<_, closecall::Error>(())
+            Ok::<_, closecall_run::Error>(())
         });
         stepped.unwrap();
     }
@@ -129,7 +130,11 @@ fn place(net: &Net, lane: closecall::LaneIndex, position: f64) -> ([f64; 2], f64
 }
 
 pub(crate) fn net_of(scene: &str) -> Net {
-    Net::read(Path::new(&format!("sumo_nets/{scene}/{scene}.net.xml"))).unwrap()
+    closecall_run::net::read(Path::new(&format!(
+        "{}/../../sumo_nets/{scene}/{scene}.net.xml",
+        env!("CARGO_MANIFEST_DIR")
+    )))
+    .unwrap()
 }
 
 /// A road of two lanes with a limit of 30 m/s.
@@ -145,7 +150,7 @@ fn road_of(edge: &str, beside: f64) -> Net {
         <lane id="road_1" speed="30" length="900" shape="0,{beside} 900,{beside}"/>
     </edge></net>"#
     );
-    Net::parse(Path::new("road.net.xml"), text).unwrap()
+    closecall_run::net::parse(Path::new("road.net.xml"), text).unwrap()
 }
 
 pub(crate) const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0", "to_west_1"];
@@ -328,7 +333,7 @@ fn bend(radius: f64) -> Net {
     let text = format!(
         r#"<net><edge id="bend" from="w" to="n"><lane id="bend_0" speed="30" length="90" shape="{shape}"/></edge></net>"#
     );
-    Net::parse(Path::new("bend.net.xml"), text).unwrap()
+    closecall_run::net::parse(Path::new("bend.net.xml"), text).unwrap()
 }
 
 #[test]

@@ -14,8 +14,9 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture
 def tree(tmp_path: Path) -> Path:
-    """A copy of the crate's sources, to plant faults in."""
-    shutil.copytree(ROOT / "src", tmp_path / "src")
+    """A copy of the sources, to plant faults in."""
+    for folder in ("src", "crates", "bridge"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
     return tmp_path
 
 
@@ -33,10 +34,10 @@ def test_the_layout_has_no_circle_and_no_upward_import() -> None:
 
 
 def test_a_planted_upward_import_is_found(tree: Path) -> None:
-    plant(tree / "src/geometry/contact.rs", "use crate::run::Run;")
+    plant(tree / "src/geometry/contact.rs", "use crate::events::Tracker;")
     found = check(tree)
     assert found.returncode == 1
-    assert "contact.rs: imports run, which stands above it" in found.stdout
+    assert "contact.rs: imports events::tracker, which stands above it" in found.stdout
 
 
 def test_a_planted_circle_is_found(tree: Path) -> None:
@@ -51,3 +52,10 @@ def test_a_folder_without_a_layer_is_found(tree: Path) -> None:
     found = check(tree)
     assert found.returncode == 1
     assert "no layer" in found.stdout
+
+
+def test_a_planted_circle_in_python_is_found(tree: Path) -> None:
+    plant(tree / "bridge/python/closecall/sweep_run.py", "from .sweep import results")
+    found = check(tree)
+    assert found.returncode == 1
+    assert "a circle of imports: sweep -> sweep_cluster, sweep_run" in found.stdout

@@ -47,7 +47,10 @@ struct Counts {
 /// The command that is tested, with the faults preloaded.
 pub fn closecall(words: &str, folder: &Path, fault: Fault) -> Output {
     static SHIM: LazyLock<PathBuf> = LazyLock::new(|| {
-        let [source, shim] = ["tests/torture/faults.c", concat!(env!("CARGO_TARGET_TMPDIR"), "/faults.so")];
+        let [source, shim] = [
+            concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/torture/faults.c"),
+            concat!(env!("CARGO_TARGET_TMPDIR"), "/faults.so"),
+        ];
         let own = format!("{shim}.{}", std::process::id());
         let words = ["-O1", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC", source, "-o", &own, "-ldl"];
         assert!(Command::new("cc").args(words).status().unwrap().success());

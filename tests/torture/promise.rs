@@ -6,7 +6,7 @@ use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::Output;
 
-use closecall::internals::analysis::{ConflictReader, LoggedRun};
+use closecall_analysis::logged::{ConflictReader, LoggedRun};
 
 use crate::{Fault, NO_FAULT};
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from distributed import Client, as_completed, get_worker
 
-from .sweep import ATTEMPTS, Task, message, run
+from .sweep_run import ATTEMPTS, Task, message, run
 
 
 def on_cluster(tasks: list[Task], folder: str, scheduler: str) -> Iterator[tuple[str, str | None]]:

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 
 use closecall::State;
-use closecall::internals::traffic::SUMO_INVALID;
+use closecall::traffic::frame::SUMO_INVALID;
 use pyo3::prelude::*;
 use pyo3::types::{PyString, PyTuple};
 

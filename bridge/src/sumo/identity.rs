@@ -6,7 +6,7 @@
 //! Where a script calls `executeMove` after a step, SUMO does most of the next one then, and its lists of that step are empty
 //! when the script comes to it: vehicles are inserted that did not depart, as far as the lists tell.
 
-use closecall::internals::util::Second;
+use closecall::util::units::Second;
 use pyo3::prelude::*;
 
 use super::option;

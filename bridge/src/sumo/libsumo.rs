@@ -3,8 +3,9 @@
 //! States come from [`Getters`](super::getters::Getters). Everything else comes from the Python functions of libsumo's
 //! compiled module, looked up once: with SUMO 1.28 a call takes 0.10 to 0.19 µs, and subscriptions take 2 µs per vehicle.
 
-use closecall::internals::util::Second;
-use closecall::{Options, Placement, Run};
+use closecall::util::units::Second;
+use closecall::{Options, Placement};
+use closecall_run::Run;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 

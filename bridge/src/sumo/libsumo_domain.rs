@@ -2,7 +2,8 @@
 
 use std::ops::RangeFrom;
 
-use closecall::{ProfileIndex, Roster, Run, State, UserIndex};
+use closecall::{ProfileIndex, Roster, State, UserIndex};
+use closecall_run::Run;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
 use rustc_hash::{FxHashMap, FxHashSet};

@@ -13,8 +13,9 @@ mod reading;
 mod simulation;
 mod traci;
 
-use closecall::internals::util::Second;
-use closecall::{Options, Run};
+use closecall::Options;
+use closecall::util::units::Second;
+use closecall_run::Run;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -4,8 +4,9 @@ use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use closecall::internals::util::Second;
-use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, Run, SumoType};
+use closecall::util::units::Second;
+use closecall::{EdgeIndex, Net, Options, Point, Profile, ProfileIndex, SumoType};
+use closecall_run::Run;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::intern;
 use pyo3::prelude::*;
@@ -30,7 +31,7 @@ pub fn net_of(source: &Bound<PyAny>) -> PyResult<Option<Arc<Net>>> {
     if file.is_empty() {
         return Ok(None);
     }
-    Net::read(&PathBuf::from(file)).map(|net| Some(Arc::new(net))).map_err(exception)
+    closecall_run::net::read(&PathBuf::from(file)).map(|net| Some(Arc::new(net))).map_err(exception)
 }
 
 /// Adds the polygons of the wanted types as static obstacles.

@@ -2,8 +2,9 @@
 //!
 //! The names of its functions are interned: Python's attribute cache keeps every name that is looked up in every step.
 
-use closecall::internals::util::Second;
-use closecall::{Options, Placement, ProfileIndex, Run, State, UserIndex};
+use closecall::util::units::Second;
+use closecall::{Options, Placement, ProfileIndex, State, UserIndex};
+use closecall_run::Run;
 use pyo3::intern;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString, PyTuple};

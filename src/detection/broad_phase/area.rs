@@ -25,7 +25,7 @@ pub struct Area {
 
 impl Area {
     /// Whether the circle cuts the corners of the box.
-    pub fn is_round(&self) -> bool {
+    pub(crate) fn is_round(&self) -> bool {
         self.radius < f64::INFINITY
     }
 
@@ -35,7 +35,7 @@ impl Area {
     }
 
     /// Whether the circles of two areas meet; only of use where their boxes do.
-    pub fn circles_meet(&self, other: &Self) -> bool {
+    pub(crate) fn circles_meet(&self, other: &Self) -> bool {
         let (middle, other_middle) = (self.middle(), other.middle());
         let reach = self.radius + other.radius;
         (middle - other_middle).norm_squared() <= reach * reach

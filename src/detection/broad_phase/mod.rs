@@ -76,12 +76,12 @@ impl Search<u32> {
 
 impl<S: Slot> Search<S> {
     /// The slots of this step.
-    pub fn slots(&self) -> &[S] {
+    pub(crate) fn slots(&self) -> &[S] {
         &self.slots
     }
 
     /// Whether any area of this step is smaller than its box, so that two areas may be apart though their boxes meet.
-    pub fn has_round(&self) -> bool {
+    pub(crate) fn has_round(&self) -> bool {
         self.has_round
     }
 

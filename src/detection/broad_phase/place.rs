@@ -23,7 +23,7 @@ impl StripEntry {
         self.begin = laid.low.x;
     }
 
-    pub fn is_before(&self, other: &Self) -> bool {
+    pub(crate) fn is_before(&self, other: &Self) -> bool {
         (self.strip, self.begin) < (other.strip, other.begin)
     }
 }

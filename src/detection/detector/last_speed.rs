@@ -73,7 +73,7 @@ impl LastSpeed {
     }
 
     /// How long ago its speed fell by more than brakes can do within a step; infinite where it never did.
-    pub fn since_impossible_stop(&self) -> Second {
+    pub(crate) fn since_impossible_stop(&self) -> Second {
         self.since_impossible_stop
     }
 }

@@ -47,17 +47,17 @@ impl StepInputs<'_> {
     }
 
     /// Whether pairs are met further ahead than where both stand.
-    pub fn is_further(&self) -> bool {
+    pub(crate) fn is_further(&self) -> bool {
         self.cover != Cover::UntilTheyStand
     }
 
     /// The inputs with which a pair was met.
-    pub fn as_met(self, further: bool) -> Self {
+    pub(crate) fn as_met(self, further: bool) -> Self {
         if further { self.further().unwrap_or(self) } else { self }
     }
 
     /// Whether the broad phase has compared the areas that pairs are met in.
-    pub fn areas_are_compared(&self) -> bool {
+    pub(crate) fn areas_are_compared(&self) -> bool {
         self.shortcuts.areas_apart && (self.look.is_none() || self.is_further())
     }
 
@@ -77,12 +77,12 @@ impl StepInputs<'_> {
 
     /// The same and ε further; 0 if it stands.
     #[inline(always)]
-    pub fn reach_of(&self, user: &User) -> Metre {
+    pub(crate) fn reach_of(&self, user: &User) -> Metre {
         self.cover.reach(self.state(user), self.profile(user), self.options.epsilon)
     }
 
     /// Its length as SUMO draws it.
-    pub fn drawn_length(&self, user: &User) -> Metre {
+    pub(crate) fn drawn_length(&self, user: &User) -> Metre {
         self.paths.drawn_length(user.index, self.profile(user).length)
     }
 
@@ -92,16 +92,16 @@ impl StepInputs<'_> {
     }
 
     /// The number of carriages that a road user is seen as.
-    pub fn count_carriages(&self, user: &User) -> u32 {
+    pub(crate) fn count_carriages(&self, user: &User) -> u32 {
         if user.bends { self.profile(user).carriages } else { 1 }
     }
 
     /// The length of a carriage as SUMO draws it; that of the whole road user, unless it bends.
-    pub fn drawn_length_of(&self, user: &User, carriage: Carriage) -> Metre {
+    pub(crate) fn drawn_length_of(&self, user: &User, carriage: Carriage) -> Metre {
         if user.bends { carriage.length * self.paths.scale(user.index) } else { self.drawn_length(user) }
     }
 
-    pub fn is_obstacle(&self, slot: u32) -> bool {
+    pub(crate) fn is_obstacle(&self, slot: u32) -> bool {
         self.user(slot).category == Category::Obstacle
     }
 

@@ -26,7 +26,7 @@ pub struct Advantage {
 
 impl Advantage {
     /// That of two that touch after this time.
-    pub fn on_collision_course(ttc: Second) -> Self {
+    pub(crate) fn on_collision_course(ttc: Second) -> Self {
         Self { tadv: 0.0, t2: ttc }
     }
 }

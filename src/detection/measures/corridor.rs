@@ -34,7 +34,7 @@ impl Corridor {
 
     /// The fraction of a step of another at which that first or last touches what this one has covered by the end of the
     /// step; none where it does not.
-    pub fn touched_by(&self, step: &Step, which: Contact, halves: &mut Bisection) -> Option<f64> {
+    pub(crate) fn touched_by(&self, step: &Step, which: Contact, halves: &mut Bisection) -> Option<f64> {
         let before = self.carriages.iter().flat_map(|steps| steps.iter().take_while(|own| own.from < step.to));
         let found = before.fold(which.none(), |known, own| halves.touch(step.part, own.part, which, known));
         (found != which.none()).then_some(found.min(1.0))
@@ -59,7 +59,7 @@ impl Step {
     }
 
     /// The fraction of it that has passed at a time.
-    pub fn part_at(&self, time: Second) -> f64 {
+    pub(crate) fn part_at(&self, time: Second) -> f64 {
         ((time - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 

@@ -9,7 +9,7 @@ use crate::traffic::driver::Driver;
 use crate::util::units::{MetrePerSecondSquared, Probability};
 
 /// The probability that a driver's vehicle cannot brake as hard as the DRAC; 0 without one.
-pub fn exceeds_brakes(driver: &Driver, drac: Option<MetrePerSecondSquared>) -> Probability {
+pub(crate) fn exceeds_brakes(driver: &Driver, drac: Option<MetrePerSecondSquared>) -> Probability {
     drac.map_or(0.0, |drac| driver.brakes_too_weakly(|deceleration| deceleration < drac))
 }
 

@@ -18,7 +18,7 @@ use crate::util::units::{MetrePerSecondSquared, Second};
 
 /// No road user brakes harder, in m/s²: the upper end of the distribution of the maximum available deceleration rate of
 /// cars (Cunto and Saccomanno 2008, Fu and Sayed 2021: 8.45 ± 1.4, from 4.23 to 12.68). A larger DRAC is cut to it.
-pub const LIMIT: MetrePerSecondSquared = 12.68;
+pub(crate) const LIMIT: MetrePerSecondSquared = 12.68;
 
 /// Halvings of [`LIMIT`] in the search for the deceleration of both: it is known to 1 mm/s².
 const HALVINGS: u32 = 14;

@@ -17,7 +17,7 @@ const MOST_PARTS: f64 = 16.0;
 
 /// The path that one road user drove: where it was at each time.
 #[derive(Clone, Debug, Default)]
-pub struct DrivenPath {
+pub(crate) struct DrivenPath {
     poses: Vec<TimedPose>,
     carriages: SmallVec<[Carriage; 1]>,
     width: Metre,
@@ -45,7 +45,7 @@ impl DrivenPath {
     }
 
     /// An empty path of a road user with these carriages.
-    pub fn of_carriages(carriages: impl IntoIterator<Item = Carriage>, width: Metre) -> Self {
+    pub(crate) fn of_carriages(carriages: impl IntoIterator<Item = Carriage>, width: Metre) -> Self {
         Self { carriages: carriages.into_iter().collect(), width, ..Self::default() }
     }
 
@@ -60,7 +60,7 @@ impl DrivenPath {
     }
 
     /// Adds the same of a road user that was seen there, with what lies between on the arc that it drove.
-    pub fn drive_to(&mut self, time: Second, front: Point, heading: Radian) {
+    pub(crate) fn drive_to(&mut self, time: Second, front: Point, heading: Radian) {
         // Steps of a recording that differ in length may overlap by a part of one.
         while self.poses.last().is_some_and(|last| last.time >= time) {
             self.poses.pop();
@@ -78,7 +78,7 @@ impl DrivenPath {
     }
 
     /// The same if it goes on along these poses. When it comes to each is left open: a second later for each metre.
-    pub fn going_on(&self, poses: &[Pose]) -> Self {
+    pub(crate) fn going_on(&self, poses: &[Pose]) -> Self {
         let mut path = self.clone();
         let now = self.poses.last().map_or(0.0, |last| last.time);
         for pose in poses.iter().filter(|pose| pose.distance > 0.0) {
@@ -148,7 +148,7 @@ impl Course<'_> {
         Pose { distance: 0.0, front: pose.front, axis: direction(pose.heading) }
     }
 
-    pub fn bounds_at(&self, pose: &Pose) -> Bounds {
+    pub(crate) fn bounds_at(&self, pose: &Pose) -> Bounds {
         Rectangle::behind(pose.front, pose.axis, self.length, self.width).bounds()
     }
 }

@@ -14,7 +14,7 @@ use crate::geometry::rectangle::Rectangle;
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// EI in m/s; none if the two would pass each other, or are nearest already.
-pub fn emergency_index(a: &Moving, b: &Moving) -> Option<MetrePerSecond> {
+pub(crate) fn emergency_index(a: &Moving, b: &Moving) -> Option<MetrePerSecond> {
     let (between, relative) = (b.rectangle.centre - a.rectangle.centre, b.velocity() - a.velocity());
     let nearest_after = -between.dot(&relative) / relative.norm_squared();
     if nearest_after.is_nan() || nearest_after <= 0.0 {

@@ -9,7 +9,7 @@
 use crate::util::units::Second;
 
 /// The threshold TTC* in s: SUMO's device.ssm's default.
-pub const THRESHOLD: Second = 3.0;
+pub(crate) const THRESHOLD: Second = 3.0;
 
 /// The part of a step that counts in TET: all of it, or none.
 pub fn exposed(ttc: Option<Second>) -> f64 {

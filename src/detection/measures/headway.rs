@@ -19,7 +19,7 @@ pub fn headway(kind: Kind, gap: Metre, speed: MetrePerSecond) -> Option<Second> 
 /// ```text
 /// THW = (gap + leader's length) / speed
 /// ```
-pub fn time_headway(kind: Kind, gap: Metre, leader: Metre, speed: MetrePerSecond) -> Option<Second> {
+pub(crate) fn time_headway(kind: Kind, gap: Metre, leader: Metre, speed: MetrePerSecond) -> Option<Second> {
     headway(kind, gap + leader, speed)
 }
 

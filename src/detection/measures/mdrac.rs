@@ -9,9 +9,9 @@ use super::drac::LIMIT;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// The perception–reaction time R in s: the default of SUMO's device.ssm.
-pub const REACTION: Second = 1.0;
+pub(crate) const REACTION: Second = 1.0;
 
-/// MDRAC in m/s², at most [`LIMIT`], also where contact comes within R; none if the follower is not faster.
+/// MDRAC in m/s², at most `LIMIT`, also where contact comes within R; none if the follower is not faster.
 pub fn mdrac(gap: Metre, closing: MetrePerSecond) -> Option<MetrePerSecondSquared> {
     if closing <= 0.0 {
         return None;

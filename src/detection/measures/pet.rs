@@ -1,7 +1,7 @@
 //! Post-encroachment time: how long after the first has left the conflict area the second enters it.
 //!
 //! Measured on the paths that both really drove. A corridor is the area that a rectangle covered; the conflict area is
-//! the place of both corridors in which the second crosses the first's ([`super::passage`]): from where it comes into it
+//! the place of both corridors in which the second crosses the first's (`passage`): from where it comes into it
 //! until it is clear of it, or until the two go on together. The second enters the area when it comes into the first's
 //! corridor; the first leaves it when its rectangle touches what the second covers there for the last time. So the time is
 //! final when the second has crossed, whatever both do afterwards. An articulated vehicle has a corridor of each carriage.
@@ -16,7 +16,7 @@ use crate::util::units::{Radian, Second};
 
 /// A post-encroachment time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Pet {
+pub(crate) struct Pet {
     /// From when the first has left the conflict area until the second enters it, in s.
     pub lasts: Second,
     /// When the second enters it, in s.
@@ -27,7 +27,12 @@ pub struct Pet {
 
 /// The PET of two driven paths; paths that meet at a smaller angle than `widest` cross only where each goes on beyond the
 /// other. None where they do not cross, or both are in the conflict area at once. `halves` only lends its allocations.
-pub fn post_encroachment_time(halves: &mut Bisection, a: &DrivenPath, b: &DrivenPath, widest: Radian) -> Option<Pet> {
+pub(crate) fn post_encroachment_time(
+    halves: &mut Bisection,
+    a: &DrivenPath,
+    b: &DrivenPath,
+    widest: Radian,
+) -> Option<Pet> {
     let courses = [a, b].map(DrivenPath::courses);
     let near = bounds(&courses[0]).shared_with(&bounds(&courses[1]))?;
     halves.clear();

@@ -34,7 +34,7 @@ pub fn delta_s(a: &Moving, b: &Moving) -> MetrePerSecond {
 }
 
 /// ACT in s; none if the two overlap, or their nearest points do not come nearer.
-pub fn anticipated_collision_time(a: &Moving, b: &Moving) -> Option<Second> {
+pub(crate) fn anticipated_collision_time(a: &Moving, b: &Moving) -> Option<Second> {
     let between = shortest_line(&a.rectangle, &b.rectangle);
     let distance = between.norm();
     let closing = (a.velocity() - b.velocity()).dot(&between) / distance;

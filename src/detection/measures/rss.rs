@@ -13,7 +13,7 @@ use crate::braking::rss::RESPONSE;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared};
 
 /// Lateral acceleration a during the response time, in m/s².
-pub const ACCELERATION: MetrePerSecondSquared = 0.2;
+pub(crate) const ACCELERATION: MetrePerSecondSquared = 0.2;
 /// Lateral deceleration c, in m/s².
 pub const BRAKING: MetrePerSecondSquared = 0.8;
 /// Lateral margin m, in m.

@@ -22,7 +22,7 @@ use crate::geometry::rectangle::Rectangle;
 use crate::geometry::{cross, left_of};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// The longitudinal deceleration in m/s² that a follower needs, at most [`LIMIT`]; 0 where it needs none.
+/// The longitudinal deceleration in m/s² that a follower needs, at most `LIMIT`; 0 where it needs none.
 pub fn behind(
     gap: Metre,
     speed: MetrePerSecond,
@@ -43,7 +43,7 @@ pub fn behind(
     if needed.is_nan() { 0.0 } else { needed.min(LIMIT) }
 }
 
-/// The lateral acceleration in m/s² with which the ego is beside the foe when both would touch, at most [`LIMIT`]; both
+/// The lateral acceleration in m/s² with which the ego is beside the foe when both would touch, at most `LIMIT`; both
 /// rectangles are those at that time.
 pub fn aside(ego: &Rectangle, foe: &Rectangle, ttc: Second) -> MetrePerSecondSquared {
     let left = left_of(&ego.axis);

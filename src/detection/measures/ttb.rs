@@ -53,7 +53,7 @@ impl Evasion<'_> {
 
 /// How an ego that brakes late stays behind a foe: the two touch after `meets`, in s, if neither brakes harder than now.
 /// `limits` holds what the result borrows. None if the foe comes to where the ego is now.
-pub fn to_stay_behind<'a>(
+pub(crate) fn to_stay_behind<'a>(
     bisection: &mut Bisection,
     limits: &'a mut Vec<(Second, Metre)>,
     [ego, foe]: [&SteadyMotion; 2],

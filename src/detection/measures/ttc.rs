@@ -32,7 +32,7 @@ pub struct SteadyMotion<'a> {
 
 impl SteadyMotion<'_> {
     /// Its rectangle after a time.
-    pub(crate) fn at(&self, time: Second) -> Rectangle {
+    pub fn at(&self, time: Second) -> Rectangle {
         self.at_distance(self.travel(time))
     }
 
@@ -155,7 +155,7 @@ pub(super) fn touch_while_braking(a: &SteadyMotion, b: &SteadyMotion, decelerati
 }
 
 /// Time until a moving road user touches an obstacle, in s; none if it does not within [`HORIZON`].
-pub fn time_to_fixed(bisection: &mut Bisection, a: &SteadyMotion, fixed: &[Polygon]) -> Option<Second> {
+pub(crate) fn time_to_fixed(bisection: &mut Bisection, a: &SteadyMotion, fixed: &[Polygon]) -> Option<Second> {
     a.poses
         .windows(2)
         .find_map(|pair| {

@@ -17,14 +17,14 @@ pub enum Ego {
 
 impl Ego {
     /// The first of the pair if `first` holds, otherwise the second.
-    pub fn first_if(first: bool) -> Self {
+    pub(crate) fn first_if(first: bool) -> Self {
         if first { Self::First } else { Self::Second }
     }
 
     /// The ego of two that are equally far from the conflict point, as two in contact are: the one that moves faster towards the
     /// other's middle, so of a follower and its leader the follower; then the one that faces the other; of mirror images the
     /// first.
-    pub fn of_equals([first, second]: [&Participant; 2]) -> Self {
+    pub(crate) fn of_equals([first, second]: [&Participant; 2]) -> Self {
         let between = second.rectangle.centre - first.rectangle.centre;
         let [of_first, of_second] = [first.rectangle.axis.dot(&between), -second.rectangle.axis.dot(&between)];
         let closes = first.speed * of_first - second.speed * of_second;

@@ -30,7 +30,7 @@ impl ConflictPoint {
     }
 
     /// Whether the foe first has to arrive and leave: the gap is known once that is. σ = cos α.
-    pub fn foe_leaves(&self, sigma: f64) -> bool {
+    pub(crate) fn foe_leaves(&self, sigma: f64) -> bool {
         !self.foe_leads && self.foe_axis.is_some() && sigma > 0.0
     }
 

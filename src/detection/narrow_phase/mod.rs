@@ -2,7 +2,7 @@
 //!
 //! Two that drive straight on, side by side or in line, are a problem in one dimension: `rear_end` if they drive in the
 //! same direction, `frontal` if they drive towards each other. All others are swept: [`side`]. The paper's own tests
-//! are in [`paper`].
+//! are in `paper`.
 
 mod approach;
 mod conflict_point;
@@ -42,7 +42,7 @@ pub fn meet(a: &Participant, b: &Participant) -> Option<Approach> {
 }
 
 /// Whether both drive straight on, side by side or in line.
-pub fn drive_in_line(a: &Participant, b: &Participant) -> bool {
+pub(crate) fn drive_in_line(a: &Participant, b: &Participant) -> bool {
     if !a.straight || !b.straight || !a.shape.is_empty() || !b.shape.is_empty() {
         return false;
     }
@@ -50,17 +50,17 @@ pub fn drive_in_line(a: &Participant, b: &Participant) -> bool {
 }
 
 /// Whether two axes point in the same or in opposite directions, up to [`PARALLEL`] over the longer of two lengths.
-pub fn are_parallel([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
+pub(crate) fn are_parallel([a, b]: [&Vector; 2], [length, other]: [Metre; 2]) -> bool {
     cross(a, b).abs() * length.max(other) <= PARALLEL
 }
 
 /// Whether two that drive in line have opposite directions.
-pub fn drive_opposed(a: &Participant, b: &Participant) -> bool {
+pub(crate) fn drive_opposed(a: &Participant, b: &Participant) -> bool {
     a.rectangle.axis.dot(&b.rectangle.axis) <= 0.0
 }
 
 /// How two that drive in line would meet.
-pub fn meet_in_one_dimension(a: &Participant, b: &Participant) -> Option<Approach> {
+pub(crate) fn meet_in_one_dimension(a: &Participant, b: &Participant) -> Option<Approach> {
     let axis = a.rectangle.axis;
     let between = b.rectangle.centre - a.rectangle.centre;
     if cross(&axis, &between).abs() > a.rectangle.half_width + b.rectangle.half_width {

@@ -16,7 +16,7 @@ pub struct Participant<'a> {
     pub rectangle: Rectangle,
     /// The carriage that its poses are those of: the first where all of the road user is one rectangle.
     pub carriage: Carriage,
-    /// How far the rectangle's front is behind the front bumper in m; 0 unless it is [`Self::shrunk`].
+    /// How far the rectangle's front is behind the front bumper in m; 0 unless it is `shrunk`.
     pub setback: Metre,
     /// The convex parts of an obstacle; empty for other road users.
     pub shape: &'a [Polygon],
@@ -50,7 +50,7 @@ impl Participant<'_> {
     }
 
     /// The same road user, smaller by `by` m on every side.
-    pub fn shrunk(&self, by: Metre) -> Self {
+    pub(crate) fn shrunk(&self, by: Metre) -> Self {
         let Rectangle { half_length, half_width, .. } = self.rectangle;
         let by = by.min(half_length).min(half_width);
         let rectangle = Rectangle { half_length: half_length - by, half_width: half_width - by, ..self.rectangle };

@@ -256,7 +256,7 @@ fn enlarged(ego: &Rectangle, bisection: &Bisection) -> impl Iterator<Item = Rect
 
 /// The distance at which a carriage on these poses has left the ego's rectangle at the conflict point, if it ever comes
 /// there.
-pub fn carriage_departure(
+pub(crate) fn carriage_departure(
     bisection: &mut Bisection,
     poses: &[Pose],
     carriage: &Participant,

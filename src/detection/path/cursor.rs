@@ -53,7 +53,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Enters the next segment of the track, if there is one; the place does not change.
-    pub fn enter_next(&mut self) {
+    pub(crate) fn enter_next(&mut self) {
         if self.vertex + 2 < self.range.1 {
             self.vertex += 1;
         } else if let Some(line) = self.chain.get(self.at + 1) {
@@ -79,7 +79,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Enters the previous segment of the track; `false` if there is none. The place does not change.
-    pub fn enter_previous(&mut self) -> bool {
+    pub(crate) fn enter_previous(&mut self) -> bool {
         if self.vertex > self.range.0 {
             self.vertex -= 1;
             self.enter();

@@ -1,6 +1,6 @@
 //! Path along the places to which a road user really drove afterwards: only a recording knows them.
 //!
-//! The line runs through places of the front bumper that are at least [`SPACING`] apart, and through where it is now. Noise
+//! The line runs through places of the front bumper that are at least `SPACING` apart, and through where it is now. Noise
 //! below that, and a road user that stands, therefore make no knots. Beyond the last place that is known, the line goes
 //! straight on: as the road user last moved, or as it heads if it moves no more.
 
@@ -98,7 +98,7 @@ impl DrivenCourse {
 
 /// Where a road user is, and how much of its line is wanted.
 #[derive(Clone, Copy, Debug)]
-pub struct DrivenNow {
+pub(crate) struct DrivenNow {
     /// Simulated time in s.
     pub time: Second,
     /// Front-bumper centre.
@@ -113,7 +113,7 @@ pub struct DrivenNow {
 
 /// The places of one road user from behind it to as far ahead as they are known.
 #[derive(Debug, Default)]
-pub struct DrivenPlaces {
+pub(crate) struct DrivenPlaces {
     places: VecDeque<DrivenPlace>,
     /// How many of them are behind it.
     passed: usize,
@@ -135,7 +135,7 @@ impl DrivenPlaces {
     }
 
     /// Lays the path of the road user anew.
-    pub fn lay(&mut self, path: &mut LanePath, now: &DrivenNow) {
+    pub(crate) fn lay(&mut self, path: &mut LanePath, now: &DrivenNow) {
         while self.places.get(self.passed).is_some_and(|place| place.time <= now.time) {
             self.passed += 1;
         }
@@ -151,7 +151,7 @@ impl DrivenPlaces {
     }
 
     /// Extends the path as last laid to this far ahead of the road user.
-    pub fn lengthen(&mut self, path: &mut LanePath, axis: Vector, ahead: Metre) {
+    pub(crate) fn lengthen(&mut self, path: &mut LanePath, axis: Vector, ahead: Metre) {
         while path.track.ahead() < ahead
             && let Some(place) = self.places.get(self.taken).filter(|place| !place.begins)
         {

@@ -1,6 +1,6 @@
 //! Path along the lanes of the route, with the current lateral offset.
 //!
-//! A [`LanePath`] is built when a road user first needs a path or has left the one it had (a lane change, another
+//! A `LanePath` is built when a road user first needs a path or has left the one it had (a lane change, another
 //! route). From then on it is followed, and extended ahead. Behind the front bumper it runs over the lanes that the
 //! vehicle came from, since the rear is still on them. Where no lane leads to the next edge of the route, the path ends
 //! with the lane.
@@ -30,7 +30,7 @@ const BEND: Metre = 0.1;
 
 /// The path of one road user along its lanes.
 #[derive(Clone, Debug, Default)]
-pub struct LanePath {
+pub(crate) struct LanePath {
     /// Its place on the lanes' centre lines, or on its own line.
     pub track: Track,
     own: Option<Box<OwnLine>>,
@@ -47,7 +47,7 @@ pub struct LanePath {
 
 /// What a path starts from.
 #[derive(Clone, Copy, Debug)]
-pub struct PathStart {
+pub(crate) struct PathStart {
     /// Front-bumper centre.
     pub front: Point,
     /// Unit vector of the heading.
@@ -98,12 +98,12 @@ impl LanePath {
     }
 
     /// Moves the front bumper on.
-    pub fn move_on(&mut self, of_net: &Lines, distance: Metre) {
+    pub(crate) fn move_on(&mut self, of_net: &Lines, distance: Metre) {
         self.track.move_on(self.own.as_ref().map_or(of_net, |own| &own.lines), distance);
     }
 
     /// Moves the front bumper back.
-    pub fn move_back(&mut self, of_net: &Lines, distance: Metre) {
+    pub(crate) fn move_back(&mut self, of_net: &Lines, distance: Metre) {
         self.moved_back = distance;
         self.track.move_back(self.own.as_ref().map_or(of_net, |own| &own.lines), distance);
     }
@@ -114,7 +114,7 @@ impl LanePath {
     }
 
     /// Whether it was built for this route from this position on.
-    pub fn is_for(&self, net: &Net, route: &Arc<[EdgeIndex]>, position: usize) -> bool {
+    pub(crate) fn is_for(&self, net: &Net, route: &Arc<[EdgeIndex]>, position: usize) -> bool {
         self.route.is_same(net, route, position)
     }
 
@@ -225,7 +225,7 @@ impl LanePath {
     }
 
     /// The lanes between two distances ahead of the front bumper; those behind it have negative distances.
-    pub fn lanes_between(&self, of_net: &Lines, from: Metre, to: Metre) -> SmallVec<[LaneIndex; 4]> {
+    pub(crate) fn lanes_between(&self, of_net: &Lines, from: Metre, to: Metre) -> SmallVec<[LaneIndex; 4]> {
         let mut found = SmallVec::new();
         self.each_lane(of_net, |lane, [begin, end]| {
             if begin <= to && end >= from {
@@ -237,7 +237,7 @@ impl LanePath {
 
     /// Calls `each` with its lanes in driving order, and the distances ahead of the front bumper at which each begins and
     /// ends.
-    pub fn each_lane(&self, of_net: &Lines, mut each: impl FnMut(LaneIndex, [Metre; 2])) {
+    pub(crate) fn each_lane(&self, of_net: &Lines, mut each: impl FnMut(LaneIndex, [Metre; 2])) {
         let mut begin = -self.track.front();
         match &self.own {
             Some(own) => own.lanes().for_each(|(lane, [first, last])| each(lane, [begin + first, begin + last])),

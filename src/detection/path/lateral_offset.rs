@@ -113,18 +113,18 @@ impl OffsetLine {
     }
 
     /// Adds the next point of the centre line behind the front bumper.
-    pub fn push_behind(&mut self, line: &mut Lines, point: Point) {
+    pub(crate) fn push_behind(&mut self, line: &mut Lines, point: Point) {
         self.push(line, point, f64::NEG_INFINITY);
     }
 
     /// Adds the point of the centre line beside the front bumper.
-    pub fn push_front(&mut self, line: &mut Lines, point: Point) {
+    pub(crate) fn push_front(&mut self, line: &mut Lines, point: Point) {
         self.distance = 0.0;
         self.push(line, point, 0.0);
     }
 
     /// Adds the next point of the centre line ahead.
-    pub fn push_ahead(&mut self, line: &mut Lines, point: Point) {
+    pub(crate) fn push_ahead(&mut self, line: &mut Lines, point: Point) {
         let distance = self.distance + self.last.map_or(0.0, |last| (point - last).norm());
         // A changing offset needs a vertex where the change ends.
         if self.distance < self.offset.over

@@ -13,7 +13,7 @@ mod lateral_offset;
 mod next_lane;
 mod own_line;
 mod poses;
-mod route;
+pub mod route;
 pub mod straight;
 pub mod track;
 pub mod turning;
@@ -37,7 +37,7 @@ pub struct Pose {
 
 impl Pose {
     /// The movement from this pose to the next of a road user of this size.
-    pub fn movement_to(&self, next: &Self, length: Metre, width: Metre) -> Movement {
+    pub(crate) fn movement_to(&self, next: &Self, length: Metre, width: Metre) -> Movement {
         Movement { from: self.front, from_axis: self.axis, to: next.front, to_axis: next.axis, length, width }
     }
 }
@@ -59,7 +59,7 @@ pub(crate) fn turn(from: &Vector, to: &Vector) -> Radian {
 }
 
 /// The direction turned by an angle.
-pub(crate) fn rotated(axis: &Vector, by: Radian) -> Vector {
+pub fn rotated(axis: &Vector, by: Radian) -> Vector {
     let (sine, cosine) = by.sin_cos();
     Vector::new(axis.x * cosine - axis.y * sine, axis.x * sine + axis.y * cosine)
 }

@@ -77,7 +77,7 @@ impl OwnLine {
     }
 
     /// A copy of the lines of a track.
-    pub fn copy_of(net: &Net, track: &mut Track) -> Self {
+    pub(crate) fn copy_of(net: &Net, track: &mut Track) -> Self {
         let mut own = Self { lines: Lines::through([]), ..Self::default() };
         let mut front = track.front();
         for (place, line) in (0..).zip(&track.lines) {

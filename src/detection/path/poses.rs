@@ -16,7 +16,7 @@ const STRETCHED: f64 = 1e-3;
 impl Track {
     /// Whether a road user of this length and heading drives straight on for a distance, within the segment that it is
     /// on now; `false` also where only the next segments could tell.
-    pub fn goes_straight(&self, lines: &Lines, axis: &Vector, length: Metre, distance: Metre) -> bool {
+    pub(crate) fn goes_straight(&self, lines: &Lines, axis: &Vector, length: Metre, distance: Metre) -> bool {
         let under = lines.segment(self.vertex);
         self.front - length >= under.begins_at
             && self.front + distance <= under.ends_at
@@ -26,7 +26,7 @@ impl Track {
 
     /// Bound on how far a straight path of this length deviates from the heading: by the distance from the line now and
     /// the difference in heading, doubled for rounding.
-    pub fn beside_heading(distance: Metre) -> Metre {
+    pub(crate) fn beside_heading(distance: Metre) -> Metre {
         2.0 * (ON_THE_LINE + SAME_HEADING * distance)
     }
 

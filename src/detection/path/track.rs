@@ -27,7 +27,7 @@ pub struct Track {
     /// Lines in driving order.
     pub(super) lines: SmallVec<[u32; FEW]>,
     /// Index of the line that the front bumper is on.
-    pub(super) at: usize,
+    pub at: usize,
     /// The last vertex before the front bumper, in the table.
     pub(super) vertex: u32,
     /// Distance of the front bumper from the beginning of its line.
@@ -125,27 +125,27 @@ impl Track {
     }
 
     /// Moves the front bumper back; before the first line, straight back.
-    pub fn move_back(&mut self, lines: &Lines, distance: Metre) {
+    pub(crate) fn move_back(&mut self, lines: &Lines, distance: Metre) {
         let Cursor { at, vertex, distance: front, .. } = self.behind(lines, distance);
         self.end += self.lines[at..self.at].iter().map(|line| lines.length(*line)).sum::<Metre>();
         (self.at, self.vertex, self.front) = (at, vertex, front);
     }
 
     /// Moves the front bumper forward; beyond the end, straight on.
-    pub fn move_on(&mut self, lines: &Lines, distance: Metre) {
+    pub(crate) fn move_on(&mut self, lines: &Lines, distance: Metre) {
         let Cursor { at, vertex, distance: front, .. } = self.before(lines, distance);
         self.end -= self.lines[self.at..at].iter().map(|line| lines.length(*line)).sum::<Metre>();
         (self.at, self.vertex, self.front) = (at, vertex, front);
     }
 
     /// The place and the direction at a distance ahead of the front bumper; beyond the end, straight on.
-    pub fn ahead_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+    pub(crate) fn ahead_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
         let cursor = self.before(lines, distance);
         (cursor.point(), cursor.under.direction)
     }
 
     /// The place and the direction at a distance behind the front bumper; before the first line, straight back.
-    pub fn behind_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
+    pub(crate) fn behind_at(&self, lines: &Lines, distance: Metre) -> (Point, Vector) {
         let cursor = self.behind(lines, distance);
         (cursor.point(), cursor.under.direction)
     }
@@ -177,7 +177,7 @@ impl Track {
     }
 
     /// How long a road user is in the plane that is this long along the lines behind its front bumper.
-    pub fn drawn_length(&self, lines: &Lines, length: Metre) -> Metre {
+    pub(crate) fn drawn_length(&self, lines: &Lines, length: Metre) -> Metre {
         if self.is_empty() {
             return length;
         }

@@ -102,7 +102,7 @@ impl Take {
 
     /// Adds the worst moments so far of an event that is under way. Instead of one from long before the event became severe
     /// enough, that moment is shown.
-    pub fn add_moments(&mut self, worst: &[Moment]) {
+    pub(crate) fn add_moments(&mut self, worst: &[Moment]) {
         let since = self.since;
         self.moments.extend(worst.iter().map(|(time, at)| (time.max(since), *at)));
         self.is_under_way = true;

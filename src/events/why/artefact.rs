@@ -36,7 +36,7 @@ const ALIKE: MetrePerSecond = 1.0;
 
 /// Why a conflict is none of traffic's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
 pub enum Artefact {
     /// Two overlap, or would, where they are drawn and not where they drive.

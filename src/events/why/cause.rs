@@ -8,7 +8,7 @@ use super::manoeuvre::Manoeuvre;
 
 /// Why a conflict came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 pub enum Cause {
     /// One drove, or walked, into the junction on red.
     RanRed,
@@ -88,7 +88,7 @@ impl Causes {
     }
 
     /// Those that tell how one entered the junction.
-    pub fn at_the_entry(self) -> Self {
+    pub(crate) fn at_the_entry(self) -> Self {
         let entry = [Cause::RanRed, Cause::LateAmber, Cause::DidNotYield].into_iter().collect::<Self>();
         Self(self.0 & entry.0)
     }

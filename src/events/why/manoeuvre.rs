@@ -24,7 +24,7 @@ const AT_THE_JOINT: Metre = 0.1;
 
 /// What the two of a conflict were doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
 pub enum Manoeuvre {
     /// One after the other in one lane, or out of it.

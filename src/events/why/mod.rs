@@ -16,7 +16,7 @@ pub use artefact::Artefact;
 pub use cause::{Cause, Causes};
 pub use manoeuvre::Manoeuvre;
 pub(super) use pair::Pair;
-pub(crate) use pair::STANDS;
+pub use pair::STANDS;
 pub use pair::Surroundings;
 pub(super) use waiting::one_will_wait;
 

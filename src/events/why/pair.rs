@@ -24,7 +24,7 @@ const KERB: Metre = 2.0;
 const BESIDE: Metre = 0.3;
 
 /// One that is slower than this stands, in m/s: what SUMO takes for halting.
-pub(crate) const STANDS: MetrePerSecond = 0.1;
+pub const STANDS: MetrePerSecond = 0.1;
 
 /// What is known of a step besides the road users' states.
 #[derive(Clone, Copy)]
@@ -91,13 +91,13 @@ impl Party {
         Self { user, category, unprotected, front, heading, length, speed, brakes, way, course }
     }
 
-    pub fn is_vehicle(&self) -> bool {
+    pub(crate) fn is_vehicle(&self) -> bool {
         self.category == Category::Vehicle
     }
 
     /// Whether it is a person on a crossing. Where SUMO does not tell its edge, that is not known at the kerb: SUMO's ways over
     /// a walking area lead over the ends of crossings.
-    pub fn is_on_crossing(&self, net: &Net) -> bool {
+    pub(crate) fn is_on_crossing(&self, net: &Net) -> bool {
         match self.course.at(0.0) {
             Some(lane) => net.function(lane) == EdgeFunction::Crossing,
             None => net.is_within_crossing(self.front, KERB),
@@ -106,21 +106,21 @@ impl Party {
 
     /// Whether it is a person where only persons go. They leave pavements for nothing but crossings, whatever their heading,
     /// and do so when it is their turn.
-    pub fn is_off_the_road(&self, net: &Net) -> bool {
+    pub(crate) fn is_off_the_road(&self, net: &Net) -> bool {
         let is_in_walking_area = |lane| net.function(lane) == EdgeFunction::WalkingArea;
         self.course.at(0.0).is_some_and(is_in_walking_area)
             || (!self.is_on_crossing(net) && net.is_off_the_road(self.front, BESIDE))
     }
 
     /// The lanes that it is on when its front bumper is between these distances ahead.
-    pub fn lanes_over(&self, [from, to]: [Metre; 2]) -> impl Iterator<Item = LaneIndex> {
+    pub(crate) fn lanes_over(&self, [from, to]: [Metre; 2]) -> impl Iterator<Item = LaneIndex> {
         let stretches = self.course.stretches.iter();
         stretches.filter(move |on| on.end > from - self.length && on.begin <= to).map(|on| on.lane)
     }
 
     /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,
     /// goes on; negative where it is past that.
-    pub fn way_to(&self, lane: LaneIndex) -> Option<Metre> {
+    pub(crate) fn way_to(&self, lane: LaneIndex) -> Option<Metre> {
         self.course.of(lane).map(|stretch| stretch.begin)
     }
 

@@ -30,7 +30,7 @@ impl Operator {
         Self::ALL.iter().find(|(_, operator)| *operator == self).map_or("", |(text, _)| text)
     }
 
-    pub fn is_upper_bound(self) -> bool {
+    pub(crate) fn is_upper_bound(self) -> bool {
         matches!(self, Self::Below | Self::AtMost)
     }
 

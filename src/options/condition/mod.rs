@@ -54,12 +54,12 @@ impl Condition {
     }
 
     /// Whether it asks for the PET.
-    pub fn needs_pet(&self) -> bool {
+    pub(crate) fn needs_pet(&self) -> bool {
         self.tree.needs_pet()
     }
 
     /// The longest PET that is looked for: 5 s, or as long as it asks for.
-    pub fn longest_pet(&self) -> Second {
+    pub(crate) fn longest_pet(&self) -> Second {
         self.tree.longest_pet().max(USUAL_PET)
     }
 

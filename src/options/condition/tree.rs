@@ -39,7 +39,7 @@ impl Tree {
         }
     }
 
-    pub fn needs_pet(&self) -> bool {
+    pub(crate) fn needs_pet(&self) -> bool {
         match self {
             Self::Compare(comparison) => comparison.measure == Measure::Pet,
             Self::And(parts) | Self::Or(parts) => parts.iter().any(Self::needs_pet),
@@ -47,7 +47,7 @@ impl Tree {
     }
 
     /// The largest bound of the PET; 0 where there is none.
-    pub fn longest_pet(&self) -> Second {
+    pub(crate) fn longest_pet(&self) -> Second {
         match self {
             Self::Compare(Comparison { measure: Measure::Pet, value, .. }) => *value,
             Self::Compare(_) => 0.0,

@@ -7,7 +7,7 @@ use crate::geometry::{Bounds, Vector};
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// SUMO's default width of a lane in m.
-pub(super) const USUAL_WIDTH: Metre = 3.2;
+pub const USUAL_WIDTH: Metre = 3.2;
 
 /// The index of a lane in a net.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -87,7 +87,7 @@ pub struct Lane {
 
 impl Lane {
     /// The bounds of its centre line.
-    pub(super) fn bounds(&self) -> Bounds {
+    pub fn bounds(&self) -> Bounds {
         let mut bounds = Bounds::EMPTY;
         self.shape.iter().for_each(|point| bounds.include(*point));
         bounds
@@ -143,21 +143,21 @@ pub struct Junction {
     /// Its outline.
     pub shape: Vec<Point2<Metre>>,
     /// By link through it: the last of the link's junction lanes.
-    pub(super) link_lanes: Vec<Option<LaneIndex>>,
+    pub link_lanes: Vec<Option<LaneIndex>>,
     /// By link through it: SUMO's attribute `foes`, a digit for each link, the first link last.
-    pub(super) foes: Vec<Box<str>>,
+    pub foes: Vec<Box<str>>,
     /// By link through it: SUMO's attribute `response`, the links that it yields to, in the same form.
-    pub(super) responses: Vec<Box<str>>,
+    pub responses: Vec<Box<str>>,
 }
 
 impl Junction {
     /// Whether two links cross or merge, so that one of them yields.
-    pub(super) fn are_foes(&self, one: u32, other: u32) -> bool {
+    pub fn are_foes(&self, one: u32, other: u32) -> bool {
         has_digit(&self.foes, one, other) || has_digit(&self.foes, other, one)
     }
 
     /// Whether a link crosses or merges with any other.
-    pub fn has_foes(&self, link: u32) -> bool {
+    pub(crate) fn has_foes(&self, link: u32) -> bool {
         self.foes.get(link as usize).is_some_and(|row| row.contains('1'))
     }
 

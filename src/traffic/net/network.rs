@@ -1,15 +1,13 @@
 //! A road network.
 
-use std::sync::{Arc, OnceLock};
-
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
 
+use super::degrees::ToDegrees;
 use super::elements::{
     Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Passage, Signal,
 };
 use super::finder::{Finder, distance, distance_beside};
-use super::projection::Projection;
 use crate::geometry::polylines::{Lines, stretch};
 use crate::geometry::{Bounds, Point};
 use crate::util::units::{Degree, Metre};
@@ -29,25 +27,28 @@ pub struct Net {
     pub left_hand: bool,
     /// How its metres follow from degrees, if the file tells.
     pub location: Option<Location>,
-    pub(super) lane_ids: FxHashMap<String, LaneIndex>,
-    pub(super) edge_ids: FxHashMap<String, EdgeIndex>,
-    pub(super) finder: Finder,
+    /// Degrees from metres, as [`Net::degrees`] has them.
+    pub to_degrees: Option<ToDegrees>,
+    /// The lanes by id.
+    pub lane_ids: FxHashMap<String, LaneIndex>,
+    /// The edges by id.
+    pub edge_ids: FxHashMap<String, EdgeIndex>,
+    /// Finds lanes by place.
+    pub finder: Finder,
     /// By [`JunctionIndex`], the box around its outline; empty where the net has none.
-    pub(super) junction_bounds: Vec<Bounds>,
+    pub junction_bounds: Vec<Bounds>,
     /// The ids of the traffic lights that its links name.
     pub lights: Vec<String>,
     /// The ways through its junctions.
-    pub(super) passages: Vec<Passage>,
+    pub passages: Vec<Passage>,
     /// By lane, the passage that it is part of; [`NO_PASSAGE`] for others.
-    pub(super) passage_of: Vec<u32>,
-    /// What [`Net::degrees`] takes, made where it is first needed; none where the net has none that is supported.
-    pub(super) projection: OnceLock<Option<Arc<Projection>>>,
+    pub passage_of: Vec<u32>,
     /// The lowest and the highest point of all lanes, in m.
-    pub(super) heights: [Metre; 2],
+    pub heights: [Metre; 2],
 }
 
 /// No [`Passage`].
-pub(super) const NO_PASSAGE: u32 = u32::MAX;
+pub const NO_PASSAGE: u32 = u32::MAX;
 
 impl Net {
     /// The way through a junction that a lane is part of: a lane within a junction, or a crossing.
@@ -56,7 +57,11 @@ impl Net {
     }
 
     /// The signals within a distance of a place, each with the lane at whose end it stands; those of vehicles.
-    pub fn signals_near(&self, place: Point2<Metre>, distance: Metre) -> impl Iterator<Item = (Signal, LaneIndex)> {
+    pub(crate) fn signals_near(
+        &self,
+        place: Point2<Metre>,
+        distance: Metre,
+    ) -> impl Iterator<Item = (Signal, LaneIndex)> {
         let of_vehicles = self.passages.iter().filter(|passage| self.function(passage.from) == EdgeFunction::Normal);
         of_vehicles.filter_map(move |passage| {
             let end = self.lanes[passage.from.0 as usize].shape.last()?;
@@ -77,7 +82,7 @@ impl Net {
     }
 
     /// Whether it has crossings for persons.
-    pub fn has_crossings(&self) -> bool {
+    pub(crate) fn has_crossings(&self) -> bool {
         self.edges.iter().any(|edge| edge.function == EdgeFunction::Crossing)
     }
 
@@ -87,12 +92,12 @@ impl Net {
     }
 
     /// Whether a place is on a crossing of persons, and not before its ends, where they wait.
-    pub fn is_on_crossing(&self, place: Point2<Metre>) -> bool {
+    pub(crate) fn is_on_crossing(&self, place: Point2<Metre>) -> bool {
         self.crossings_under(place).next().is_some()
     }
 
     /// Whether a place is on a crossing, further from its ends than `kerb`, or than a quarter of a short one.
-    pub fn is_within_crossing(&self, place: Point2<Metre>, kerb: Metre) -> bool {
+    pub(crate) fn is_within_crossing(&self, place: Point2<Metre>, kerb: Metre) -> bool {
         self.crossings_under(place).any(|lane| {
             let Some((first, last)) = lane.shape.first().zip(lane.shape.last()) else { return false };
             let length = (last - first).norm();
@@ -110,7 +115,7 @@ impl Net {
     }
 
     /// Whether persons have a crossing, or the area where they wait for it, at a place or within this distance of it.
-    pub fn is_for_persons(&self, place: Point2<Metre>, within: Metre) -> bool {
+    pub(crate) fn is_for_persons(&self, place: Point2<Metre>, within: Metre) -> bool {
         [EdgeFunction::Crossing, EdgeFunction::WalkingArea]
             .into_iter()
             .any(|function| self.lane_of_persons_at(place, within, function).is_some())
@@ -121,14 +126,14 @@ impl Net {
     }
 
     /// Whether a place is on, or within a distance of, a pavement or an area where persons wait: where no vehicle drives.
-    pub fn is_off_the_road(&self, place: Point2<Metre>, within: Metre) -> bool {
+    pub(crate) fn is_off_the_road(&self, place: Point2<Metre>, within: Metre) -> bool {
         let is_pavement =
             |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane.0 as usize].has_vehicles;
         self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.walking_area_at(place).is_some()
     }
 
     /// The lane of an edge with the centre line nearest to a place.
-    pub fn lane_of_edge_at(&self, edge: EdgeIndex, place: Point2<Metre>) -> Option<LaneIndex> {
+    pub(crate) fn lane_of_edge_at(&self, edge: EdgeIndex, place: Point2<Metre>) -> Option<LaneIndex> {
         let away = |lane: LaneIndex| distance(&self.lanes[lane.0 as usize], place);
         let lanes = self.edges[edge.0 as usize].lanes.iter().copied();
         lanes.min_by(|one, other| away(*one).total_cmp(&away(*other)))
@@ -155,7 +160,7 @@ impl Net {
     }
 
     /// The length of a lane's shape.
-    pub fn drawn_length(&self, lane: LaneIndex) -> Metre {
+    pub(crate) fn drawn_length(&self, lane: LaneIndex) -> Metre {
         let line = self.lines.line(lane.0);
         line.windows(2).map(|ends| (ends[1].point - ends[0].point).norm()).sum()
     }
@@ -165,8 +170,13 @@ impl Net {
         if self.lines.is_stretched() { stretch(self.lines.length(lane.0), self.drawn_length(lane)) } else { 1.0 }
     }
 
+    /// Longitude and latitude of a place; none where the net does not tell, or its projection is not supported.
+    pub fn degrees(&self, place: Point) -> Option<[Degree; 2]> {
+        self.to_degrees.as_ref()?.of(place)
+    }
+
     /// The height of its highest point above its lowest; 0 for a net without heights, as most imported ones are.
-    pub fn rise(&self) -> Metre {
+    pub(crate) fn rise(&self) -> Metre {
         (self.heights[1] - self.heights[0]).max(0.0)
     }
 
@@ -175,14 +185,6 @@ impl Net {
         let bounds = &self.junction_bounds[junction.0 as usize];
         bounds.is_empty() || bounds.grown(distance).meet(&Bounds { low: place, high: place })
     }
-
-    /// The degrees of longitude and latitude of a place; none where its projection is not known or not supported.
-    pub fn degrees(&self, place: Point) -> Option<[Degree; 2]> {
-        let projection =
-            self.projection.get_or_init(|| Projection::of(self.location.as_ref()).ok().flatten().map(Arc::new));
-        projection.as_ref()?.degrees(place)
-    }
-
     /// The id of a lane.
     pub fn lane_id(&self, lane: LaneIndex) -> &str {
         &self.lanes[lane.0 as usize].id

@@ -26,7 +26,7 @@ impl Net {
 ///
 /// SUMO's drivers see distances along the lanes, rectangles stand where lanes are drawn. Such lengths come from curves with
 /// several lanes, which all have their edge's length, from map matching and from edited nets.
-fn lengths(net: &Net) -> Option<String> {
+pub fn lengths(net: &Net) -> Option<String> {
     let is_driven = |lane: &LaneIndex| {
         let edge = net.lanes[lane.0 as usize].edge;
         matches!(net.edges[edge.0 as usize].function, EdgeFunction::Normal | EdgeFunction::Internal)
@@ -57,7 +57,7 @@ fn lengths(net: &Net) -> Option<String> {
 }
 
 /// How many pairs of lanes overlap as drawn, and the worst of them; none where none does.
-fn overlapping(net: &Net, overlaps: &Overlaps) -> Option<String> {
+pub fn overlapping(net: &Net, overlaps: &Overlaps) -> Option<String> {
     let named = named(net, overlaps.places())?;
     Some(match overlaps.places().len() {
         1 => format!("2 lanes overlap as drawn: {named}"),
@@ -87,44 +87,4 @@ fn named(net: &Net, places: &[Overlap]) -> Option<String> {
     let named = places.iter().take(NAMED).map(name).collect::<Vec<_>>().join(", ");
     let more = if places.len() > NAMED { ", …" } else { "" };
     (!places.is_empty()).then(|| named + more)
-}
-
-#[cfg(test)]
-mod tests {
-    use std::path::Path;
-
-    use super::*;
-
-    fn net(lengths: &[(Metre, Metre)]) -> Net {
-        let lane = |number: usize, (length, drawn): &(Metre, Metre)| {
-            let y = number as f64 * 1.5;
-            format!(
-                r#"<edge id="e{number}"><lane id="e{number}_0" length="{length}" shape="0,{y} {drawn},{y}"/></edge>"#
-            )
-        };
-        let edges = lengths.iter().enumerate().map(|(number, pair)| lane(number, pair)).collect::<String>();
-        Net::parse(Path::new("e.net.xml"), format!("<net>{edges}</net>")).unwrap()
-    }
-
-    #[test]
-    fn lengths_that_differ_from_the_shape_are_counted_and_the_worst_named() {
-        let pairs = [(100.0, 104.0), (44.9, 20.9), (10.0, 12.0), (0.1, 0.02)];
-        let said =
-            "2 of 4 lanes are longer or shorter than drawn by more than 5 %; the worst is e1_0: 44.9 m, drawn 20.9 m";
-        assert_eq!(lengths(&net(&pairs)).as_deref(), Some(said));
-        assert_eq!(lengths(&net(&[(100.0, 104.0), (0.1, 0.02)])), None);
-    }
-
-    #[test]
-    fn places_that_overlap_are_counted_and_the_worst_named() {
-        let remark = |count| {
-            let net = net(&vec![(10.0, 10.0); count]);
-            overlapping(&net, &net.overlaps())
-        };
-        assert_eq!(remark(1), None);
-        let one = "e0_0 and e1_0 by 0.30 m";
-        assert_eq!(remark(2), Some(format!("2 lanes overlap as drawn: {one}")));
-        let many = format!("5 pairs of lanes overlap as drawn, the worst first: {one}, e1_0 and e2_0 by 0.30 m");
-        assert!(remark(6).is_some_and(|said| said.starts_with(&many) && said.ends_with(", …")));
-    }
 }

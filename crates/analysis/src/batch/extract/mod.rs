@@ -1,0 +1,230 @@
+//! `closecall extract`: one conflict of a run as a scenario of its own, in which it happens again: in SUMO (here), or as the
+//! log's clip in ASAM's formats (`clip.rs`).
+//!
+//! The shortest way there is a state that SUMO saves some seconds before: with all digits and the states of the random
+//! numbers it mostly goes on exactly, if no route files are read beside it, for which SUMO would draw random numbers again. A state
+//! does not hold everything, though. So the conflict is looked for in a run from the state, and where it is another one
+//! there, the scenario begins where the run did. The net stays whole: SUMO draws the random numbers of drivers by the places
+//! of lanes in the net, so that a part of it would have other drivers.
+
+mod clip;
+mod configuration;
+mod made;
+mod settings;
+mod source;
+mod words;
+
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::batch::regress::running::{Job, Runner};
+use crate::batch::regress::scenario::{SETTINGS, Scenario};
+use crate::logged::{ConflictReader, LoggedConflict, LoggedRun, Which};
+pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
+use closecall::util::units::{Metre, SAME_MOMENT, Second};
+use closecall_run::output::input_hash::Input;
+use closecall_run::util::output_file;
+use closecall_run::{Error, Result};
+use configuration::{CONFIGURATION, Configuration, STATE};
+pub use made::Made;
+use made::fill;
+use source::{Period, check_can_be_run};
+use words::Words;
+
+/// Margins that differ by more than this are those of different conflicts. A log has six digits after the point.
+const SAME_MARGIN: Metre = 1e-6;
+
+/// SUMO's options for a state from which a run goes on exactly: all digits of numbers, persons, and random numbers.
+const WHOLE_STATE: [&str; 5] =
+    ["--save-state.precision", "17", "--save-state.rng", "--save-state.transportables", "--save-state.constraints"];
+
+/// What a conflict is cut out with.
+pub struct Tools<'a> {
+    /// See [`SaveConfiguration`].
+    pub save_configuration: &'a mut SaveConfiguration<'a>,
+    /// The command line that starts closecall, without arguments, as for [`Runner`].
+    pub closecall: Vec<OsString>,
+    /// The long options that a `closecall.toml` may contain as keys.
+    pub known: &'a [String],
+    /// Whether the user wants to stop; called repeatedly.
+    pub interrupted: &'a mut dyn FnMut() -> bool,
+    /// Told repeatedly how many runs of how many have ended.
+    pub progress: &'a mut dyn FnMut(u64, u64),
+}
+
+/// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
+pub type SaveConfiguration<'a> = dyn FnMut(&[String], &Path) -> Result<()> + 'a;
+
+/// Cuts a conflict of the log in a folder out, into the folder `out`, whole or not at all.
+///
+/// # Errors
+/// [`Error::Value`] where the log has no such conflict; [`Error::Content`] where SUMO cannot run it again, or it is another
+/// one then, or `out` is not empty; [`Error::Stopped`] if the user interrupted it; those of reading and writing.
+pub fn extract(folder: &Path, which: Which, out: &Path, tools: &mut Tools) -> Result<Made> {
+    let conflict = which.find(folder)?;
+    let run = LoggedRun::read(folder)?;
+    let seed = check_can_be_run(&run).map_err(|why| Error::content(folder, why))?;
+    let remark =
+        fill(out, |place, logs| Cut { conflict: &conflict, run: &run, seed, place, logs }.make(folder, tools))?;
+    Ok(Made { conflict, remark })
+}
+
+/// A conflict that is being cut out.
+struct Cut<'a> {
+    conflict: &'a LoggedConflict,
+    run: &'a LoggedRun,
+    seed: u32,
+    /// The folder of the scenario.
+    place: &'a Path,
+    /// A folder for logs.
+    logs: &'a Path,
+}
+
+impl Cut<'_> {
+    /// Fills the folder; returns what the user should know.
+    fn make(&self, log: &Path, tools: &mut Tools) -> Result<Option<String>> {
+        let Self { run, place, .. } = self;
+        let saved = self.logs.join("saved.sumocfg");
+        (tools.save_configuration)(&run.sumo_words, &saved)?;
+        let period = Period::of(run, self.conflict.begin, self.conflict.end);
+        let whole = Configuration::gather(&saved, place)?.with("end", period.end);
+        let filter = self.copy_filter()?;
+        let mut kept = whole.files();
+        kept.extend(filter.clone());
+        let all = 1 + u64::from(period.is_within);
+
+        self.write_scenario(&whole, period.warm_up_of_run, filter.as_deref())?;
+        let from = period.from.to_string();
+        let save = ["--save-state.times", &*from, "--save-state.files", STATE].into_iter().chain(WHOLE_STATE);
+        let save = save.filter(|_| period.is_within).map(str::to_owned).collect();
+        self.look(save, tools, [0, all])?.map_err(|why| {
+            let (id, changed) = (self.conflict.id, self.changed());
+            Error::content(log, format!("conflict {id} does not come back when SUMO runs again: {why}{changed}"))
+        })?;
+        let mut remark = None;
+        let sumo = run.versions.sumo.as_deref().unwrap_or_default();
+        let mut words = Words { conflict: self.conflict, scenario: run.name(), sumo, until: period.end, from: None };
+        if period.is_within {
+            let short = whole.clone().without("route-files").without("load-state");
+            let short = short.with("load-state", STATE).with("begin", period.from);
+            self.write_scenario(&short, period.warm_up, filter.as_deref())?;
+            match self.look(Vec::new(), tools, [1, all])? {
+                Ok(()) => {
+                    words.from = Some(period.from);
+                    kept = short.files();
+                    kept.extend(filter);
+                    kept.push(STATE.to_owned());
+                }
+                Err(why) => {
+                    self.write_scenario(&whole, period.warm_up_of_run, filter.as_deref())?;
+                    remark = Some(format!(
+                        "the scenario begins where the run did, since SUMO's saved state is not exact here: {why}"
+                    ));
+                }
+            }
+        }
+        for (name, text) in [("README.md", words.readme()), ("test_conflict.py", words.test(CONFIGURATION))] {
+            output_file::write(&place.join(name), text.as_bytes())?;
+            kept.push(name.to_owned());
+        }
+        kept.extend([CONFIGURATION, SETTINGS].map(str::to_owned));
+        self.remove_others(&kept)?;
+        Ok(remark)
+    }
+
+    /// Copies the selection of edges that the run had, if it had one.
+    fn copy_filter(&self) -> Result<Option<String>> {
+        let filter = self.run.options.get("filter").and_then(Value::as_str).map(Path::new);
+        filter.map(|filter| configuration::copy(filter, self.place)).transpose()
+    }
+
+    fn write_scenario(&self, configuration: &Configuration, warm_up: Second, filter: Option<&str>) -> Result<()> {
+        configuration.write(&self.place.join(CONFIGURATION))?;
+        let mut first = String::new();
+        if warm_up > 0.0 {
+            first += &format!("warmup = {warm_up:?}\n");
+        }
+        if let Some(filter) = filter {
+            first += &format!("filter = {}\n", Value::from(filter));
+        }
+        let text = settings::toml(&self.run.options, &first);
+        let text = format!("{text}\n[regress]\nsumocfg = \"{CONFIGURATION}\"\nseeds = [{}]\n", self.seed);
+        output_file::write(&self.place.join(SETTINGS), text.trim_start().as_bytes())
+    }
+
+    /// Runs the scenario and looks for the conflict; what is wrong is what the scenario lacks. `done` runs of `all` have ended.
+    fn look(&self, sumo_options: Vec<String>, tools: &mut Tools, [done, all]: [u64; 2]) -> Result<Found> {
+        let mut scenario = Scenario::at(&self.place.join(CONFIGURATION), tools.known)?;
+        scenario.settings.sumo_options = sumo_options;
+        let log = self.logs.join(done.to_string());
+        let mut runner = Runner {
+            closecall: tools.closecall.clone(),
+            jobs: 1,
+            out: None,
+            interrupted: tools.interrupted,
+            progress: &mut |more, _| (tools.progress)(done + more, all),
+        };
+        let ended = runner.run(&[Job { scenario: &scenario, number: 0, seed: self.seed, log: log.clone() }])?;
+        match ended.into_iter().next() {
+            Some(Err(why)) => Ok(Err(why)),
+            _ => self.found_in(&log),
+        }
+    }
+
+    /// Whether the conflict is in a log, and else which is there instead.
+    fn found_in(&self, log: &Path) -> Result<Found> {
+        let wanted = self.conflict;
+        let mut nearest = None::<LoggedConflict>;
+        for conflict in ConflictReader::open(log)? {
+            let conflict = conflict?;
+            if (&conflict.ego, &conflict.foe) != (&wanted.ego, &wanted.foe) {
+                continue;
+            }
+            let off = |other: &LoggedConflict| {
+                ((other.time - wanted.time).abs(), (other.margin - wanted.margin).abs(), other.kind != wanted.kind)
+            };
+            let (time, margin, is_other) = off(&conflict);
+            if time < SAME_MOMENT && margin <= SAME_MARGIN && !is_other {
+                return Ok(Ok(()));
+            }
+            if nearest.as_ref().is_none_or(|nearest| off(&conflict) < off(nearest)) {
+                nearest = Some(conflict);
+            }
+        }
+        let LoggedConflict { kind, time, margin, ego, foe, .. } = wanted;
+        Ok(Err(nearest.map_or_else(
+            || format!("\"{ego}\" and \"{foe}\" are in no conflict"),
+            |other| {
+                let [was, is] = [(kind, time, margin), (&other.kind, &other.time, &other.margin)]
+                    .map(|(kind, time, margin)| format!("{} at {time} s with a margin of {margin} m", kind.name()));
+                format!("it is {is}, not {was}")
+            },
+        )))
+    }
+
+    /// What is no longer as it was in the run, to follow a reason.
+    fn changed(&self) -> String {
+        let is_other = |input: &&Input| Input::of(&input.path).is_ok_and(|now| now.sha256 != input.sha256);
+        let other = self.run.inputs.iter().find(is_other);
+        other.map_or_else(String::new, |input| format!("; {} was changed since", input.path.display()))
+    }
+
+    /// Removes what the runs wrote into the folder, such as the outputs of detectors.
+    fn remove_others(&self, kept: &[String]) -> Result<()> {
+        let fault = |source| Error::file(self.place, source);
+        for entry in fs::read_dir(self.place).map_err(fault)? {
+            let path = entry.map_err(fault)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if !kept.contains(&name) && path.is_file() {
+                fs::remove_file(&path).map_err(|source| Error::file(&path, source))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether the conflict came back; if not, what happened instead.
+type Found = std::result::Result<(), String>;

@@ -1,0 +1,172 @@
+//! The conflicts of several logs, and their net: what a report or a picture is made of.
+
+pub(crate) mod kept;
+mod logs;
+pub(crate) mod nets;
+
+use std::path::{Path, PathBuf};
+
+use super::filter::{ConflictFilter, set_aside_in_words};
+use super::logged::{ConflictReader, LostRows, Progress, Reading, log_folders};
+use super::variants::{Variant, Variants};
+use closecall::detection::kind::{Kind, Severity};
+use closecall::geometry::Point;
+use closecall::traffic::net::Net;
+use closecall::util::units::Second;
+use closecall_run::Result;
+use closecall_run::output::schema::LoggedConflict;
+use closecall_run::output::summary::SetAside;
+use kept::{KeptConflicts, RunConflict};
+use nets::Ground;
+
+/// The conflicts of several logs; of more than 300,000, the worst.
+#[derive(Debug)]
+pub struct Conflicts {
+    /// The folders of the logs.
+    pub(super) logs: Vec<PathBuf>,
+    /// Their `run.json`; null where there is none.
+    pub(super) records: Vec<serde_json::Value>,
+    /// Their variants: runs that were made alike but for the seed.
+    pub(super) variants: Vec<Variant>,
+    /// The net, and notes about it.
+    pub(super) ground: Ground,
+    /// The conflicts, worst first.
+    pub(super) conflicts: Vec<RunConflict>,
+    /// How many there are in the logs.
+    pub(super) seen: u64,
+    /// How many others are none of traffic's, and why, in words.
+    pub(super) set_aside: Option<String>,
+    /// The filter that they passed, as the words of a command line; none for all.
+    pub(super) filter: Option<String>,
+    /// The logs that lack rows.
+    pub(super) lost: Vec<LostRows>,
+}
+
+/// Reads the logs in `folders`, each a log itself or a folder of logs. The net is read from `net`, or from the path in the
+/// first log. It reports to `progress` how far it has read.
+///
+/// # Errors
+/// [`closecall_run::Error::File`] where a folder cannot be read, [`closecall_run::Error::Content`] where a folder holds no log,
+/// [`closecall_run::Error::Line`] where a row of `conflicts.csv` is not as docs/log.md describes it.
+pub fn read(
+    folders: &[PathBuf],
+    net: Option<&Path>,
+    filter: &ConflictFilter,
+    progress: &mut Progress,
+) -> Result<Conflicts> {
+    filter.check()?;
+    let logs = log_folders(folders)?;
+    let mut records = logs.iter().map(|log| logs::record(log)).collect::<Result<Vec<_>>>()?;
+    let runs = records.iter().map(logs::run).collect::<Vec<_>>();
+    // A run without a result belongs to no variant.
+    let known = (0..).zip(&runs).filter_map(|(place, run)| Some((place, run.as_ref()?)));
+    let known = known.filter(|(_, run)| run.summary.steps > 0).collect::<Vec<_>>();
+    let mut reading = Reading::new(known.iter().map(|(_, run)| run.conflicts()).sum(), progress);
+    let mut worst = KeptConflicts::default();
+    let mut lost = Vec::new();
+    let (mut all, mut set_aside) = (0_u64, SetAside::new());
+    for (run, log) in (0..).zip(&logs) {
+        let mut conflicts = ConflictReader::open(log)?.with_snapshots();
+        for conflict in &mut conflicts {
+            let conflict = conflict?;
+            reading.count(1);
+            if filter.sets_aside(&conflict, &mut set_aside) {
+                continue;
+            }
+            all += 1;
+            if filter.passes(&conflict) {
+                worst.push(RunConflict { run, conflict });
+            }
+        }
+        lost.extend(conflicts.lost());
+    }
+    let mut variants = Variants::of(&known.iter().map(|(_, run)| *run).collect::<Vec<_>>());
+    for variant in &mut variants.all {
+        variant.runs.iter_mut().for_each(|run| *run = known[*run].0);
+    }
+    let mut ground = nets::find(net, &logs, &records)?;
+    // A record without steps is that of a run that has begun; null means that the record is missing.
+    let without = records.iter().filter(|record| record["summary"]["steps"].as_u64().is_none_or(|steps| steps == 0));
+    let without = without.count();
+    if without > 0 {
+        ground.notes.push(format!(
+            "{without} of {} runs have no result, killed or not at their end yet: their conflicts count, their traffic is \
+             not known.",
+            logs.len()
+        ));
+    }
+    if variants.are_several() {
+        let varied = variants.varied.join(", ");
+        ground
+            .notes
+            .push(format!("The runs differ in {varied}: the filter selects one variant, the page begins with all."));
+    }
+    ground.notes.append(&mut variants.notes);
+    ground.notes.extend(lost.iter().map(ToString::to_string));
+    let aside = set_aside_in_words(&set_aside);
+    ground.notes.extend(aside.as_ref().map(|words| format!("The runs have {words}.")));
+    let seen = worst.seen();
+    if !filter.is_empty() {
+        let passed = if seen == 0 { "none".to_owned() } else { seen.to_string() };
+        ground.notes.push(format!("Filtered: {passed} of {all} conflicts, by {filter}."));
+    }
+    if filter.has_period() {
+        // How much of the traffic was in the period is not known.
+        let summaries = records.iter_mut().filter_map(|record| record.get_mut("summary")?.as_object_mut());
+        summaries.for_each(|summary| drop(summary.remove("entered")));
+    }
+    let filter = (!filter.is_empty()).then(|| filter.to_string());
+    let conflicts = worst.into_sorted();
+    Ok(Conflicts { logs, records, variants: variants.all, ground, conflicts, seen, set_aside: aside, filter, lost })
+}
+
+impl Conflicts {
+    /// The net; none where it is gone.
+    pub fn net(&self) -> Option<&Net> {
+        self.ground.net.as_ref()
+    }
+
+    /// Kind, severity and conflict point of each.
+    pub fn places(&self) -> impl Iterator<Item = (Kind, Severity, Point)> {
+        self.conflicts
+            .iter()
+            .map(|RunConflict { conflict, .. }| (conflict.kind, conflict.severity, Point::new(conflict.x, conflict.y)))
+    }
+
+    /// The values of a measure, each with the conflict's severity.
+    pub fn numbers(&self, measure: fn(&LoggedConflict) -> Option<f64>) -> impl Iterator<Item = (Severity, f64)> {
+        self.conflicts
+            .iter()
+            .filter_map(move |RunConflict { conflict, .. }| Some((conflict.severity, measure(conflict)?)))
+    }
+
+    /// First and last second of all runs.
+    pub fn period(&self) -> (Second, Second) {
+        let of_run = |key| self.records.iter().filter_map(move |record| record.get("summary")?.get(key)?.as_f64());
+        let times = self
+            .numbers(|conflict| Some(conflict.time))
+            .map(|(_, time)| time)
+            .chain(of_run("begin"))
+            .chain(of_run("end"));
+        let (begin, end) = times.fold((f64::INFINITY, 0.0), |(begin, end), time| (time.min(begin), time.max(end)));
+        (begin.min(end), end)
+    }
+
+    /// The threshold beyond which a measure makes a conflict serious, by the first run's options; none if it never does.
+    pub(crate) fn threshold(&self, name: &str) -> Option<f64> {
+        let option = |key| self.records.iter().find_map(|record| record.get("options")?.get(key));
+        let key = match name {
+            "ttc" => "serious_ttc",
+            "drac" => "serious_drac",
+            _ => return None,
+        };
+        // Logs of earlier versions have the rule as "severity".
+        let threshold = match option("severity_rule").or_else(|| option("severity"))?.as_str()? {
+            "fhwa" => option(key)?.as_f64()?,
+            // The same for TTC, in s, and DRAC, in m/s².
+            "ssm" => 3.0,
+            _ => return None,
+        };
+        Some(threshold).filter(|threshold| *threshold > 0.0)
+    }
+}

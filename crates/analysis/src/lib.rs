@@ -1,0 +1,31 @@
+//! What is made of logs: statistics, a report, pictures, files for other tools; and many runs.
+//!
+//! ```
+//! use closecall_analysis::study::number::number;
+//!
+//! assert_eq!(number(0.012_34), "0.0123");
+//! ```
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`logged`] | logs read back |
+//! | [`filter`] | by what conflicts are chosen, for all that reads logs |
+//! | [`statistics`] | rates, quantiles, extremes, comparisons |
+//! | [`dataset`], [`variants`] | conflicts of many runs, by what their runs differ in |
+//! | [`report`], [`plot`], [`playback`] | the page, charts, clips as pictures |
+//! | [`export`] | files for other tools |
+//! | [`batch`] | sweeps, regression tests, a conflict cut out as a scenario |
+//! | [`study`] | error against run time of a scenario |
+
+pub mod batch;
+pub mod dataset;
+pub mod export;
+pub mod filter;
+pub mod logged;
+pub mod playback;
+pub mod plot;
+pub mod report;
+pub mod statistics;
+pub mod study;
+mod style;
+pub mod variants;

@@ -1,0 +1,402 @@
+//! From where to where the two of a conflict went through its junction, for the page's movement diagrams, and which of them had
+//! to yield: by the lanes that the log names and, where several ways lead on, by the predicted path. Without a net only the
+//! edges' names are known.
+
+use std::collections::BTreeMap;
+
+use rustc_hash::FxHashMap;
+use serde_json::{Value, json};
+
+use closecall::detection::path::Foot;
+use closecall::geometry::{Bounds, Point};
+use closecall::traffic::net::{Direction, EdgeFunction, EdgeIndex, JunctionIndex, LaneIndex, Net, Passage};
+use closecall::util::units::{Metre, Radian};
+use closecall_run::output::schema::LoggedConflict;
+
+/// An approach lies where it is this far from the junction, in m: close to it, lanes of one road lie far apart.
+const AWAY: Metre = 40.0;
+/// A path takes the lanes that it is within this distance of, in m.
+const BESIDE: Metre = 1.2;
+/// A person this near to a crossing is on it, in m.
+const AT_CROSSING: Metre = 1.0;
+/// The distance between the places of a path that are compared with lanes, in m.
+const STEP: Metre = 1.0;
+
+/// What an approach is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Role {
+    In,
+    Out,
+    OnFoot,
+}
+
+/// A place at the edge of a junction.
+#[derive(Clone, Debug)]
+struct Approach {
+    /// Its edge.
+    name: String,
+    /// Its direction from the junction's middle, counter-clockwise from +x; none without a net.
+    angle: Option<Radian>,
+    role: Role,
+}
+
+/// What is known of a way through a junction: places among the junction's approaches.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+struct Movement {
+    from: Option<usize>,
+    to: Option<usize>,
+    turn: Option<&'static str>,
+}
+
+/// What is known of both movements of a conflict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Both {
+    /// The places of the ego's and of the foe's movement in the list.
+    pub movements: [usize; 2],
+    /// Which of the two has to yield to the other by the junction's right of way, 0 for the ego.
+    pub yields: Option<u8>,
+}
+
+/// The ways through a junction that a movement may be.
+type Ways<'a> = Vec<&'a Passage>;
+
+/// The movements of the conflicts within junctions.
+pub(crate) struct Movements<'a> {
+    net: Option<&'a Net>,
+    /// The edges of vehicles that begin or end at each junction.
+    edges: FxHashMap<JunctionIndex, Vec<(EdgeIndex, Role)>>,
+    approaches: BTreeMap<String, Vec<Approach>>,
+    list: Vec<Movement>,
+    places: FxHashMap<Movement, usize>,
+}
+
+impl<'a> Movements<'a> {
+    /// Those in a net, none yet.
+    pub fn of(net: Option<&'a Net>) -> Self {
+        let mut edges = FxHashMap::<_, Vec<_>>::default();
+        for (place, edge) in (0..).zip(net.map_or(&[][..], |net| &net.edges)) {
+            let is_road = |net: &Net| edge.lanes.iter().any(|lane| net.lanes[lane.0 as usize].has_vehicles);
+            if edge.function == EdgeFunction::Normal && net.is_some_and(is_road) {
+                edges.entry(edge.ends[0]).or_default().push((EdgeIndex(place), Role::Out));
+                edges.entry(edge.ends[1]).or_default().push((EdgeIndex(place), Role::In));
+            }
+        }
+        Self { net, edges, approaches: BTreeMap::new(), list: Vec::new(), places: FxHashMap::default() }
+    }
+
+    /// Both movements of a conflict; none outside junctions and where the log has no lanes.
+    pub(crate) fn of_both(&mut self, conflict: &LoggedConflict) -> Option<Both> {
+        if conflict.ego_lane.is_empty() || conflict.foe_lane.is_empty() {
+            return None;
+        }
+        let (both, yields) = match self.net {
+            Some(net) => {
+                let [(ego, ego_ways), (foe, foe_ways)] = self.in_net(net, conflict)?;
+                ([ego, foe], yields(net, &ego_ways, &foe_ways))
+            }
+            None => {
+                let junction = Some(conflict.junction()).filter(|junction| !junction.is_empty())?;
+                ([&conflict.ego_lane, &conflict.foe_lane].map(|lane| self.by_name(junction, lane)), None)
+            }
+        };
+        let movements = both.map(|movement| {
+            *self.places.entry(movement).or_insert_with(|| {
+                self.list.push(movement);
+                self.list.len() - 1
+            })
+        });
+        Some(Both { movements, yields })
+    }
+
+    /// For each junction its approaches, and all movements.
+    pub fn json(&self) -> Value {
+        let approach = |Approach { name, angle, role }: &Approach| {
+            json!([name, angle.map(|angle| (angle * 100.0).round() / 100.0), *role as u8])
+        };
+        let of_junction =
+            |(name, all): (&String, &Vec<Approach>)| (format!("junction {name}"), all.iter().map(approach).collect());
+        let movement = |Movement { from, to, turn }: &Movement| json!([from, to, turn]);
+        json!({
+            "approaches": self.approaches.iter().map(of_junction).collect::<BTreeMap<_, Vec<_>>>(),
+            "list": self.list.iter().map(movement).collect::<Vec<_>>(),
+        })
+    }
+
+    /// Without a net: the edge before the junction; of one within the junction nothing is known.
+    fn by_name(&mut self, junction: &str, lane: &str) -> Movement {
+        if lane.starts_with(':') {
+            return Movement::default();
+        }
+        let name = lane.rsplit_once('_').map_or(lane, |(edge, _)| edge);
+        let from = self.place(junction, name, Role::In, None);
+        Movement { from: Some(from), ..Movement::default() }
+    }
+
+    fn in_net(&mut self, net: &'a Net, conflict: &LoggedConflict) -> Option<[(Movement, Ways<'a>); 2]> {
+        let edge = &net.edges[net.lanes[net.lane(&conflict.lane)?.0 as usize].edge.0 as usize];
+        if edge.function == EdgeFunction::Normal || edge.junction.is_empty() {
+            return None;
+        }
+        let (junction, at) = (&*edge.junction, edge.ends[0]);
+        if !self.approaches.contains_key(junction) {
+            let all = self.approaches_of(net, at);
+            self.approaches.insert(junction.to_owned(), all);
+        }
+        let LoggedConflict { ego_lane, ego_x, ego_y, ego_path, foe_lane, foe_x, foe_y, foe_path, .. } = conflict;
+        // The log does not tell which one is the person: it is the shorter one.
+        let is_ego_shorter = conflict.ego_length < conflict.foe_length;
+        let is_person = |is_shorter| is_shorter && conflict.manoeuvre.starts_with("person_");
+        let ego = (ego_lane, ego_x.zip(*ego_y), ego_path, is_person(is_ego_shorter));
+        let foe = (foe_lane, foe_x.zip(*foe_y), foe_path, is_person(!is_ego_shorter));
+        Some([ego, foe].map(|(lane, front, path, is_person)| {
+            let Some(lane) = net.lane(lane) else { return Default::default() };
+            if is_person || is_on_foot(net, lane) {
+                let crossing = front.and_then(|(x, y)| net.crossing_at(Point::new(x, y), AT_CROSSING));
+                let movement = self.on_foot(net, junction, at, crossing.unwrap_or(lane));
+                return (movement, crossing.and_then(|crossing| net.passage(crossing)).into_iter().collect());
+            }
+            self.of_vehicle(net, junction, at, lane, || samples(front, path))
+        }))
+    }
+
+    /// The movement of a person: its crossing, or the pavement that it is on.
+    fn on_foot(&mut self, net: &Net, junction: &str, at: JunctionIndex, lane: LaneIndex) -> Movement {
+        let lane = &net.lanes[lane.0 as usize];
+        let angle = angle(self.middle(net, at), middle_of(&lane.shape));
+        let place = self.place(junction, &net.edges[lane.edge.0 as usize].id, Role::OnFoot, Some(angle));
+        Movement { from: Some(place), to: Some(place), turn: None }
+    }
+
+    fn of_vehicle(
+        &self,
+        net: &'a Net,
+        junction: &str,
+        at: JunctionIndex,
+        lane: LaneIndex,
+        path: impl Fn() -> Vec<Point>,
+    ) -> (Movement, Ways<'a>) {
+        let index = net.lanes[lane.0 as usize].edge;
+        let edge = &net.edges[index.0 as usize];
+        let place_of = |edge: EdgeIndex, role| {
+            let name = &net.edges[edge.0 as usize].id;
+            self.approaches[junction].iter().position(|known| known.name == *name && known.role == role)
+        };
+        let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+        if let Some(passage) = net.passage(lane).filter(|_| edge.ends[0] == at) {
+            let movement = Movement {
+                from: place_of(edge_of(passage.from), Role::In),
+                to: place_of(edge_of(passage.to), Role::Out),
+                turn: Some(turn(passage.direction)),
+            };
+            return (movement, vec![passage]);
+        }
+        if edge.ends[1] != at || edge.function != EdgeFunction::Normal {
+            let to = place_of(index, Role::Out).filter(|_| edge.ends[0] == at);
+            return (Movement { to, ..Movement::default() }, Vec::new());
+        }
+        let from = place_of(index, Role::In);
+        let vias = edge.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).filter_map(|link| link.via);
+        let ways = vias.filter_map(|via| net.passage(via)).collect::<Vec<_>>();
+        let first = ways.first().map(|way| edge_of(way.to));
+        let way = if ways.iter().all(|way| Some(edge_of(way.to)) == first) {
+            ways.first().copied()
+        } else {
+            let path = path();
+            let count = |way: &&Passage| {
+                let is_on = |place: &&Point| way.lanes.iter().any(|lane| is_beside(net, *lane, **place));
+                path.iter().filter(is_on).count()
+            };
+            let counts = ways.iter().map(count).collect::<Vec<_>>();
+            let best = (0..ways.len()).max_by_key(|place| counts[*place]);
+            // Where two ways lead to different roads equally well, it is not known which.
+            let is_sure = |best: &usize| {
+                let rivals = (0..ways.len()).filter(|place| edge_of(ways[*place].to) != edge_of(ways[*best].to));
+                rivals.into_iter().all(|place| counts[place] < counts[*best])
+            };
+            best.filter(is_sure).map(|best| ways[best])
+        };
+        let to = way.and_then(|way| place_of(edge_of(way.to), Role::Out));
+        let is_alike = |other: &&Passage| way.is_some_and(|way| edge_of(other.to) == edge_of(way.to));
+        let alike = ways.iter().copied().filter(is_alike).collect::<Ways>();
+        (Movement { from, to, turn: way.map(|way| turn(way.direction)) }, alike)
+    }
+
+    /// The place of an approach, which is added where it is new.
+    fn place(&mut self, junction: &str, name: &str, role: Role, angle: Option<Radian>) -> usize {
+        let all = self.approaches.entry(junction.to_owned()).or_default();
+        all.iter().position(|known| known.name == name && known.role == role).unwrap_or_else(|| {
+            all.push(Approach { name: name.to_owned(), angle, role });
+            all.len() - 1
+        })
+    }
+
+    /// The roads at a junction.
+    fn approaches_of(&self, net: &Net, at: JunctionIndex) -> Vec<Approach> {
+        let middle = self.middle(net, at);
+        let one = |&(edge, role): &(EdgeIndex, Role)| Approach {
+            name: net.edges[edge.0 as usize].id.clone(),
+            angle: Some(angle(middle, point_of(net, edge, role, AWAY))),
+            role,
+        };
+        self.edges.get(&at).into_iter().flatten().map(one).collect()
+    }
+
+    /// The middle of a junction: of the box around the ends of its roads.
+    fn middle(&self, net: &Net, at: JunctionIndex) -> Point {
+        let mut bounds = Bounds::EMPTY;
+        for (edge, role) in self.edges.get(&at).into_iter().flatten() {
+            bounds.include(point_of(net, *edge, *role, 0.0));
+        }
+        Point::from((bounds.low.coords + bounds.high.coords) / 2.0)
+    }
+}
+
+/// Which of two has to yield to the other, where that is the same on all ways that they may take.
+fn yields(net: &Net, ego: &[&Passage], foe: &[&Passage]) -> Option<u8> {
+    let all = |one: &[&Passage], to: &[&Passage]| {
+        !one.is_empty() && !to.is_empty() && one.iter().all(|one| to.iter().all(|to| net.yields(one, to)))
+    };
+    if all(ego, foe) { Some(0) } else { all(foe, ego).then_some(1) }
+}
+
+/// Whether a lane is for persons only.
+fn is_on_foot(net: &Net, lane: LaneIndex) -> bool {
+    match net.function(lane) {
+        EdgeFunction::Crossing | EdgeFunction::WalkingArea => true,
+        EdgeFunction::Normal => !net.lanes[lane.0 as usize].has_vehicles,
+        EdgeFunction::Internal | EdgeFunction::Connector => false,
+    }
+}
+
+/// Where an edge is that far from the junction, on its middle lane.
+fn point_of(net: &Net, edge: EdgeIndex, role: Role, away: Metre) -> Point {
+    let lanes = &net.edges[edge.0 as usize].lanes;
+    let mut shape = net.lanes[lanes[lanes.len() / 2].0 as usize].shape.clone();
+    if role == Role::In {
+        shape.reverse();
+    }
+    let mut left = away;
+    for ends in shape.windows(2) {
+        let way = ends[1] - ends[0];
+        let length = way.norm();
+        if length > left {
+            return ends[0] + way * (left / length);
+        }
+        left -= length;
+    }
+    shape[shape.len() - 1]
+}
+
+fn middle_of(shape: &[Point]) -> Point {
+    let mut bounds = Bounds::EMPTY;
+    shape.iter().for_each(|point| bounds.include(*point));
+    Point::from((bounds.low.coords + bounds.high.coords) / 2.0)
+}
+
+fn angle(middle: Point, place: Point) -> Radian {
+    let way = place - middle;
+    way.y.atan2(way.x)
+}
+
+fn is_beside(net: &Net, lane: LaneIndex, place: Point) -> bool {
+    (Foot::on_any_part(net.lines.line(lane.0), place).point - place).norm() <= BESIDE
+}
+
+/// Places along a path of the log, from the front bumper on.
+fn samples(front: Option<(Metre, Metre)>, path: &str) -> Vec<Point> {
+    let numbers = path.split(' ').filter_map(|number| number.parse::<f64>().ok()).collect::<Vec<_>>();
+    let points = numbers.chunks_exact(2).map(|point| Point::new(point[0], point[1]));
+    let points = front.map(|(x, y)| Point::new(x, y)).into_iter().chain(points).collect::<Vec<_>>();
+    let between = points.windows(2).flat_map(|ends| {
+        let way = ends[1] - ends[0];
+        let steps = (way.norm() / STEP).ceil();
+        (0..steps as usize).map(move |step| ends[0] + way * (step as f64 / steps))
+    });
+    between.chain(points.last().copied()).collect()
+}
+
+fn turn(direction: Direction) -> &'static str {
+    match direction {
+        Direction::Straight => "straight on",
+        Direction::Left => "turning left",
+        Direction::Right => "turning right",
+        Direction::Around => "turning back",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use closecall_run::output::sample::sample;
+
+    /// A conflict at a lane, with the ego on one and the foe on another, about to drive along a path.
+    fn conflict(lane: &str, ego_lane: &str, foe_lane: &str, foe_path: &str) -> LoggedConflict {
+        sample(&[
+            ("lane", lane),
+            ("ego_lane", ego_lane),
+            ("foe_lane", foe_lane),
+            ("ego_path", ""),
+            ("foe_x", ""),
+            ("foe_path", foe_path),
+        ])
+        .unwrap()
+    }
+
+    #[test]
+    fn a_path_tells_which_way_leads_on() {
+        let net = closecall_run::net::read(std::path::Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../sumo_nets/town/town.net.xml"
+        )))
+        .unwrap();
+        let mut movements = Movements::of(Some(&net));
+        let mut turns = Vec::new();
+        for (place, lane) in (0..).zip(&net.lanes) {
+            let Some(way) = net.passage(LaneIndex(place)) else { continue };
+            if net.function(LaneIndex(place)) != EdgeFunction::Internal || way.lanes[0].0 != place {
+                continue;
+            }
+            let all = way.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].shape);
+            let path = all.map(|point| format!("{} {}", point.x, point.y)).collect::<Vec<_>>().join(" ");
+            let both = movements.of_both(&conflict(&lane.id, &lane.id, net.lane_id(way.from), &path)).unwrap();
+            let [ego, foe] = both.movements;
+            assert_eq!((ego, both.yields), (foe, None), "{}", lane.id);
+            let Movement { from, to, turn } = movements.list[ego];
+            assert!(from.is_some() && to.is_some(), "{}", lane.id);
+            turns.extend(turn);
+        }
+        turns.sort_unstable();
+        turns.dedup();
+        assert!(turns.len() > 2, "{turns:?}");
+    }
+
+    #[test]
+    fn the_one_without_the_right_of_way_yields() {
+        let net = closecall_run::net::read(std::path::Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../sumo_nets/priority/priority.net.xml"
+        )))
+        .unwrap();
+        let mut movements = Movements::of(Some(&net));
+        let ways = (0..net.lanes.len() as u32).map(LaneIndex).filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
+        let id = |way: &Passage| net.lane_id(way.lanes[0]);
+        let mut found = 0;
+        for (one, other) in ways.iter().flat_map(|one| ways.iter().map(move |other| (one, other))) {
+            let has_to = |one, other| net.yields(one, other);
+            let expected = if has_to(one, other) { Some(0) } else { has_to(other, one).then_some(1) };
+            let both = movements.of_both(&conflict(id(one), id(one), id(other), "")).unwrap();
+            assert_eq!(both.yields, expected, "{} {}", id(one), id(other));
+            found += u32::from(expected.is_some());
+        }
+        assert!(found > 0);
+    }
+
+    #[test]
+    fn without_a_net_an_approach_is_its_edge() {
+        let mut movements = Movements::of(None);
+        let both = movements.of_both(&conflict(":J_1_0", "a_b_0", ":J_1_0", "")).unwrap();
+        assert_eq!(movements.json()["approaches"]["junction J"][0][0], "a_b");
+        assert_eq!((movements.list[both.movements[1]], both.yields), (Movement::default(), None));
+        assert_eq!(movements.of_both(&conflict("a_0", "a_0", "b_0", "")), None, "outside junctions");
+    }
+}

@@ -1,0 +1,7 @@
+//! Error against run time: of a scenario, and what a page and a chart of any such study share.
+
+pub mod chart;
+pub mod machine;
+pub mod number;
+pub mod pareto;
+pub mod scenario;

@@ -1,0 +1,34 @@
+//! The last lines of `closecall run` and `closecall replay`: what was found, where to look first, where the log is.
+
+use std::path::Path;
+
+use super::say::say;
+use closecall_run::Result;
+use closecall_run::output::summary::Summary;
+
+/// Prints the summary; with `explain`, every skipped test and the time that each part of the work took.
+pub(super) fn print(summary: &Summary, log: &Path, explain: bool) -> Result<()> {
+    say(format_args!("{summary}"))?;
+    let skipped = summary.skipped.to_string();
+    if !skipped.is_empty() && !explain {
+        say(format_args!("skipped {skipped}; none could change the result (--explain lists them)\n"))?;
+    }
+    if explain {
+        for left_out in &summary.left_out {
+            say(format_args!("{left_out}\n"))?;
+        }
+        let parts = summary.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.3} s"));
+        let parts = parts.collect::<Vec<_>>().join(", ");
+        if !parts.is_empty() {
+            say(format_args!("time: {parts}\n"))?;
+        }
+    }
+    let log = log.display();
+    if let Some(worst) = &summary.worst {
+        say(format_args!("worst conflict: {worst}\n"))?;
+        say(format_args!("log in {log}; see it on a map: closecall report {log}\n"))?;
+    } else {
+        say(format_args!("log in {log}\n"))?;
+    }
+    Ok(())
+}

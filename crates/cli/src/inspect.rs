@@ -1,0 +1,22 @@
+//! `closecall inspect`: what a recording is taken for.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::say::say;
+use closecall_run::Result;
+use closecall_run::input::tracks;
+
+/// Which file to look at.
+#[derive(Args)]
+pub(crate) struct InspectArgs {
+    /// Recording.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+}
+
+/// Prints what the file is, what it lacks, and the command that replays it.
+pub fn run(arguments: &InspectArgs) -> Result<()> {
+    say(tracks::inspect(&arguments.file)?)
+}

@@ -1,0 +1,131 @@
+//! The command line as clap reads it, with the options of a TOML file.
+
+use std::ffi::OsString;
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+
+use super::say::value;
+use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
+use closecall_run::{Error, Result};
+
+use super::plot;
+use super::sweep;
+use super::{stress, study};
+
+#[derive(Parser)]
+#[command(name = "closecall", version, about, args_override_self = true)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub(super) enum Command {
+    /// Run a SUMO scenario and check every step for conflicts
+    #[command(args_override_self = true)]
+    Run(Box<run::RunArgs>),
+    /// Run a scenario with many seeds and options in parallel and collect the conflicts in one data set
+    Sweep(Box<sweep::SweepArgs>),
+    /// Check a recording for conflicts: SUMO's fcd-output, SSAM's .trj, Vissim's .fzp, tables of trajectories
+    #[command(args_override_self = true)]
+    Replay(Box<replay::ReplayArgs>),
+    /// Tell what a recording is taken for, what it lacks, and the command that replays it
+    Inspect(inspect::InspectArgs),
+    /// Run scenarios and compare their conflicts with the blessed ones
+    Regress(regress::RegressArgs),
+    /// Print the minimal collision distance μ of two road users by all three models
+    #[command(args_override_self = true)]
+    Mu(mu::MuArgs),
+    /// Check stiff and extreme cases against exact references
+    Stress(stress::StressArgs),
+    /// Measure error against run time: which step length a scenario needs, or every choice that closecall makes
+    Study(Box<study::StudyArgs>),
+    /// Print statistics of logs: rates, quantiles, the worst conflicts, before and after
+    Stats(stats::StatsArgs),
+    /// Make an HTML page from logs: map, time line, distributions, hot spots, the worst conflicts
+    #[command(args_override_self = true)]
+    Report(report::ReportArgs),
+    /// Draw the seconds around a conflict as an animated SVG
+    #[command(args_override_self = true)]
+    Clip(playback::ClipArgs),
+    /// Show the seconds around a conflict in sumo-gui
+    #[command(args_override_self = true)]
+    Show(playback::ShowArgs),
+    /// Cut a conflict out of a run: a folder with a scenario in which it happens again, and a test
+    #[command(args_override_self = true)]
+    Extract(extract::ExtractArgs),
+    /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
+    #[command(args_override_self = true)]
+    Export(export::ExportArgs),
+    /// Draw the charts of the report as PNG or SVG files
+    #[command(args_override_self = true)]
+    Plot(plot::PlotArgs),
+}
+
+/// Why a command line does not lead to a command.
+pub(super) enum ParseError {
+    /// clap's help, version or usage error.
+    Clap(clap::Error),
+    /// The TOML file cannot be used.
+    File(Error),
+}
+
+impl From<clap::Error> for ParseError {
+    fn from(error: clap::Error) -> Self {
+        Self::Clap(error)
+    }
+}
+
+/// The clap command. A negative number counts as a value, so that the option's own check can refuse it.
+pub(super) fn command() -> clap::Command {
+    Cli::command().mut_subcommands(|command| {
+        command.mut_args(|argument| {
+            let takes_value = argument.get_action().takes_values() && !argument.is_positional();
+            if takes_value { argument.allow_negative_numbers(true) } else { argument }
+        })
+    })
+}
+
+/// Parses the words. The options of a TOML file come before them, so that what was typed wins.
+pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, ParseError> {
+    let matches = command().try_get_matches_from(&words)?;
+    let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
+    let known = settings::long_options(&command(), name);
+    let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
+        Ok(Some(path)) => settings::read(&command(), path).map_err(ParseError::File)?,
+        _ => return Ok(Cli::from_arg_matches(&matches)?),
+    };
+    let place = words.iter().position(|word| word == name).map_or(words.len(), |place| place + 1);
+    let is_known = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
+    let (before, after) = words.split_at(place);
+    let all =
+        before.iter().cloned().chain(file.words.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
+    let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
+    match &mut cli.command {
+        Command::Run(arguments) => arguments.check.options.set_tables(file),
+        Command::Replay(arguments) => arguments.check.options.set_tables(file),
+        _ => {}
+    }
+    Ok(cli)
+}
+
+/// clap's message as one line, without the usage.
+fn in_one_line(error: &clap::Error) -> Error {
+    let text = error.to_string();
+    let parts = text.split("\n\n").filter(|part| !part.starts_with("Usage") && !part.starts_with("For more"));
+    let line = parts.flat_map(str::split_whitespace).collect::<Vec<_>>().join(" ").replace(" tip: ", "; tip: ");
+    value(line.trim_start_matches("error: "))
+}
+
+/// Parses a command line of `closecall run`, which begins with the program's name.
+///
+/// # Errors
+/// clap's error as one line, and the errors of the TOML file.
+pub(super) fn parse_run(words: Vec<OsString>) -> Result<run::RunArgs> {
+    match parse(words) {
+        Ok(Cli { command: Command::Run(arguments) }) => Ok(*arguments),
+        Ok(_) => Err(value("these are not the words of closecall run")),
+        Err(ParseError::Clap(error)) => Err(in_one_line(&error)),
+        Err(ParseError::File(error)) => Err(error),
+    }
+}

@@ -1,0 +1,142 @@
+//! `closecall replay`: the same checks on a recording; SUMO is not needed.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use clap::Args;
+
+use super::check_args::CheckArgs;
+use super::progress::Progress;
+use super::sumo::Sumo;
+use closecall::util::threads::default_threads;
+use closecall_run::RunOptions;
+use closecall_run::input::replay::Replay;
+use closecall_run::input::tracks::{self, TrackOptions};
+use closecall_run::output::input_hash::Input;
+use closecall_run::output::record::RunRecord;
+use closecall_run::run::Run;
+use closecall_run::run::recorded::{Ending, RecordedRun};
+use closecall_run::{Error, Result};
+
+/// A recording and how to check it.
+#[derive(Args)]
+#[command(next_help_heading = "Run")]
+pub(crate) struct ReplayArgs {
+    /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
+    /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
+    #[arg(value_name = "FILE", required = true)]
+    recordings: Vec<PathBuf>,
+    /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
+    #[arg(short = 'n', long, value_name = "NET")]
+    net: Option<PathBuf>,
+    #[command(flatten)]
+    tracks: TrackOptions,
+    /// Route and additional files that define the vehicle types and the routes; types they do not define are SUMO's default
+    /// ones.
+    #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
+    route_files: Vec<PathBuf>,
+    /// What the traffic lights showed: SUMO's output of a timedEvent SaveTLSStates or SaveTLSSwitchStates; also gzipped. It needs
+    /// a net. Without it the causes ran_red and late_amber are not found.
+    #[arg(long, value_name = "FILE", requires = "net")]
+    signals: Option<PathBuf>,
+    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found for obstacles alone.
+    #[arg(long, value_name = "FILE")]
+    stops: Option<PathBuf>,
+    /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
+    #[arg(long)]
+    sublane: bool,
+    /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
+    /// reads the steps ahead.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    threads: Option<u8>,
+    #[command(flatten)]
+    pub(super) check: CheckArgs,
+}
+
+impl ReplayArgs {
+    /// The recording, or the first file of it.
+    fn recording(&self) -> &Path {
+        self.recordings.first().map_or(Path::new(""), PathBuf::as_path)
+    }
+}
+
+/// Checks the recording and prints the summary.
+pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
+    let recording = arguments.recording().to_owned();
+    let out = arguments.check.log_folder(&recording);
+    let options = arguments.check.checked(&out)?;
+    let folder = arguments.check.claim(&out)?;
+    let out = folder.path().to_owned();
+    let net = arguments.net.as_deref().map(closecall_run::net::read).transpose()?.map(Arc::new);
+    let opened = tracks::open(&arguments.recordings, &arguments.tracks, net.as_deref(), &mut || false)?;
+    let demand = arguments.route_files.iter().cloned().chain(opened.types()).collect::<Vec<_>>();
+    let mut replay = Replay::open(opened.recording(), &demand, net.as_deref(), &options.model)?;
+    let threads = arguments.threads.unwrap_or_else(default_threads);
+    if threads > 1 {
+        replay = replay.read_ahead()?;
+    }
+    if let (Some(signals), Some(net)) = (&arguments.signals, &net) {
+        replay.set_lights(signals, net)?;
+    }
+    arguments.stops.iter().try_for_each(|stops| replay.set_stops(stops))?;
+    let mut run = Run::new(&options, net)?;
+    run.set_threads(threads.into());
+    run.set_fixed_routes(true);
+    run.set_sublane(arguments.sublane);
+    run.drop_closed_conflicts();
+    if !arguments.check.quiet {
+        let remarks = run.opening_remarks(Some(replay.step_length()));
+        opened
+            .missing()
+            .iter()
+            .chain(opened.doubtful())
+            .chain(&remarks)
+            .for_each(|remark| eprintln!("closecall: {remark}"));
+    }
+    run.set_tracked(opened.is_tracked());
+    run.set_averaged_over(if opened.has_speeds_of_moments() { 0.0 } else { replay.averaged_over() });
+    let record = RunRecord { aligned: run.aligns(), ..record(&arguments, options)? };
+    // From its first call on, an interrupt no longer ends the process, so it is first called when there are results.
+    let mut never = || false;
+    let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
+    let mut recorded = RecordedRun::open(run, record, folder, &arguments.check.outputs)?;
+    let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
+    let closed = recorded.close(Ending {
+        error: ended.as_ref().err().map(ToString::to_string),
+        remarks: replay.remarks(),
+        ..Ending::default()
+    });
+    if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
+        arguments.check.finish(&closed?, &recording, &out)?;
+    }
+    ended
+}
+
+/// The record of a replay that begins.
+fn record(arguments: &ReplayArgs, options: RunOptions) -> Result<RunRecord> {
+    let files = arguments
+        .recordings
+        .iter()
+        .chain(&arguments.net)
+        .chain(&arguments.route_files)
+        .chain(&arguments.signals)
+        .chain(&arguments.stops);
+    Ok(RunRecord {
+        sublane: arguments.sublane,
+        inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,
+        ..RunRecord::new(arguments.recording().to_owned(), options)
+    })
+}
+
+/// Checks every step.
+fn check(replay: &mut Replay, run: &mut Run, interrupted: &mut dyn FnMut() -> bool, quiet: bool) -> Result<()> {
+    let mut progress = None;
+    while let Some(time) = replay.next(run)? {
+        let progress = progress.get_or_insert_with(|| Progress::new(time, None, !quiet));
+        progress.show(time, replay.road_users(), run.closed_conflicts());
+        if interrupted() {
+            return Err(Error::Interrupted { time });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,53 @@
+//! `closecall report`: logs as one HTML page.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::progress::CountBar;
+use super::say::say;
+use closecall::util::units::counted;
+use closecall_analysis::filter::ConflictFilter;
+use closecall_analysis::logged::check_none_lost;
+use closecall_analysis::report;
+use closecall_run::Result;
+
+/// Which logs to show, and where to write the page.
+#[derive(Args)]
+pub(crate) struct ReportArgs {
+    /// Log folders, or folders that contain log folders.
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// HTML file to write.
+    #[arg(short, long, value_name = "FILE", default_value = "report.html")]
+    out: PathBuf,
+    /// Net for the map [default: the net file named in the first log].
+    #[arg(short, long, value_name = "NET")]
+    net: Option<PathBuf>,
+    /// Print only errors.
+    #[arg(short, long)]
+    quiet: bool,
+    /// Runs to compare with, such as those before a change: log folders, or folders that contain log folders.
+    #[arg(long, value_name = "DIR", num_args = 1..)]
+    against: Vec<PathBuf>,
+    #[command(flatten)]
+    filter: ConflictFilter,
+}
+
+/// Writes the page and prints its size.
+pub fn run(arguments: &ReportArgs) -> Result<()> {
+    let mut bar = CountBar::new("conflicts", !arguments.quiet);
+    let ReportArgs { folders, against, net, filter, .. } = arguments;
+    let request = report::Request { folders, against, net: net.as_deref(), filter };
+    let mut progress = |read, all| bar.show(read, all);
+    let made = report::write(&request, &arguments.out, &mut progress)?;
+    drop(bar);
+    let report::Made { runs, conflicts, set_aside, bytes, lost } = made;
+    if !arguments.quiet {
+        let size = bytes as f64 / 1e6;
+        let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
+        say(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
+        set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
+    }
+    check_none_lost(&lost)
+}

@@ -1,0 +1,114 @@
+//! `closecall study`: error against run time, of closecall's own choices axis by axis, or of a scenario's.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use super::say::say;
+use super::study_scenario::{RESULTS, ScenarioArgs};
+use super::sumo::{RunRequest, Sumo};
+use super::sweep::ParseRun;
+use closecall::util::units::Second;
+use closecall_run::Result;
+use closecall_run::RunOptions;
+use closecall_run::output::folder::LogFolder;
+use closecall_run::output::formats::OutputFiles;
+use closecall_study::{self, Axis, Plan};
+
+/// What to measure, and where to write it.
+#[derive(Args)]
+pub(crate) struct StudyArgs {
+    /// SUMO configuration file: study this scenario's step length and other settings, instead of closecall's own choices.
+    #[arg(value_name = "SCENARIO")]
+    scenario: Option<PathBuf>,
+    /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
+    #[arg(short, long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Fewer items, repetitions, values and seeds; without a scenario it takes about two minutes.
+    #[arg(long)]
+    quick: bool,
+    /// Measure only this axis of closecall's own choices.
+    #[arg(long, value_enum, value_name = "AXIS", conflicts_with = "scenario")]
+    only: Option<Axis>,
+    /// Folder with the scenarios for the axes of closecall's own choices that replay recordings.
+    #[arg(long, value_name = "DIR", default_value = "sumo_nets", conflicts_with = "scenario")]
+    nets: PathBuf,
+    #[command(flatten)]
+    of_scenario: ScenarioArgs,
+}
+
+/// Studies the scenario, or closecall's own choices; returns the exit status.
+pub fn run(arguments: StudyArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Result<u8> {
+    match &arguments.scenario {
+        Some(scenario) => {
+            arguments.of_scenario.run(scenario, arguments.out.as_deref(), arguments.quick, sumo, parse_run)
+        }
+        None => {
+            arguments.of_scenario.check_without_scenario()?;
+            own_choices(&arguments, sumo).map(|()| 0)
+        }
+    }
+}
+
+/// Measures the axes; writes each as soon as it is measured.
+fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
+    let out = arguments.out.clone().unwrap_or_else(|| PathBuf::from(RESULTS));
+    let plan = Plan { quick: arguments.quick, nets: arguments.nets.clone() };
+    let mut rows = Vec::new();
+    for axis in Axis::ALL.into_iter().filter(|axis| arguments.only.is_none_or(|only| only == *axis)) {
+        eprintln!("{} …", axis.name());
+        let measured = match &mut sumo {
+            Some(sumo) => {
+                let mut record = |scenario: &Path, recording: &Path, end: Second| {
+                    let request = recorded(scenario, recording, end);
+                    (sumo.simulate)(&request, LogFolder::claim(&request.out)?).map(|_| ())
+                };
+                closecall_study::measure(axis, &plan, Some(&mut record))?
+            }
+            None if axis.needs_sumo() && arguments.only.is_none() => {
+                eprintln!("skipped: this binary was built without Python and cannot run SUMO");
+                continue;
+            }
+            None => closecall_study::measure(axis, &plan, None)?,
+        };
+        rows.extend(measured);
+        closecall_study::write(&out, &rows, &plan)?;
+    }
+    say(format_args!("{} rows in {}\n", rows.len(), out.join("study.csv").display()))?;
+    let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);
+    for row in off {
+        say(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;
+    }
+    Ok(())
+}
+
+/// A run of a scenario that records every step as fcd-output.
+fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
+    let words = [
+        "-c",
+        &scenario.display().to_string(),
+        "--end",
+        &end.to_string(),
+        "--step-length",
+        "0.1",
+        "--fcd-output",
+        &recording.display().to_string(),
+        "--fcd-output.attributes",
+        "all",
+        "--precision",
+        "9",
+        "--collision-output",
+        &recording.with_extension("collisions.xml").display().to_string(),
+        "--no-warnings",
+    ];
+    RunRequest {
+        scenario: scenario.to_owned(),
+        gui: None,
+        out: recording.with_extension("log"),
+        threads: 2,
+        quiet: true,
+        outputs: OutputFiles::default(),
+        options: RunOptions::default(),
+        sumo_words: words.map(str::to_owned).to_vec(),
+    }
+}

@@ -1,0 +1,28 @@
+//! The words that choose one conflict of a log.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use closecall_analysis::logged::Which;
+
+/// Which conflict.
+#[derive(Args)]
+pub(super) struct WhichArgs {
+    /// Log folder.
+    #[arg(value_name = "LOG")]
+    pub folder: PathBuf,
+    /// The conflict's id in the log.
+    #[arg(value_name = "ID", required_unless_present = "worst")]
+    id: Option<u64>,
+    /// The worst conflict (1), the second worst (2), and so on, instead of an id; only an id names one that is not traffic's.
+    #[arg(long, value_name = "N", conflicts_with = "id")]
+    worst: Option<usize>,
+}
+
+impl WhichArgs {
+    /// The choice.
+    pub fn which(&self) -> Which {
+        self.id.map_or(Which::Worst(self.worst.unwrap_or(1)), Which::Id)
+    }
+}

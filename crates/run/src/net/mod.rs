@@ -1,0 +1,9 @@
+//! SUMO's nets as files (`*.net.xml`, also gzipped), their projections, and selections of their parts.
+
+mod attributes;
+mod connect;
+pub mod filter;
+pub mod projection;
+mod reader;
+
+pub use reader::{parse, read};

@@ -1,0 +1,518 @@
+//! The schema of a conflict: one row per column of `conflicts.csv`.
+//!
+//! The log, both readers, the Parquet files of a sweep, the report's data and Python's `Conflict` loop over [`COLUMNS`];
+//! a test compares the table in docs/log.md and the Python stub with it. To add a measure, write its formula in
+//! [`closecall::detection::measures`] and add an `Optional` row here (logs of earlier versions have no such column), or a `Chosen`
+//! one and its name in [`closecall::options::measures`]: then only logs of runs that ask for it have it.
+
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::place::{edge_of, junction_of, on_lane};
+use super::value::Field;
+use crate::util::decimal;
+use closecall::detection::kind::{Kind, Severity};
+use closecall::detection::measures::headway::headway;
+use closecall::events::{Artefact, Conflict, Manoeuvre, Snapshot};
+use closecall::geometry::Point;
+use closecall::options::measures::{ChosenMeasure, Measures};
+use closecall::traffic::lane_change::LaneChangeReason;
+use closecall::traffic::net::Net;
+use closecall::traffic::roster::{ProfileIndex, Roster};
+use closecall::util::units::{
+    Degree, Metre, MetrePerSecond, MetrePerSecondSquared, MetreSquaredPerSecondCubed, Probability, Radian, Ratio,
+    Second, SecondSquared,
+};
+
+pub use super::value::{ColumnType, Value};
+
+/// A text that may be missing: it is empty then.
+pub(crate) type OptionalText = String;
+
+/// What a conflict does not know itself: its number in the log, and the names behind its indices.
+#[derive(Clone, Copy, Debug)]
+pub struct Context<'a> {
+    /// 1, 2, 3, … in the order of the log.
+    pub number: u64,
+    /// The net, which knows the lane's id; none without one.
+    pub net: Option<&'a Net>,
+    /// The roster, which knows the names of the types.
+    pub roster: &'a Roster,
+}
+
+/// Makes [`LoggedConflict`] and [`COLUMNS`] of the rows below: the meaning; which logs have the column; its name; its type,
+/// which names the unit; how to get the value from a [`Conflict`] and its [`Context`].
+macro_rules! columns {
+    (|$conflict:ident, $context:ident| $(
+        $(#[doc = $meaning:literal])+
+        [$presence:ident] $name:ident: $type:ty = $value:expr;
+    )+) => {
+        /// A conflict as a log has it: one field per column.
+        #[derive(Clone, Debug, PartialEq)]
+        pub struct LoggedConflict {
+            $( $(#[doc = $meaning])+ pub $name: $type, )+
+        }
+
+        /// The columns of `conflicts.csv`, in their order.
+        pub static COLUMNS: [Column; [$(stringify!($name)),+].len()] = [$(
+            Column {
+                name: stringify!($name),
+                meaning: concat!($($meaning),+),
+                presence: Presence::$presence,
+                column_type: <$type as Field>::TYPE,
+                rust_type: stringify!($type),
+                get: |conflict| conflict.$name.value(),
+                set: |conflict, value| conflict.$name.set(value),
+            },
+        )+];
+
+        impl LoggedConflict {
+            /// The log's row of a conflict.
+            pub fn new($conflict: &Conflict, $context: Context) -> Self {
+                Self { $( $name: $value, )+ }
+            }
+
+            /// A conflict from its cells; `cell` gets the place of a column and returns what is there.
+            ///
+            /// # Errors
+            /// What `cell` returns, or which value does not fit its column.
+            pub fn from_cells<'a>(cell: impl Fn(usize) -> Result<Value<'a>, String>) -> Result<Self, String> {
+                let mut columns = COLUMNS.iter().enumerate();
+                Ok(Self { $( $name: next_field(&mut columns, &cell)?, )+ })
+            }
+        }
+    };
+}
+
+columns! { |conflict, context|
+    /// 1, 2, 3, … in the order of the file
+    [Required] id: u64 = context.number;
+    /// SUMO's id of the ego: the one with the longer distance to the conflict point
+    [Required] ego: String = conflict.ego.to_string();
+    /// SUMO's id of the foe
+    [Required] foe: String = conflict.foe.to_string();
+    /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
+    [Required] kind: Kind = conflict.kind;
+    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all steps
+    [Required] severity: Severity = conflict.severity;
+    /// how near to a crash it was: `possible`, `likely`, `near_certain`
+    [Optional] nearness: OptionalText = conflict.nearness.name().to_owned();
+    /// what a crash would have meant: `minor`, `moderate`, `severe`
+    [Optional] consequence: OptionalText = conflict.consequence.name().to_owned();
+    /// why it is SUMO's or a tracker's making, not traffic's, and is not counted: `drawn_overlap`, `appeared`, `stopped_at_once`,
+    /// `jumped`, `tracking` ([rules](artefacts.md)); empty for the rest
+    [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().to_owned();
+    /// first step that meets the log's condition
+    [Required] begin: Second = conflict.begin;
+    /// last step that meets the log's condition
+    [Required] end: Second = conflict.end;
+    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and those that
+    /// say that they are an extreme of all steps
+    [Required] time: Second = conflict.time;
+    /// the room that is left
+    [Required] gap: Metre = conflict.gap;
+    /// the minimal collision distance
+    [Required] mu: Metre = conflict.mu;
+    /// `gap` − `mu`
+    [Required] margin: Metre = conflict.margin;
+    /// smallest distance between the two rectangles, in any step or between two
+    [Required] clearance: Metre = conflict.clearance;
+    /// smallest time to collision of all steps, if both keep their speed along their paths
+    [Required] ttc: Option<Second> = conflict.ttc;
+    /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
+    /// foe comes towards it; at most 12.68 m/s²
+    [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
+    /// whether in any step before contact no deceleration would have avoided it
+    [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
+    /// time between the first leaving and the second entering the conflict area, from what both really drove; empty for
+    /// followers
+    [Required] pet: Option<Second> = conflict.pet;
+    /// speed change of the ego in a fully inelastic collision
+    [Required] ego_delta_v: MetrePerSecond = conflict.ego_delta_v;
+    /// speed change of the foe in a fully inelastic collision
+    [Optional] foe_delta_v: Option<MetrePerSecond> = Some(conflict.foe_delta_v);
+    /// speed of the ego
+    [Required] ego_speed: MetrePerSecond = conflict.ego_speed;
+    /// speed of the foe
+    [Required] foe_speed: MetrePerSecond = conflict.foe_speed;
+    /// between the headings at the conflict point, 0 to π
+    [Required] angle: Radian = conflict.angle;
+    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    [Required] x: Metre = conflict.x;
+    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    [Required] y: Metre = conflict.y;
+    /// the lane of the conflict point
+    [Required] lane: OptionalText = context.lane(conflict).to_owned();
+    /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
+    [Required] collision: bool = conflict.collision;
+    /// whether SUMO reported a collision of the two during the conflict; empty for a recording
+    [Optional] collision_sumo: Option<bool> = conflict.collision_sumo;
+    /// SUMO's type of the ego
+    [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
+    /// SUMO's type of the foe; an obstacle's is `polygon:` and the polygon's type
+    [Optional] foe_type: OptionalText = context.type_name(conflict.foe_profile);
+    /// the ego's front bumper
+    [Snapshot] ego_x: Option<Metre> = Some(conflict.ego_snapshot.front.x);
+    /// the ego's front bumper
+    [Snapshot] ego_y: Option<Metre> = Some(conflict.ego_snapshot.front.y);
+    /// from the ego's rear to its front bumper, counter-clockwise from +x
+    [Snapshot] ego_heading: Option<Radian> = Some(conflict.ego_snapshot.heading);
+    /// length of the ego
+    [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
+    /// width of the ego
+    [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
+    /// where the ego's front bumper would go until it has braked to a stand, and ε further (the reserve that is searched
+    /// too), `x y x y …`, to the centimetre; empty for a road user that stands
+    [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
+    /// the foe's front bumper; a corner of an obstacle
+    [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
+    /// the foe's front bumper; a corner of an obstacle
+    [Snapshot] foe_y: Option<Metre> = Some(conflict.foe_snapshot.front.y);
+    /// from the foe's rear to its front bumper, counter-clockwise from +x
+    [Snapshot] foe_heading: Option<Radian> = Some(conflict.foe_snapshot.heading);
+    /// length of the foe; 0 for an obstacle
+    [Snapshot] foe_length: Option<Metre> = Some(conflict.foe_snapshot.length);
+    /// width of the foe; 0 for an obstacle
+    [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
+    /// where the foe's front bumper would go, as in `ego_path`
+    [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
+    /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
+    [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
+    /// deepest overlap of the two rectangles, in any step or between two: the shortest displacement that parts them; 0 if they
+    /// never overlapped
+    [Optional] overlap: Option<Metre> = Some(conflict.overlap);
+    /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
+    /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood
+    [Optional] response_left: Option<Second> = conflict.response_left;
+    /// time to brake: smallest of all steps of the longest wait before full braking with which contact is avoided, if the foe
+    /// goes on as now; 0 if even braking at once is too late; empty if the two would not touch
+    [Optional] ttb: Option<Second> = conflict.ttb;
+    /// largest of all steps of the probability that the driver does not brake in time, if the foe goes on as now
+    [Optional] crash_probability: Option<Probability> = Some(conflict.crash_probability);
+    /// the same if the foe brakes fully now
+    [Optional] crash_probability_braking: Option<Probability> = Some(conflict.crash_probability_braking);
+    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of those on foot or two wheels at the impact
+    /// speed, `ego_delta_v` + `foe_delta_v`
+    [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
+    /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
+    /// would not touch
+    [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
+    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`,
+    /// `left_turn_across`, `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`,
+    /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
+    [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
+    /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
+    /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `behind_curve`, `leader_braked`, `too_close`, `too_fast`,
+    /// `appeared` ([rules](causes.md)); empty where none of them is known
+    [Optional] cause: OptionalText = conflict.causes.to_string();
+    /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
+    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where it is not known, as in a replay
+    [Optional] lane_change_reason: OptionalText =
+        conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
+    /// the lane of the ego's front bumper; the nearest where its way is not known
+    [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    /// how far along that lane it is, in SUMO's metres of the lane
+    [Optional] ego_lane_position: Option<Metre> = context.on_lane(conflict, 0).map(|(_, position)| position);
+    /// the lane of the foe's front bumper, or of an obstacle's corner
+    [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
+    /// how far along that lane it is
+    [Optional] foe_lane_position: Option<Metre> = context.on_lane(conflict, 1).map(|(_, position)| position);
+    /// the edge of `lane`
+    [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
+    /// the junction that `lane` is within; empty outside junctions
+    [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
+    /// longitude of `x` and `y`, by the net's own projection, as SUMO converts it; empty for a net without one
+    [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
+    /// latitude of `x` and `y`
+    [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
+    /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
+    /// course; side and frontal conflicts only
+    [Chosen] tadv: Option<Second> = conflict.chosen(ChosenMeasure::Tadv);
+    /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their paths; the
+    /// TTC on a collision course; side and frontal conflicts only
+    [Chosen] t2: Option<Second> = conflict.chosen(ChosenMeasure::T2);
+    /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
+    [Chosen] rss_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssDistance);
+    /// safe lateral distance by RSS; rear-end and frontal conflicts only
+    [Chosen] rss_lateral_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssLateralDistance);
+    /// how long of the conflict the gap was below `rss_distance`
+    [Chosen] rss_violation: Option<Second> = conflict.chosen(ChosenMeasure::RssViolation);
+    /// time headway from front to front: smallest of all steps; rear-end conflicts only
+    [Chosen] thw: Option<Second> = conflict.chosen(ChosenMeasure::Thw);
+    /// space gap: smallest gap of all steps; rear-end conflicts only
+    [Chosen] sgap: Option<Metre> = conflict.chosen(ChosenMeasure::Sgap);
+    /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
+    [Chosen] br: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Br);
+    /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²;
+    /// rear-end conflicts only
+    [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Mdrac);
+    /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
+    [Chosen] mttc: Option<Second> = conflict.chosen(ChosenMeasure::Mttc);
+    /// crash index: largest of all steps; rear-end conflicts only
+    [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.chosen(ChosenMeasure::CrashIndex);
+    /// time exposed to a TTC of at most 3 s
+    [Chosen] tet: Option<Second> = conflict.chosen(ChosenMeasure::Tet);
+    /// integral over time of what the TTC lacks to 3 s
+    [Chosen] tit: Option<SecondSquared> = conflict.chosen(ChosenMeasure::Tit);
+    /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
+    [Chosen] cpi: Option<Probability> = conflict.chosen(ChosenMeasure::Cpi);
+    /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most 12.68 m/s²
+    [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALongReq);
+    /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²; rear-end and
+    /// frontal conflicts only
+    [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALatReq);
+    /// brake threat number: `a_long_req` over the ego's braking deceleration
+    [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
+    /// steer threat number: `a_lat_req` over the ego's braking deceleration
+    [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
+    /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none then
+    [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
+    /// speed of the one that brakes then, before it does
+    [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);
+    /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
+    [Chosen] ta_level: Option<Ratio> = conflict.chosen(ChosenMeasure::TaLevel);
+    /// SSAM's MaxS: the largest speed of both in any step
+    [Chosen] max_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::MaxS);
+    /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
+    [Chosen] delta_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::DeltaS);
+    /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
+    [Chosen] dr: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Dr);
+    /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
+    [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::MaxD);
+    /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
+    [Chosen] act: Option<Second> = conflict.chosen(ChosenMeasure::Act);
+    /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
+    [Chosen] ei: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::Ei);
+}
+
+impl LoggedConflict {
+    /// The edge of the conflict point; empty without a lane. Logs of earlier versions have no column for it.
+    pub fn edge(&self) -> &str {
+        edge_of(&self.lane)
+    }
+
+    /// The junction of the conflict point; empty where it is not within one.
+    pub fn junction(&self) -> &str {
+        junction_of(&self.lane)
+    }
+
+    /// ΔV of the one whose speed changes most in a collision; the ego's where the log does not have the foe's.
+    pub fn delta_v(&self) -> MetrePerSecond {
+        self.foe_delta_v.map_or(self.ego_delta_v, |foe| foe.max(self.ego_delta_v))
+    }
+}
+
+/// One column of the log.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: &'static str,
+    /// What its values are, for docs/log.md.
+    pub meaning: &'static str,
+    /// Which logs have it.
+    pub presence: Presence,
+    /// How its values are stored.
+    pub column_type: ColumnType,
+    /// The field's type, which names the unit.
+    rust_type: &'static str,
+    /// Its value in a conflict.
+    pub get: fn(&LoggedConflict) -> Value,
+    /// Changes its value in a conflict; an error where it does not fit.
+    pub set: fn(&mut LoggedConflict, Value) -> Result<(), String>,
+}
+
+/// Which logs have a column, and when it is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Presence {
+    /// Every log: a file without it is not a log.
+    Required,
+    /// Not the logs of earlier versions; its value is missing there.
+    Optional,
+    /// The same; read only on request, as drawings need it and statistics do not.
+    Snapshot,
+    /// Only logs whose run was told to add it.
+    Chosen,
+}
+
+/// Columns that logs of earlier versions have under another name: the name now, and the one then.
+const RENAMED: [(&str, &str); 1] = [("ego_delta_v", "delta_v")];
+
+impl Column {
+    /// The column of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        COLUMNS.iter().find(|column| column.is_named(name))
+    }
+
+    /// The same column under another name.
+    pub fn renamed(self, name: &'static str) -> Self {
+        Self { name, ..self }
+    }
+
+    /// Whether a log has this column under this name.
+    pub fn is_named(&self, name: &str) -> bool {
+        self.name == name || RENAMED.contains(&(self.name, name))
+    }
+
+    /// The unit of its values; empty where they have none.
+    pub fn unit(&self) -> &'static str {
+        match self.rust_type.trim_start_matches("Option<").trim_end_matches('>') {
+            "Second" => "s",
+            "Metre" => "m",
+            "MetrePerSecond" => "m/s",
+            "MetrePerSecondSquared" => "m/s²",
+            "Radian" => "rad",
+            "Degree" => "°",
+            "SecondSquared" => "s²",
+            "MetreSquaredPerSecondCubed" => "m²/s³",
+            "Probability" | "Ratio" => "1",
+            _ => "",
+        }
+    }
+
+    /// Whether the log of a run with these measures has it.
+    pub fn is_in(&self, measures: Measures) -> bool {
+        self.presence != Presence::Chosen || measures.chosen().any(|measure| measure.name() == self.name)
+    }
+
+    /// Whether a value may be missing: the type is an `Option` or `OptionalText`.
+    pub fn is_optional(&self) -> bool {
+        self.rust_type.starts_with("Option")
+    }
+}
+
+/// The next field of a conflict whose fields are read in the order of the columns.
+fn next_field<'a, T: Field>(
+    columns: &mut impl Iterator<Item = (usize, &'static Column)>,
+    cell: &impl Fn(usize) -> Result<Value<'a>, String>,
+) -> Result<T, String> {
+    let (place, column) = columns.next().ok_or("a conflict has no more columns")?;
+    cell(place).and_then(T::from_value).map_err(|why| format!("{}: {why}", column.name))
+}
+
+impl<'a> Context<'a> {
+    fn lane(&self, conflict: &Conflict) -> &'a str {
+        conflict.lane.zip(self.net).map_or("", |(lane, net)| net.lane_id(lane))
+    }
+
+    /// The lane of the ego (0) or the foe (1), and how far along it that is.
+    fn on_lane(&self, conflict: &Conflict, user: usize) -> Option<(&'a str, Metre)> {
+        let front = [&conflict.ego_snapshot, &conflict.foe_snapshot][user].front;
+        on_lane(self.net?, conflict.lanes[user], front)
+    }
+
+    /// The longitude and latitude of the conflict point.
+    fn degrees(&self, conflict: &Conflict) -> Option<[Degree; 2]> {
+        self.net?.degrees(Point::new(conflict.x, conflict.y))
+    }
+
+    fn type_name(&self, profile: ProfileIndex) -> String {
+        self.roster.profile_at(profile).name.to_string()
+    }
+}
+
+/// The largest coordinate of a path, in m, that is written as 0.
+const HALF_A_CENTIMETRE: Metre = 0.005;
+
+/// The path of a snapshot as x y x y …, to the centimetre; without commas, so that its cell needs no quotes.
+fn path(snapshot: &Snapshot) -> String {
+    let mut text = String::new();
+    for value in snapshot.path.iter().flat_map(|point| [point.x, point.y]) {
+        if !text.is_empty() {
+            text.push(' ');
+        }
+        // What rounds to 0 has no sign: it would be that of rounding, which differs between machines.
+        decimal::push_fixed(&mut text, if value.abs() < HALF_A_CENTIMETRE { 0.0 } else { value }, 2);
+    }
+    text
+}
+
+/// Without the snapshots, and without what the run was not told to add.
+impl Serialize for LoggedConflict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(None)?;
+        for column in COLUMNS.iter().filter(|column| column.presence != Presence::Snapshot) {
+            let value = (column.get)(self);
+            if column.presence != Presence::Chosen || value != Value::Missing {
+                map.serialize_entry(column.name, &value)?;
+            }
+        }
+        map.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use crate::output::schema::*;
+
+    /// The variable with which the tests write what they otherwise compare.
+    const BLESS: &str = "BLESS_SCHEMA";
+
+    /// Compares a part of a file with what follows from the schema, or writes it.
+    fn follows(file: &str, begin: &str, end: &str, expected: &str) {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..").join(file);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let (before, rest) = text.split_once(begin).unwrap();
+        let (part, after) = rest.split_at(rest.find(end).unwrap());
+        if std::env::var_os(BLESS).is_some() {
+            std::fs::write(&path, format!("{before}{begin}{expected}{after}")).unwrap();
+        } else {
+            assert!(part == expected, "{file} lags behind the schema: {BLESS}=1 cargo test --lib schema writes it");
+        }
+    }
+
+    #[test]
+    fn the_table_in_the_documentation_has_every_column() {
+        let row = |column: &Column| format!("| `{}` | {} |{} |", column.name, column.unit(), column.meaning);
+        let rows = COLUMNS.iter().map(row).collect::<Vec<_>>().join("\n");
+        follows("docs/log.md", "| column | unit | meaning |\n|---|---|---|\n", "\n\n", &rows);
+    }
+
+    #[test]
+    fn the_python_stub_has_every_column() {
+        let property = |column: &Column| {
+            let python = match column.column_type {
+                ColumnType::Count => "int",
+                ColumnType::Text => "str",
+                ColumnType::Number => "float",
+                ColumnType::Flag => "bool",
+            };
+            let or_none = if column.is_optional() { " | None" } else { "" };
+            format!("    @property\n    def {}(self) -> {python}{or_none}: ...", column.name)
+        };
+        let properties = COLUMNS.iter().map(property).collect::<Vec<_>>().join("\n");
+        follows("bridge/python/closecall/_closecall.pyi", "class Conflict:\n", "\n\n@", &properties);
+    }
+
+    #[test]
+    fn what_a_log_may_lack_may_be_missing() {
+        let may_lack = |column: &&Column| column.presence != Presence::Required;
+        assert!(COLUMNS.iter().filter(may_lack).all(Column::is_optional));
+    }
+
+    #[test]
+    fn what_may_be_added_is_a_column_in_this_order() {
+        let chosen = COLUMNS.iter().filter(|column| column.presence == Presence::Chosen).map(|column| column.name);
+        assert_eq!(chosen.collect::<Vec<_>>(), ChosenMeasure::ALL.map(ChosenMeasure::name));
+        let in_log = |measures: &str| COLUMNS.iter().filter(|column| column.is_in(measures.parse().unwrap())).count();
+        let all = COLUMNS.len();
+        assert_eq!(
+            ["all", "default", "t2"].map(in_log),
+            [all, all - ChosenMeasure::ALL.len(), all - ChosenMeasure::ALL.len() + 1]
+        );
+    }
+
+    #[test]
+    fn every_number_has_a_unit() {
+        let is_number = |column: &&Column| column.column_type == ColumnType::Number;
+        assert!(COLUMNS.iter().filter(is_number).all(|column| !column.unit().is_empty()));
+    }
+
+    #[test]
+    fn a_path_writes_what_rounds_to_nothing_without_a_sign() {
+        let points = [(-0.0, -4e-16), (-0.0049, -0.0051)].map(|(x, y)| Point::new(x, y));
+        let snapshot =
+            Snapshot { front: points[0], heading: 0.0, length: 0.0, width: 0.0, path: std::sync::Arc::new(points) };
+        assert_eq!(path(&snapshot), "0.00 0.00 0.00 -0.01");
+    }
+}

@@ -1,0 +1,94 @@
+//! How many vehicles enter each junction: what the conflicts there are seen against.
+
+use std::collections::BTreeMap;
+
+use closecall::traffic::net::{EdgeFunction, JunctionIndex, LaneIndex, Net};
+use closecall::traffic::roster::UserIndex;
+
+/// The vehicles that entered each junction so far.
+#[derive(Debug, Default)]
+pub(super) struct Entering {
+    /// The lane that each road user was last seen on, by [`UserIndex`].
+    lanes: Vec<Option<LaneIndex>>,
+    /// By [`JunctionIndex`].
+    counts: Vec<u64>,
+}
+
+impl Entering {
+    /// Sees a vehicle on a lane.
+    pub fn see(&mut self, net: &Net, user: UserIndex, lane: LaneIndex) {
+        let user = user.0 as usize;
+        if self.lanes.len() <= user {
+            self.lanes.resize(user + 1, None);
+        }
+        if self.lanes[user] == Some(lane) {
+            return;
+        }
+        let before = self.lanes[user].replace(lane);
+        if let Some(JunctionIndex(junction)) = entered(net, before, lane) {
+            let junction = junction as usize;
+            if self.counts.len() <= junction {
+                self.counts.resize(junction + 1, 0);
+            }
+            self.counts[junction] += 1;
+        }
+    }
+
+    /// A road user leaves the scene.
+    pub(crate) fn forget(&mut self, user: UserIndex) {
+        if let Some(lane) = self.lanes.get_mut(user.0 as usize) {
+            *lane = None;
+        }
+    }
+
+    /// The counts by SUMO's id of the junction, of those with lanes of their own.
+    pub(crate) fn by_junction(&self, net: &Net) -> BTreeMap<String, u64> {
+        let within = net.edges.iter().filter(|edge| edge.function == EdgeFunction::Internal);
+        let count = |junction: JunctionIndex| self.counts.get(junction.0 as usize).copied().filter(|count| *count > 0);
+        within.filter_map(|edge| Some((edge.junction.to_string(), count(edge.ends[0])?))).collect()
+    }
+}
+
+/// The junction that a vehicle has entered, or driven through, since it was on another lane; none if it is where it was.
+fn entered(net: &Net, before: Option<LaneIndex>, now: LaneIndex) -> Option<JunctionIndex> {
+    let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+    let edge = &net.edges[edge_of(now).0 as usize];
+    let is_new = match before.map(edge_of) {
+        None => edge.function == EdgeFunction::Internal,
+        Some(from) => {
+            let before = &net.edges[from.0 as usize];
+            let was_there = before.function == EdgeFunction::Internal && before.ends[0] == edge.ends[0];
+            from != edge_of(now) && !was_there
+        }
+    };
+    is_new.then_some(edge.ends[0])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vehicle_enters_each_junction_once() {
+        let net = crate::net::read(std::path::Path::new(concat!(
+            env!("CARGO_MANIFEST_DIR"),
+            "/../../sumo_nets/priority/priority.net.xml"
+        )))
+        .unwrap();
+        let way = (0..net.lanes.len() as u32).filter_map(|lane| net.passage(LaneIndex(lane)));
+        let way = way.max_by_key(|way| way.lanes.len()).unwrap();
+        let through = [&[way.from][..], &way.lanes, &[way.to]].concat();
+        let total = |seen: &[&[LaneIndex]]| {
+            let mut entering = Entering::default();
+            for (user, lanes) in (0..).zip(seen) {
+                lanes.iter().for_each(|lane| entering.see(&net, UserIndex(user), *lane));
+            }
+            entering.by_junction(&net).values().sum::<u64>()
+        };
+        assert!(way.lanes.len() > 1, "two parts");
+        assert_eq!(total(&[&through]), 1);
+        assert_eq!(total(&[&[way.from, way.to]]), 1, "through it between two steps");
+        assert_eq!(total(&[&[way.from], &[way.to]]), 0, "two vehicles that stay");
+        assert_eq!(total(&[&through, &through]), 2);
+    }
+}

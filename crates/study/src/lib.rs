@@ -1,0 +1,130 @@
+//! Error against run time, for every choice in closecall's design: `closecall study`.
+//!
+//! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
+//! reference that is independent of all of them: [`reference`](mod@reference), or the paths that the vehicles really drove.
+
+mod braking;
+mod candidates;
+mod chosen_measures;
+mod clock;
+mod coverage;
+mod curvature;
+mod decisions;
+mod driven;
+mod in_short;
+mod late;
+mod measurement;
+mod numbers;
+mod page;
+mod panels;
+mod path;
+mod probability;
+mod recorded;
+mod recording;
+pub mod reference;
+pub mod stress;
+mod time;
+mod tolerance;
+mod turning;
+mod volume;
+
+use std::path::Path;
+
+use closecall_analysis::study::chart;
+use closecall_analysis::study::pareto::is_on_front;
+use closecall_run::util::output_file::{self, OutputFile};
+use closecall_run::{Error, Result};
+
+pub use measurement::{Axis, Measurement, Plan, Recorder};
+
+/// Measures one axis.
+///
+/// # Errors
+/// For the axes that replay recordings: if SUMO cannot be run, or a recording cannot be read.
+pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result<Vec<Measurement>> {
+    let mut rows = match axis {
+        Axis::Volume => volume::measure(plan),
+        Axis::Candidates => candidates::measure(plan),
+        Axis::Time => time::measure(plan),
+        Axis::Braking => braking::measure(plan),
+        Axis::Late => late::measure(plan),
+        Axis::Probability => probability::measure(plan),
+        Axis::Numbers => numbers::measure(plan),
+        Axis::Turning => turning::measure(plan),
+        Axis::Curvature => curvature::measure(plan),
+        Axis::Coverage => coverage::measure(plan),
+        Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => {
+            let record = record.ok_or_else(|| Error::Value(format!("the {} axis needs SUMO", axis.name())))?;
+            let measure = match axis {
+                Axis::Path => path::measure,
+                Axis::Recording => recording::measure,
+                Axis::Tolerance => tolerance::measure,
+                _ => chosen_measures::measure,
+            };
+            measure(plan, record)?
+        }
+    };
+    mark_fronts(&mut rows);
+    Ok(rows)
+}
+
+/// Writes `study.csv`, the charts and `study.md` into a folder.
+///
+/// # Errors
+/// An error that names the file that cannot be written.
+pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
+    let path = folder.join("study.csv");
+    let failed = |error: csv::Error| Error::content(&path, error.to_string());
+    let mut table = OutputFile::create(&path)?;
+    let mut writer = csv::Writer::from_writer(&mut table);
+    rows.iter().try_for_each(|row| writer.serialize(row)).map_err(failed)?;
+    writer.flush().map_err(|source| Error::file(&path, source))?;
+    drop(writer);
+    table.finish()?;
+    for axis in Axis::ALL {
+        let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
+        // Shares of intervals that hold the truth are a table.
+        if !of_axis.is_empty() && axis != Axis::Coverage {
+            chart::draw(folder, axis.name(), &panels::panels(axis, &of_axis), panels::note(axis))?;
+        }
+    }
+    output_file::write(&folder.join("study.md"), page::of(rows, plan.quick).as_bytes())
+}
+
+/// Marks the rows that no other row of the same scene beats in error, time or both.
+fn mark_fronts(rows: &mut [Measurement]) {
+    let point = |row: &Measurement| [row.ns_per_item, row.error];
+    for index in 0..rows.len() {
+        let of_scene = rows.iter().filter(|row| row.scene == rows[index].scene).map(point);
+        rows[index].on_pareto_front = is_on_front(point(&rows[index]), of_scene);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(method: &'static str, error: f64, ns_per_item: f64) -> Measurement {
+        Measurement {
+            axis: Axis::Volume,
+            method,
+            parameter: String::new(),
+            error_name: "",
+            error,
+            false_negative_rate: 0.0,
+            false_positive_rate: 0.0,
+            ns_per_item,
+            items: 1,
+            on_pareto_front: false,
+            scene: String::new(),
+            default: false,
+        }
+    }
+
+    #[test]
+    fn the_front_holds_every_method_that_none_beats() {
+        let mut rows = vec![row("fast", 0.1, 1.0), row("exact", 0.0, 5.0), row("neither", 0.1, 6.0)];
+        mark_fronts(&mut rows);
+        assert_eq!(rows.iter().map(|row| row.on_pareto_front).collect::<Vec<_>>(), [true, true, false]);
+    }
+}

@@ -1,6 +1,0 @@
-//! Batches of runs: sweeps over seeds and options, regression tests on fixed nets, and the runs that cut a conflict out.
-
-pub mod extract;
-pub mod regress;
-#[cfg(feature = "parquet")]
-pub mod sweep;

@@ -1,7 +1,0 @@
-//! Recordings to replay, of SUMO and of others, and the inputs of a simulation.
-
-pub mod replay;
-pub mod sumo_files;
-pub mod sumo_outputs;
-#[cfg(feature = "cli")]
-pub mod tracks;
