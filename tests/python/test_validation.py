@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import closecall, python
+from draw import shares
 from measures import RULES, Measure
 from page import MARKS, write_tables
 from ratings import Setting, lead_of, rate_rule, worst_until
@@ -156,21 +157,28 @@ def test_police_reports_are_ranked_against_conflicts(tmp_path: Path) -> None:
 def test_readers_get_positions_and_nothing_else(tmp_path: Path) -> None:
     log, out = tmp_path / "log", tmp_path / "out"
     log.mkdir()
-    rows = ["1,serious,side,", "2,caution,side,", "3,critical,rear_end,jumped", "4,critical,frontal,"]
-    (log / "conflicts.csv").write_text("id,severity,kind,artefact\n" + "\n".join(rows) + "\n")
+    rows = ["1,serious,side,,100", "2,caution,side,,100", "3,critical,rear_end,jumped,100", "4,critical,frontal,,100.1"]
+    rows += ["5,serious,side,,99"]
+    (log / "conflicts.csv").write_text("id,severity,kind,artefact,begin\n" + "\n".join(rows) + "\n")
     moving = {"x": [10.0, 11.0, None], "y": [0.0, 0.0, None], "heading": [0.0, 0.0, None], "speed": [9.0, 9.0, None]}
     user = {"id": "car", "category": "vehicle", "length": 4.0, "width": 2.0, **moving}
     with gzip.open(log / "clips.jsonl.gz", "wt") as clips:
-        for number in range(1, 5):
+        for number in range(1, 6):
             times = [100.0, 100.1, 100.2]
             clip = {"conflict": number, "times": times, "severity": ["serious"] * 3, "users": [user, user, user]}
             clips.write(json.dumps(clip) + "\n")
-    assert "2 of 2 severe conflicts" in script("draw.py", out, log, "--count", "50")
+    printed = script("draw.py", out, log, "--count", "50")
+    assert "2 of 3 severe conflicts" in printed and "begin too late: 1" in printed
     cases = sorted((out / "cases").iterdir())
     assert [case.name for case in cases] == ["01.csv", "02.csv"]
     lines = cases[0].read_text().splitlines()
     assert lines[:2] == ["user,t,x,y,heading,speed,length,width", "A,0.000,8.000,0.000,0.000,9.000,4.000,2.000"]
     assert [line[0] for line in lines[1:]] == ["A", "A", "B", "B"]
+
+
+def test_each_scenario_gives_as_many_cases_as_the_others_or_all_it_has() -> None:
+    assert shares([100, 2, 30], 20) == [9, 2, 9]
+    assert shares([1, 2], 50) == [1, 2]
 
 
 def test_agreement_of_two_readers_is_cohens_kappa(tmp_path: Path) -> None:
@@ -186,7 +194,20 @@ def test_agreement_of_two_readers_is_cohens_kappa(tmp_path: Path) -> None:
     printed = script("agreement.py", *sheets, "--key", tmp_path / "key.csv")
     by_chance = 0.6 * 0.4 + 0.2 * 0.3 + 0.2 * 0.3
     assert f"kappa {(0.7 - by_chance) / (1 - by_chance):.2f} [" in printed
-    assert "| near miss | 4 | 2 | 0 |" in printed and "| serious (10) | 1 | 60 %" in printed
+    assert "| near miss | 0 | 4 | 2 | 0 |" in printed and "| serious (10) | 1 | 60 %" in printed
+
+
+def test_a_crash_is_worse_than_a_near_miss_and_counted_with_it(tmp_path: Path) -> None:
+    both = [("crash", "near miss"), ("crash", "crash"), ("near miss", "near miss"), ("not", "not")]
+    for reader in (0, 1):
+        sheet = "".join(f"{case:02},{answers[reader]}\n" for case, answers in enumerate(both))
+        (tmp_path / f"answers_{reader}.csv").write_text("case,answer\n" + sheet)
+    key = "".join(f"{case:02},log,{case},critical,side\n" for case in range(4))
+    (tmp_path / "key.csv").write_text("case,log,conflict,severity,kind\n" + key)
+    sheets = [tmp_path / f"answers_{reader}.csv" for reader in (0, 1)]
+    printed = script("agreement.py", *sheets, "--key", tmp_path / "key.csv")
+    assert "a crash counted as a near miss: kappa 1.00" in printed
+    assert "| crash | 1 | 1 | 0 | 0 |" in printed and "| critical (4) | 1 | 75 %" in printed
 
 
 @pytest.mark.parametrize("recording", ["crashes/8360.csv", "free/ngsim_us101.csv"])

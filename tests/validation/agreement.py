@@ -2,7 +2,9 @@
 
 python tests/validation/agreement.py answers_1.csv answers_2.csv [--key key.csv]
 
-With `--key`, also how many of each severity each reader holds for a near miss, or at least for borderline.
+Kappa is given for the four answers, weighted by how far apart they are on the scale from not to crash, and with a crash
+counted as a near miss. With `--key`, also how many of each severity each reader holds for a near miss or a crash, or at
+least for borderline.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ import numpy as np
 from draw import ANSWERS
 from scores import share
 
+NEAR_MISS, BORDERLINE = ANSWERS.index("near miss"), ANSWERS.index("borderline")
 RESAMPLES = 10_000
 SEED = 1
 
@@ -61,10 +64,14 @@ def main() -> None:
         sys.exit(f"{arguments.sheets[1]}: its cases are not those of {arguments.sheets[0]}")
     cases = sorted(first)
     one, other = (np.array([reader[case] for case in cases]) for reader in (first, second))
-    print(f"| first reader, second reader → | {' | '.join(ANSWERS)} |\n|---|---|---|---|")
+    print(f"| first reader, second reader → | {' | '.join(ANSWERS)} |\n|---{'|---' * len(ANSWERS)}|")
     for index, name in enumerate(ANSWERS):
-        print(f"| {name} | {' | '.join(str(int(((one == index) & (other == to)).sum())) for to in range(3))} |")
+        counts = (int(((one == index) & (other == to)).sum()) for to in range(len(ANSWERS)))
+        print(f"| {name} | {' | '.join(map(str, counts))} |")
     print(f"\nkappa {interval(one, other)}, weighted {interval(one, other, True)}, {len(cases)} cases")
+    first_joined, second_joined = (np.maximum(reader, NEAR_MISS) for reader in (one, other))
+    joined = [interval(first_joined, second_joined, weighted) for weighted in (False, True)]
+    print(f"a crash counted as a near miss: kappa {joined[0]}, weighted {joined[1]}")
     if arguments.key:
         by_severity(arguments.key, cases, (one, other))
 
@@ -73,11 +80,11 @@ def by_severity(key: Path, cases: list[str], readers: tuple[np.ndarray, np.ndarr
     """The shares of near misses by severity and reader."""
     with key.open(newline="") as lines:
         severities = {row["case"]: row["severity"] for row in csv.DictReader(lines)}
-    print("\n| severity | reader | near miss | near miss or borderline |\n|---|---|---|---|")
+    print("\n| severity | reader | near miss or crash | at least borderline |\n|---|---|---|---|")
     for severity in (*dict.fromkeys(sorted(severities.values())), "all"):
         kept = np.array([severity in ("all", severities[case]) for case in cases])
         for number, reader in enumerate(readers, 1):
-            cells = [share(int((reader[kept] <= most).sum()), int(kept.sum())) for most in (0, 1)]
+            cells = [share(int((reader[kept] <= most).sum()), int(kept.sum())) for most in (NEAR_MISS, BORDERLINE)]
             of = (f"{100 * cell.value:.0f} % [{100 * cell.low:.0f}, {100 * cell.high:.0f}]" for cell in cells)
             print(f"| {severity} ({int(kept.sum())}) | {number} | {' | '.join(of)} |")
 
