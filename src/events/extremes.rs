@@ -333,11 +333,14 @@ impl Extremes {
         }
     }
 
-    /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near.
+    /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near. One
+    /// that turns into the other's road close behind it follows it from there.
     pub(crate) fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
         let (assessment, artefact) = self.verdict();
         let crosses = !matches!(self.why.manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
-        let is_near = pet.is_some_and(|pet| pet.lasts < LIKELY_PET) || self.passed_at < LIKELY_CLEARANCE;
+        let follows = self.why.manoeuvre == Some(Manoeuvre::TurnInto);
+        let is_close_behind = !follows && pet.is_some_and(|pet| pet.lasts < LIKELY_PET);
+        let is_near = is_close_behind || self.passed_at < LIKELY_CLEARANCE;
         let is_passing = self.worst.kind == Kind::Side && crosses && artefact.is_none();
         let raised = || assessment.at_least(NearnessLevel::Likely, rule);
         (if is_passing && is_near { raised() } else { assessment }, artefact)

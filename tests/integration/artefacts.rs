@@ -116,25 +116,56 @@ fn a_person_on_the_pavement_is_not_in_the_way() {
     );
 }
 
-#[test]
-fn a_person_on_a_walking_area_is_not_in_the_way() {
+/// What is said of a car that overlaps a person at this place: of collisions, and of what is set aside.
+fn over_a_person(x: f64, speed: f64) -> (u64, Option<u64>) {
     let text = r#"<net><edge id=":j_w0" function="walkingarea">
         <lane id=":j_w0_0" length="4" shape="0,-2 9,-2 9,2 0,2"/></edge></net>"#;
     let net = Arc::new(closecall_run::net::parse(Path::new("net"), text.to_owned()).unwrap());
     let options = Options { path: PathModel::Straight, ..Options::default() };
-    for (x, is_on) in [(5.0, true), (19.0, false)] {
-        let mut run = Run::new(&options.clone().into(), Some(Arc::clone(&net))).unwrap();
-        let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
-        let person = run.roster.profile(Profile::person(&SumoType::car("person"), &options, 0.1)).unwrap();
-        let users = [run.enter("car", car), run.enter("person", person)];
-        run.begin_step(0.0);
-        for (user, (x, speed)) in users.into_iter().zip([(x, 5.0), (x - 1.0, 0.0)]) {
-            run.frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
-        }
-        let stepped: Result<()> = run.step(|_, _| Ok::<_, Error>(()));
-        stepped.unwrap();
-        let summary = run.finish().unwrap();
-        assert_eq!([summary.logged(), summary.collisions], [1, u64::from(!is_on)]);
-        assert_eq!(summary.set_aside().get("drawn_overlap").copied(), is_on.then_some(1));
+    let mut run = Run::new(&options.clone().into(), Some(net)).unwrap();
+    let car = run.roster.profile(Profile::vehicle(&SumoType::car("car"), &options)).unwrap();
+    let person = run.roster.profile(Profile::person(&SumoType::car("person"), &options, 0.1)).unwrap();
+    let users = [run.enter("car", car), run.enter("person", person)];
+    run.begin_step(0.0);
+    for (user, (x, speed)) in users.into_iter().zip([(x, speed), (x - 1.0, 1.0)]) {
+        run.frame.push(user, State { x, y: 0.0, z: 0.0, heading: 0.0, speed });
     }
+    let stepped: Result<()> = run.step(|_, _| Ok::<_, Error>(()));
+    stepped.unwrap();
+    let summary = run.finish().unwrap();
+    assert_eq!(summary.logged(), 1);
+    (summary.collisions, summary.set_aside().get("drawn_overlap").copied())
+}
+
+#[test]
+fn a_person_on_a_walking_area_is_not_in_the_way() {
+    assert_eq!(over_a_person(5.0, 5.0), (0, Some(1)));
+    assert_eq!(over_a_person(19.0, 5.0), (1, None));
+}
+
+#[test]
+fn a_vehicle_that_stands_hits_no_person() {
+    assert_eq!(over_a_person(19.0, 0.0), (0, Some(1)));
+}
+
+#[test]
+fn a_follower_on_a_folded_lane_overlaps_only_as_drawn() {
+    let net = |apart: f64| {
+        let shape = format!("0,0 100,0 100,{apart} 0,{apart}");
+        let text = format!(
+            r#"<net><edge id="a"><lane id="a_0" length="{}" speed="30" shape="{shape}"/></edge></net>"#,
+            200.0 + apart
+        );
+        closecall_run::net::parse(Path::new("a.net.xml"), text).unwrap()
+    };
+    let follow = |apart: f64| {
+        let drives = [60.0, 40.0].map(|start| drive(&["a_0"], start, |_| 10.0));
+        set_aside(&net(apart), &drives, 6.0)
+    };
+    let folded = follow(1.5);
+    let severe =
+        |(artefact, severity): &&(Option<Artefact>, Severity)| artefact.is_none() && *severity > Severity::Caution;
+    assert!(folded.iter().any(|(artefact, _)| *artefact == Some(Artefact::DrawnOverlap)), "{folded:?}");
+    assert_eq!(folded.iter().find(severe), None);
+    assert!(follow(6.0).iter().all(|(artefact, _)| artefact.is_none()));
 }

@@ -57,6 +57,16 @@ impl Scene {
         conflicts
     }
 
+    /// Whether the fronts of two that face each other touch exactly: rounding then decides whether they are in contact.
+    fn touches_exactly(&self) -> bool {
+        let faces = |a: &State, b: &State| {
+            let (sine, cosine) = a.heading.sin_cos();
+            let apart = (b.x - a.x) * cosine + (b.y - a.y) * sine;
+            apart.abs() < 1e-9 && (a.heading - b.heading).cos() < 1e-9 - 1.0
+        };
+        self.0.iter().enumerate().any(|(place, a)| self.0[..place].iter().any(|b| faces(a, b)))
+    }
+
     /// The scene turned about the origin.
     fn turned(&self, by: f64) -> Self {
         let (sine, cosine) = by.sin_cos();
@@ -100,6 +110,7 @@ proptest! {
 
     #[test]
     fn a_scene_that_is_turned_has_the_same_conflicts((scene, names, rows) in scene(), by in -PI..PI) {
+        prop_assume!(!scene.touches_exactly());
         let order = (0..scene.0.len()).collect::<Vec<_>>();
         let [found, turned] = [scene.conflicts(&order, &order), scene.turned(by).conflicts(&names, &rows)];
         prop_assert_eq!(found.len(), turned.len());

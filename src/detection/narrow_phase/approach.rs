@@ -4,7 +4,7 @@ use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
 
 /// Values that differ by less than this are equal but for rounding, in m²/s or m.
-const ALIKE: f64 = 1e-9;
+pub(super) const ALIKE: f64 = 1e-9;
 
 /// Which of a pair is the ego; the other is the foe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Frontal on one straight line: the two paths meet where the areas that both need to stop meet.
 
-use super::approach::{Approach, Ego};
+use super::approach::{ALIKE, Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
 use crate::geometry::rectangle::Rectangle;
@@ -15,7 +15,7 @@ pub(super) fn in_line(a: &Participant, b: &Participant, ahead: Metre) -> Option<
     };
     let (roles, ego_distance) = match (distance(a, b), distance(b, a)) {
         (None, None) => return None,
-        (Some(of_a), Some(of_b)) if of_a == of_b => (Ego::of_equals([a, b]), of_a),
+        (Some(of_a), Some(of_b)) if (of_a - of_b).abs() <= ALIKE => (Ego::of_equals([a, b]), of_a),
         (Some(a), Some(b)) => (Ego::first_if(a > b), a.max(b)),
         (Some(a), None) => (Ego::First, a),
         (None, Some(b)) => (Ego::Second, b),

@@ -2,7 +2,7 @@
 
 use std::slice::from_ref;
 
-use super::approach::{Approach, Ego};
+use super::approach::{ALIKE, Approach, Ego};
 use super::conflict_point::ConflictPoint;
 use super::participant::Participant;
 use super::swept_bounds::SweptBounds;
@@ -50,7 +50,7 @@ fn find(bisection: &mut Bisection, a: &[Participant], b: &[Participant]) -> Opti
     let b_touches = touch(bisection, [of_b, of_a], b, a);
     let (roles, Touch { ego_distance, ego_rectangle, ego_behind }) = match (a_touches, b_touches) {
         (Some(of_a), Some(of_b)) => {
-            let roles = if of_a.ego_distance == of_b.ego_distance {
+            let roles = if (of_a.ego_distance - of_b.ego_distance).abs() <= ALIKE {
                 Ego::of_equals([a.first()?, b.first()?])
             } else {
                 Ego::first_if(of_a.ego_distance > of_b.ego_distance)

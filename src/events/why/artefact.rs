@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::manoeuvre::changes_lanes;
 use super::pair::{Pair, Party, STANDS};
+use crate::detection::kind::Kind;
 use crate::detection::path::turn;
 use crate::geometry::angle_between;
 use crate::geometry::rectangle::direction;
@@ -23,6 +24,9 @@ const AFTER_A_STOP: Second = 2.0;
 const TURNS_IN: Metre = 2.5;
 /// A smaller turn is no jump, in rad.
 const LEAST_TURN: Radian = 0.35;
+/// Of two that touch while one follows the other, headings differ by less in any bend that vehicles drive, in rad: on the
+/// smallest turning circle, 9 m across, a car of 5 m turns by this over its length.
+const FOLDED: Radian = 1.0;
 /// A tracked speed may differ from the displacement by this, in m/s, or by half.
 const CONTRADICTS: MetrePerSecond = 2.0;
 /// A tracked heading may sway by this within 5 s, besides what it turns, in rad.
@@ -136,12 +140,29 @@ fn is_drawn(pair: &Pair) -> bool {
     let Some(net) = pair.around.net else { return false };
     match [&pair.ego, &pair.foe].map(|party| party.category) {
         [Category::Vehicle, Category::Vehicle] => {
-            pair.both().into_iter().any(|(one, other)| waits_inside(net, one, other)) || are_unrelated(net, pair)
+            pair.both().into_iter().any(|(one, other)| waits_inside(net, one, other))
+                || are_unrelated(net, pair)
+                || is_folded(net, pair)
         }
-        [Category::Person, Category::Vehicle] => pair.ego.is_off_the_road(net),
-        [Category::Vehicle, Category::Person] => pair.foe.is_off_the_road(net),
+        [Category::Person, Category::Vehicle] => is_not_hit(net, &pair.ego, &pair.foe),
+        [Category::Vehicle, Category::Person] => is_not_hit(net, &pair.foe, &pair.ego),
         _ => false,
     }
+}
+
+/// Whether a person is where only persons go, or walks into a vehicle that stands.
+fn is_not_hit(net: &Net, person: &Party, vehicle: &Party) -> bool {
+    person.is_off_the_road(net) || vehicle.speed < STANDS
+}
+
+/// Whether one meets the one that it follows head-on, or overlaps it in a bend that no vehicle can drive, as where a lane is
+/// folded: SUMO keeps them apart along the lane.
+fn is_folded(net: &Net, pair: &Pair) -> bool {
+    let [Some(ego), Some(foe)] = [&pair.ego, &pair.foe].map(|party| party.course.at(0.0)) else { return false };
+    let follows = ego == foe || net.follows(ego, foe) || net.follows(foe, ego);
+    let is_along = !pair.ego.course.is_against && !pair.foe.course.is_against;
+    let angle = || angle_between(&direction(pair.ego.heading), &direction(pair.foe.heading));
+    follows && is_along && (pair.kind == Kind::Frontal || (pair.found.overlap > 0.0 && angle() > FOLDED))
 }
 
 /// Whether the lanes that two take where they would meet are not related, and neither changes lanes.

@@ -34,7 +34,7 @@ impl Net {
     }
 
     /// Whether a lane leads directly to another.
-    fn follows(&self, from: LaneIndex, to: LaneIndex) -> bool {
+    pub(crate) fn follows(&self, from: LaneIndex, to: LaneIndex) -> bool {
         self.lanes[from.0 as usize].links.iter().any(|link| link.via.unwrap_or(link.to) == to || link.to == to)
     }
 
