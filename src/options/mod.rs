@@ -240,7 +240,8 @@ impl Options {
     /// Checks that the options are consistent.
     ///
     /// # Errors
-    /// [`Error::Value`] if the bounds of the kinds overlap, or the paper's flow chart would have to look further.
+    /// [`Error::Value`] if the bounds of the kinds overlap, the paper's flow chart would have to look further, or a threshold of
+    /// another severity rule is set.
     pub fn checked(self) -> Result<Self> {
         if self.rear_end_below > self.frontal_above {
             return Err(Error::Value(format!(
@@ -254,6 +255,7 @@ impl Options {
                 self.log
             )));
         }
+        self.check_thresholds()?;
         Ok(self)
     }
 }
