@@ -33,6 +33,14 @@ pub enum Error {
         /// The condition.
         condition: String,
     },
+    /// A threshold is set that the rule of the severity does not ask for.
+    #[error("{name}: it has no effect without severity_rule {rule}")]
+    OtherRule {
+        /// The threshold's option.
+        name: &'static str,
+        /// The rule that asks for it.
+        rule: &'static str,
+    },
     /// The path that is really driven is asked for where it is not known.
     #[error("path: driven is where road users drive afterwards, which only a recording knows: see closecall replay")]
     FutureUnknown,

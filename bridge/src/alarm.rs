@@ -12,6 +12,7 @@ use crate::conflict::Conflict;
 /// that of now.
 ///
 /// Args:
+///     artefact: why it is none of traffic's, as in the log; None for the rest, and always unless `artefacts=True`.
 ///     time: that step, in s.
 ///     ttb: time to brake: how long full braking may wait if the foe goes on as now, in s; None if the two would not touch.
 ///     response_left: the same if the foe brakes fully now, in s; None if the ego stands.
@@ -26,6 +27,7 @@ pub struct Alarm {
     foe: String,
     kind: &'static str,
     severity: &'static str,
+    artefact: Option<&'static str>,
     time: f64,
     margin: f64,
     ttb: Option<f64>,
@@ -59,6 +61,7 @@ impl Alarm {
             foe: id(alarm.foe),
             kind: alarm.kind.name(),
             severity: alarm.severity.name(),
+            artefact: alarm.artefact.map(|artefact| artefact.name()),
             time: alarm.time,
             margin: alarm.margin,
             ttb: near.and_then(|near| near.ttb),

@@ -184,7 +184,8 @@ impl Options {
     /// Checks that the options are consistent.
     ///
     /// # Errors
-    /// [`Error::Kinds`] if the bounds of the kinds overlap, [`Error::BeyondPaper`] if the paper's flow chart would have to look further.
+    /// [`Error::Kinds`] if the bounds of the kinds overlap, [`Error::BeyondPaper`] if the paper's flow chart would have to look further,
+    /// [`Error::OtherRule`] if a threshold of another severity rule is set.
     pub fn checked(self) -> Result<Self> {
         if self.rear_end_below > self.frontal_above {
             return Err(Error::Kinds { rear_end_below: self.rear_end_below, frontal_above: self.frontal_above });
@@ -192,6 +193,7 @@ impl Options {
         if self.mode == Mode::Paper && !self.log.look_ahead().is_none() {
             return Err(Error::BeyondPaper { condition: self.log.to_string() });
         }
+        self.check_thresholds()?;
         Ok(self)
     }
 }

@@ -20,6 +20,15 @@ def test_every_pet_is_that_of_the_places(name: str, end: int, least: int, tmp_pa
     assert not checked.missing, told(checked.missing)
 
 
+@pytest.mark.parametrize(("step", "least"), [("0.1", 30), ("0.5", 20)])
+def test_every_pet_is_that_of_the_places_where_two_lanes_go_round(step: str, least: int, tmp_path: Path) -> None:
+    config = Path(__file__).parent / "two_lane_roundabout" / "two_lane_roundabout.sumocfg"
+    checked = run(config, tmp_path, "pet < 5 or margin < 0", "--end", "60", "--step-length", step)
+    assert len(checked.pets) >= least
+    assert not checked.wrong, told(checked.wrong)
+    assert not checked.missing, told(checked.missing)
+
+
 def test_a_condition_may_ask_for_a_longer_pet(tmp_path: Path) -> None:
     words = ("--end", "50", "--step-length", "0.1")
     checked = run(NETS / "roundabout" / "roundabout.sumocfg", tmp_path, "pet < 10", *words, longest=10.0)

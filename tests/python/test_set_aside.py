@@ -7,6 +7,8 @@ import html
 import json
 import math
 import re
+import sqlite3
+import xml.etree.ElementTree as ET
 from collections import Counter
 from pathlib import Path
 from typing import Any
@@ -110,6 +112,40 @@ def test_pictures_and_exports_leave_it_out(log: Path, tmp_path: Path) -> None:
         assert len(re.findall("<poi ", out.read_text())) == count
 
 
+def test_a_geopackage_names_what_is_not_traffic(log: Path, tmp_path: Path) -> None:
+    out = tmp_path / "places.gpkg"
+    for words, wanted in (((), [""] * 3), (("--artefacts",), ARTEFACTS)):
+        done = closecall("export", log, "--format", "gpkg", "--out", out, *words)
+        assert done.stdout.startswith(f"{len(wanted)} conflicts "), done.stderr
+        with sqlite3.connect(out) as database:
+            found = database.execute("SELECT coalesce(artefact, '') FROM conflicts ORDER BY id").fetchall()
+        assert [artefact for (artefact,) in found] == wanted
+
+
+def ssm_artefacts(file: Path) -> list[str | None]:
+    """The attribute `artefact` of each conflict of a file in the format of SUMO's device.ssm."""
+    return [conflict.get("artefact") for conflict in ET.parse(file).getroot()]
+
+
+def test_ssm_files_of_a_run_and_of_its_log_have_the_same_conflicts(tmp_path: Path) -> None:
+    tracks = ["id,time,x,y,speed"]
+    for step in range(20):
+        time = step / 10
+        tracks += [f"a,{time},{20 * time},0,20", f"b,{time},{40 + 5 * time},0,5"]
+        # It appears before the third, which drives on.
+        tracks += [f"c,{time},{20 * time},50,20"] + ([f"d,{time},{20 + 5 * time},50,5"] if step >= 12 else [])
+    (tmp_path / "tracks.csv").write_text("\n".join(tracks) + "\n")
+    columns = ("--columns", "id=id,time=time,x=x,y=y,speed=speed", "--path", "straight")
+    for words in ((), ("--artefacts",)):
+        run, exported = tmp_path / "run.xml", tmp_path / "log.xml"
+        words_of_run = (*columns, "--out", tmp_path / "log", "--ssm-output", run, "--force", *words)
+        assert closecall("replay", tmp_path / "tracks.csv", *words_of_run).returncode == 0
+        assert closecall("export", tmp_path / "log", "--format", "ssm", "--out", exported, *words).returncode == 0
+        logged = [row["artefact"] or None for row in rows(tmp_path / "log" / "conflicts.csv")]
+        assert None in logged and any(logged), logged
+        assert ssm_artefacts(run) == ssm_artefacts(exported) == [one for one in logged if words or not one]
+
+
 def test_the_worst_are_of_traffic_and_an_id_names_any(log: Path, tmp_path: Path) -> None:
     done = closecall("clip", log, "--worst", "4", "-o", tmp_path / "clip.svg")
     assert done.returncode == 2
@@ -129,6 +165,7 @@ def test_alarms_and_rewards_leave_out_who_has_just_appeared() -> None:
         [conflict] = checker.conflicts
         assert conflict.artefact == "appeared"
         assert (len(checker.active), reward.total() > 0) == ((1, True) if artefacts else (0, False))
+        assert [alarm.artefact for alarm in checker.active] == (["appeared"] if artefacts else [])
         summary = checker.summary
         assert [count.get("artefact") for count in summary["conflicts"]] == [None if artefacts else "appeared"]
         assert (summary["risk_index"] > 0) == artefacts

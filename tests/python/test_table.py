@@ -39,6 +39,11 @@ def agrees(names: list[str], found: list[dict[str, Any]], log: Path) -> None:
                 assert math.isclose(value, float(text)), name
 
 
+def test_equal_texts_of_a_column_are_one_object(log: Path) -> None:
+    kinds = api.read(log).to_dict()["kind"]
+    assert len({id(kind) for kind in kinds}) == len(set(kinds)) < len(kinds)
+
+
 def test_pandas_polars_pyarrow_and_duckdb_get_the_columns_of_the_log(log: Path) -> None:
     table = api.read(log)
     assert len(table) == len(rows(log / "conflicts.csv")) and "conflicts" in repr(table)

@@ -56,7 +56,7 @@ impl RecordedRun {
     pub fn open(mut run: Run, record: RunRecord, folder: LogFolder, files: &OutputFiles) -> Result<Self> {
         let path = folder.path();
         check_keeps_inputs(path, &record.inputs)?;
-        let outputs = Outputs::create(files, run.net(), &record.inputs)?;
+        let outputs = Outputs::create(files, run.net(), &record.inputs, record.options.model.artefacts)?;
         let earlier = if files.force { None } else { EarlierLog::keep(path)? };
         let record = RunRecord { csv_safe: files.csv_safe, ..record };
         match begin_log(path, &record) {

@@ -1,5 +1,5 @@
 //! The tracks of a recording, one road user after the other: searched for jumps, smoothed if that is wanted, completed, and put in
-//! the order of time. Only smoothing needs a whole track in memory.
+//! the order of time. Smoothing has a part of a track in memory: what is further away does not change a row.
 
 use std::io::Result;
 
@@ -17,6 +17,11 @@ use closecall::util::units::{Metre, Second};
 /// Where ids are used again, a road user that is away for longer than this does not come back.
 const AWAY: Second = 5.0;
 
+/// So many rows of a track are smoothed together: a shorter track as a whole.
+const PART: usize = 1 << 16;
+/// Rows before and after a part that are smoothed with it. With noise of 0.1 m a row matters for about 0.2 s.
+const AROUND: usize = 1 << 12;
+
 /// Takes the rows of tracks.
 pub(super) struct Tracks {
     /// Whether ids are used again after a while.
@@ -28,8 +33,9 @@ pub(super) struct Tracks {
     jumps: Jumps,
     finder: JumpFinder,
     smoother: Option<Smoother>,
-    /// The track that is read, where it is to be smoothed.
+    /// The track that is read, where it is to be smoothed, and how many of its rows are of the part before.
     track: Vec<Row>,
+    before: usize,
     completer: Completer,
     steps: Sorter,
 }
@@ -50,6 +56,7 @@ impl Tracks {
             finder: JumpFinder::default(),
             smoother: noise.map(Smoother::new),
             track: Vec::new(),
+            before: 0,
             completer: Completer::default(),
             steps: Sorter::new(Order::Steps),
         }
@@ -66,10 +73,10 @@ impl Tracks {
             return self.complete(row, users);
         }
         if self.track.first().is_some_and(|first| first.user != row.user) {
-            self.smooth(users)?;
+            self.smooth(users, true)?;
         }
         self.track.push(row);
-        Ok(())
+        if self.track.len() < self.before + PART + AROUND { Ok(()) } else { self.smooth(users, false) }
     }
 
     /// The number of the row's road user: a new one where the id is used again.
@@ -85,17 +92,21 @@ impl Tracks {
         user
     }
 
-    fn smooth(&mut self, users: &mut Users) -> Result<()> {
+    /// Smooths and completes the part that was read; of a track that goes on, the rows around its end remain.
+    fn smooth(&mut self, users: &mut Users, has_ended: bool) -> Result<()> {
         let mut track = std::mem::take(&mut self.track);
+        let end = if has_ended { track.len() } else { track.len() - AROUND };
+        let part = self.before..end;
+        if !has_ended {
+            self.track.extend_from_slice(&track[end - AROUND..]);
+        }
+        self.before = if has_ended { 0 } else { AROUND };
         if let Some(smoother) = &mut self.smoother {
-            let [headings, speeds] = smoother.smooth(&mut track, |jump| self.jumps.add(jump));
+            let [headings, speeds] = smoother.smooth(&mut track, part.clone(), |jump| self.jumps.add(jump));
             users.counts.headings += headings;
             users.counts.speeds += speeds;
         }
-        track.iter().try_for_each(|row| self.complete(*row, users))?;
-        track.clear();
-        self.track = track;
-        Ok(())
+        track[part].iter().try_for_each(|row| self.complete(*row, users))
     }
 
     fn complete(&mut self, row: Row, users: &mut Users) -> Result<()> {
@@ -104,7 +115,7 @@ impl Tracks {
 
     /// All rows in the order of time.
     pub fn finish(&mut self, users: &mut Users) -> Result<Sorted> {
-        self.smooth(users)?;
+        self.smooth(users, true)?;
         if let Some(row) = self.completer.finish(&mut users.counts) {
             self.steps.push(row)?;
         }
@@ -120,5 +131,39 @@ impl Tracks {
     pub fn remarks<'a>(self, id: impl Fn(u32) -> &'a str) -> Vec<String> {
         let headings = self.headings.and_then(|(headings, column)| headings.remark(&column));
         headings.into_iter().chain(self.jumps.remarks(id)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_track_that_is_smoothed_in_parts_is_as_smooth_as_in_one() {
+        let shake = |step: u32, by: u32| 0.2 * (f64::from(step.wrapping_mul(by) % 1009) / 504.0 - 1.0);
+        let rows = (0..150_000_u32).map(|step| {
+            let time = f64::from(step) / 25.0;
+            let angle = time / 20.0;
+            let place = [200.0 * angle.cos() + shake(step, 7919), 200.0 * angle.sin() + shake(step, 104_729)];
+            let heading = (angle + std::f64::consts::FRAC_PI_2) % std::f64::consts::TAU;
+            Row { user: 0, class: 0, time, values: [place[0], place[1], heading, f64::NAN, 4.5, 1.8] }
+        });
+        let mut whole = rows.collect::<Vec<_>>();
+        let (mut users, mut tracks) = (Users::default(), Tracks::new(&[], Some(0.1)));
+        for row in &whole {
+            tracks.add(*row, &mut users).unwrap();
+            assert!(tracks.track.len() < PART + 2 * AROUND);
+        }
+        let mut parts = tracks.finish(&mut users).unwrap();
+        let rows = whole.len();
+        let added = Smoother::new(0.1).smooth(&mut whole, 0..rows, |_| panic!("a jump"));
+        assert_eq!([users.counts.headings, users.counts.speeds], added);
+        for row in &whole {
+            let part = parts.next().unwrap().unwrap();
+            let off = [0, 1, 3].map(|of| (part.values[of] - row.values[of]).abs());
+            let turned = (part.values[2] - row.values[2]) / std::f64::consts::TAU;
+            assert!(off.iter().all(|off| *off < 1e-6) && (turned - turned.round()).abs() < 1e-6, "{row:?} {part:?}");
+        }
+        assert!(parts.next().unwrap().is_none());
     }
 }

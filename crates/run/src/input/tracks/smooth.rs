@@ -1,6 +1,8 @@
 //! Places and headings of a track smoothed: Kalman's [`filter`](super::filter) forward, then Rauch, Tung and Striebel's smoother back (AIAA
 //! Journal 3, 1965). Each piece between two jumps is smoothed alone, so that a jump stays what it is.
 
+use std::ops::Range;
+
 use super::filter::{Filter, Filtered, Jump, Model, jump};
 use super::spill::Row;
 use closecall::util::units::Metre;
@@ -25,35 +27,36 @@ impl Smoother {
     }
 
     /// Smooths a track, its places and headings, and finds its jumps. Adds the headings and speeds that it lacks, where the road user
-    /// moves, and returns their numbers.
-    pub fn smooth(&mut self, track: &mut [Row], jumped: impl FnMut(Jump)) -> [u64; 2] {
+    /// moves, and returns their numbers. Jumps and numbers are those of `wanted` rows; the others are only there to smooth these.
+    pub fn smooth(&mut self, track: &mut [Row], wanted: Range<usize>, jumped: impl FnMut(Jump)) -> [u64; 2] {
         self.filter(track, Model::of_places(self.noise), |row| [row.values[0], row.values[1]]);
-        let begins = track.iter().zip(&self.filtered).skip(1).filter(|(_, step)| step.begins);
-        begins.map(|(row, step)| jump(row, step)).for_each(jumped);
+        let rows = track.iter().zip(&self.filtered).take(wanted.end).skip(wanted.start.max(1));
+        rows.filter(|(_, step)| step.begins).map(|(row, step)| jump(row, step)).for_each(jumped);
         let mut added = [0, 0];
         self.smooth_back();
-        for (row, step) in track.iter_mut().zip(&self.filtered) {
+        for (number, (row, step)) in track.iter_mut().zip(&self.filtered).enumerate() {
             let [x, y] = [0, 1].map(|of| step.state[(0, of)]);
             let [vx, vy] = [0, 1].map(|of| step.state[(1, of)]);
             let moves = vx.hypot(vy) > MOVES * step.covariance[(1, 1)].sqrt();
             let values = &mut row.values;
             (values[0], values[1]) = (x, y);
             if values[3].is_nan() {
-                added[1] += 1;
+                added[1] += u64::from(wanted.contains(&number));
                 values[3] = if moves { vx.hypot(vy) } else { 0.0 };
             }
         }
-        self.smooth_headings(track, &mut added);
+        self.smooth_headings(track, &wanted, &mut added);
         added
     }
 
     /// Smooths the headings where all are given, and derives them from the velocities where none is.
-    fn smooth_headings(&mut self, track: &mut [Row], added: &mut [u64; 2]) {
+    fn smooth_headings(&mut self, track: &mut [Row], wanted: &Range<usize>, added: &mut [u64; 2]) {
         if track.iter().any(|row| row.values[2].is_nan()) {
-            for (row, step) in track.iter_mut().zip(&self.filtered).filter(|(row, _)| row.values[2].is_nan()) {
+            let rows = track.iter_mut().zip(&self.filtered).enumerate();
+            for (number, (row, step)) in rows.filter(|(_, (row, _))| row.values[2].is_nan()) {
                 let [vx, vy] = [0, 1].map(|of| step.state[(1, of)]);
                 if vx.hypot(vy) > MOVES * step.covariance[(1, 1)].sqrt() {
-                    added[0] += 1;
+                    added[0] += u64::from(wanted.contains(&number));
                     row.values[2] = vy.atan2(vx);
                 }
             }
@@ -130,7 +133,7 @@ mod tests {
         let (truth, noisy) = (track(false), track(true));
         let mut found = noisy.clone();
         let mut jumps = 0;
-        let added = Smoother::new(0.3).smooth(&mut found, |_| jumps += 1);
+        let added = Smoother::new(0.3).smooth(&mut found, 0..250, |_| jumps += 1);
         assert_eq!((jumps, added), (0, [250, 250]));
         assert!(rms(&noisy, &truth) > 0.4 && rms(&found, &truth) < 0.15, "{}", rms(&found, &truth));
         for row in &found[25..225] {
@@ -146,7 +149,7 @@ mod tests {
         let mut finder = JumpFinder::default();
         let unsmoothed = found.iter().filter_map(|row| finder.next(row)).collect::<Vec<_>>();
         let mut jumps = Vec::new();
-        Smoother::new(0.1).smooth(&mut found, |jump| jumps.push(jump));
+        Smoother::new(0.1).smooth(&mut found, 0..250, |jump| jumps.push(jump));
         for jumps in [unsmoothed, jumps] {
             assert_eq!(jumps.iter().map(|jump| (jump.user, jump.time)).collect::<Vec<_>>(), [(3, 4.0)]);
         }
@@ -168,7 +171,7 @@ mod tests {
             let shake = if step % 2 == 0 { 0.05 } else { -0.05 };
             row.values[2] = (3.1 + 0.01 * f64::from(step) + shake + 4.0).rem_euclid(std::f64::consts::TAU) - 4.0;
         }
-        Smoother::new(0.2).smooth(&mut found, |_| ());
+        Smoother::new(0.2).smooth(&mut found, 0..250, |_| ());
         for (step, row) in (0..).zip(&found).skip(20).take(200) {
             let off = row.values[2] - 3.1 - 0.01 * f64::from(step);
             let turns = off / std::f64::consts::TAU;
@@ -183,7 +186,7 @@ mod tests {
             row.values[0] -= moving.values[0];
             row.values[1] -= moving.values[1];
         }
-        Smoother::new(0.3).smooth(&mut found, |_| ());
+        Smoother::new(0.3).smooth(&mut found, 0..250, |_| ());
         assert!(found.iter().filter(|row| row.values[3] == 0.0).count() > 230);
     }
 }

@@ -31,7 +31,7 @@ pub use trajectories::{FAR, origin as origin_of_trajectories};
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputFiles {
-    /// Write each conflict once in the format of SUMO's SSM device.
+    /// Write each conflict that counts once in the format of SUMO's SSM device.
     #[arg(long, value_name = "FILE")]
     pub ssm_output: Option<PathBuf>,
     /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
@@ -95,22 +95,24 @@ impl OutputFiles {
 pub(crate) struct Outputs {
     ssm: Option<Ssm>,
     trajectories: Option<Trajectories>,
+    counts_artefacts: bool,
 }
 
 impl Outputs {
-    /// Begins the files.
+    /// Begins the files; conflicts with an artefact are among the others only where they count.
     ///
     /// # Errors
     /// [`Error::File`] that names what cannot be written; [`Error::Value`] if trajectories are wanted without a net, or if a
     /// file would overwrite another or one of the run's inputs.
-    pub fn create(files: &OutputFiles, net: Option<&Net>, inputs: &[Input]) -> Result<Self> {
+    pub fn create(files: &OutputFiles, net: Option<&Net>, inputs: &[Input], counts_artefacts: bool) -> Result<Self> {
         files.check(&inputs.iter().map(|input| &input.path).collect::<Vec<_>>())?;
         let trajectories = match (&files.trj_output, net) {
             (Some(path), Some(net)) => Some(Trajectories::create(path, net)?),
             (Some(_), None) => return Err(Error::Value("--trj-output needs a net".to_owned())),
             (None, _) => None,
         };
-        Ok(Self { ssm: files.ssm_output.as_deref().map(Ssm::create).transpose()?, trajectories })
+        let ssm = files.ssm_output.as_deref().map(Ssm::create).transpose()?;
+        Ok(Self { ssm, trajectories, counts_artefacts })
     }
 
     /// Whether any of them reports the vehicles' lanes.
@@ -142,7 +144,9 @@ impl Outputs {
 
     /// Writes conflicts that have closed.
     pub(crate) fn write_conflicts(&mut self, closed: &[Conflict]) -> Result<()> {
-        self.ssm.as_mut().map_or(Ok(()), |ssm| closed.iter().try_for_each(|conflict| ssm.write_conflict(conflict)))
+        let Some(ssm) = &mut self.ssm else { return Ok(()) };
+        let mut counting = closed.iter().filter(|conflict| conflict.artefact.is_none() || self.counts_artefacts);
+        counting.try_for_each(|conflict| ssm.write_conflict(conflict))
     }
 
     /// Completes the files.

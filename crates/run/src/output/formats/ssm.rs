@@ -1,6 +1,7 @@
 //! Conflicts in the format of SUMO's SSM device, so that scripts for its files keep working.
 //!
-//! Each conflict is written once, with closecall's ego and foe; the device writes it once for each of the two. `type` is
+//! Each conflict is written once, with closecall's ego and foe; the device writes it once for each of the two. One that is
+//! none of traffic's has an attribute `artefact`, which the device's files lack. `type` is
 //! the device's code for the encounter (SUMO's `MSDevice_SSM.h`).
 
 use std::fmt::Write;
@@ -12,7 +13,7 @@ use crate::util::decimal::shortest;
 use crate::util::output_file::OutputFile;
 use crate::util::xml_text::escaped;
 use closecall::detection::kind::Kind;
-use closecall::events::{Conflict, Moment};
+use closecall::events::{Artefact, Conflict, Moment};
 use closecall::util::units::Second;
 
 /// The device's code for an ego that follows its foe.
@@ -45,14 +46,16 @@ impl Ssm {
     pub(crate) fn write_conflict(&mut self, conflict: &Conflict) -> Result<()> {
         let Conflict { kind, collision, begin, end, ttc, drac, pet, found, .. } = *conflict;
         let (ego, foe) = (&*conflict.ego, &*conflict.foe);
-        self.append(&Element { ego, foe, kind, collision, begin, end, values: [ttc, drac, pet], found })
+        let artefact = conflict.artefact.map(Artefact::name).unwrap_or_default();
+        self.append(&Element { ego, foe, artefact, kind, collision, begin, end, values: [ttc, drac, pet], found })
     }
 
     /// Appends a conflict of a log, which does not tell when and where its extremes were.
     pub(crate) fn write_logged(&mut self, conflict: &LoggedConflict) -> Result<()> {
         let LoggedConflict { kind, collision, begin, end, ttc, drac, pet, .. } = *conflict;
-        let (ego, foe) = (&*conflict.ego, &*conflict.foe);
-        self.append(&Element { ego, foe, kind, collision, begin, end, values: [ttc, drac, pet], found: [None; 3] })
+        let (ego, foe, artefact) = (&*conflict.ego, &*conflict.foe, &*conflict.artefact);
+        let (values, found) = ([ttc, drac, pet], [None; 3]);
+        self.append(&Element { ego, foe, artefact, kind, collision, begin, end, values, found })
     }
 
     fn append(&mut self, conflict: &Element) -> Result<()> {
@@ -70,6 +73,8 @@ impl Ssm {
 struct Element<'a> {
     ego: &'a str,
     foe: &'a str,
+    /// Empty for traffic's.
+    artefact: &'a str,
     kind: Kind,
     collision: bool,
     begin: Second,
@@ -88,8 +93,12 @@ fn element(conflict: &Element) -> String {
         Kind::Frontal => ONCOMING,
     };
     let (ego, foe) = (escaped(conflict.ego), escaped(conflict.foe));
+    let artefact = match conflict.artefact {
+        "" => String::new(),
+        name => format!(" artefact=\"{}\"", escaped(name)),
+    };
     let mut text = format!(
-        "    <conflict begin=\"{}\" end=\"{}\" ego=\"{ego}\" foe=\"{foe}\">\n",
+        "    <conflict begin=\"{}\" end=\"{}\" ego=\"{ego}\" foe=\"{foe}\"{artefact}>\n",
         decimal(conflict.begin),
         decimal(conflict.end)
     );
