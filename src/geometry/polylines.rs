@@ -19,8 +19,9 @@ pub struct Vertex {
     pub distance: Metre,
 }
 
-/// Metres along a line per metre of the plane that differ from 1 by less than this are 1: lengths are rounded.
-const TO_SCALE: f64 = 1e-3;
+/// The square of the metres of the plane per metre along a line that differs from 1 by less than this is 1: distances are
+/// rounded to 1e-12 m and segments are a millimetre long or more. A lane that is stretched is so by far more.
+const TO_SCALE: f64 = 1e-8;
 
 /// A line beside another is at most this many times as long or as short: inside a narrow bend.
 const MOST_BESIDE: f64 = 4.0;
@@ -252,13 +253,10 @@ fn scale_squared(direction: &Vector) -> f64 {
     if (squared - 1.0).abs() < TO_SCALE { 1.0 } else { squared }
 }
 
-/// How many metres along a line of this length a metre of its shape is: 1 unless the two differ by more than a hundredth
-/// and by more than lengths are rounded.
+/// How many metres along a line of this length a metre of its shape is: 1 unless the two differ by more than rounding.
 pub fn stretch(length: Metre, drawn: Metre) -> f64 {
-    /// The least difference in m.
-    const ROUNDED: Metre = 0.1;
-    /// The least relative difference.
-    const DIFFERS: f64 = 0.01;
-    let differs = (length - drawn).abs() > ROUNDED.max(DIFFERS * drawn);
+    /// The least difference in m: netconvert rounds lengths and the points of shapes to a centimetre.
+    const ROUNDED: Metre = 0.02;
+    let differs = (length - drawn).abs() > ROUNDED;
     if differs && drawn > 0.0 && length > 0.0 { length / drawn } else { 1.0 }
 }

@@ -85,6 +85,19 @@ fn lengths_are_converted_where_lanes_join() {
 }
 
 #[test]
+fn a_lane_half_a_percent_longer_than_drawn_is_as_long_as_it_says() {
+    for lengths in [[100.5, 100.5], [100.05, 100.0], [99.5, 100.5]] {
+        for position in [30.0, lengths[0] - 20.0] {
+            let found = encounter(lengths, [(position, 20.0), (position + 40.0, 10.0)]).unwrap();
+            let ttc = found.nearness.unwrap().ttc.unwrap();
+            // The leader is drawn as long as where it is now, also on the next lane.
+            let is_as_on_the_lane = (found.gap - 35.0).abs() < 0.03 && (ttc - 3.5).abs() < 6e-3;
+            assert!(is_as_on_the_lane, "{lengths:?} at {position}: {} m, {ttc} s", found.gap);
+        }
+    }
+}
+
+#[test]
 fn two_that_stand_apart_on_the_lane_do_not_touch() {
     // 2.5 m are left; as drawn, with their full lengths, the two would overlap by 1.25 m.
     let found = encounter([400.0, 400.0], [(100.0, 0.1), (107.5, 0.0)]);

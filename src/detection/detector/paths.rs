@@ -56,8 +56,8 @@ impl<'a> Paths<'a> {
     /// Whether distances along these poses, if they lie on a straight line, are those of the plane.
     pub(super) fn is_to_scale(&self, poses: &[Pose]) -> bool {
         match poses {
-            [first, .., last] if self.of_net.is_stretched() => {
-                ((last.front - first.front).norm() - last.distance).abs() <= TOLERANCE
+            [first, ..] if self.of_net.is_stretched() => {
+                poses.iter().all(|pose| ((pose.front - first.front).norm() - pose.distance).abs() <= TOLERANCE)
             }
             _ => true,
         }

@@ -12,8 +12,9 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 /// A later contact does not count, in s: paths are not built further.
 pub const HORIZON: Second = 10.0;
 
-/// A relative difference between distances along a path and in the plane that is more than rounding.
-const STRETCHED: f64 = 1e-3;
+/// A relative difference between distances along a path and in the plane that is more than rounding, and less than where a
+/// lane of 20 km is 2 cm longer than drawn.
+const STRETCHED: f64 = 1e-6;
 
 /// A road user that keeps its speed, or its deceleration until it stands, along its poses, which reach [`HORIZON`] ahead.
 #[derive(Clone, Copy, Debug)]
