@@ -37,7 +37,7 @@ mod tests {
         for length in [100.0, 100.01, 100.5, 99.1, 250.0] {
             let lane = format!(r#"<lane id="a_0" index="0" length="{length}" shape="0,0 60,0 100,0"/>"#);
             let text = format!(r#"<net><edge id="a" from="w" to="e">{lane}</edge></net>"#);
-            let net = Net::parse(Path::new("town.net.xml"), text).unwrap();
+            let net = crate::net::parse(Path::new("town.net.xml"), text).unwrap();
             for x in [0.0, 30.0, 95.0] {
                 let (_, position) = on_lane(&net, None, Point::new(x, 0.0)).unwrap();
                 assert!((position - x * length / 100.0).abs() < 1e-9, "{position} at {x} m of {length} m");
