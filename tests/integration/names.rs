@@ -57,14 +57,14 @@ impl Scene {
         conflicts
     }
 
-    /// Whether the fronts of two that face each other touch exactly: rounding then decides whether they are in contact.
-    fn touches_exactly(&self) -> bool {
-        let faces = |a: &State, b: &State| {
-            let (sine, cosine) = a.heading.sin_cos();
-            let apart = (b.x - a.x) * cosine + (b.y - a.y) * sine;
-            apart.abs() < 1e-9 && (a.heading - b.heading).cos() < 1e-9 - 1.0
+    /// The same where no two touch, or pass a place at a step, exactly: rounding would decide, and a turn rounds.
+    fn untied(&self) -> Self {
+        let moved = |(state, number): (&State, f64)| State {
+            x: state.x + 0.0137 * number,
+            y: state.y + 0.0071 * number,
+            ..*state
         };
-        self.0.iter().enumerate().any(|(place, a)| self.0[..place].iter().any(|b| faces(a, b)))
+        Self(self.0.iter().zip((0..).map(f64::from)).map(moved).collect())
     }
 
     /// The scene turned about the origin.
@@ -100,7 +100,7 @@ fn scene() -> impl Strategy<Value = (Scene, Vec<usize>, Vec<usize>)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(1000))]
 
     #[test]
     fn other_names_and_another_order_change_nothing((scene, names, rows) in scene()) {
@@ -110,7 +110,7 @@ proptest! {
 
     #[test]
     fn a_scene_that_is_turned_has_the_same_conflicts((scene, names, rows) in scene(), by in -PI..PI) {
-        prop_assume!(!scene.touches_exactly());
+        let scene = scene.untied();
         let order = (0..scene.0.len()).collect::<Vec<_>>();
         let [found, turned] = [scene.conflicts(&order, &order), scene.turned(by).conflicts(&names, &rows)];
         prop_assert_eq!(found.len(), turned.len());
