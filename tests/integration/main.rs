@@ -22,6 +22,7 @@ mod path;
 mod replay;
 #[path = "../common/street.rs"]
 mod street;
+mod struck;
 mod sublane;
 mod time_to_collision;
 mod way;
