@@ -95,6 +95,7 @@ pub mod traffic {
 }
 
 pub mod util {
+    pub use crate::util::decimal::Written;
     pub use crate::util::limits;
     pub use crate::util::panics::caught;
     pub use crate::util::threads::{Helper, Team, processors};

@@ -6,7 +6,7 @@
 //! Where a script calls `executeMove` after a step, SUMO does most of the next one then, and its lists of that step are empty
 //! when the script comes to it: vehicles are inserted that did not depart, as far as the lists tell.
 
-use closecall::internals::util::Second;
+use closecall::internals::util::{Second, Written};
 use pyo3::prelude::*;
 
 use super::option;
@@ -60,7 +60,7 @@ impl Identity {
             return self.has_other_options(source);
         };
         if time < last {
-            return Ok(Some(format!("the simulation's time went back from {last} to {time} s")));
+            return Ok(Some(format!("the simulation's time went back from {} to {} s", Written(last), Written(time))));
         }
         if let (Some([loaded, inserted]), Some([now_loaded, now_inserted])) = (before, now)
             && (now_loaded < loaded || now_inserted < inserted)
@@ -79,7 +79,9 @@ impl Identity {
         };
         if !is_due {
             return Ok(Some(format!(
-                "the simulation's time went from {last} to {time} s in one call of simulationStep"
+                "the simulation's time went from {} to {} s in one call of simulationStep",
+                Written(last),
+                Written(time)
             )));
         }
         if !is_next {

@@ -24,6 +24,7 @@ use crate::analysis::logged::{ConflictReader, LoggedConflict, LoggedRun, Which};
 use crate::batch::regress::running::{Job, Runner};
 use crate::batch::regress::scenario::{SETTINGS, Scenario};
 use crate::output::input_hash::Input;
+use crate::util::decimal::Written;
 use crate::util::output_file;
 use crate::util::units::{Metre, SAME_MOMENT, Second};
 use crate::{Error, Result};
@@ -199,7 +200,8 @@ impl Cut<'_> {
             || format!("\"{ego}\" and \"{foe}\" are in no conflict"),
             |other| {
                 let [was, is] = [(kind, time, margin), (&other.kind, &other.time, &other.margin)]
-                    .map(|(kind, time, margin)| format!("{} at {time} s with a margin of {margin} m", kind.name()));
+                    .map(|(kind, time, margin)| (kind.name(), Written(*time), Written(*margin)))
+                    .map(|(kind, time, margin)| format!("{kind} at {time} s with a margin of {margin} m"));
                 format!("it is {is}, not {was}")
             },
         )))
