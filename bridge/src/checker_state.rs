@@ -1,5 +1,6 @@
 //! What a step of a checker changes: the run, the source of its road users, its painter and its listeners.
 
+use closecall_run::util::decimal::Written;
 use closecall_run::{Ending, Error, RecordedRun};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -117,7 +118,7 @@ impl State {
 
 fn again(time: f64) -> PyErr {
     let message = "is the checker a step listener and called as well?";
-    PyValueError::new_err(format!("the simulation is at {time} s again; {message}"))
+    PyValueError::new_err(format!("the simulation is at {} s again; {message}", Written(time)))
 }
 
 /// That a checker has stopped, as another simulation has taken the place of its own.

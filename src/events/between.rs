@@ -7,10 +7,9 @@
 //! on which they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a
 //! quotient of linear functions of time, which has its extremes at the ends of the step.
 
-use crate::detection::measures;
 use crate::geometry::bow::Bow;
 use crate::geometry::rectangle::{Rectangle, direction};
-use crate::geometry::{Point, angle_between, contact};
+use crate::geometry::{Point, Vector, contact};
 use crate::traffic::frame::State;
 use crate::traffic::profile::Profile;
 use crate::util::golden_section::golden_section;
@@ -65,9 +64,9 @@ pub(super) struct Closest {
 pub(super) struct FirstContact {
     pub time: Second,
     pub fronts: [Point; 2],
+    /// Where their fronts point.
+    pub axes: [Vector; 2],
     pub speeds: [MetrePerSecond; 2],
-    /// The ΔV of both.
-    pub delta_v: [MetrePerSecond; 2],
 }
 
 impl Between<'_> {
@@ -89,9 +88,9 @@ impl Between<'_> {
         let lows = self.legs().flat_map(Leg::lows);
         let lowest = lows.fold((last, 1.0, end), |best, low| if low.2 < best.2 { low } else { best });
         let (leg, part, least) = lowest;
-        let tolerance = tolerance - begin.min(0.0);
-        let unsure = if is_seen { 0.0 } else { leg.depth() };
-        let collides = -least > tolerance + unsure && (is_seen || -end <= tolerance);
+        // Two that graze at the begin collide, where that is not seen, only if they come as much deeper into each other.
+        let deep = if is_seen { tolerance } else { tolerance - begin.min(0.0) + leg.depth() };
+        let collides = -least > deep && (is_seen || -end <= tolerance - begin.min(0.0));
         (collides || least < begin.min(end) - CLOSER).then(|| Closest {
             clearance: least.max(0.0),
             overlap: f64::max(-least, 0.0),
@@ -144,14 +143,12 @@ impl<'a> Leg<'a> {
         let part = after;
         let speeds = [0, 1].map(|one| between([self.from.1[one].speed, self.to.1[one].speed], part));
         let rectangles = [0, 1].map(|one| self.rectangle(one, part));
-        let angle = angle_between(&rectangles[0].axis, &rectangles[1].axis);
-        let [one, other] = [0, 1].map(|one| (speeds[one], self.profiles[one].mass));
         let fronts = rectangles.map(|rectangle| rectangle.centre + rectangle.axis * rectangle.half_length);
         FirstContact {
             time: between([self.from.0, self.to.0], part),
             fronts,
+            axes: rectangles.map(|rectangle| rectangle.axis),
             speeds,
-            delta_v: measures::delta_v(one, other, angle),
         }
     }
 
@@ -227,11 +224,12 @@ mod tests {
     #[test]
     fn a_crash_within_a_step_is_seen() {
         let found = closest(crossing(0.1), 1.0, 0.1, false).unwrap();
-        let FirstContact { time, speeds, fronts, delta_v } = found.contact.unwrap();
+        let FirstContact { time, speeds, fronts, axes } = found.contact.unwrap();
         // The second's front reaches y = −1 at 0.55 s; 10 cm of overlap take another 5 ms.
         assert!((time - 10.555).abs() < 1e-4, "{time}");
         assert!((fronts[0].x - 1.1).abs() < 1e-3 && speeds == [20.0, 20.0]);
-        assert!((delta_v[0] - 20.0 / 2.0_f64.sqrt()).abs() < 1e-6 && found.clearance == 0.0 && found.overlap > 1.0);
+        assert!((axes[0] - Vector::x()).norm() < 1e-9 && (axes[1] - Vector::y()).norm() < 1e-9);
+        assert!(found.clearance == 0.0 && found.overlap > 1.0);
     }
 
     #[test]

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Snapshot;
 use super::extremes::{Extremes, WorstStep};
 use super::moment::Moment;
+use super::struck::Struck;
 use super::why::{Artefact, Causes, Manoeuvre, Why};
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
@@ -22,7 +23,7 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, S
 /// One conflict: a pair and a run of steps that meet the log's condition.
 ///
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes, from
-/// `clearance` to `pet`. The columns of a log follow from it: `output::schema`.
+/// `clearance` to `pet`; of two that struck each other, `kind`, `angle`, `x` and `y` are those of the first contact. The columns of a log follow from it: `output::schema`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[non_exhaustive]
 pub struct Conflict {
@@ -36,7 +37,7 @@ pub struct Conflict {
     /// The foe's type.
     #[serde(skip)]
     pub foe_profile: ProfileIndex,
-    /// The kind at the smallest margin.
+    /// The kind at the smallest margin; of two that struck each other, at their first contact.
     pub kind: Kind,
     /// The worst over the event.
     pub severity: Severity,
@@ -158,11 +159,17 @@ impl Conflict {
             extended_delta_v,
             ref found,
             ref worst,
+            struck,
             ref chosen,
             why: Why { manoeuvre, causes, lane_change_reason, lanes },
             standing: _,
         } = *extremes;
-        let WorstStep { ego, foe, kind, time, gap, mu, margin, angle, x, y, lane, .. } = *worst;
+        let WorstStep { ego, foe, mut kind, time, gap, mu, margin, mut angle, mut x, mut y, lane, .. } = *worst;
+        if let Some(struck) = struck {
+            Struck { kind, angle, .. } = struck;
+            let front = struck.front_of(ego);
+            (x, y) = (front.x, front.y);
+        }
         let ego_type = roster.profile_of(ego);
         let foe_type = roster.profile_of(foe);
         let [ego_speed, foe_speed] = worst.speeds;

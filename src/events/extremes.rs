@@ -2,11 +2,12 @@
 
 use std::cell::LazyCell;
 
-use super::between::{Closest, FirstContact};
+use super::between::Closest;
 use super::chosen_measures::{ChosenMeasures, Step};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
+use super::struck::Struck;
 use super::why::{Artefact, Manoeuvre, Pair, STANDS, Surroundings, Why, one_will_wait};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
@@ -77,6 +78,8 @@ pub(super) struct Extremes {
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
+    /// How they struck each other first, if that is known.
+    pub struck: Option<Struck>,
     /// The chosen measures; none where none is chosen.
     pub chosen: Option<Box<ChosenMeasures>>,
     /// The manoeuvre of that step, and the causes of all steps that were the worst so far.
@@ -242,6 +245,7 @@ impl Extremes {
             extended_delta_v: seen.extended_delta_v(),
             found: [seen.ttc().map(moment), seen.drac().map(moment)],
             worst: WorstStep::of(seen, has_paths),
+            struck: None,
             chosen: seen.chosen_step().map(|step| Box::new(ChosenMeasures::of(&step))),
             why: Why::of(&pair),
             standing: seen.standing(),
@@ -250,9 +254,11 @@ impl Extremes {
 
     /// Adds a later step of the same event.
     pub fn take(&mut self, seen: &Observation) {
+        let found = self.with_the_same_ego(seen.found);
+        let seen = &Observation { found: &found, ..*seen };
         let pair = LazyCell::new(|| seen.pair());
         // Of margins that differ by rounding only, the first is kept.
-        let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN;
+        let is_worst = seen.found.margin < self.worst.margin - SAME_MARGIN && self.leads_to_the_contact();
         if is_worst {
             self.worst = WorstStep::of(seen, true);
             self.why = self.why.then(Why::of(&pair));
@@ -301,6 +307,29 @@ impl Extremes {
         }
     }
 
+    /// Whether the next step is one before two strike each other, or the one in which they do: how they lie in each other
+    /// afterwards is no conflict.
+    fn leads_to_the_contact(&self) -> bool {
+        self.struck.is_none_or(|struck| struck.time > self.end)
+    }
+
+    /// A step in which two strike each other, with the ego that it was before: which of two that lie in each other moves faster
+    /// towards the other depends on how deep they do.
+    fn with_the_same_ego(&self, found: &Encounter) -> Encounter {
+        let strikes = self.struck.is_some_and(|struck| struck.time > self.end);
+        if !strikes || !found.collision || found.ego == self.worst.ego {
+            return *found;
+        }
+        let Encounter { ego, foe, ego_row, foe_row, .. } = *found;
+        let mu = self.worst.mu;
+        Encounter { ego: foe, foe: ego, ego_row: foe_row, foe_row: ego_row, mu, margin: -mu, ..*found }
+    }
+
+    /// The kind: that of the contact if they struck each other, or else that of the worst step.
+    pub fn kind(&self) -> Kind {
+        self.struck.map_or(self.worst.kind, |struck| struck.kind)
+    }
+
     /// Whether the two came closer than in any step so far.
     pub(crate) fn is_closer(&self, closest: &Closest) -> bool {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
@@ -341,7 +370,7 @@ impl Extremes {
         let follows = self.why.manoeuvre == Some(Manoeuvre::TurnInto);
         let is_close_behind = !follows && pet.is_some_and(|pet| pet.lasts < LIKELY_PET);
         let is_near = is_close_behind || self.passed_at < LIKELY_CLEARANCE;
-        let is_passing = self.worst.kind == Kind::Side && crosses && artefact.is_none();
+        let is_passing = self.kind() == Kind::Side && crosses && artefact.is_none();
         let raised = || assessment.at_least(NearnessLevel::Likely, rule);
         (if is_passing && is_near { raised() } else { assessment }, artefact)
     }
@@ -351,17 +380,18 @@ impl Extremes {
         self.is_tracked && self.begin == self.end
     }
 
-    /// Adds how close the two came between two steps; `ego` is the place of the ego in the pair, `assessed` how severe a
-    /// contact was, and what it is if it is none of traffic's.
+    /// Adds how close the two came between two steps, how they struck each other, how severe that was, and what it is if it is
+    /// none of traffic's.
     pub(crate) fn come_closer(
         &mut self,
         closest: &Closest,
-        ego: usize,
+        struck: Option<Struck>,
         assessed: Option<(Assessment, Option<Artefact>)>,
     ) {
         self.clearance = self.clearance.min(closest.clearance);
         self.overlap = self.overlap.max(closest.overlap);
-        let Some(FirstContact { time, fronts, speeds, delta_v }) = closest.contact else { return };
+        let Some(struck) = struck else { return };
+        self.struck = self.struck.or(Some(struck));
         self.collision = true;
         if let Some((assessment, artefact)) = assessed {
             self.assess(assessment, || artefact);
@@ -369,9 +399,9 @@ impl Extremes {
         self.response_left = Some(0.0);
         self.ttb = Some(0.0);
         (self.crash_probability, self.crash_probability_braking) = (1.0, 1.0);
-        take_if(&mut self.extended_delta_v, Some(delta_v[0].max(delta_v[1])), f64::gt);
+        take_if(&mut self.extended_delta_v, Some(struck.delta_v[0].max(struck.delta_v[1])), f64::gt);
         if take_if(&mut self.ttc, Some(0.0), f64::lt) {
-            self.found[0] = Some(Moment { time, x: fronts[ego].x, y: fronts[ego].y, speed: speeds[ego] });
+            self.found[0] = Some(struck.moment_of(self.worst.ego));
         }
     }
 }

@@ -18,6 +18,7 @@ mod moment;
 mod past;
 mod snapshot;
 mod span;
+mod struck;
 mod tracker;
 mod under_way;
 mod why;

@@ -47,6 +47,7 @@ impl Tracker {
             rules: Rules {
                 contact_tolerance: options.contact_tolerance,
                 severity: options.severity_thresholds(),
+                kinds: options.kind_bounds(),
                 counts_artefacts: options.artefacts,
             },
             past: Past::of_last(options.log.longest_pet()),
@@ -171,7 +172,11 @@ impl Tracker {
         let pair = pair_of(seen.found);
         match self.events.binary_search_by_key(&pair, |event| event.pair()) {
             Ok(place) => self.events[place].take(seen, self.keeps),
-            Err(place) => self.events.insert(place, Box::new(Event::of(seen, self.keeps))),
+            Err(place) => {
+                let mut event = Event::of(seen, self.keeps);
+                event.strike_at_once(seen, self.rules);
+                self.events.insert(place, Box::new(event));
+            }
         }
     }
 

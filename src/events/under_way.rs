@@ -3,14 +3,15 @@
 use smallvec::SmallVec;
 
 use super::alarm::{Alarm, PetSoFar};
-use super::between::{Between, Both, Closest, FirstContact, Moment};
+use super::between::{Between, Both, Closest, Moment};
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation, WorstStep};
 use super::past::Past;
 use super::span::Span;
+use super::struck::Struck;
 use super::why::{self, Artefact, Surroundings};
 use crate::detection::encounter::Encounter;
-use crate::detection::kind::{Kind, Severity};
+use crate::detection::kind::Severity;
 use crate::detection::measures::driven_path::DrivenPath;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::{self, Pet};
@@ -18,8 +19,8 @@ use crate::detection::path::Pose;
 use crate::detection::severity::{Assessment, SeverityInputs};
 use crate::geometry::Point;
 use crate::geometry::bisection::Bisection;
-use crate::options::thresholds::SeverityThresholds;
-use crate::traffic::frame::Frame;
+use crate::options::thresholds::{KindBounds, SeverityThresholds};
+use crate::traffic::frame::{Frame, State};
 use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, Radian, SAME_MOMENT, Second};
@@ -79,6 +80,7 @@ pub(super) struct Rules {
     /// Deeper overlaps are collisions.
     pub contact_tolerance: Metre,
     pub severity: SeverityThresholds,
+    pub kinds: KindBounds,
     /// Whether artefacts count.
     pub counts_artefacts: bool,
 }
@@ -183,8 +185,7 @@ impl Event {
         let Some(now) = Seen::of(frame, &self.pair) else { return };
         let last = std::mem::replace(&mut self.last, now);
         let profiles = self.pair.map(|user| roster.profile_of(user));
-        let is_rectangle = |of: &&Profile| of.category != Category::Obstacle && of.carriages == 1;
-        if self.followed.extremes.end != before || !profiles.iter().all(is_rectangle) {
+        if self.followed.extremes.end != before || !are_rectangles(&profiles) {
             return;
         }
         let mut moments = SmallVec::<[Moment; 3]>::from_slice(&[(before, last.states)]);
@@ -200,16 +201,37 @@ impl Event {
             let met = self.met.as_mut().and_then(|met| met.last_mut());
             let met = met.filter(|met| met.extremes.end == before);
             let extremes = &self.followed.extremes;
-            let found = closest.contact.as_ref().and_then(|contact| {
-                let found = contact_of(extremes, &closest, contact.fronts[ego], frame)?;
+            let struck = closest.contact.map(|contact| Struck::of(&contact, (self.pair, profiles), past, rules.kinds));
+            let found = struck.as_ref().and_then(|struck| {
+                let found = contact_of(extremes, &closest, struck, frame)?;
                 let pair = why::Pair::of((frame, roster, &found), around, past);
-                Some((assessed(contact, ego, extremes.worst.kind, profiles, rules.severity), Artefact::of(&pair)))
+                Some((assessed(struck, ego, profiles, rules.severity), Artefact::of(&pair)))
             });
             [&mut self.followed]
                 .into_iter()
                 .chain(met)
-                .for_each(|span| span.extremes.come_closer(&closest, ego, found));
+                .for_each(|span| span.extremes.come_closer(&closest, struck, found));
         }
+    }
+
+    /// Finds how the two of a first step that is a collision struck each other, on the way from where they were last.
+    pub fn strike_at_once(&mut self, seen: &Observation, rules: Rules) {
+        let Observation { frame, roster, found, past, .. } = *seen;
+        let profiles = self.pair.map(|user| roster.profile_of(user));
+        let Some(now) = Seen::of(frame, &self.pair).filter(|_| found.collision && are_rectangles(&profiles)) else {
+            return;
+        };
+        let [a, b] = [0, 1].map(|one| {
+            let (time, place, heading) = past.of(self.pair[one], frame.time).last()?;
+            Some((time, State { x: place.x, y: place.y, heading, ..now.states[one] }))
+        });
+        let Some(((time, a), (_, b))) = a.zip(b).filter(|((of_a, _), (of_b, _))| of_a == of_b) else { return };
+        let moments = [(time, [a, b]), (frame.time, now.states)];
+        let closest = Between { moments: &moments, profiles }.closest(rules.contact_tolerance, true);
+        let struck = closest.and_then(|closest| closest.contact);
+        let struck = struck.map(|contact| Struck::of(&contact, (self.pair, profiles), past, rules.kinds));
+        let met = self.met.as_mut().and_then(|met| met.last_mut());
+        [&mut self.followed].into_iter().chain(met).for_each(|span| span.extremes.struck = struck);
     }
 
     /// The PET at this time, if the first of both has left the conflict area; `ahead` has the poses that a road user will go
@@ -303,14 +325,20 @@ impl Event {
     }
 }
 
+/// Whether both are single rectangles: neither an obstacle nor articulated.
+fn are_rectangles(profiles: &[&Profile; 2]) -> bool {
+    profiles.iter().all(|of| of.category != Category::Obstacle && of.carriages == 1)
+}
+
 /// Two road users in the order of their indices.
 pub(super) fn in_order([one, other]: [UserIndex; 2]) -> Pair {
     [one.min(other), one.max(other)]
 }
 
 /// The contact of the two between two steps as an encounter of the second.
-fn contact_of(of: &Extremes, closest: &Closest, at: Point, frame: &Frame) -> Option<Encounter> {
-    let WorstStep { ego, foe, kind, angle, mu, .. } = of.worst;
+fn contact_of(of: &Extremes, closest: &Closest, struck: &Struck, frame: &Frame) -> Option<Encounter> {
+    let WorstStep { ego, foe, mu, .. } = of.worst;
+    let (Struck { kind, angle, .. }, at) = (*struck, struck.front_of(ego));
     Some(Encounter {
         ego,
         foe,
@@ -335,14 +363,8 @@ fn contact_of(of: &Extremes, closest: &Closest, at: Point, frame: &Frame) -> Opt
 }
 
 /// How severe a contact is; `ego` is the place of the ego in the pair.
-fn assessed(
-    contact: &FirstContact,
-    ego: usize,
-    kind: Kind,
-    profiles: [&Profile; 2],
-    rule: SeverityThresholds,
-) -> Assessment {
-    let [of_ego, of_foe] = [ego, 1 - ego].map(|one| Body::of(profiles[one], contact.delta_v[one]));
+fn assessed(struck: &Struck, ego: usize, profiles: [&Profile; 2], rule: SeverityThresholds) -> Assessment {
+    let [of_ego, of_foe] = [ego, 1 - ego].map(|one| Body::of(profiles[one], struck.delta_v[one]));
     let inputs = SeverityInputs {
         ttc: Some(0.0),
         drac: None,
@@ -351,7 +373,7 @@ fn assessed(
         crash_probability: 1.0,
         braking: 0.0,
         delta_v: of_ego.delta_v.max(of_foe.delta_v),
-        injury_probability: injury_probability(kind, of_ego, of_foe),
+        injury_probability: injury_probability(struck.kind, of_ego, of_foe),
         collision: true,
     };
     Assessment::of(&inputs, rule)

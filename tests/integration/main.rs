@@ -29,6 +29,7 @@ mod replay;
 mod route;
 #[path = "../common/street.rs"]
 mod street;
+mod struck;
 mod sublane;
 mod time_to_collision;
 mod way;

@@ -7,6 +7,7 @@
 //! when the script comes to it: vehicles are inserted that did not depart, as far as the lists tell.
 
 use closecall::util::units::Second;
+use closecall_run::util::decimal::Written;
 use pyo3::prelude::*;
 
 use super::option;
@@ -60,7 +61,7 @@ impl Identity {
             return self.has_other_options(source);
         };
         if time < last {
-            return Ok(Some(format!("the simulation's time went back from {last} to {time} s")));
+            return Ok(Some(format!("the simulation's time went back from {} to {} s", Written(last), Written(time))));
         }
         if let (Some([loaded, inserted]), Some([now_loaded, now_inserted])) = (before, now)
             && (now_loaded < loaded || now_inserted < inserted)
@@ -79,7 +80,9 @@ impl Identity {
         };
         if !is_due {
             return Ok(Some(format!(
-                "the simulation's time went from {last} to {time} s in one call of simulationStep"
+                "the simulation's time went from {} to {} s in one call of simulationStep",
+                Written(last),
+                Written(time)
             )));
         }
         if !is_next {

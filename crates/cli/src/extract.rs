@@ -12,6 +12,7 @@ use super::which::WhichArgs;
 use closecall_analysis::batch::extract::{Made, SCENARIO, Tools, extract, extract_openscenario, extract_osi};
 use closecall_analysis::logged::check_keeps_logs;
 use closecall_run::Result;
+use closecall_run::util::decimal::Written;
 
 /// Which conflict to cut out, and where to.
 #[derive(Args)]
@@ -87,6 +88,6 @@ fn tell(arguments: &ExtractArgs, made: &Made, at: &Path, what: &str) -> Result<(
     if let Some(remark) = &made.remark {
         eprintln!("closecall: {remark}");
     }
-    let (id, time) = (made.conflict.id, made.conflict.time);
+    let (id, time) = (made.conflict.id, Written(made.conflict.time));
     say(format_args!("conflict {id} at {time} s in {}; {what}\n", at.display()))
 }

@@ -12,9 +12,12 @@ use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 /// A later contact does not count, in s: paths are not built further.
 pub const HORIZON: Second = 10.0;
 
-/// A relative difference between distances along a path and in the plane that is more than rounding, and less than where a
-/// lane of 20 km is 2 cm longer than drawn.
-const STRETCHED: f64 = 1e-6;
+/// A relative difference between distances along a path and in the plane that changes no measure by as much.
+const STRETCHED: f64 = 1e-3;
+
+/// How far a pose may be from where an even movement has it, in m: on lanes of which one is longer, the other shorter than
+/// drawn.
+const UNEVEN: Metre = 0.005;
 
 /// A road user that keeps its speed, or its deceleration until it stands, along its poses, which reach [`HORIZON`] ahead.
 #[derive(Clone, Copy, Debug)]
@@ -89,9 +92,17 @@ impl SteadyMotion<'_> {
         let (first, by) = match self.poses {
             [only] => (only, only.axis * distance),
             [first, ..] => {
-                let last = self.poses.iter().take_while(|pose| pose.axis == first.axis).last()?;
+                let alike = self.poses.iter().take_while(|pose| pose.axis == first.axis);
+                let last = alike.clone().last()?;
                 let moves = (last.front - first.front).norm();
                 if last.distance < distance || (moves - last.distance).abs() > STRETCHED * last.distance {
+                    return None;
+                }
+                let is_even = |pose: &Pose| {
+                    let way = moves * pose.distance - last.distance * (pose.front - first.front).norm();
+                    way.abs() <= UNEVEN * last.distance
+                };
+                if !alike.clone().all(is_even) {
                     return None;
                 }
                 let part = if distance > 0.0 { distance / last.distance } else { 0.0 };

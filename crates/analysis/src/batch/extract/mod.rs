@@ -26,6 +26,7 @@ use crate::logged::{ConflictReader, LoggedConflict, LoggedRun, Which};
 pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
 use closecall::util::units::{Metre, SAME_MOMENT, Second};
 use closecall_run::output::input_hash::Input;
+use closecall_run::util::decimal::Written;
 use closecall_run::util::output_file;
 use closecall_run::{Error, Result};
 use configuration::{CONFIGURATION, Configuration, STATE};
@@ -199,7 +200,8 @@ impl Cut<'_> {
             || format!("\"{ego}\" and \"{foe}\" are in no conflict"),
             |other| {
                 let [was, is] = [(kind, time, margin), (&other.kind, &other.time, &other.margin)]
-                    .map(|(kind, time, margin)| format!("{} at {time} s with a margin of {margin} m", kind.name()));
+                    .map(|(kind, time, margin)| (kind.name(), Written(*time), Written(*margin)))
+                    .map(|(kind, time, margin)| format!("{kind} at {time} s with a margin of {margin} m"));
                 format!("it is {is}, not {was}")
             },
         )))

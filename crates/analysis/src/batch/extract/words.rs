@@ -4,6 +4,7 @@ use serde_json::Value;
 
 use crate::logged::LoggedConflict;
 use closecall::util::units::Second;
+use closecall_run::util::decimal::Written;
 
 /// What the words are about.
 pub struct Words<'a> {
@@ -26,7 +27,7 @@ impl Words<'_> {
         let Self { scenario, sumo, .. } = self;
         let begins = self.from.map_or_else(
             || "begins where the run did".to_owned(),
-            |from| format!("begins at {from} s, from a state that SUMO saved"),
+            |from| format!("begins at {} s, from a state that SUMO saved", Written(from)),
         );
         format!(
             "# Conflict {id} of {scenario}\n\n\
@@ -35,7 +36,7 @@ impl Words<'_> {
              `closecall run conflict.sumocfg --config closecall.toml` finds it again; `--gui` shows it in sumo-gui.\n\
              `pytest` runs `test_conflict.py`, which fails when kind or margin change.\n",
             self.what(),
-            self.until
+            Written(self.until)
         )
     }
 
@@ -60,7 +61,7 @@ impl Words<'_> {
     fn what(&self) -> String {
         let LoggedConflict { ego, foe, kind, severity, time, .. } = self.conflict;
         let kind = kind.name().replace('_', "-");
-        format!("A {kind} conflict, {}, of `{ego}` with `{foe}` at {time} s", severity.name())
+        format!("A {kind} conflict, {}, of `{ego}` with `{foe}` at {} s", severity.name(), Written(*time))
     }
 }
 

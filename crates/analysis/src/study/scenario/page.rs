@@ -9,6 +9,7 @@ use super::recommendation::{Verdict, verdict};
 use super::richardson::Convergence;
 use crate::study::machine::machine;
 use crate::study::number::number;
+use closecall_run::util::decimal::Written;
 
 /// The page. Writing to a String does not fail.
 pub(super) fn of(study: &Study, scenario: &str, answer: &str, charts: &[&str]) -> String {
@@ -59,7 +60,7 @@ pub(super) fn answer(study: &Study) -> String {
         });
         sentences.push(format!(
             "At the present setting (steps of {} s) a run finds {} conflicts per vehicle-hour{against}.",
-            study.plan.own_step,
+            Written(study.plan.own_step),
             found(0)
         ));
     } else {
@@ -90,7 +91,7 @@ fn needed(study: &Study, axis: &Axis) -> Vec<String> {
     }
     let at = study.recommended(axis, place);
     let chosen = &axis.choices[at];
-    let accuracy = 100.0 * study.accuracy;
+    let accuracy = Written(100.0 * study.accuracy);
     let times = |choice: &Choice| study.run_time(choice.setting).cpu / study.run_time(0).cpu;
     let costs = match chosen.setting {
         0 => "which is the present setting".to_owned(),
@@ -215,7 +216,7 @@ fn convergence(text: &mut String, study: &Study) {
              | measure | finest | coarsest | order | extrapolated | step for {} % |\n|---|---|---|---|---|---|\n",
             axis.choices[0].value,
             axis.choices[axis.choices.len() - 1].value,
-            100.0 * study.accuracy
+            Written(100.0 * study.accuracy)
         );
         for (place, measure) in study.measures.iter().enumerate().filter(|(_, measure)| !measure.has_rate()) {
             let [finest, .., coarsest] = &axis.choices[..] else { continue };

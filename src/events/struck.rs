@@ -1,0 +1,83 @@
+//! How two of an event struck each other first.
+//!
+//! A step ends at some moment after the contact, the later the longer it lasts: one may have turned meanwhile, or have stopped,
+//! and the two lie in each other somehow. The first contact is found between the steps, so that the kind and the place of a
+//! collision depend on no step.
+
+use super::between::FirstContact;
+use super::moment::Moment;
+use super::past::Past;
+use crate::detection::kind::Kind;
+use crate::detection::measures;
+use crate::geometry::{Point, Vector, angle_between};
+use crate::options::thresholds::KindBounds;
+use crate::traffic::profile::{Category, Profile};
+use crate::traffic::roster::UserIndex;
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
+
+/// A person's course is the direction in which it has gone this far, in m: SUMO turns one that steps aside, or is about to
+/// be hit, across its way.
+const WALKED: Metre = 0.5;
+
+/// The first contact of two.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Struck {
+    /// When, in s.
+    pub time: Second,
+    pub kind: Kind,
+    /// The angle between the courses of both.
+    pub angle: Radian,
+    /// The two, and in their order what follows.
+    pair: [UserIndex; 2],
+    /// The front-bumper centres.
+    fronts: [Point; 2],
+    speeds: [MetrePerSecond; 2],
+    pub delta_v: [MetrePerSecond; 2],
+}
+
+impl Struck {
+    /// That of a contact of a pair.
+    pub fn of(
+        contact: &FirstContact,
+        (pair, profiles): ([UserIndex; 2], [&Profile; 2]),
+        past: &Past,
+        kinds: KindBounds,
+    ) -> Self {
+        let [a, b] = [0, 1].map(|one| course(contact, one, (pair[one], profiles[one]), past));
+        let angle = angle_between(&a, &b);
+        let [of_a, of_b] = [0, 1].map(|one| (contact.speeds[one], profiles[one].mass));
+        Self {
+            time: contact.time,
+            kind: Kind::at(angle, kinds),
+            angle,
+            pair,
+            fronts: contact.fronts,
+            speeds: contact.speeds,
+            delta_v: measures::delta_v(of_a, of_b, angle),
+        }
+    }
+
+    /// Where the front bumper of one of the two was.
+    pub fn front_of(&self, user: UserIndex) -> Point {
+        self.fronts[self.place_of(user)]
+    }
+
+    /// When, where and how fast one of the two was.
+    pub fn moment_of(&self, user: UserIndex) -> Moment {
+        let front = self.front_of(user);
+        Moment { time: self.time, x: front.x, y: front.y, speed: self.speeds[self.place_of(user)] }
+    }
+
+    fn place_of(&self, user: UserIndex) -> usize {
+        usize::from(user == self.pair[1])
+    }
+}
+
+/// The direction in which one of the two was going: that of its front, or of a person's way.
+fn course(contact: &FirstContact, one: usize, (user, profile): (UserIndex, &Profile), past: &Past) -> Vector {
+    if profile.category != Category::Person {
+        return contact.axes[one];
+    }
+    let ways = past.of(user, contact.time).map(|(_, place, _)| contact.fronts[one] - place);
+    ways.filter(|way| way.norm() >= WALKED).last().map_or(contact.axes[one], |way| way.normalize())
+}
