@@ -68,3 +68,17 @@ pub use traffic::placement::Placement;
 pub use traffic::profile::{Category, Profile};
 pub use traffic::roster::{ProfileIndex, Roster, UserIndex};
 pub use traffic::sumo_type::SumoType;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_public_types_may_go_to_another_thread() {
+        fn check<T: Send>() {}
+        check::<(Detector, Tracker, Frame, Roster, Net)>();
+        check::<(Options, Condition, Profile, SumoType, Placement)>();
+        check::<(Encounter, Conflict, Alarm, Snapshot, Causes)>();
+        check::<Error>();
+    }
+}

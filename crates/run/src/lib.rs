@@ -48,3 +48,16 @@ pub use output::record::RunRecord;
 pub use output::summary::Summary;
 pub use run::Run;
 pub use run::recorded::{Ending, RecordedRun};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_public_types_may_go_to_another_thread() {
+        fn check<T: Send>() {}
+        check::<(Run, Replay, RecordedRun, RunRecord, RunOptions)>();
+        check::<(Summary, LogFolder, OutputFiles, Ending)>();
+        check::<Error>();
+    }
+}

@@ -155,7 +155,7 @@ impl<R: Read> Read for ShortRows<R> {
 /// An XML file whose elements stay in memory: it counts lines, and fails where the file unpacks to far more than a net or
 /// a demand does, or where an element does not end.
 pub(crate) struct ElementSource {
-    source: Box<dyn BufRead>,
+    source: Box<dyn BufRead + Send>,
     lines: u64,
     /// Bytes read in all and since the element began, and how many there may be.
     read: u64,
@@ -175,7 +175,7 @@ impl ElementSource {
     }
 
     /// A source in memory; its lines count from 1.
-    pub fn new(source: Box<dyn BufRead>) -> Self {
+    pub fn new(source: Box<dyn BufRead + Send>) -> Self {
         Self { source, lines: 1, read: 0, element: 0, most: u64::MAX }
     }
 

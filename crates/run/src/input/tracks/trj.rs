@@ -41,7 +41,7 @@ pub(super) fn is_trj(first: &[u8]) -> bool {
 /// The file as it is read.
 struct Reader<'a> {
     path: &'a Path,
-    source: Box<dyn BufRead>,
+    source: Box<dyn BufRead + Send>,
     is_little: bool,
     /// Bytes read so far.
     at: u64,
