@@ -1,4 +1,4 @@
-//! What is made of logs: statistics, a report, pictures, files for other tools; and many runs.
+//! The results of logs: statistics, a report, pictures, files for other tools; and many runs.
 //!
 //! ```
 //! use closecall_analysis::study::number::number;
