@@ -16,8 +16,8 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use closecall::{Net, Options};
+use closecall_run::input::replay::recorded_step::RecordedStep;
 use closecall_run::input::replay::recording::Recording;
-use closecall_run::input::replay::rows::RecordedStep;
 use closecall_run::{Replay, Run};
 
 /// Parallel roads, far enough apart that their traffic never meets.
@@ -30,13 +30,13 @@ const STEPS: usize = 200;
 const ROUNDS: usize = 3;
 
 fn main() {
-    let words = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
-    let words = words.iter().map(String::as_str).collect::<Vec<_>>();
-    if let ["--alone", ..] = words[..] {
-        return alone(&words[1..]);
+    let args = std::env::args().skip(1).filter(|word| word != "--bench").collect::<Vec<_>>();
+    let args = args.iter().map(String::as_str).collect::<Vec<_>>();
+    if let ["--alone", ..] = args[..] {
+        return alone(&args[1..]);
     }
     println!("what,scene,method,size,value,unit");
-    match &words[..] {
+    match &args[..] {
         [] => all(1.0),
         ["--large", gigabytes] => all(gigabytes.parse().unwrap()),
         ["--net", net, paths @ ..] => measure(given(paths), Some(Path::new(net))),
@@ -80,10 +80,10 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
     let out = path.with_extension("log");
     let kilobytes = || {
         let mut command = Command::new(std::env::current_exe().unwrap());
-        let words = ["--alone", "closecall", "replay", "--quiet", "--net"];
-        let ended = command.args(words).arg(net).arg("--out").arg(&out).arg(path).output().unwrap();
-        assert!(ended.status.success(), "{}", String::from_utf8_lossy(&ended.stderr));
-        String::from_utf8(ended.stdout).unwrap().trim().parse::<f64>().unwrap()
+        let args = ["--alone", "closecall", "replay", "--quiet", "--net"];
+        let output = command.args(args).arg(net).arg("--out").arg(&out).arg(path).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap().trim().parse::<f64>().unwrap()
     };
     let least = (0..3).map(|_| kilobytes()).fold(f64::INFINITY, f64::min);
     println!("peak,{megabytes} MB,{},,{:.2},MB", name(path), least / 1e3);
@@ -91,8 +91,8 @@ fn peak(net: &Path, path: &Path, megabytes: f64) {
 }
 
 /// Runs closecall with these words and prints its peak memory, in kB, if the system reports it (Linux).
-fn alone(words: &[&str]) {
-    assert_eq!(closecall_cli::main(words.iter().map(OsString::from), None), 0);
+fn alone(args: &[&str]) {
+    assert_eq!(closecall_cli::main(args.iter().map(OsString::from), None), 0);
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
     println!("{}", most.map_or("NaN", |most| most.trim_end_matches("kB").trim()));

@@ -1,12 +1,12 @@
-//! Garbage into every door: an error or a result, never a panic, and never for long.
+//! Garbage into every entry point: an error or a result, never a panic, and never for long.
 //!
-//! `CLOSECALL_GARBAGE=600 cargo test --release --test garbage` throws it for ten minutes at each door; what makes one panic
+//! `CLOSECALL_GARBAGE=600 cargo test --release --test garbage` throws it for ten minutes at each entry point; what makes one panic
 //! is kept in target/tmp.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test may")]
 
-#[path = "common/doors.rs"]
-mod doors;
+#[path = "common/entry_points.rs"]
+mod entry_points;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -39,9 +39,9 @@ const NUMBERS: [&str; 20] = [
 /// Nothing that is read takes longer.
 const LONGEST: Duration = Duration::from_secs(5);
 
-/// The examples of a door.
-fn examples(door: &str) -> Vec<Vec<u8>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz").join(door);
+/// The examples of an entry point.
+fn examples(entry_point: &str) -> Vec<Vec<u8>> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/fuzz").join(entry_point);
     let mut files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<PathBuf>>();
     files.sort();
     files.iter().map(|path| std::fs::read(path).unwrap()).collect()
@@ -83,9 +83,11 @@ fn garbage_is_an_error_or_a_result_and_no_panic() {
     let each = std::env::var("CLOSECALL_GARBAGE").ok().and_then(|seconds| seconds.parse().ok());
     let each = each.map_or(Duration::from_millis(60), Duration::from_secs);
     let only = std::env::var("CLOSECALL_DOOR").ok();
-    for (name, door) in doors::ALL.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|only| only == name)) {
+    for (name, entry_point) in
+        entry_points::ALL.into_iter().filter(|(name, _)| only.as_ref().is_none_or(|only| only == name))
+    {
         let examples = examples(name);
-        examples.iter().for_each(|example| door(example));
+        examples.iter().for_each(|example| entry_point(example));
         let mut random = fastrand::Rng::with_seed(each.as_secs());
         let (began, mut thrown) = (Instant::now(), 0);
         while began.elapsed() < each {
@@ -95,7 +97,7 @@ fn garbage_is_an_error_or_a_result_and_no_panic() {
                 change(&mut random, &mut bytes, other);
             }
             let before = Instant::now();
-            let panicked = caught(|| door(&bytes)).err();
+            let panicked = caught(|| entry_point(&bytes)).err();
             if panicked.is_some() || before.elapsed() > LONGEST {
                 let kept = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("garbage-{name}"));
                 std::fs::write(&kept, &bytes).unwrap();

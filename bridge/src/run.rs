@@ -25,17 +25,17 @@ use crate::{film, provenance, sweep};
 
 /// The command `closecall`; returns its exit status.
 #[pyfunction]
-pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
+pub fn main(py: Python, args: Vec<OsString>) -> PyResult<u8> {
     let interrupts = Interrupts::new(py)?;
     let mut simulate = |request: &RunRequest, folder: LogFolder| simulate(py, request, folder, &interrupts);
     let mut show = |request: &ShowRequest| start::show(py, request);
     let mut make_film = |request: &FilmRequest| film::film(py, request);
-    let mut save_configuration = |words: &[String], to: &Path| start::save_configuration(py, words, to);
+    let mut save_configuration = |args: &[String], to: &Path| start::save_configuration(py, args, to);
     let mut convert_net = |net: &Path, within: &Bounds, to: &Path| start::convert_net(py, net, within, to);
     let mut interrupted = || interrupts.had_any();
-    let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd| {
+    let mut distribute = |workers: &Workers, folder: &Path, tasks: &[&Task], outcome: &mut ReportEnd| {
         interrupts.report();
-        sweep::distribute(py, workers, folder, tasks, ended)
+        sweep::distribute(py, workers, folder, tasks, outcome)
     };
     let sumo = Sumo {
         simulate: &mut simulate,
@@ -47,7 +47,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
         closecall: closecall(py)?,
         interrupted: &mut interrupted,
     };
-    Ok(closecall_cli::main(words, Some(sumo)))
+    Ok(closecall_cli::main(args, Some(sumo)))
 }
 
 /// The scenario at a path, for the pytest plugin: its folder, the command line to run there, the SUMO options at its end,
@@ -56,7 +56,7 @@ pub fn main(py: Python, words: Vec<OsString>) -> PyResult<u8> {
 pub fn scenario(path: PathBuf) -> PyResult<(OsString, Vec<OsString>, Vec<String>, u32)> {
     let scenario = closecall_cli::scenario(&path).map_err(exception)?;
     let seed = scenario.settings.seeds.first().copied().unwrap_or_default();
-    Ok((scenario.folder.clone().into_os_string(), scenario.words(), scenario.settings.sumo_options, seed))
+    Ok((scenario.folder.clone().into_os_string(), scenario.args(), scenario.settings.sumo_options, seed))
 }
 
 /// The command line that starts closecall in a separate process, which ends when its standard input closes.
@@ -108,8 +108,8 @@ fn attach(
     let mut session = Session::new(sumo, request, source, record.step_length).map_err(refused)?;
     interrupts.report();
     let recorded = RecordedRun::open(run, record, folder, &request.outputs)?;
-    let (recorded, ended) = session.run_to_end(Box::new(recorded));
-    close(*recorded, request, ended, &session.spent())
+    let (recorded, outcome) = session.run_to_end(Box::new(recorded));
+    close(*recorded, request, outcome, &session.spent())
 }
 
 /// Sets the run up as the request and the simulation need it; returns the source of its road users.
@@ -129,10 +129,10 @@ fn connect(sumo: &Bound<PyAny>, request: &RunRequest, run: &mut Run) -> PyResult
 }
 
 /// Closes the log, or removes it if the scenario could not be used.
-fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spent: &StepTimes) -> Result<Summary> {
+fn close(mut recorded: RecordedRun, request: &RunRequest, outcome: Result<()>, spent: &StepTimes) -> Result<Summary> {
     let [vehicles, persons] = recorded.run.entered();
-    let is_empty = ended.is_ok() && vehicles + persons == 0;
-    let unusable = match &ended {
+    let is_empty = outcome.is_ok() && vehicles + persons == 0;
+    let unusable = match &outcome {
         Ok(()) if is_empty => Some("the scenario is empty: no road user ever enters it"),
         Err(Error::Value(message)) => Some(&**message),
         _ => None,
@@ -142,12 +142,12 @@ fn close(mut recorded: RecordedRun, request: &RunRequest, ended: Result<()>, spe
         return Err(Error::content(&request.scenario, message));
     }
     let closed = recorded.close(Ending {
-        error: ended.as_ref().err().map(ToString::to_string),
+        error: outcome.as_ref().err().map(ToString::to_string),
         left_out: left_out(request, persons),
         spent: spent.seconds(),
         ..Ending::default()
     });
-    ended.and(closed)
+    outcome.and(closed)
 }
 
 /// The error for an exception before the first step.

@@ -103,9 +103,9 @@ impl<'a, 'py> Session<'a, 'py> {
 
     /// Steps until the scenario ends; returns the run, and why it ended early if it did.
     pub fn run_to_end(&mut self, recorded: Box<RecordedRun>) -> (Box<RecordedRun>, Result<()>) {
-        let (mut recorded, ended) = self.steps(recorded);
+        let (mut recorded, outcome) = self.steps(recorded);
         let finished = self.finish_step(&mut recorded.run);
-        (recorded, finished.and(ended))
+        (recorded, finished.and(outcome))
     }
 
     /// The time that each part of the steps took.

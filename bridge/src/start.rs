@@ -75,13 +75,13 @@ fn not_loaded(py: Python, error: &PyErr, packages: &str) -> Error {
 }
 
 /// Saves the options that SUMO has with these words; nothing is simulated.
-pub fn save_configuration(py: Python, words: &[String], to: &Path) -> Result<()> {
-    let configuration = words.iter().position(|word| word == "-c").and_then(|place| words.get(place + 1));
+pub fn save_configuration(py: Python, args: &[String], to: &Path) -> Result<()> {
+    let configuration = args.iter().position(|word| word == "-c").and_then(|place| args.get(place + 1));
     let scenario = PathBuf::from(configuration.unwrap_or(&String::new()));
     let refused = |error| refused(py, &scenario, &error);
     let starter = py.import("closecall._sumo").map_err(refused)?;
-    let words = [words, &["--save-configuration".to_owned(), to.display().to_string()]].concat();
-    let started = starter.call_method1("start", (words, false)).map_err(refused);
+    let args = [args, &["--save-configuration".to_owned(), to.display().to_string()]].concat();
+    let started = starter.call_method1("start", (args, false)).map_err(refused);
     close(py, false);
     started.map(drop)
 }

@@ -19,7 +19,13 @@ pub fn finish_run(py: Python, task: &str, log: PathBuf, wall: f64, cpu: f64) -> 
 }
 
 /// Has `closecall.sweep` do the tasks.
-pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task], ended: &mut ReportEnd) -> Result<()> {
+pub fn distribute(
+    py: Python,
+    workers: &Workers,
+    folder: &Path,
+    tasks: &[&Task],
+    report_end: &mut ReportEnd,
+) -> Result<()> {
     let failed = |error: PyErr| {
         if error.is_instance_of::<PyKeyboardInterrupt>(py) {
             Error::Stopped
@@ -32,7 +38,7 @@ pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task],
     };
     let packed = |task: &&Task| -> Result<_> {
         let json = serde_json::to_string(task).map_err(|error| Error::Value(error.to_string()))?;
-        Ok((task.name.clone(), task.words.clone(), json))
+        Ok((task.name.clone(), task.args.clone(), json))
     };
     let tasks = tasks.iter().map(packed).collect::<Result<Vec<_>>>()?;
     let (workers, scheduler) = match workers {
@@ -44,7 +50,7 @@ pub fn distribute(py: Python, workers: &Workers, folder: &Path, tasks: &[&Task],
     for result in results.try_iter().map_err(failed)? {
         let result = result.and_then(|result| result.extract::<(String, Option<String>)>());
         let (name, error) = result.map_err(failed)?;
-        ended(&name, error.as_deref());
+        report_end(&name, error.as_deref());
     }
     Ok(())
 }

@@ -1,9 +1,9 @@
-//! The door `fcd` of tests/common/doors.rs.
+//! The entry point `fcd` of tests/common/entry_points.rs.
 
 #![no_main]
 
-#[path = "../../tests/common/doors.rs"]
-mod doors;
+#[path = "../../tests/common/entry_points.rs"]
+mod entry_points;
 
 // A panic of the Parquet library, which closecall catches, does not end the fuzzer; one that gets out does.
-libfuzzer_sys::fuzz_target!(init: drop(std::panic::take_hook()), |bytes: &[u8]| doors::fcd(bytes));
+libfuzzer_sys::fuzz_target!(init: drop(std::panic::take_hook()), |bytes: &[u8]| entry_points::fcd(bytes));

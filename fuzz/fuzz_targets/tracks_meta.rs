@@ -1,8 +1,8 @@
-//! The door `tracks_meta` of tests/common/doors.rs.
+//! The entry point `tracks_meta` of tests/common/entry_points.rs.
 
 #![no_main]
 
-#[path = "../../tests/common/doors.rs"]
-mod doors;
+#[path = "../../tests/common/entry_points.rs"]
+mod entry_points;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| doors::tracks_meta(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| entry_points::tracks_meta(bytes));

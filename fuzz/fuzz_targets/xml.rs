@@ -1,8 +1,8 @@
-//! The door `xml` of tests/common/doors.rs.
+//! The entry point `xml` of tests/common/entry_points.rs.
 
 #![no_main]
 
-#[path = "../../tests/common/doors.rs"]
-mod doors;
+#[path = "../../tests/common/entry_points.rs"]
+mod entry_points;
 
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| doors::xml(bytes));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| entry_points::xml(bytes));

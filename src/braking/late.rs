@@ -93,14 +93,14 @@ impl LateBraking {
     /// quickest if the first of them is the one that decides.
     pub(crate) fn longest_wait_at_all(&self, limits: &[(Second, Metre)]) -> Second {
         let own = self.relative(0.0, 0.0);
-        let (mut longest, mut way) = (f64::INFINITY, f64::INFINITY);
+        let (mut longest, mut travelled) = (f64::INFINITY, f64::INFINITY);
         for (time, distance) in limits {
-            if way <= *distance || self.surely_keeps(longest, *time, *distance) {
+            if travelled <= *distance || self.surely_keeps(longest, *time, *distance) {
                 continue;
             }
             let wait = self.longest_wait_at(*time, *distance);
             if wait < longest {
-                (longest, way) = (wait, own.way(wait.max(0.0)));
+                (longest, travelled) = (wait, own.travelled(wait.max(0.0)));
             }
         }
         longest
@@ -111,21 +111,21 @@ impl LateBraking {
         let (t3, more) = (self.build_up, self.deceleration - self.present);
         let braked_for = time - wait - t3 / 2.0;
         let still_moves = self.speed - self.present * time >= more * braked_for;
-        let way =
+        let travelled =
             (self.speed - self.present * time / 2.0) * time - more * (braked_for * braked_for / 2.0 + t3 * t3 / 24.0);
-        braked_for >= t3 / 2.0 && still_moves && way <= distance
+        braked_for >= t3 / 2.0 && still_moves && travelled <= distance
     }
 
     /// The longest wait, in s, with which it and one that comes towards it stop within some room, if both wait as long.
     /// `share` is the part of the other's way that counts.
     pub fn longest_wait_towards(&self, other: &Self, share: f64, room: Metre) -> Second {
         let both = [self.relative(0.0, 0.0), other.relative(0.0, 0.0)];
-        let way = |wait| both[0].way(wait) + share * both[1].way(wait);
-        if way(f64::INFINITY) <= room {
+        let travelled = |wait| both[0].travelled(wait) + share * both[1].travelled(wait);
+        if travelled(f64::INFINITY) <= room {
             return f64::INFINITY;
         }
         // Braking at once leaves this much room; a longer wait uses it up at no more than the present speeds.
-        let left = room - way(0.0);
+        let left = room - travelled(0.0);
         if left < 0.0 {
             return f64::NEG_INFINITY;
         }
@@ -134,10 +134,10 @@ impl LateBraking {
             return least;
         }
         let mut most = 2.0 * least + 1.0;
-        while way(most) <= room {
+        while travelled(most) <= room {
             most *= 2.0;
         }
-        bisect(|wait| way(wait) <= room, least, most)
+        bisect(|wait| travelled(wait) <= room, least, most)
     }
 
     /// The distance that it travels in a time if it does not brake harder.
@@ -196,13 +196,13 @@ impl Closing {
             return wait;
         }
         // It would end before the deceleration has built up: F has no closed inverse there.
-        let ends = |wait: Second| self.way(wait) <= room;
+        let ends = |wait: Second| self.travelled(wait) <= room;
         let most = if present > 0.0 { speed / present } else { wait };
         if ends(0.0) { bisect(ends, 0.0, most) } else { f64::NEG_INFINITY }
     }
 
     /// F(w): the distance until the motion ends.
-    fn way(&self, wait: Second) -> Metre {
+    fn travelled(&self, wait: Second) -> Metre {
         let Self { speed, present, .. } = *self;
         let wait = if present > 0.0 { wait.min(speed / present) } else { wait };
         if wait == f64::INFINITY {
@@ -283,7 +283,7 @@ mod tests {
     /// The distance after each millisecond of a road user that waits and then brakes fully, by small steps.
     fn driven(braking: &LateBraking, wait: Second) -> impl Iterator<Item = Metre> {
         const STEP: Second = 1e-4;
-        let (mut speed, mut way) = (braking.speed, 0.0);
+        let (mut speed, mut travelled) = (braking.speed, 0.0);
         let braking = *braking;
         (0..400_000).map(move |step| {
             let time = (f64::from(step) + 0.5) * STEP;
@@ -294,9 +294,9 @@ mod tests {
             };
             let deceleration = braking.present + (braking.deceleration - braking.present).max(0.0) * built_up;
             let next = (speed - deceleration * STEP).max(0.0);
-            way += (speed + next) / 2.0 * STEP;
+            travelled += (speed + next) / 2.0 * STEP;
             speed = next;
-            way
+            travelled
         })
     }
 
@@ -372,11 +372,11 @@ mod tests {
         #[test]
         fn the_longest_wait_of_two_uses_up_their_room(braking in braking(), other in braking(), room in 0.0..200.0) {
             let wait = braking.longest_wait_towards(&other, 1.0, room);
-            let ways = |wait| [&braking, &other].map(|one| driven(one, wait).last().unwrap()).iter().sum::<f64>();
+            let travelled = |wait| [&braking, &other].map(|one| driven(one, wait).last().unwrap()).iter().sum::<f64>();
             if wait < 0.0 {
-                prop_assert!(ways(0.0) > room - DOUBT);
+                prop_assert!(travelled(0.0) > room - DOUBT);
             } else if wait < 15.0 {
-                prop_assert!((ways(wait) - room).abs() < DOUBT, "{wait} s leads to {} of {room} m", ways(wait));
+                prop_assert!((travelled(wait) - room).abs() < DOUBT, "{wait} s leads to {} of {room} m", travelled(wait));
             }
         }
     }

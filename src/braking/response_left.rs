@@ -51,8 +51,8 @@ pub fn leader(foe: Braking, sigma: f64, room: Metre) -> Leader {
     if sigma > 0.0 {
         Leader { room, speed: sigma * foe.speed, deceleration: sigma * foe.brakes.deceleration }
     } else {
-        let way = narrowest::stopping_distance::<f64>(foe.speed, foe.brakes);
-        Leader { room: room + sigma * way, speed: 0.0, deceleration: 0.0 }
+        let stopping = narrowest::stopping_distance::<f64>(foe.speed, foe.brakes);
+        Leader { room: room + sigma * stopping, speed: 0.0, deceleration: 0.0 }
     }
 }
 

@@ -22,19 +22,19 @@ pub(crate) const LEAST_BRAKING: MetrePerSecondSquared = 4.0;
 pub(crate) const MOST_BRAKING: MetrePerSecondSquared = 8.0;
 
 /// The distance in m until a road user stands that first speeds up for its response time and then brakes.
-pub fn way(speed: MetrePerSecond) -> Metre {
+pub fn stopping_distance(speed: MetrePerSecond) -> Metre {
     let then = speed + RESPONSE * ACCELERATION;
     (speed + then) / 2.0 * RESPONSE + then * then / (2.0 * LEAST_BRAKING)
 }
 
 /// What the foe adds to the room, at σ = cos α: the way on which it brakes as a leader, or less its own way if oncoming.
 fn of_foe(foe: MetrePerSecond, sigma: f64) -> Metre {
-    sigma * if sigma > 0.0 { foe * foe / (2.0 * MOST_BRAKING) } else { way(foe) }
+    sigma * if sigma > 0.0 { foe * foe / (2.0 * MOST_BRAKING) } else { stopping_distance(foe) }
 }
 
 /// The safe distance in m behind a leader (σ = 1), of two that drive towards each other (σ = −1), and between.
 pub(crate) fn safe_distance(speed: MetrePerSecond, foe: MetrePerSecond, sigma: f64) -> Metre {
-    (way(speed) - of_foe(foe, sigma)).max(0.0)
+    (stopping_distance(speed) - of_foe(foe, sigma)).max(0.0)
 }
 
 /// The longest response time ρ of the ego in s with which the safe distance fits into a room; 0 where none does.
@@ -54,13 +54,13 @@ mod tests {
     /// The distance by small steps.
     fn driven(mut speed: f64) -> f64 {
         const STEP: f64 = 1e-5;
-        let (mut way, mut time) = (0.0, 0.0);
+        let (mut stopping_distance, mut time) = (0.0, 0.0);
         while time < RESPONSE || speed > 0.0 {
             let next = speed + STEP * if time < RESPONSE { ACCELERATION } else { -LEAST_BRAKING };
-            way += (speed + next.max(0.0)) / 2.0 * STEP;
+            stopping_distance += (speed + next.max(0.0)) / 2.0 * STEP;
             (speed, time) = (next, time + STEP);
         }
-        way
+        stopping_distance
     }
 
     #[test]

@@ -10,7 +10,7 @@ use super::measures::emergency_index::emergency_index;
 use super::measures::mttc::{Accelerating, mttc};
 use super::measures::plane::{Moving, anticipated_collision_time, delta_s};
 use super::measures::ttc::{HORIZON, SteadyMotion};
-use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss, threat};
+use super::measures::{accident, crash_potential, exposure, headway, mdrac, rss_lateral, threat};
 use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
 use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
@@ -153,7 +153,7 @@ impl PairInStep<'_> {
         let axis = &ego.rectangle.axis;
         let side = (foe.rectangle.centre - ego.rectangle.centre).dot(&left_of(axis)).signum();
         let leaves = side * cross(axis, &foe.rectangle.axis) * foe.speed;
-        (self.found.kind != Kind::Side).then(|| rss::lateral([0.0, -leaves]))
+        (self.found.kind != Kind::Side).then(|| rss_lateral::lateral([0.0, -leaves]))
     }
 
     fn required_braking(&self) -> Option<MetrePerSecondSquared> {

@@ -81,8 +81,8 @@ impl Course {
     }
 
     /// The lane at a distance ahead of the front bumper; the first or last beyond either end.
-    pub fn at(&self, way: Metre) -> Option<LaneIndex> {
-        let found = self.stretches.iter().find(|stretch| stretch.end > way);
+    pub fn at(&self, ahead: Metre) -> Option<LaneIndex> {
+        let found = self.stretches.iter().find(|stretch| stretch.end > ahead);
         found.or(self.stretches.last()).map(|stretch| stretch.lane)
     }
 

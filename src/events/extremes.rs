@@ -2,12 +2,12 @@
 
 use std::cell::LazyCell;
 
-use super::between::Closest;
 use super::chosen_measures::{ChosenMeasures, Step};
 use super::moment::Moment;
 use super::past::Past;
 use super::snapshot::Snapshot;
 use super::struck::Struck;
+use super::substep::Closest;
 use super::why::{Artefact, Manoeuvre, Pair, STANDS, Surroundings, Why, one_will_wait};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};

@@ -9,7 +9,6 @@
 //! logged, each run of such steps as a conflict of its own.
 
 mod alarm;
-mod between;
 mod chosen_measures;
 mod clips;
 mod event;
@@ -19,6 +18,7 @@ mod past;
 mod snapshot;
 mod span;
 mod struck;
+mod substep;
 mod tracker;
 mod under_way;
 mod why;

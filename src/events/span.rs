@@ -40,10 +40,10 @@ impl Span {
     pub fn stood(&mut self, time: Second) {
         let Extremes { worst, why, .. } = &mut self.extremes;
         if worst.time == time {
-            why.causes = why.causes.and_stood(why.manoeuvre);
+            why.causes = why.causes.with_stops(why.manoeuvre);
         }
         if let Some(step) = self.steps.as_mut().and_then(|steps| steps.last_mut()) {
-            step.causes = step.causes.and_stood(step.manoeuvre);
+            step.causes = step.causes.with_stops(step.manoeuvre);
         }
     }
 

@@ -4,9 +4,9 @@
 //! and the two lie in each other somehow. The first contact is found between the steps, so that the kind and the place of a
 //! collision depend on no step.
 
-use super::between::FirstContact;
 use super::moment::Moment;
 use super::past::Past;
+use super::substep::FirstContact;
 use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::geometry::{Point, Vector, angle_between};
@@ -78,6 +78,9 @@ fn course(contact: &FirstContact, one: usize, (user, profile): (UserIndex, &Prof
     if profile.category != Category::Person {
         return contact.axes[one];
     }
-    let ways = past.of(user, contact.time).map(|(_, place, _)| contact.fronts[one] - place);
-    ways.filter(|way| way.norm() >= WALKED).last().map_or(contact.axes[one], |way| way.normalize())
+    let displacements = past.of(user, contact.time).map(|(_, place, _)| contact.fronts[one] - place);
+    displacements
+        .filter(|displacement| displacement.norm() >= WALKED)
+        .last()
+        .map_or(contact.axes[one], |displacement| displacement.normalize())
 }

@@ -382,12 +382,12 @@ mod tests {
     fn a_crash_between_two_steps_is_a_collision() {
         let mut scene = TrackedPair::new();
         // Both cars are at the crossing after half a second; neither step shows them there.
-        for (time, way) in [(0.0, -10.0), (1.0, 15.0)] {
+        for (time, driven) in [(0.0, -10.0), (1.0, 15.0)] {
             let mut frame = Frame::default();
             frame.begin(time);
-            frame.push(scene.users[0], State { x: way, y: 0.0, z: 0.0, heading: 0.0, speed: 25.0 });
+            frame.push(scene.users[0], State { x: driven, y: 0.0, z: 0.0, heading: 0.0, speed: 25.0 });
             let heading = std::f64::consts::FRAC_PI_2;
-            frame.push(scene.users[1], State { x: 0.0, y: way, z: 0.0, heading, speed: 25.0 });
+            frame.push(scene.users[1], State { x: 0.0, y: driven, z: 0.0, heading, speed: 25.0 });
             let found = (time == 0.0).then(|| scene.encounter(Kind::Side, -1.0, f64::INFINITY));
             scene.tracker.step(&frame, &scene.roster, found.iter(), nothing(), None);
         }
@@ -470,9 +470,9 @@ mod tests {
         let mut so_far = |steps: std::ops::RangeInclusive<u32>| {
             let now = f64::from(*steps.end()) / 10.0;
             crossing_in(steps, &mut scene, 1.5, &[(0.2, -5.0), (0.3, -4.0)]);
-            let north = |way: f64| Pose {
-                distance: way,
-                front: Point::new(0.0, 10.0 * now - 26.0 + way),
+            let north = |driven: f64| Pose {
+                distance: driven,
+                front: Point::new(0.0, 10.0 * now - 26.0 + driven),
                 axis: [0.0, 1.0].into(),
             };
             let ahead = |user| if user == scene.users[1] { vec![north(0.0), north(20.0)] } else { Vec::new() };

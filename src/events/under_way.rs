@@ -3,12 +3,12 @@
 use smallvec::SmallVec;
 
 use super::alarm::{Alarm, PetSoFar};
-use super::between::{Between, Both, Closest, Moment};
 use super::event::Conflict;
 use super::extremes::{Extremes, Observation, WorstStep};
 use super::past::Past;
 use super::span::Span;
 use super::struck::Struck;
+use super::substep::{Between, Both, Closest, Moment};
 use super::why::{self, Artefact, Surroundings};
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::Severity;

@@ -107,15 +107,15 @@ impl Lines {
     pub(crate) fn push_beside(&mut self, point: Point, along: Metre) -> Metre {
         let mut rest = along;
         self.push_after(point, |step| {
-            let way = along.clamp(step / MOST_BESIDE, step * MOST_BESIDE);
-            rest -= way;
-            way
+            let shift = along.clamp(step / MOST_BESIDE, step * MOST_BESIDE);
+            rest -= shift;
+            shift
         });
         rest
     }
 
-    /// Appends a point; `way` is how far it is along the line from the point before, for a step of the plane.
-    fn push_after(&mut self, point: Point, way: impl FnOnce(Metre) -> Metre) {
+    /// Appends a point; `shift` is how far it is along the line from the point before, for a step of the plane.
+    fn push_after(&mut self, point: Point, shift: impl FnOnce(Metre) -> Metre) {
         let [.., begin, end] = &mut self.begins[..] else { return };
         let distance = match self.vertices[*begin as usize..].last() {
             Some(last) => {
@@ -123,9 +123,9 @@ impl Lines {
                 if step < ON_THE_LINE {
                     return;
                 }
-                let way = way(step) * self.stretch;
-                self.most_stretch = self.most_stretch.max(way / step);
-                last.distance + way
+                let shift = shift(step) * self.stretch;
+                self.most_stretch = self.most_stretch.max(shift / step);
+                last.distance + shift
             }
             None => 0.0,
         };

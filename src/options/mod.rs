@@ -8,7 +8,7 @@ mod choices;
 mod clip_level;
 pub mod condition;
 mod defaults;
-mod driver;
+mod driver_presets;
 pub mod measures;
 mod severity_rule;
 pub mod shortcut;
@@ -35,7 +35,7 @@ pub use align::Align;
 pub use choices::{Deceleration, Mode, PathModel};
 pub use clip_level::ClipLevel;
 pub use defaults::{BUILD_UP, EPSILON, RESPONSE};
-pub use driver::{DriverModel, DriverOptions};
+pub use driver_presets::{DriverModel, DriverOptions};
 pub use severity_rule::SeverityRule;
 pub use type_options::{BrakeSystem, TypeOptions};
 #[cfg(feature = "clap")]

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::driver::DriverOptions;
+use super::driver_presets::DriverOptions;
 use crate::util::limits::{DECELERATION, DURATION, LENGTH, MASS, WIDTH};
 use crate::util::units::{Kilogram, Metre, MetrePerSecondSquared, Second};
 

@@ -64,7 +64,7 @@ impl State {
     }
 
     #[inline]
-    fn is_possible(&self) -> bool {
+    fn is_plausible(&self) -> bool {
         let Self { x, y, z, heading, speed } = *self;
         POSITION.holds(x) & POSITION.holds(y) & HEIGHT.holds(z) & ANGLE.holds(heading) & SPEED.holds(speed)
     }
@@ -136,7 +136,7 @@ impl Frame {
     /// speed it is absent in this step: the row is left out, and `false` returned. So is one with values that no road user
     /// can have; `Run::step` then fails.
     pub fn push(&mut self, user: UserIndex, state: State) -> bool {
-        let valid = state.is_possible();
+        let valid = state.is_plausible();
         if valid {
             self.users.push(user);
             self.states.push(state);
@@ -165,7 +165,7 @@ impl Frame {
         if filled.is_ok() {
             for row in first..self.len() {
                 let state = self.states[row];
-                if state.is_possible() {
+                if state.is_plausible() {
                     self.states.swap(end, row);
                     self.users.swap(end, row);
                     end += 1;

@@ -1,6 +1,6 @@
 //! The road users of a scene, step by step, and the net on which they move.
 
-pub mod driver;
+pub mod driver_distributions;
 pub mod frame;
 pub mod lane_change;
 pub mod net;

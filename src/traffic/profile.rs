@@ -1,6 +1,6 @@
 //! The properties that all road users of a type share, from SUMO's type and the options.
 
-use super::driver::Driver;
+use super::driver_distributions::Driver;
 use super::sumo_type::SumoType;
 use crate::braking::Brakes;
 use crate::options::{BrakeSystem, Deceleration, Options, TypeOptions};

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use closecall::geometry::Vector;
 use closecall::{Align, Detector, Frame, Net, Options, Placement, Profile, Roster, State, SumoType};
 
-use super::way::Way;
+use super::road::Road;
 use proptest::prelude::*;
 
 fn car() -> Profile {
@@ -52,19 +52,19 @@ fn steps_at(detector: &mut Detector, net: Option<(&Net, Vec<f64>)>, steps: &[&[S
     (frame.rows().map(|row| row.state).collect(), ttc)
 }
 
-fn aligning(net: Option<&Way>) -> Detector {
-    let mut detector = Detector::new(&Options::default(), net.map(|way| way.net.clone()));
+fn aligning(net: Option<&Road>) -> Detector {
+    let mut detector = Detector::new(&Options::default(), net.map(|road| road.net.clone()));
     detector.set_averaged_over(1.0);
     detector
 }
 
 #[test]
 fn on_lanes_half_a_step_back_follows_the_bend() {
-    let (way, car) = (Way::bend(), car());
-    let at = |distance: f64| way.vehicle(&car, distance, 8.0);
+    let (road, car) = (Road::bend(), car());
+    let at = |distance: f64| road.vehicle(&car, distance, 8.0);
     for front in (20..200).map(f64::from) {
         let (found, _) =
-            second_step(&mut aligning(Some(&way)), Some((&way.net, front - 8.0)), [&[at(front - 8.0)], &[at(front)]]);
+            second_step(&mut aligning(Some(&road)), Some((&road.net, front - 8.0)), [&[at(front - 8.0)], &[at(front)]]);
         let (found, expected) = (found[0], at(front - 4.0));
         assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
         assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");
@@ -99,17 +99,17 @@ fn speeds_of_a_moment_are_left_where_they_are() {
 
 #[test]
 fn a_change_of_lanes_comes_after_the_step() {
-    let (way, car) = (Way::bend(), car());
-    let at = |distance: f64| way.vehicle(&car, distance, 8.0);
+    let (road, car) = (Road::bend(), car());
+    let at = |distance: f64| road.vehicle(&car, distance, 8.0);
     // The other lane may begin some metres further on.
     let fronts = (48..200).map(f64::from);
     for (front, further) in fronts.flat_map(|front| [(front, 0.0), (front, 6.0)]) {
-        let along = (way.at(front + 0.1) - way.at(front - 0.1)).normalize();
+        let along = (road.at(front + 0.1) - road.at(front - 0.1)).normalize();
         let moved = Vector::new(along.y, -along.x) * 3.2 + along * further;
         let mut to = at(front);
         (to.x, to.y, to.heading) = (to.x + moved.x, to.y + moved.y, to.heading - 0.7);
         let steps: [&[State]; 2] = [&[at(front - 8.0)], &[to]];
-        let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, front - 8.0)), steps);
+        let (found, _) = second_step(&mut aligning(Some(&road)), Some((&road.net, front - 8.0)), steps);
         let (found, expected) = (found[0], at(front - 4.0));
         assert!((found.front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
         assert!((found.heading - expected.heading).abs() < 1e-9, "{front}: {found:?} {expected:?}");
@@ -118,25 +118,25 @@ fn a_change_of_lanes_comes_after_the_step() {
 
 #[test]
 fn one_that_stands_changes_lanes_after_the_step() {
-    let (way, car) = (Way::bend(), car());
+    let (road, car) = (Road::bend(), car());
     for front in (48..200).map(f64::from) {
-        let expected = State { speed: 0.0, ..way.vehicle(&car, front, 8.0) };
-        let along = way.at(front + 0.1) - way.at(front - 0.1);
+        let expected = State { speed: 0.0, ..road.vehicle(&car, front, 8.0) };
+        let along = road.at(front + 0.1) - road.at(front - 0.1);
         let aside = Vector::new(along.y, -along.x).normalize() * 3.2;
         let to = State { x: expected.x + aside.x, y: expected.y + aside.y, ..expected };
-        let steps: [&[State]; 2] = [&[way.vehicle(&car, front, 8.0)], &[to]];
-        let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, front)), steps);
+        let steps: [&[State]; 2] = [&[road.vehicle(&car, front, 8.0)], &[to]];
+        let (found, _) = second_step(&mut aligning(Some(&road)), Some((&road.net, front)), steps);
         assert!((found[0].front() - expected.front()).norm() < 1e-9, "{front}: {found:?} {expected:?}");
     }
 }
 
 #[test]
 fn one_that_is_put_elsewhere_has_not_changed_lanes() {
-    let (way, car) = (Way::bend(), car());
-    let before = way.vehicle(&car, 60.0, 8.0);
+    let (road, car) = (Road::bend(), car());
+    let before = road.vehicle(&car, 60.0, 8.0);
     let to = State { x: before.x + 30.0, y: before.y + 30.0, speed: 2.0, ..before };
     let steps: [&[State]; 2] = [&[before], &[to]];
-    let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, 60.0)), steps);
+    let (found, _) = second_step(&mut aligning(Some(&road)), Some((&road.net, 60.0)), steps);
     assert_eq!(found, [to]);
 }
 
@@ -156,13 +156,13 @@ fn what_enters_after_the_moment_meets_nothing_and_stays() {
 
 #[test]
 fn what_was_put_elsewhere_meets_nothing_there() {
-    let (way, car) = (Way::bend(), car());
-    let stands = way.vehicle(&car, 100.0, 0.0);
+    let (road, car) = (Road::bend(), car());
+    let stands = road.vehicle(&car, 100.0, 0.0);
     let encounters = |from: f64| {
-        let mut detector = aligning(Some(&way));
-        let before = way.vehicle(&car, from, 8.0);
-        let steps: [&[State]; 2] = [&[before, stands], &[way.vehicle(&car, 93.0, 8.0), stands]];
-        second_step(&mut detector, Some((&way.net, from)), steps);
+        let mut detector = aligning(Some(&road));
+        let before = road.vehicle(&car, from, 8.0);
+        let steps: [&[State]; 2] = [&[before, stands], &[road.vehicle(&car, 93.0, 8.0), stands]];
+        second_step(&mut detector, Some((&road.net, from)), steps);
         detector.encounters().count()
     };
     assert_eq!((encounters(85.0), encounters(60.0)), (1, 0));
@@ -170,9 +170,9 @@ fn what_was_put_elsewhere_meets_nothing_there() {
 
 #[test]
 fn one_that_was_away_for_a_step_is_where_it_came_back() {
-    let (way, car) = (Way::bend(), car());
-    let [before, elsewhere] = [95.0, 170.0].map(|front| way.vehicle(&car, front, 8.0));
-    let (mut detector, mut roster, mut frame) = (aligning(Some(&way)), Roster::default(), Frame::default());
+    let (road, car) = (Road::bend(), car());
+    let [before, elsewhere] = [95.0, 170.0].map(|front| road.vehicle(&car, front, 8.0));
+    let (mut detector, mut roster, mut frame) = (aligning(Some(&road)), Roster::default(), Frame::default());
     let profile = roster.profile(car).unwrap();
     let user = roster.enter("teleported", profile);
     for (time, state) in [Some(before), None, Some(elsewhere)].into_iter().enumerate() {
@@ -182,9 +182,9 @@ fn one_that_was_away_for_a_step_is_where_it_came_back() {
         }
         for row in detector.track_paths(&frame, &roster).to_vec() {
             let placement = Placement {
-                lane: way.net.lane("e_0").unwrap(),
+                lane: road.net.lane("e_0").unwrap(),
                 position: if time == 0 { 95.0 } else { 170.0 },
-                route: Some([way.net.edge("e").unwrap()].into()),
+                route: Some([road.net.edge("e").unwrap()].into()),
                 route_position: 0,
                 lateral_speed: 0.0,
             };
@@ -198,7 +198,7 @@ fn one_that_was_away_for_a_step_is_where_it_came_back() {
 
 #[test]
 fn one_that_a_script_steers_is_half_way_on_its_own_way() {
-    let way = Way::bend();
+    let road = Road::bend();
     // Across the lane, at steps of which each is more and less than a lane wide, and askew.
     for (angle, speed) in [(FRAC_PI_2, 8.0), (FRAC_PI_2, 2.0), (FRAC_PI_2, 0.5), (0.8, 8.0), (0.8, 1.0), (-1.2, 12.0)] {
         let at = |past: f64| {
@@ -206,7 +206,7 @@ fn one_that_a_script_steers_is_half_way_on_its_own_way() {
             State { x: 50.0 + past * speed * cosine, y: past * speed * sine, z: 0.0, heading: angle, speed }
         };
         let steps: [&[State]; 2] = [&[at(-0.7)], &[at(0.3)]];
-        let (found, _) = second_step(&mut aligning(Some(&way)), Some((&way.net, 50.0)), steps);
+        let (found, _) = second_step(&mut aligning(Some(&road)), Some((&road.net, 50.0)), steps);
         let (found, expected) = (found[0], at(-0.2));
         assert!((found.front() - expected.front()).norm() < 1e-9, "{found:?} {expected:?}");
         assert_eq!(found.heading, angle);
@@ -215,11 +215,11 @@ fn one_that_a_script_steers_is_half_way_on_its_own_way() {
 
 #[test]
 fn one_that_a_script_steers_is_predicted_where_it_heads() {
-    let way = Way::bend();
+    let road = Road::bend();
     let crossing = |y: f64| State { x: 50.0, y, z: 0.0, heading: FRAC_PI_2, speed: 8.0 };
     let stands = State { x: 50.0, y: 9.0, z: 0.0, heading: FRAC_PI_2, speed: 0.0 };
-    let mut detector = aligning(Some(&way));
-    second_step(&mut detector, Some((&way.net, 50.0)), [&[crossing(-8.0), stands], &[crossing(0.0), stands]]);
+    let mut detector = aligning(Some(&road));
+    second_step(&mut detector, Some((&road.net, 50.0)), [&[crossing(-8.0), stands], &[crossing(0.0), stands]]);
     assert_eq!(detector.encounters().count(), 1);
 }
 
@@ -263,15 +263,15 @@ proptest! {
         turned in prop_oneof![Just(0.0), -3.0..3.0], before in prop_oneof![Just(0.0), -3.0..3.0],
         speed in prop_oneof![Just(0.0), 0.0..20.0], has_net in any::<bool>(),
     ) {
-        let (way, car) = (Way::bend(), car());
-        let last = way.vehicle(&car, front, speed);
+        let (road, car) = (Road::bend(), car());
+        let last = road.vehicle(&car, front, speed);
         let last = State { heading: last.heading + before, ..last };
         let ahead = (front + speed + further).max(6.0);
-        let to = way.vehicle(&car, ahead, speed);
+        let to = road.vehicle(&car, ahead, speed);
         let across = Vector::new(-to.heading.sin(), to.heading.cos()) * aside;
         let to = State { x: to.x + across.x, y: to.y + across.y, heading: to.heading + turned, ..to };
-        let net = has_net.then_some(&way);
-        let places = net.map(|way| (&*way.net, vec![front, ahead]));
+        let net = has_net.then_some(&road);
+        let places = net.map(|road| (&*road.net, vec![front, ahead]));
         let (found, _) = steps_at(&mut aligning(net), places, &[&[last], &[to]]);
         let (from, to, found) = (last.front(), to.front(), found[0]);
         let middle = from + (to - from) / 2.0;

@@ -57,8 +57,8 @@ fn crossing_links(foes: [&str; 2]) -> Net {
 fn links_that_are_no_foes_cross_only_as_drawn() {
     let found = |foes: [&str; 2]| {
         let net = crossing_links(foes);
-        let ways = [["a_0", ":j_0_0", "c_0"], ["b_0", ":j_1_0", "d_0"]];
-        let drives = ways.map(|lanes| drive(&lanes, 60.0, |_| 12.0));
+        let routes = [["a_0", ":j_0_0", "c_0"], ["b_0", ":j_1_0", "d_0"]];
+        let drives = routes.map(|lanes| drive(&lanes, 60.0, |_| 12.0));
         set_aside(&net, &drives, 6.0)
     };
     assert_eq!(found(["00", "00"]), [(Some(Artefact::DrawnOverlap), Severity::Critical)]);

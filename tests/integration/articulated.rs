@@ -9,7 +9,7 @@ use closecall::geometry::rectangle::Rectangle;
 use closecall::{Detector, Encounter, Frame, Kind, Options, Placement, Point, Profile, Roster, State, SumoType};
 use proptest::prelude::*;
 
-use super::way::Way;
+use super::road::Road;
 
 fn articulated(shape: &str, class: &str, length: f64) -> Profile {
     let sumo = SumoType { length, shape: shape.to_owned(), ..SumoType::of_class("long", class) };
@@ -21,22 +21,22 @@ fn tram() -> Profile {
 }
 
 /// What a long vehicle and a car meet; each step is where the front bumper of the one is and how fast it is, and the car.
-fn meet(way: &Way, profile: &Profile, steps: &[(f64, f64, State)], options: &Options) -> Vec<Encounter> {
+fn meet(road: &Road, profile: &Profile, steps: &[(f64, f64, State)], options: &Options) -> Vec<Encounter> {
     let mut roster = Roster::default();
     let types = [profile.clone(), Profile::vehicle(&SumoType::car("car"), options)];
     let types = types.map(|profile| roster.profile(profile).unwrap());
     let users = [roster.enter("a", types[0]), roster.enter("b", types[1])];
-    let mut detector = Detector::new(options, Some(way.net.clone()));
+    let mut detector = Detector::new(options, Some(road.net.clone()));
     let mut frame = Frame::default();
     for (time, (distance, speed, car)) in steps.iter().enumerate() {
         frame.begin(time as f64);
-        frame.push(users[0], way.vehicle(profile, *distance, *speed));
+        frame.push(users[0], road.vehicle(profile, *distance, *speed));
         frame.push(users[1], *car);
         for row in detector.track_paths(&frame, &roster).to_vec().into_iter().filter(|row| *row == 0) {
             let placement = Placement {
-                lane: way.net.lane("e_0").unwrap(),
+                lane: road.net.lane("e_0").unwrap(),
                 position: *distance,
-                route: Some([way.net.edge("e").unwrap()].into()),
+                route: Some([road.net.edge("e").unwrap()].into()),
                 route_position: 0,
                 lateral_speed: 0.0,
             };
@@ -61,11 +61,11 @@ fn inside() -> State {
 #[test]
 fn a_tram_passes_what_stands_beside_it_on_a_bend() {
     let cars = [(16.5, 20.0), (15.0, 50.0), (16.5, 80.0), (23.0, 10.0), (23.0, 40.0), (23.0, 85.0)];
-    let way = Way::bend();
+    let road = Road::bend();
     let times_met = |profile: &Profile| {
         let places = cars.iter().flat_map(|car| (60..180).step_by(3).map(move |front| (car, f64::from(front))));
         let met = places.filter(|((radius, degrees), front)| {
-            !meet(&way, profile, &[(*front, 8.0, stands(*radius, *degrees))], &Options::default()).is_empty()
+            !meet(&road, profile, &[(*front, 8.0, stands(*radius, *degrees))], &Options::default()).is_empty()
         });
         met.count()
     };
@@ -76,24 +76,24 @@ fn a_tram_passes_what_stands_beside_it_on_a_bend() {
 
 #[test]
 fn a_tram_runs_into_what_stands_in_its_way_on_a_bend() {
-    let (way, tram) = (Way::bend(), tram());
-    let stands = way.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 122.0, 0.0);
-    let [found] = meet(&way, &tram, &[(108.0, 8.0, stands)], &Options::default())[..] else { panic!() };
+    let (road, tram) = (Road::bend(), tram());
+    let stands = road.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 122.0, 0.0);
+    let [found] = meet(&road, &tram, &[(108.0, 8.0, stands)], &Options::default())[..] else { panic!() };
     assert_eq!((found.kind, found.ego.0), (Kind::RearEnd, 0));
     assert!((found.gap - 9.0).abs() < 0.3, "{found:?}");
-    let [found] = meet(&way, &tram, &[(150.0, 8.0, stands)], &Options::default())[..] else { panic!() };
+    let [found] = meet(&road, &tram, &[(150.0, 8.0, stands)], &Options::default())[..] else { panic!() };
     assert!(found.collision && found.overlap > 1.5, "{found:?}");
 }
 
 #[test]
 fn a_conflict_with_the_tail_of_a_tram_is_where_its_tail_is() {
-    let (way, tram) = (Way::bend(), tram());
-    let behind = way.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 96.0, 12.0);
-    let [found] = meet(&way, &tram, &[(147.0, 4.0, behind)], &Options::default())[..] else { panic!() };
+    let (road, tram) = (Road::bend(), tram());
+    let behind = road.vehicle(&Profile::vehicle(&SumoType::car("car"), &Options::default()), 96.0, 12.0);
+    let [found] = meet(&road, &tram, &[(147.0, 4.0, behind)], &Options::default())[..] else { panic!() };
     assert_eq!((found.kind, found.ego.0), (Kind::RearEnd, 1), "a car follows it round the bend");
     assert!((found.gap - 6.0).abs() < 0.3, "{found:?}");
     let across = State { x: 104.0, y: 1.0, z: 0.0, heading: -std::f64::consts::FRAC_PI_2, speed: 6.0 };
-    let [found] = meet(&way, &tram, &[(140.0, 8.0, across)], &Options::default())[..] else { panic!() };
+    let [found] = meet(&road, &tram, &[(140.0, 8.0, across)], &Options::default())[..] else { panic!() };
     assert!(found.collision && found.ego.0 == 1, "{found:?}");
     assert!((Point::new(found.x, found.y) - Point::new(104.0, 1.0)).norm() < 6.0, "{found:?}");
 }
@@ -102,9 +102,9 @@ fn a_conflict_with_the_tail_of_a_tram_is_where_its_tail_is() {
 fn a_tram_that_has_stopped_on_a_bend_still_bends() {
     let passes = State { speed: 2.0, ..inside() };
     let [before, stands] = [(147.5, 4.0, inside()), (148.0, 0.0, passes)];
-    assert_eq!(meet(&Way::bend(), &tram(), &[before, stands, stands], &Options::default()), []);
+    assert_eq!(meet(&Road::bend(), &tram(), &[before, stands, stands], &Options::default()), []);
     let across = State { x: 112.0, y: 10.0, z: 0.0, heading: -std::f64::consts::FRAC_PI_4, speed: 8.0 };
-    let [found] = meet(&Way::bend(), &tram(), &[before, (148.0, 0.0, across)], &Options::default())[..] else {
+    let [found] = meet(&Road::bend(), &tram(), &[before, (148.0, 0.0, across)], &Options::default())[..] else {
         panic!()
     };
     assert_eq!((found.kind, found.ego.0), (Kind::Side, 1));
@@ -113,12 +113,12 @@ fn a_tram_that_has_stopped_on_a_bend_still_bends() {
 
 #[test]
 fn on_a_straight_way_a_tram_is_one_rectangle() {
-    let (way, tram) = (Way::through(vec![Point::origin(), Point::new(300.0, 0.0)]), tram());
+    let (road, tram) = (Road::through(vec![Point::origin(), Point::new(300.0, 0.0)]), tram());
     let rigid = Profile { carriages: 1, chord: tram.length, ..tram.clone() };
     for y in [0.0, 2.0, 9.0] {
         let car = State { x: 90.0, y, z: 0.0, heading: -0.4, speed: 9.0 };
         let [bends, stiff] =
-            [&tram, &rigid].map(|profile| meet(&way, profile, &[(120.0, 9.0, car)], &Options::default()));
+            [&tram, &rigid].map(|profile| meet(&road, profile, &[(120.0, 9.0, car)], &Options::default()));
         assert_eq!(bends, stiff);
     }
 }
@@ -185,14 +185,14 @@ proptest! {
         turns in turns(), profile in shape(), moves in prop::collection::vec(0.0..9.0, 1..4),
         (x, y) in (-30.0..30.0, -30.0..30.0), behind in 0.0..60.0, heading in -3.2..3.2, speed in 0.0..15.0,
     ) {
-        let (way, mut front) = (Way::turning(&turns), 125.0);
-        let near = way.at(front - behind);
+        let (road, mut front) = (Road::turning(&turns), 125.0);
+        let near = road.at(front - behind);
         let car = State { x: near.x + x, y: near.y + y, z: 0.0, heading, speed };
         let steps = moves.iter().map(|speed| { front += speed; (front, *speed, car) }).collect::<Vec<_>>();
         let steps = [(125.0, 5.0, car)].into_iter().chain(steps).chain([(front, 0.0, car)]).collect::<Vec<_>>();
         for steps in [&steps[..steps.len() - 1], &steps] {
             let [left_out, kept] = [false, true].map(|keep_all| {
-                meet(&way, &profile, steps, &Options { keep_all, ..Options::default() })
+                meet(&road, &profile, steps, &Options { keep_all, ..Options::default() })
             });
             prop_assert_eq!(left_out, kept);
         }
@@ -202,15 +202,15 @@ proptest! {
     fn a_vehicle_collides_with_what_one_of_its_carriages_touches(
         turns in turns(), profile in shape(), (x, y) in (-4.0..4.0, -4.0..4.0), behind in 0.0..60.0, heading in -3.2..3.2,
     ) {
-        let way = Way::turning(&turns);
-        let near = way.at(130.0 - behind);
+        let road = Road::turning(&turns);
+        let near = road.at(130.0 - behind);
         let car = State { x: near.x + x, y: near.y + y, z: 0.0, heading, speed: 0.0 };
         let of_car = Rectangle::behind(car.front(), Vector::new(heading.cos(), heading.sin()), 5.0, 1.8);
         let touched = profile.carriages().any(|carriage| {
-            let [front, rear] = [0.0, carriage.length].map(|length| way.at(130.0 - carriage.behind - length));
+            let [front, rear] = [0.0, carriage.length].map(|length| road.at(130.0 - carriage.behind - length));
             touches(&Rectangle::behind(front, (front - rear).normalize(), carriage.length, profile.width), &of_car)
         });
-        let found = meet(&way, &profile, &[(130.0, 5.0, car)], &Options { contact_tolerance: 0.0, ..Options::default() });
+        let found = meet(&road, &profile, &[(130.0, 5.0, car)], &Options { contact_tolerance: 0.0, ..Options::default() });
         prop_assert_eq!(found.iter().any(|found| found.collision), touched);
     }
 }

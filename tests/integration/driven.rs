@@ -14,17 +14,17 @@ use proptest::prelude::*;
 const CAR: f64 = 5.0;
 
 /// A car's way: the place of its front bumper by the metres driven, 0 where the recording begins.
-type Way = Box<dyn Fn(f64) -> Point>;
+type Road = Box<dyn Fn(f64) -> Point>;
 
 /// A recording of cars that drive along their ways at constant speeds, on one lane.
-fn recording(ways: &[(Way, f64)], seconds: f64, rate: f64) -> tempfile::NamedTempFile {
+fn recording(roads: &[(Road, f64)], seconds: f64, rate: f64) -> tempfile::NamedTempFile {
     let mut text =
         "timestep_time;vehicle_id;vehicle_x;vehicle_y;vehicle_angle;vehicle_speed;vehicle_lane;vehicle_pos\n"
             .to_owned();
     for step in 0..(seconds * rate) as u32 {
         let time = f64::from(step) / rate;
-        for (number, (way, speed)) in ways.iter().enumerate() {
-            let (front, rear) = (way(speed * time), way(speed * time - CAR));
+        for (number, (travelled, speed)) in roads.iter().enumerate() {
+            let (front, rear) = (travelled(speed * time), travelled(speed * time - CAR));
             let ahead = front - rear;
             let (x, y, angle) = (front.x, front.y, 90.0 - ahead.y.atan2(ahead.x).to_degrees());
             writeln!(text, "{time};{number};{x};{y};{angle};{speed};a_0;{}", speed * time + 10.0).unwrap();
@@ -47,12 +47,12 @@ fn replay(file: &Path, net: Option<&Arc<Net>>, settings: &[(&str, &str)], mut ea
 }
 
 /// East, round a quarter of a circle to the left, north: the circle, of 10 m radius, begins after `turns_after` metres.
-fn left_turn(from: Point, turns_after: f64) -> Way {
-    Box::new(move |way| {
-        let round = (way - turns_after).clamp(0.0, 10.0 * FRAC_PI_2);
+fn left_turn(from: Point, turns_after: f64) -> Road {
+    Box::new(move |travelled| {
+        let round = (travelled - turns_after).clamp(0.0, 10.0 * FRAC_PI_2);
         let (sine, cosine) = (round / 10.0).sin_cos();
-        let beyond = (way - turns_after - 10.0 * FRAC_PI_2).max(0.0);
-        Point::new(from.x + way.min(turns_after) + 10.0 * sine, from.y + 10.0 * (1.0 - cosine) + beyond)
+        let beyond = (travelled - turns_after - 10.0 * FRAC_PI_2).max(0.0);
+        Point::new(from.x + travelled.min(turns_after) + 10.0 * sine, from.y + 10.0 * (1.0 - cosine) + beyond)
     })
 }
 
@@ -63,8 +63,8 @@ fn a_turn_to_come_is_met_with_the_right_ttc_and_mu() {
     let until_north = 20.0 - 10.0 - 0.9;
     let turns_after = 40.0 - until_north - 10.0 * FRAC_PI_2;
     let turner = left_turn(Point::new(-10.0 - turns_after, -20.0), turns_after);
-    let ways: [(Way, f64); 2] = [(Box::new(|way| Point::new(-40.0 + way, 0.0)), 10.0), (turner, 10.0)];
-    let file = recording(&ways, 6.0, 25.0);
+    let roads: [(Road, f64); 2] = [(Box::new(|travelled| Point::new(-40.0 + travelled, 0.0)), 10.0), (turner, 10.0)];
+    let file = recording(&roads, 6.0, 25.0);
     let mut seen = 0;
     replay(file.path(), None, &[("path", "driven"), ("log", "ttc < 5")], |time, run| {
         for found in run.in_conflict().filter(|_| time < 3.8) {
@@ -107,7 +107,7 @@ proptest! {
     ) {
         // A lane whose direction swings: no tighter than the radius.
         let wave = amplitude * radius * 2.0;
-        let direction = move |way: f64| amplitude * f64::sin(way * 2.0 * PI / (wave * PI));
+        let direction = move |travelled: f64| amplitude * f64::sin(travelled * 2.0 * PI / (wave * PI));
         let mut lane = vec![Point::new(0.0, 0.0)];
         for piece in 0..800 {
             let (sine, cosine) = direction(f64::from(piece) * 0.5).sin_cos();
@@ -116,12 +116,12 @@ proptest! {
         let shape = lane.iter().map(|point| format!("{},{}", point.x, point.y)).collect::<Vec<_>>().join(" ");
         let net = format!(r#"<net><edge id="a" from="s" to="e"><lane id="a_0" index="0" length="400" shape="{shape}"/></edge></net>"#);
         let net = Arc::new(closecall_run::net::parse(Path::new("net"), net).unwrap());
-        let way: Way = Box::new(move |way| {
-            let along = (way + 10.0) / 0.5;
+        let travelled: Road = Box::new(move |travelled| {
+            let along = (travelled + 10.0) / 0.5;
             let piece = along as usize;
             lane[piece] + (lane[piece + 1] - lane[piece]) * along.fract()
         });
-        let file = recording(&[(way, speed)], 6.0, rate);
+        let file = recording(&[(travelled, speed)], 6.0, rate);
         let paths = ["lanes", "driven"].map(|path| {
             let mut paths = Vec::new();
             replay(file.path(), Some(&net), &[("path", path)], |_, run| paths.push(run.path(run.frame.user(0))));

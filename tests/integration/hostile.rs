@@ -7,8 +7,8 @@ use closecall::{Options, Profile, State, SumoType};
 use closecall_analysis::logged::ConflictReader;
 use closecall_run::Run;
 use closecall_run::input::replay::demand;
+use closecall_run::input::replay::recorded_step::RecordedStep;
 use closecall_run::input::replay::recording::Recording;
-use closecall_run::input::replay::rows::RecordedStep;
 use closecall_run::input::tracks::{TrackOptions, open};
 
 use crate::street::street;

@@ -26,11 +26,11 @@ mod net_relations;
 mod one_between;
 mod path;
 mod replay;
+mod road;
 mod route;
 #[path = "../common/street.rs"]
 mod street;
 mod struck;
 mod sublane;
 mod time_to_collision;
-mod way;
 mod why;

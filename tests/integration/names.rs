@@ -36,8 +36,8 @@ impl Scene {
             for (vehicle, user) in &users {
                 let state = self.0[*vehicle];
                 let (sine, cosine) = state.heading.sin_cos();
-                let way = state.speed * time;
-                run.frame.push(*user, State { x: state.x + way * cosine, y: state.y + way * sine, ..state });
+                let driven = state.speed * time;
+                run.frame.push(*user, State { x: state.x + driven * cosine, y: state.y + driven * sine, ..state });
             }
             run.step(|_, _| Ok::<_, Error>(())).unwrap();
         }

@@ -6,9 +6,9 @@ use std::path::Path;
 
 use closecall::EdgeIndex;
 use closecall_run::input::replay::demand::PlannedRoutes;
+use closecall_run::input::replay::recorded_step::RecordedStep;
 use closecall_run::input::replay::recording::Recording;
 use closecall_run::input::replay::routes::Routes;
-use closecall_run::input::replay::rows::RecordedStep;
 use proptest::prelude::*;
 
 /// One row with all its values.

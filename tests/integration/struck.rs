@@ -118,10 +118,10 @@ fn a_slow_vehicle_is_struck_alike_at_every_step() {
 fn a_car_that_turns_strikes_a_person_as_it_is_headed_then() {
     // It turns left on a radius of 8 m with 6 m/s, and comes to the person after 70° of the turn.
     let turning = |time: f64| {
-        let way = 6.0 * (time - 3.0);
-        let angle = (way / 8.0).clamp(0.0, FRAC_PI_2);
-        let rest = (way - 8.0 * FRAC_PI_2).max(0.0);
-        state(way.min(0.0) + 8.0 * angle.sin(), 8.0 - 8.0 * angle.cos() + rest, angle, 6.0)
+        let distance = 6.0 * (time - 3.0);
+        let angle = (distance / 8.0).clamp(0.0, FRAC_PI_2);
+        let rest = (distance - 8.0 * FRAC_PI_2).max(0.0);
+        state(distance.min(0.0) + 8.0 * angle.sin(), 8.0 - 8.0 * angle.cos() + rest, angle, 6.0)
     };
     let at = 1.22_f64;
     let place = (8.0 * at.sin(), 8.0 - 8.0 * at.cos());

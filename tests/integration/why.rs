@@ -58,7 +58,7 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
         run.enter(&format!("car{number}"), profile)
     };
     let users = drives.iter().zip(0..).map(&mut enter).collect::<Vec<_>>();
-    let mut ways = drives.iter().map(|drive| drive.start).collect::<Vec<_>>();
+    let mut routes = drives.iter().map(|drive| drive.start).collect::<Vec<_>>();
     for step in 0..(lasts / STEP) as u32 {
         let time = f64::from(step) * STEP;
         run.begin_step(time);
@@ -66,10 +66,10 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
             run.set_signal(0, state);
         }
         let mut placements = Vec::new();
-        for ((drive, user), way) in drives.iter().zip(&users).zip(&mut ways) {
+        for ((drive, user), displacement) in drives.iter().zip(&users).zip(&mut routes) {
             let speed = (drive.speed)(time);
-            *way += if step > 0 { speed * STEP } else { 0.0 };
-            let mut position = *way;
+            *displacement += if step > 0 { speed * STEP } else { 0.0 };
+            let mut position = *displacement;
             let mut lanes = drive.lanes.iter().map(|lane| net.lane(lane).unwrap()).peekable();
             let mut lane = lanes.next().unwrap();
             while position > net.lanes[lane.0 as usize].length && lanes.peek().is_some() {
@@ -119,12 +119,12 @@ fn place(net: &Net, lane: closecall::LaneIndex, position: f64) -> ([f64; 2], f64
     let shape = &net.lanes[lane.0 as usize].shape;
     let mut left = position;
     for ends in shape.windows(2) {
-        let way = ends[1] - ends[0];
-        if left <= way.norm() || std::ptr::eq(ends.last().unwrap(), shape.last().unwrap()) {
-            let at = ends[0] + way * (left / way.norm());
-            return ([at.x, at.y], way.y.atan2(way.x));
+        let displacement = ends[1] - ends[0];
+        if left <= displacement.norm() || std::ptr::eq(ends.last().unwrap(), shape.last().unwrap()) {
+            let at = ends[0] + displacement * (left / displacement.norm());
+            return ([at.x, at.y], displacement.y.atan2(displacement.x));
         }
-        left -= way.norm();
+        left -= displacement.norm();
     }
     unreachable!("a lane has two points")
 }
@@ -157,9 +157,9 @@ pub(crate) const LEFT: [&str; 4] = ["from_south_1", ":centre_8_0", ":centre_14_0
 pub(crate) const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south_0"];
 
 /// Two cars on the crossing of `left_turn`, each at a distance before the junction, in m, and with a speed, in m/s.
-fn at_the_crossing(ways: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {
+fn at_the_crossing(routes: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {
     let net = net_of("left_turn");
-    let drives = ways.map(|(lanes, before)| {
+    let drives = routes.map(|(lanes, before)| {
         let length = net.lanes[net.lane(lanes[0]).unwrap().0 as usize].length;
         drive(lanes, length - before, |_| 10.0)
     });
@@ -169,22 +169,22 @@ fn at_the_crossing(ways: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -
 #[test]
 fn one_that_crosses_against_the_right_of_way_did_not_yield() {
     let net = net_of("side");
-    let ways = [
+    let routes = [
         drive(&["from_south_0", ":crossing_0_0", "to_north_0"], 36.0, |_| 15.0),
         drive(&["from_west_0", ":crossing_1_0", "to_east_0"], 44.0, |_| 15.0),
     ];
-    assert_eq!(logged(&net, &ways, &[], 9.0), [["side", "crossing", "did_not_yield"]]);
+    assert_eq!(logged(&net, &routes, &[], 9.0), [["side", "crossing", "did_not_yield"]]);
 }
 
 #[test]
 fn one_that_lets_the_other_go_first_has_yielded() {
     let net = net_of("side");
     let causes = |[south, west]: [f64; 2]| {
-        let ways = [
+        let routes = [
             drive(&["from_south_0", ":crossing_0_0", "to_north_0"], south, |_| 15.0),
             drive(&["from_west_0", ":crossing_1_0", "to_east_0"], west, |_| 15.0),
         ];
-        let found = logged(&net, &ways, &[], 9.0);
+        let found = logged(&net, &routes, &[], 9.0);
         let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
         assert_eq!(manoeuvre, "crossing");
         why.clone()
@@ -199,11 +199,11 @@ fn the_light_at_the_entry_leaves_the_right_of_way() {
     let net = net_of("left_turn");
     let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
     let turns = |time: f64| if time < 2.0 { 0.0 } else { 6.0 };
-    let ways =
+    let routes =
         [drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0)];
     // The oncoming car passes its stop line at 1.8 s.
     for (red, cause) in [(1.9, "did_not_yield"), (1.5, "ran_red")] {
-        let found = logged(&net, &ways, &[(0.0, "rGrrrrrrgrrr"), (red, "rrrrrrrrrrrr")], 5.0);
+        let found = logged(&net, &routes, &[(0.0, "rGrrrrrrgrrr"), (red, "rrrrrrrrrrrr")], 5.0);
         let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
         assert_eq!((&**manoeuvre, &**why), ("left_turn_across", cause));
     }
@@ -211,14 +211,14 @@ fn the_light_at_the_entry_leaves_the_right_of_way() {
 
 #[test]
 fn a_left_turn_across_the_oncoming_car_is_named_with_its_light() {
-    let ways: [(&[&str], f64); 2] = [(&LEFT, 15.0), (&ONCOMING, 18.0)];
+    let routes: [(&[&str], f64); 2] = [(&LEFT, 15.0), (&ONCOMING, 18.0)];
     // Links 1 and 8 of the twelve are those of the two.
     for (signals, cause) in [
         (&[(0.0, "rGrrrrrrgrrr")][..], "did_not_yield"),
         (&[(0.0, "rGrrrrrrgrrr"), (0.8, "rGrrrrrryrrr"), (0.9, "rGrrrrrrrrrr")], "ran_red"),
         (&[], ""),
     ] {
-        let found = at_the_crossing(ways, signals);
+        let found = at_the_crossing(routes, signals);
         let [[_, manoeuvre, why]] = &found[..] else { panic!("{found:?}") };
         assert_eq!((&**manoeuvre, &**why), ("left_turn_across", cause));
     }
@@ -226,10 +226,10 @@ fn a_left_turn_across_the_oncoming_car_is_named_with_its_light() {
 
 #[test]
 fn late_amber_is_one_that_left_room_to_stop() {
-    let ways: [(&[&str], f64); 2] = [(&["from_west_0", ":centre_10_0", "to_east_0"], 38.0), (&ONCOMING, 30.0)];
+    let routes: [(&[&str], f64); 2] = [(&["from_west_0", ":centre_10_0", "to_east_0"], 38.0), (&ONCOMING, 30.0)];
     // It passes the stop line at 3.8 s. At 10 m/s it could have stopped if amber came 2.6 s before.
     for (amber, cause) in [(1.0, "late_amber"), (1.4, "")] {
-        let found = at_the_crossing(ways, &[(0.0, "rGrrrrrrrrGr"), (amber, "rGrrrrrrrryr")]);
+        let found = at_the_crossing(routes, &[(0.0, "rGrrrrrrrrGr"), (amber, "rGrrrrrrrryr")]);
         assert_eq!(found, [["side", "crossing", cause]]);
     }
 }
@@ -237,8 +237,8 @@ fn late_amber_is_one_that_left_room_to_stop() {
 #[test]
 fn two_that_turn_into_one_road_are_no_crossing() {
     let right: [&str; 3] = ["from_north_0", ":centre_0_0", "to_west_0"];
-    let ways: [(&[&str], f64); 2] = [(&["from_east_0", ":centre_4_0", "to_west_0"], 20.0), (&right, 20.0)];
-    let found = at_the_crossing(ways, &[]);
+    let routes: [(&[&str], f64); 2] = [(&["from_east_0", ":centre_4_0", "to_west_0"], 20.0), (&right, 20.0)];
+    let found = at_the_crossing(routes, &[]);
     assert!(!found.is_empty() && found.iter().all(|[_, manoeuvre, _]| manoeuvre == "turn_into"), "{found:?}");
 }
 

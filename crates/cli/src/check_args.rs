@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ending;
-use super::files::{default_folder, kept, say_if_elsewhere};
+use super::files::{default_folder, kept, print_if_elsewhere};
 use closecall_analysis::logged::pack_in_place;
 use closecall_run::Result;
 use closecall_run::RunOptions;
@@ -82,8 +82,8 @@ impl CheckArgs {
             return Ok(());
         }
         if self.out.is_none() {
-            say_if_elsewhere(log, input, LOG)?;
+            print_if_elsewhere(log, input, LOG)?;
         }
-        ending::print(summary, log, self.explain)
+        ending::print_summary(summary, log, self.explain)
     }
 }

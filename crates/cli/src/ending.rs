@@ -2,33 +2,33 @@
 
 use std::path::Path;
 
-use super::say::say;
+use super::print::print;
 use closecall_run::Result;
 use closecall_run::output::summary::Summary;
 
 /// Prints the summary; with `explain`, every skipped test and the time that each part of the work took.
-pub(super) fn print(summary: &Summary, log: &Path, explain: bool) -> Result<()> {
-    say(format_args!("{summary}"))?;
+pub(super) fn print_summary(summary: &Summary, log: &Path, explain: bool) -> Result<()> {
+    print(format_args!("{summary}"))?;
     let skipped = summary.skipped.to_string();
     if !skipped.is_empty() && !explain {
-        say(format_args!("skipped {skipped}; none could change the result (--explain lists them)\n"))?;
+        print(format_args!("skipped {skipped}; none could change the result (--explain lists them)\n"))?;
     }
     if explain {
         for left_out in &summary.left_out {
-            say(format_args!("{left_out}\n"))?;
+            print(format_args!("{left_out}\n"))?;
         }
         let parts = summary.spent.iter().map(|(what, seconds)| format!("{what} {seconds:.3} s"));
         let parts = parts.collect::<Vec<_>>().join(", ");
         if !parts.is_empty() {
-            say(format_args!("time: {parts}\n"))?;
+            print(format_args!("time: {parts}\n"))?;
         }
     }
     let log = log.display();
     if let Some(worst) = &summary.worst {
-        say(format_args!("worst conflict: {worst}\n"))?;
-        say(format_args!("log in {log}; see it on a map: closecall report {log}\n"))?;
+        print(format_args!("worst conflict: {worst}\n"))?;
+        print(format_args!("log in {log}; see it on a map: closecall report {log}\n"))?;
     } else {
-        say(format_args!("log in {log}\n"))?;
+        print(format_args!("log in {log}\n"))?;
     }
     Ok(())
 }

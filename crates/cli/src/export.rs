@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::print::print;
 use super::progress::CountBar;
-use super::say::say;
 use closecall::util::units::counted;
 use closecall_analysis::export;
 use closecall_analysis::filter::ConflictFilter;
@@ -42,8 +42,8 @@ pub fn run(arguments: ExportArgs) -> Result<()> {
     drop(bar);
     if !quiet {
         let of = if filter.is_empty() { String::new() } else { format!(" of {}", made.all) };
-        say(format_args!("{}{of} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
-        made.set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
+        print(format_args!("{}{of} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
+        made.set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     check_none_lost(made.lost.as_slice())
 }

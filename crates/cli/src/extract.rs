@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::files::absolute;
+use super::print::{print, value};
 use super::progress::CountBar;
-use super::say::{say, value};
+use super::selector::SelectorArgs;
 use super::sumo::{Sumo, no_sumo};
-use super::which::WhichArgs;
-use closecall_analysis::batch::extract::{Made, SCENARIO, Tools, extract, extract_openscenario, extract_osi};
+use closecall_analysis::batch::extract::{Extracted, SCENARIO, Tools, extract, extract_openscenario, extract_osi};
 use closecall_analysis::logged::check_keeps_logs;
 use closecall_run::Result;
 use closecall_run::util::decimal::Written;
@@ -18,7 +18,7 @@ use closecall_run::util::decimal::Written;
 #[derive(Args)]
 pub(crate) struct ExtractArgs {
     #[command(flatten)]
-    conflict: WhichArgs,
+    conflict: SelectorArgs,
     /// What to make of the conflict.
     #[arg(long, value_enum, default_value_t)]
     format: ExtractFormat,
@@ -48,7 +48,7 @@ enum ExtractFormat {
 
 /// Writes the folder or file, and prints what is in it.
 pub fn run(arguments: &ExtractArgs, known: &[String], sumo: Option<Sumo>) -> Result<()> {
-    let ExtractArgs { conflict: WhichArgs { folder, .. }, format, out, net, .. } = arguments;
+    let ExtractArgs { conflict: SelectorArgs { folder, .. }, format, out, net, .. } = arguments;
     let which = arguments.conflict.which();
     if net.is_some() && *format != ExtractFormat::OpenScenario {
         return Err(value("--net is for --format openscenario; what else is made needs no other net"));
@@ -81,7 +81,7 @@ pub fn run(arguments: &ExtractArgs, known: &[String], sumo: Option<Sumo>) -> Res
     }
 }
 
-fn tell(arguments: &ExtractArgs, made: &Made, at: &Path, what: &str) -> Result<()> {
+fn tell(arguments: &ExtractArgs, made: &Extracted, at: &Path, what: &str) -> Result<()> {
     if arguments.quiet {
         return Ok(());
     }
@@ -89,5 +89,5 @@ fn tell(arguments: &ExtractArgs, made: &Made, at: &Path, what: &str) -> Result<(
         eprintln!("closecall: {remark}");
     }
     let (id, time) = (made.conflict.id, Written(made.conflict.time));
-    say(format_args!("conflict {id} at {time} s in {}; {what}\n", at.display()))
+    print(format_args!("conflict {id} at {time} s in {}; {what}\n", at.display()))
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::say::say;
+use super::print::print;
 use closecall_run::RunOptions;
 use closecall_run::{Error, Result};
 
@@ -24,12 +24,12 @@ pub(super) fn default_folder(input: &Path, name: &str) -> PathBuf {
 }
 
 /// Says why the default folder is not beside the input, if it is not.
-pub(super) fn say_if_elsewhere(folder: &Path, input: &Path, name: &str) -> Result<()> {
+pub(super) fn print_if_elsewhere(folder: &Path, input: &Path, name: &str) -> Result<()> {
     let beside = beside(input, name);
     if folder == beside {
         return Ok(());
     }
-    say(format_args!("{} cannot be written, so the results are in the working directory\n", beside.display()))
+    print(format_args!("{} cannot be written, so the results are in the working directory\n", beside.display()))
 }
 
 fn beside(input: &Path, name: &str) -> PathBuf {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::say::say;
+use super::print::print;
 use closecall_run::Result;
 use closecall_run::input::tracks;
 
@@ -18,5 +18,5 @@ pub(crate) struct InspectArgs {
 
 /// Prints what the file is, what it lacks, and the command that replays it.
 pub fn run(arguments: &InspectArgs) -> Result<()> {
-    say(tracks::inspect(&arguments.file)?)
+    print(tracks::inspect(&arguments.file)?)
 }

@@ -13,12 +13,13 @@ mod mu;
 mod parse;
 mod playback;
 mod plot;
+mod print;
 pub mod progress;
 mod regress;
 mod replay;
 mod report;
 mod run;
-mod say;
+mod selector;
 mod settings;
 mod stats;
 mod stress;
@@ -26,7 +27,6 @@ mod study;
 mod study_scenario;
 mod sumo;
 mod sweep;
-mod which;
 mod workers;
 
 use std::ffi::OsString;
@@ -42,12 +42,12 @@ pub use closecall_run::util::panics::keep_quiet as keep_panics_quiet;
 pub use sumo::{ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
 pub use workers::{Distribute, ReportEnd, Workers};
 
-/// Runs the command line `words`, which begins with the program's name; returns the exit status.
+/// Runs the command line `args`, which begins with the program's name; returns the exit status.
 ///
 /// Results go to standard output, messages to standard error, one line each; the usage follows that of a wrong word.
-pub fn main(words: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
-    let words = words.into_iter().collect::<Vec<_>>();
-    let cli = match parse(words) {
+pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
+    let args = args.into_iter().collect::<Vec<_>>();
+    let cli = match parse(args) {
         Ok(cli) => cli,
         Err(ParseError::Clap(error)) => return refused(&error),
         Err(ParseError::File(error)) => return failed(&error),

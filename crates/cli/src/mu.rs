@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
-use super::say::say;
+use super::print::print;
 use closecall::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use closecall::detection::kind::Kind;
 use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
@@ -63,13 +63,13 @@ pub fn run(arguments: &MuArgs) -> Result<()> {
         object.insert("stopping_distance".to_owned(), stops[0].into());
         object.insert("foe_stopping_distance".to_owned(), stops[1].into());
         object.extend(found.map(|(name, mu)| (name.replace('-', "_"), mu.into())));
-        say(format_args!("{}\n", serde_json::Value::Object(object)))?;
+        print(format_args!("{}\n", serde_json::Value::Object(object)))?;
     } else {
         let [own, other] = [(ego.speed, stops[0]), (foe.speed, stops[1])]
             .map(|(speed, stop)| format!("{} m/s stops within {} m", Written(speed), Written(stop)));
-        say(format_args!("sigma {}; the ego at {own}, the foe at {other}\n", Written(sigma)))?;
+        print(format_args!("sigma {}; the ego at {own}, the foe at {other}\n", Written(sigma)))?;
         for (name, mu) in found {
-            say(format_args!("{name:<8} {} m\n", Written(mu)))?;
+            print(format_args!("{name:<8} {} m\n", Written(mu)))?;
         }
     }
     Ok(())

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
-use super::say::value;
+use super::print::value;
 use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
 use closecall_run::{Error, Result};
 
@@ -87,19 +87,18 @@ pub(super) fn command() -> clap::Command {
 }
 
 /// Parses the words. The options of a TOML file come before them, so that what was typed wins.
-pub(super) fn parse(words: Vec<OsString>) -> std::result::Result<Cli, ParseError> {
-    let matches = command().try_get_matches_from(&words)?;
+pub(super) fn parse(args: Vec<OsString>) -> std::result::Result<Cli, ParseError> {
+    let matches = command().try_get_matches_from(&args)?;
     let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
     let known = settings::long_options(&command(), name);
     let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
         Ok(Some(path)) => settings::read(&command(), path).map_err(ParseError::File)?,
         _ => return Ok(Cli::from_arg_matches(&matches)?),
     };
-    let place = words.iter().position(|word| word == name).map_or(words.len(), |place| place + 1);
+    let place = args.iter().position(|word| word == name).map_or(args.len(), |place| place + 1);
     let is_known = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
-    let (before, after) = words.split_at(place);
-    let all =
-        before.iter().cloned().chain(file.words.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
+    let (before, after) = args.split_at(place);
+    let all = before.iter().cloned().chain(file.args.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
     let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
     match &mut cli.command {
         Command::Run(arguments) => arguments.check.options.set_tables(file),
@@ -121,8 +120,8 @@ fn in_one_line(error: &clap::Error) -> Error {
 ///
 /// # Errors
 /// clap's error as one line, and the errors of the TOML file.
-pub(super) fn parse_run(words: Vec<OsString>) -> Result<run::RunArgs> {
-    match parse(words) {
+pub(super) fn parse_run(args: Vec<OsString>) -> Result<run::RunArgs> {
+    match parse(args) {
         Ok(Cli { command: Command::Run(arguments) }) => Ok(*arguments),
         Ok(_) => Err(value("these are not the words of closecall run")),
         Err(ParseError::Clap(error)) => Err(in_one_line(&error)),

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::say::{say, value};
+use super::print::{print, value};
+use super::selector::SelectorArgs;
 use super::sumo::{FilmRequest, ShowRequest, Sumo, no_sumo};
-use super::which::WhichArgs;
 use closecall_analysis::logged::check_keeps_logs;
 use closecall_analysis::playback::{Playback, stills, svg};
 use closecall_run::Result;
@@ -20,7 +20,7 @@ const RATE: u32 = 20;
 #[derive(Args)]
 struct Choice {
     #[command(flatten)]
-    conflict: WhichArgs,
+    conflict: SelectorArgs,
     /// Net [default: the net file named in the log].
     #[arg(short, long, value_name = "NET")]
     net: Option<PathBuf>,
@@ -76,7 +76,7 @@ pub fn clip(arguments: &ClipArgs, sumo: Option<Sumo>) -> Result<()> {
         return Ok(());
     }
     let conflict = &playback.conflict;
-    say(format_args!("conflict {} at {} s in {}{}\n", conflict.id, conflict.time, out.display(), format.hint()))
+    print(format_args!("conflict {} at {} s in {}{}\n", conflict.id, conflict.time, out.display(), format.hint()))
 }
 
 /// Shows the clip in sumo-gui.

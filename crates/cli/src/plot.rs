@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::print::print;
 use super::progress::CountBar;
-use super::say::say;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
 use closecall_analysis::plot::{self, PictureFormat, PictureStyle};
@@ -45,9 +45,9 @@ pub fn run(arguments: &PlotArgs) -> Result<()> {
     drop(bar);
     if !quiet {
         for file in files {
-            say(format_args!("{}\n", file.display()))?;
+            print(format_args!("{}\n", file.display()))?;
         }
-        set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
+        set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     check_none_lost(&lost)
 }

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::files::absolute;
+use super::print::{print, value};
 use super::progress::CountBar;
-use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use closecall::util::threads::processors;
 use closecall_analysis::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
@@ -93,9 +93,9 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut reports = reports.into_values().collect::<Vec<_>>();
     for report in &mut reports {
         report.shows_all = arguments.all;
-        say(format_args!("{report}"))?;
+        print(format_args!("{report}"))?;
     }
-    say(format_args!("{}\n", summary(&reports)))?;
+    print(format_args!("{}\n", summary(&reports)))?;
     if let Some(path) = &arguments.junit {
         junit::write(path, &reports)?;
     }

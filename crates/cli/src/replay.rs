@@ -100,16 +100,16 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
     let mut never = || false;
     let interrupted = sumo.map_or(&mut never as &mut dyn FnMut() -> bool, |sumo| sumo.interrupted);
     let mut recorded = RecordedRun::open(run, record, folder, &arguments.check.outputs)?;
-    let ended = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
+    let outcome = check(&mut replay, &mut recorded.run, interrupted, arguments.check.quiet);
     let closed = recorded.close(Ending {
-        error: ended.as_ref().err().map(ToString::to_string),
+        error: outcome.as_ref().err().map(ToString::to_string),
         remarks: replay.remarks(),
         ..Ending::default()
     });
-    if matches!(ended, Ok(()) | Err(Error::CutShort { .. })) {
+    if matches!(outcome, Ok(()) | Err(Error::CutShort { .. })) {
         arguments.check.finish(&closed?, &recording, &out)?;
     }
-    ended
+    outcome
 }
 
 /// The record of a replay that begins.

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::print::print;
 use super::progress::CountBar;
-use super::say::say;
 use closecall::util::units::counted;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
@@ -46,8 +46,8 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
     if !arguments.quiet {
         let size = bytes as f64 / 1e6;
         let (conflicts, runs) = (counted(conflicts, "conflict"), counted(runs as u64, "run"));
-        say(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
-        set_aside.map_or(Ok(()), |words| say(format_args!("{words}\n")))?;
+        print(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
+        set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
     check_none_lost(&lost)
 }

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::print::{print, value};
 use super::progress::CountBar;
-use super::say::{say, value};
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::{check_keeps_logs, check_none_lost};
 use closecall_analysis::statistics::{By, Observed, Request, Statistics, table};
@@ -104,7 +104,7 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
     };
     match out {
         Some(out) => output_file::write(&out, printed.as_bytes())?,
-        None => say(printed)?,
+        None => print(printed)?,
     }
     check_none_lost(&statistics.lost)
 }

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use super::say::say;
+use super::print::print;
 use closecall_run::{Error, Result};
 use closecall_study::stress::{self, Group};
 
@@ -23,11 +23,11 @@ pub(crate) struct StressArgs {
 /// Prints the table of worst errors; fails if a bound is exceeded.
 pub fn run(arguments: &StressArgs) -> Result<()> {
     let rows = stress::run(arguments.cases, arguments.seed, arguments.only);
-    say(format_args!("{}", stress::table(&rows)))?;
+    print(format_args!("{}", stress::table(&rows)))?;
     let exceeded = rows.iter().filter(|row| !row.holds()).count();
     if exceeded > 0 {
         return Err(Error::Exceeded(format!("{exceeded} of {} bounds are exceeded", rows.len())));
     }
-    say(format_args!("all {} bounds hold\n", rows.len()))?;
+    print(format_args!("all {} bounds hold\n", rows.len()))?;
     Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::say::say;
+use super::print::print;
 use super::study_scenario::{RESULTS, ScenarioArgs};
 use super::sumo::{RunRequest, Sumo};
 use super::sweep::ParseRun;
@@ -74,17 +74,17 @@ fn own_choices(arguments: &StudyArgs, mut sumo: Option<Sumo>) -> Result<()> {
         rows.extend(measured);
         closecall_study::write(&out, &rows, &plan)?;
     }
-    say(format_args!("{} rows in {}\n", rows.len(), out.join("study.csv").display()))?;
+    print(format_args!("{} rows in {}\n", rows.len(), out.join("study.csv").display()))?;
     let off = rows.iter().filter(|row| row.default && !row.on_pareto_front);
     for row in off {
-        say(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;
+        print(format_args!("off the Pareto front: {} {} ({})\n", row.axis.name(), row.method, row.parameter))?;
     }
     Ok(())
 }
 
 /// A run of a scenario that records every step as fcd-output.
 fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
-    let words = [
+    let args = [
         "-c",
         &scenario.display().to_string(),
         "--end",
@@ -109,6 +109,6 @@ fn recorded(scenario: &Path, recording: &Path, end: Second) -> RunRequest {
         quiet: true,
         outputs: OutputFiles::default(),
         options: RunOptions::default(),
-        sumo_words: words.map(str::to_owned).to_vec(),
+        sumo_words: args.map(str::to_owned).to_vec(),
     }
 }

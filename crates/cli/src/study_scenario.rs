@@ -5,9 +5,9 @@ use std::path::Path;
 
 use clap::Args;
 
-use super::files::{absolute, default_folder, say_if_elsewhere};
+use super::files::{absolute, default_folder, print_if_elsewhere};
+use super::print::{print, value};
 use super::run::request;
-use super::say::{say, value};
 use super::sumo::{RunRequest, Sumo, no_sumo};
 use super::sweep::{ParseRun, Passed, UNFINISHED, check, check_runs, distribute};
 use super::workers::Workers;
@@ -70,12 +70,12 @@ impl ScenarioArgs {
         self.vary.iter().try_for_each(check)?;
         let seeds =
             self.seeds.unwrap_or_else(|| Seeds(SEEDS[..if quick { QUICK_SEEDS } else { SEEDS.len() }].to_vec()));
-        let (words, files) = self.passed.shared(scenario, &self.vary)?;
-        let all = ["closecall", "run"].into_iter().chain(words.iter().map(String::as_str)).chain(["--"]);
+        let (args, files) = self.passed.shared(scenario, &self.vary)?;
+        let all = ["closecall", "run"].into_iter().chain(args.iter().map(String::as_str)).chain(["--"]);
         let all = all.chain(self.passed.for_sumo.iter().map(String::as_str)).map(OsString::from);
         let own = request(&parse_run(all.collect())?)?;
         let plan = Plan::of(&self.vary, quick, &|vary| own_value(&own, vary))?;
-        let runs = Sweep::of_settings(&words, &self.passed.for_sumo, &seeds, &plan.settings(), &out, &files)?;
+        let runs = Sweep::of_settings(&args, &self.passed.for_sumo, &seeds, &plan.settings(), &out, &files)?;
         check_runs(&runs, &seeds, parse_run)?;
         let missing = runs.missing()?;
         let workers = Workers::Local(self.workers.map_or_else(processors, usize::from));
@@ -84,10 +84,10 @@ impl ScenarioArgs {
         let study = Study::read(plan, &runs.tasks, &failed, seeds.to_string(), self.accuracy)?;
         let name = scenario.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let answer = scenario::write(&study, &out, &name)?;
-        say_if_elsewhere(&default_out, scenario, RESULTS)?;
-        say(format_args!("{answer}\nMore is in {}\n", out.join("study.md").display()))?;
+        print_if_elsewhere(&default_out, scenario, RESULTS)?;
+        print(format_args!("{answer}\nMore is in {}\n", out.join("study.md").display()))?;
         if !failed.is_empty() {
-            say(format_args!("{} failed and are left out; the same command tries them again\n", failed.len()))?;
+            print(format_args!("{} failed and are left out; the same command tries them again\n", failed.len()))?;
         }
         Ok(u8::from(!failed.is_empty()))
     }
@@ -110,10 +110,10 @@ fn own_value(run: &RunRequest, vary: &Vary) -> Option<String> {
 }
 
 /// The value of an option among SUMO's words.
-fn word_value(words: &[String], name: &str) -> Option<String> {
-    let place = words.iter().rposition(|word| word.trim_start_matches('-').split('=').next() == Some(name))?;
-    let own = words[place].split_once('=').map(|(_, value)| value.to_owned());
-    let next = || words.get(place + 1).filter(|next| !next.starts_with("--")).cloned();
+fn word_value(args: &[String], name: &str) -> Option<String> {
+    let place = args.iter().rposition(|word| word.trim_start_matches('-').split('=').next() == Some(name))?;
+    let own = args[place].split_once('=').map(|(_, value)| value.to_owned());
+    let next = || args.get(place + 1).filter(|next| !next.starts_with("--")).cloned();
     own.or_else(next).or_else(|| Some("true".to_owned()))
 }
 
@@ -123,9 +123,9 @@ mod tests {
 
     #[test]
     fn the_own_value_of_sumos_option_is_the_one_that_counts() {
-        let words =
+        let args =
             ["-c", "a.sumocfg", "--step-length", "0.5", "--scale=2", "--step-method.ballistic"].map(str::to_owned);
-        let of = |name| word_value(&words, name);
+        let of = |name| word_value(&args, name);
         assert_eq!(of("step-length").as_deref(), Some("0.5"));
         assert_eq!(of("scale").as_deref(), Some("2"));
         assert_eq!(of("step-method.ballistic").as_deref(), Some("true"));

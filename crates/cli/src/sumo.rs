@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use super::say::value;
+use super::print::value;
 use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;

@@ -9,9 +9,9 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::files::{absolute, default_folder, say_if_elsewhere};
+use super::files::{absolute, default_folder, print_if_elsewhere};
+use super::print::{print, value};
 use super::run::{RunArgs, request};
-use super::say::{say, value};
 use super::sumo::{Sumo, no_sumo};
 use super::workers::Workers;
 use closecall::util::threads::processors;
@@ -62,7 +62,7 @@ pub(crate) type ParseRun = dyn Fn(Vec<OsString>) -> Result<RunArgs>;
 /// Arguments of `closecall run` that are the same in all runs, as they were typed.
 #[derive(Debug, Default)]
 pub(super) struct Passed {
-    words: Vec<String>,
+    args: Vec<String>,
     pub for_sumo: Vec<String>,
     /// The files among them.
     files: Vec<PathBuf>,
@@ -71,22 +71,22 @@ pub(super) struct Passed {
 impl Passed {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.words.is_empty() && self.for_sumo.is_empty()
+        self.args.is_empty() && self.for_sumo.is_empty()
     }
 
     /// The words of `closecall run` that all runs share, and the files whose content matters.
     pub fn shared(&self, scenario: &Path, varied: &[Vary]) -> Result<(Vec<String>, Vec<PathBuf>)> {
         // The workers already use all processors, so one thread per run is fastest. Clips of thousands of runs are made only
         // if they are asked for.
-        let mut words = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned(), "--log-clips=none".to_owned()];
-        words.extend_from_slice(&self.words);
+        let mut args = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned(), "--log-clips=none".to_owned()];
+        args.extend_from_slice(&self.args);
         let mut files = self.files.clone();
         for vary in varied.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
             files.extend(vary.values.iter().map(PathBuf::from));
         }
         let named = files.iter().filter_map(|file| filter_in(file)).collect::<Vec<_>>();
         files.extend(named);
-        Ok((words, files))
+        Ok((args, files))
     }
 }
 
@@ -155,9 +155,9 @@ impl FromArgMatches for Passed {
             }
             match argument.get_long() {
                 Some(long) if argument.get_action().takes_values() => {
-                    self.words.push(format!("--{long}={}", values.join(",")));
+                    self.args.push(format!("--{long}={}", values.join(",")));
                 }
-                Some(long) => self.words.push(format!("--{long}")),
+                Some(long) => self.args.push(format!("--{long}")),
                 None if name == FOR_SUMO => self.for_sumo = values,
                 None => {}
             }
@@ -174,8 +174,8 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     // Opened here so that an error carries the operating system's own message.
     input_file::file(&arguments.scenario)?;
     arguments.vary.iter().try_for_each(check)?;
-    let (words, files) = arguments.passed.shared(&arguments.scenario, &arguments.vary)?;
-    let mut plan = Sweep::plan(&words, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
+    let (args, files) = arguments.passed.shared(&arguments.scenario, &arguments.vary)?;
+    let mut plan = Sweep::plan(&args, &arguments.passed.for_sumo, &arguments.seeds, &arguments.vary, &out, &files)?;
     check_runs(&plan, &arguments.seeds, parse_run)?;
     if arguments.list {
         return list(&plan).map(|()| 0);
@@ -196,15 +196,15 @@ pub fn run(arguments: SweepArgs, sumo: Option<Sumo>, parse_run: &ParseRun) -> Re
     let failed = distribute(sumo, &workers, &missing, done, arguments.quiet, &unfinished)?;
     if !arguments.quiet {
         if arguments.out.is_none() {
-            say_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
+            print_if_elsewhere(&default_out, &arguments.scenario, RESULTS)?;
         }
         let runs = counted((plan.tasks.len() - failed) as u64, "run");
-        say(format_args!("{runs} in {}\n", plan.data_set().display()))?;
+        print(format_args!("{runs} in {}\n", plan.data_set().display()))?;
         if done > 0 {
-            say(format_args!("{done} of them were there already\n"))?;
+            print(format_args!("{done} of them were there already\n"))?;
         }
         if failed > 0 {
-            say(format_args!("{failed} failed; the same command tries them again\n"))?;
+            print(format_args!("{failed} failed; the same command tries them again\n"))?;
         }
     }
     Ok(u8::from(failed > 0))
@@ -215,7 +215,7 @@ fn list(plan: &Sweep) -> Result<()> {
     let missing = plan.missing()?.into_iter().map(|task| &task.name).collect::<HashSet<_>>();
     let lines = plan.tasks.iter().enumerate();
     let lines = lines.map(|(place, task)| format!("{},{},{}\n", place + 1, task.name, !missing.contains(&task.name)));
-    say(format_args!("task,run,done\n{}", lines.collect::<String>()))
+    print(format_args!("task,run,done\n{}", lines.collect::<String>()))
 }
 
 /// The selection file that a TOML file of options names.
@@ -240,7 +240,7 @@ pub(super) fn distribute(
     let bar = bar(done_before, done_before + missing.len(), quiet);
     let mut done = done_before;
     let mut failed = 0;
-    let ended = (sumo.distribute)(workers, unfinished, missing, &mut |name, error| {
+    let outcome = (sumo.distribute)(workers, unfinished, missing, &mut |name, error| {
         done += 1;
         if let Some(error) = error {
             failed += 1;
@@ -251,7 +251,7 @@ pub(super) fn distribute(
     bar.finish_and_clear();
     // Removes what killed workers left; if that fails, the folder is at least hidden.
     let _ = std::fs::remove_dir_all(unfinished);
-    match ended {
+    match outcome {
         Ok(()) => Ok(failed),
         Err(Error::Stopped) => Err(Error::Paused { done, all: done_before + missing.len() }),
         Err(error) => Err(error),
@@ -296,8 +296,8 @@ pub(super) fn check(vary: &Vary) -> Result<()> {
 /// Checks that `closecall run` accepts the words of each setting, with the first seed.
 pub(super) fn check_runs(plan: &Sweep, seeds: &Seeds, parse_run: &ParseRun) -> Result<()> {
     for task in &plan.tasks[..plan.tasks.len() / seeds.0.len()] {
-        let words = ["closecall", "run"].into_iter().chain(task.words.iter().map(String::as_str));
-        let request = request(&parse_run(words.map(OsString::from).collect())?)?;
+        let args = ["closecall", "run"].into_iter().chain(task.args.iter().map(String::as_str));
+        let request = request(&parse_run(args.map(OsString::from).collect())?)?;
         if let Some((option, _)) = request.outputs.files().next() {
             return Err(value(format!("{option} in the file of --config: all runs would write the same file")));
         }
@@ -314,22 +314,22 @@ fn text(path: &Path) -> Result<String> {
 mod tests {
     use super::*;
 
-    fn passed_of(words: &[&str]) -> Passed {
-        let words = ["closecall", "a.sumocfg", "--seeds", "1"].iter().chain(words);
+    fn passed_of(args: &[&str]) -> Passed {
+        let args = ["closecall", "a.sumocfg", "--seeds", "1"].iter().chain(args);
         let command = SweepArgs::augment_args(clap::Command::new("closecall").args_override_self(true));
-        SweepArgs::from_arg_matches(&command.try_get_matches_from(words).unwrap()).unwrap().passed
+        SweepArgs::from_arg_matches(&command.try_get_matches_from(args).unwrap()).unwrap().passed
     }
 
     #[test]
     fn only_typed_options_of_closecall_run_are_passed_on() {
         let passed =
             passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--keep-all", "--", "--scale", "2"]);
-        let mut words = passed.words;
-        words.sort();
-        assert_eq!(words, ["--epsilon=1", "--keep-all", "--mu=paper", "--obstacles=a,b"]);
+        let mut args = passed.args;
+        args.sort();
+        assert_eq!(args, ["--epsilon=1", "--keep-all", "--mu=paper", "--obstacles=a,b"]);
         assert_eq!(passed.for_sumo, ["--scale", "2"]);
-        assert!(passed_of(&[]).words.is_empty());
-        assert_eq!(passed_of(&["--epsilon", "1", "--epsilon", "2"]).words, ["--epsilon=2"]);
+        assert!(passed_of(&[]).args.is_empty());
+        assert_eq!(passed_of(&["--epsilon", "1", "--epsilon", "2"]).args, ["--epsilon=2"]);
     }
 
     #[test]

@@ -50,9 +50,9 @@ impl Noise {
 }
 
 /// A way of straight parts and bends: for each part its length and curvature.
-struct Way(Vec<[Metre; 2]>);
+struct Road(Vec<[Metre; 2]>);
 
-impl Way {
+impl Road {
     fn draw(chance: &mut Chance) -> Self {
         let mut parts = Vec::new();
         for _ in 0..3 {
@@ -109,14 +109,14 @@ struct Seen {
 
 /// The states of one road user along a way.
 fn drive(chance: &mut Chance, noise: Noise) -> Vec<Seen> {
-    let way = Way::draw(chance);
-    let speed = way.speed(chance);
-    let steps = ((way.length() - LENGTH) / speed - AHEAD) / STEP;
+    let road = Road::draw(chance);
+    let speed = road.speed(chance);
+    let steps = ((road.length() - LENGTH) / speed - AHEAD) / STEP;
     let seen = |step: u32| {
         let time = f64::from(step) * STEP;
         let driven = LENGTH + speed * time;
-        let (front, axis) = noise.of(chance, way.place(driven), way.heading(driven));
-        Seen { time, front, axis, speed, later: way.place(driven + speed * AHEAD) }
+        let (front, axis) = noise.of(chance, road.place(driven), road.heading(driven));
+        Seen { time, front, axis, speed, later: road.place(driven + speed * AHEAD) }
     };
     (0..steps.max(0.0) as u32).map(seen).collect()
 }

@@ -21,8 +21,8 @@ use closecall::traffic::profile::Carriage;
 use closecall::traffic::roster::{Roster, UserIndex};
 use closecall::util::units::{Metre, MetrePerSecond, Second};
 use closecall_run::Result;
+use closecall_run::input::replay::recorded_step::RecordedStep;
 use closecall_run::input::replay::recording::Recording;
-use closecall_run::input::replay::rows::RecordedStep;
 
 /// Pairs whose margin is within this of 0 are excluded, because a recording rounds steps and sizes.
 const NEAR: Metre = 0.75;

@@ -3,7 +3,6 @@
 //! Each axis is one choice. Its methods run on the same items, in turns, in one process. Their errors are relative to a
 //! reference that is independent of all of them: [`reference`](mod@reference), or the paths that the vehicles really drove.
 
-mod braking;
 mod candidates;
 mod chosen_measures;
 mod clock;
@@ -11,26 +10,27 @@ mod coverage;
 mod curvature;
 mod decisions;
 mod driven;
+mod first_contact;
 mod in_short;
-mod late;
+mod longest_wait;
 mod measurement;
+mod mu_models;
 mod numbers;
 mod page;
 mod panels;
 mod path;
-mod probability;
+mod quadratures;
 mod recorded;
 mod recording;
 pub mod reference;
 pub mod stress;
-mod time;
 mod tolerance;
-mod turning;
+mod turns;
 mod volume;
 
 use std::path::Path;
 
-use closecall_analysis::study::chart;
+use closecall_analysis::study::error_over_time;
 use closecall_analysis::study::pareto::is_on_front;
 use closecall_run::util::output_file::{self, OutputFile};
 use closecall_run::{Error, Result};
@@ -45,12 +45,12 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
     let mut rows = match axis {
         Axis::Volume => volume::measure(plan),
         Axis::Candidates => candidates::measure(plan),
-        Axis::Time => time::measure(plan),
-        Axis::Braking => braking::measure(plan),
-        Axis::Late => late::measure(plan),
-        Axis::Probability => probability::measure(plan),
+        Axis::Time => first_contact::measure(plan),
+        Axis::Braking => mu_models::measure(plan),
+        Axis::Late => longest_wait::measure(plan),
+        Axis::Probability => quadratures::measure(plan),
         Axis::Numbers => numbers::measure(plan),
-        Axis::Turning => turning::measure(plan),
+        Axis::Turning => turns::measure(plan),
         Axis::Curvature => curvature::measure(plan),
         Axis::Coverage => coverage::measure(plan),
         Axis::Path | Axis::Recording | Axis::Tolerance | Axis::Measures => {
@@ -85,7 +85,7 @@ pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
         let of_axis = rows.iter().filter(|row| row.axis == axis).cloned().collect::<Vec<_>>();
         // Shares of intervals that hold the truth are a table.
         if !of_axis.is_empty() && axis != Axis::Coverage {
-            chart::draw(folder, axis.name(), &panels::panels(axis, &of_axis), panels::note(axis))?;
+            error_over_time::draw(folder, axis.name(), &panels::panels(axis, &of_axis), panels::note(axis))?;
         }
     }
     output_file::write(&folder.join("study.md"), page::of(rows, plan.quick).as_bytes())

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::coverage;
 use super::in_short;
 use super::measurement::{Axis, Measurement};
-use closecall_analysis::study::chart::distinct;
+use closecall_analysis::study::error_over_time::distinct;
 use closecall_analysis::study::machine::machine;
 use closecall_analysis::study::number::number;
 

@@ -1,6 +1,6 @@
 //! What the chart of an axis shows.
 
-use closecall_analysis::study::chart::{Panel, Point, distinct};
+use closecall_analysis::study::error_over_time::{Panel, Point, distinct};
 
 use super::measurement::{Axis, Measurement};
 

@@ -29,7 +29,7 @@ impl Detector {
         for (row, Row { user, state }) in frame.rows().enumerate() {
             let profile = roster.profile_of(user);
             let follows = state.moves() || profile.carriages > 1;
-            let way_back = self.way_back(&state);
+            let distance_back = self.distance_back(&state);
             let path = &mut self.paths[user.0 as usize];
             if profile.category == Category::Obstacle || !(follows || self.look.is_some()) {
                 path.clear();
@@ -39,7 +39,7 @@ impl Detector {
                 time: frame.time,
                 front: state.front(),
                 axis: direction(state.heading),
-                behind: profile.length + way_back + KEPT_BEHIND,
+                behind: profile.length + distance_back + KEPT_BEHIND,
                 ahead: cover.reach(&state, profile, self.options.epsilon),
             };
             self.driven[user.0 as usize].lay(path, &now);
@@ -48,8 +48,8 @@ impl Detector {
     }
 
     /// Extends a road user's path this far ahead.
-    pub(super) fn lengthen_driven(&mut self, user: &User, way: Metre) {
+    pub(super) fn lengthen_driven(&mut self, user: &User, distance: Metre) {
         let number = user.index.0 as usize;
-        self.driven[number].lengthen(&mut self.paths[number], user.axis, way);
+        self.driven[number].lengthen(&mut self.paths[number], user.axis, distance);
     }
 }

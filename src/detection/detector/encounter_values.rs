@@ -29,8 +29,8 @@ use crate::util::units::{Metre, MetrePerSecondSquared, Second};
 
 impl StepInputs<'_> {
     /// How far ahead a road user's path has to be known to measure a pair that it is in.
-    pub(super) fn way_to_measure(&self, user: &User, meeting: &ConflictPoint) -> Metre {
-        (self.state(user).speed * ttc::HORIZON).max(self.furthest_way_out(user, meeting))
+    pub(super) fn distance_to_measure(&self, user: &User, meeting: &ConflictPoint) -> Metre {
+        (self.state(user).speed * ttc::HORIZON).max(self.furthest_exit(user, meeting))
     }
 
     /// Measures the pairs that a worker could not measure at once.
@@ -48,7 +48,7 @@ impl StepInputs<'_> {
             carriages.map(|carriage| carriage.shrunk(met.shrinks)).collect::<Carriages>()
         });
         if met.leaves {
-            encounter.foe_distance = self.way_out(scratch, &pair[1], met);
+            encounter.foe_distance = self.exit_distance(scratch, &pair[1], met);
             if self.options.mode == Mode::Closecall {
                 let gap = narrow_phase::gap(encounter.ego_distance, encounter.foe_distance, met.sigma);
                 encounter.gap = self.gap_beyond(gap, encounter.mu, met.slots, &met.meeting);
@@ -89,18 +89,18 @@ impl StepInputs<'_> {
         }
         let [ego, foe] = slots.map(|slot| self.user(slot));
         let reserve = if self.state(ego).moves() { self.options.epsilon } else { 0.0 };
-        let ego_beyond = meeting.ego_distance - self.stand(ego) - reserve;
-        let foe_beyond = meeting.foe_distance - self.stand(foe);
+        let ego_beyond = meeting.ego_distance - self.model_stop(ego) - reserve;
+        let foe_beyond = meeting.foe_distance - self.model_stop(foe);
         let beyond = ego_beyond.max(foe_beyond);
         // RSS has them stand further than their brakes do.
         if self.mu_model() == MuModel::Rss && beyond <= 0.0 { gap } else { gap.max(mu + beyond.max(0.0)) }
     }
 
     /// The distance until a road user stands that brakes as the model of μ has it.
-    fn stand(&self, user: &User) -> Metre {
+    fn model_stop(&self, user: &User) -> Metre {
         let state = self.state(user);
         match self.mu_model() {
-            MuModel::Rss if state.moves() => rss::way(state.speed),
+            MuModel::Rss if state.moves() => rss::stopping_distance(state.speed),
             _ => cover::stop(state, self.profile(user)),
         }
     }
@@ -112,7 +112,7 @@ impl StepInputs<'_> {
     }
 
     /// A distance along the path at which the foe has surely left the conflict point.
-    pub(super) fn furthest_way_out(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
+    pub(super) fn furthest_exit(&self, foe: &User, meeting: &ConflictPoint) -> Metre {
         let profile = self.profile(foe);
         let rectangle = &meeting.ego_rectangle;
         // The foe has left when its rear has passed the ego's whole rectangle, however that is turned.
@@ -121,12 +121,12 @@ impl StepInputs<'_> {
     }
 
     /// The foe's distance until it, and so each of its carriages, has left the ego's conflict point.
-    fn way_out(&self, scratch: &mut Scratch, foe: &[Participant], met: &Met) -> Metre {
+    fn exit_distance(&self, scratch: &mut Scratch, foe: &[Participant], met: &Met) -> Metre {
         let (poses, user, meeting) = (&mut scratch.courses[1], self.user(met.slots[1]), &met.meeting);
         let rectangle = &meeting.ego_rectangle;
         let left = foe.iter().filter_map(|carriage| {
             poses.clear();
-            self.course(user, carriage.carriage, &[self.furthest_way_out(user, meeting)], true, poses);
+            self.course(user, carriage.carriage, &[self.furthest_exit(user, meeting)], true, poses);
             match foe {
                 [_] => Some(side::departure(&mut scratch.halves, poses, carriage, rectangle, meeting.foe_distance)),
                 _ => side::carriage_departure(&mut scratch.halves, poses, carriage, rectangle),
@@ -200,7 +200,7 @@ impl StepInputs<'_> {
         if encounter.collision {
             return Some(0.0);
         }
-        if met.further && met.meeting.foe_distance > self.stand(self.user(met.slots[1])) {
+        if met.further && met.meeting.foe_distance > self.model_stop(self.user(met.slots[1])) {
             return None;
         }
         let (model, epsilon) = (self.mu_model(), self.options.epsilon);

@@ -77,8 +77,8 @@ impl StepInputs<'_> {
             path.map(|path| path.lanes_between(self.paths.of_net(), from, to)).unwrap_or_default()
         };
         let length = self.drawn_length(foe);
-        let (under, way) = (lanes(foe, -length, 0.0), lanes(ego, 0.0, meeting.ego_distance + length));
-        !under.is_empty() && under.iter().all(|lane| way.contains(lane))
+        let (under, path_lanes) = (lanes(foe, -length, 0.0), lanes(ego, 0.0, meeting.ego_distance + length));
+        !under.is_empty() && under.iter().all(|lane| path_lanes.contains(lane))
     }
 
     /// Adds a pair that would meet and measures it. Where a path has to be extended for that, it is measured later.
@@ -135,7 +135,7 @@ impl StepInputs<'_> {
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || self.measures(encounter) {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks, further: self.is_further() };
-            if [ego, foe].into_iter().all(|user| self.reaches(user, self.way_to_measure(user, meeting))) {
+            if [ego, foe].into_iter().all(|user| self.reaches(user, self.distance_to_measure(user, meeting))) {
                 self.measure(scratch, &met, encounter);
                 if self.conflicts_only && !encounter.may_be_logged() {
                     encounters.pop();
@@ -147,13 +147,13 @@ impl StepInputs<'_> {
     }
 
     /// Whether a road user's path reaches this far ahead, or never has to be extended.
-    fn reaches(&self, user: &User, way: Metre) -> bool {
-        !user.on_lanes || self.paths.track(user.index).0.ahead() >= way
+    fn reaches(&self, user: &User, distance: Metre) -> bool {
+        !user.on_lanes || self.paths.track(user.index).0.ahead() >= distance
     }
 
     /// Whether a pair is in conflict if its foe leaves the conflict point as late as it can.
     pub(super) fn may_leave_late(&self, roles: &Roles, meeting: &ConflictPoint, sigma: f64, mu: Metre) -> bool {
-        let foe_distance = self.furthest_way_out(self.user(roles.slots[1]), meeting);
+        let foe_distance = self.furthest_exit(self.user(roles.slots[1]), meeting);
         narrow_phase::gap(meeting.ego_distance, foe_distance, sigma) < mu + TOLERANCE
     }
 

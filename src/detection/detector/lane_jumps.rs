@@ -2,9 +2,9 @@
 //! before.
 
 use super::Detector;
-use super::align::{BESIDE, is_askew};
 use super::jump::Jump;
 use super::last_speed::LastSpeed;
+use super::moved_back::{BESIDE, is_askew};
 use super::paths::lines_of;
 use crate::detection::path::turn;
 use crate::traffic::frame::State;
@@ -26,14 +26,14 @@ impl Detector {
         }
         let Some(last) = self.last_reported(user) else { return };
         let lines = path.lines(lines_of(self.net.as_deref()));
-        let (way, chord) = (state.front() - last.front(), path.track.chord(lines, profile.chord));
-        if is_askew(&chord, &last) && way.norm() <= self.driven_at_most(user, state.speed) {
+        let (displacement, chord) = (state.front() - last.front(), path.track.chord(lines, profile.chord));
+        if is_askew(&chord, &last) && displacement.norm() <= self.driven_at_most(user, state.speed) {
             return;
         }
         let (point, axis) = path.track.ahead_at(lines, state.speed * self.step);
         let off = state.front() - point;
         let aside = off - axis * off.dot(&axis);
-        let ahead = way.dot(&path.track.ahead_at(lines, 0.0).1);
+        let ahead = displacement.dot(&path.track.ahead_at(lines, 0.0).1);
         if off.norm() >= MOST_JUMP || ahead < -BESIDE {
             self.speeds[user.0 as usize] = LastSpeed::default();
         } else if aside.norm() >= BESIDE {

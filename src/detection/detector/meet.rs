@@ -306,7 +306,7 @@ impl StepInputs<'_> {
             true => (along - of_b.length, stops[0], a, b),
             false => (-along - of_a.length, stops[1], b, a),
         };
-        let enough = |way: Metre| ahead > way.max(0.0) + TOLERANCE;
+        let enough = |needed: Metre| ahead > needed.max(0.0) + TOLERANCE;
         let epsilon = self.options.epsilon;
         let model = self.mu_model();
         let stops = model != MuModel::Rss && enough(stop + epsilon);

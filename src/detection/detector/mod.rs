@@ -5,10 +5,9 @@
 //! `encounters`, `encounter_values`) run on as many threads as the caller wants, each on its part of the pairs. The results are
 //! the same for any number of threads.
 
-mod align;
 mod candidates;
 mod chosen_values;
-mod course;
+mod course_ahead;
 mod cover;
 mod driving;
 mod encounter_values;
@@ -19,6 +18,7 @@ mod last_speed;
 mod left_out;
 mod level;
 mod meet;
+mod moved_back;
 mod neighbours;
 mod occupancy;
 mod one_between;
@@ -289,8 +289,8 @@ impl Detector {
                 let scene = self.scene(frame, roster).as_met(met.further);
                 let user = *scene.user(slot);
                 if user.on_lanes {
-                    let way = scene.way_to_measure(&user, &met.meeting);
-                    self.lengthen(roster, &user, way);
+                    let ahead = scene.distance_to_measure(&user, &met.meeting);
+                    self.lengthen(roster, &user, ahead);
                 }
             }
         }

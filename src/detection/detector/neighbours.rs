@@ -1,6 +1,6 @@
 //! Drops the rear-end pairs of a step that another vehicle is between (see [`super::one_between`]).
 
-use super::one_between::{OneBetween, Way, may_have_one_between};
+use super::one_between::{OneBetween, PathAhead, may_have_one_between};
 use super::{Detector, LEVEL};
 use crate::detection::encounter::Encounter;
 use crate::options::Mode;
@@ -23,13 +23,13 @@ impl Detector {
                 !may_have_one_between(found) || !self.has_one_between(&mut between, frame, roster, found)
             });
             (self.order, self.workers) = (order, workers);
-            between.way.bisection.shrink();
+            between.ahead.bisection.shrink();
         }
         self.one_between = Some(between);
     }
 
     fn has_one_between(&mut self, between: &mut OneBetween, frame: &Frame, roster: &Roster, found: &Encounter) -> bool {
-        let OneBetween { slots, near, way, .. } = between;
+        let OneBetween { slots, near, ahead, .. } = between;
         let [ego, foe] = [found.ego_row, found.foe_row].map(|row| slots[row as usize]);
         let first = near.partition_point(|(slot, _)| *slot < ego);
         let near = near[first..].iter().take_while(|(slot, _)| *slot == ego).map(|(_, other)| *other);
@@ -39,8 +39,8 @@ impl Detector {
         }
         let length = roster.profile_of(found.foe).length;
         let furthest = found.ego_distance + found.foe_distance + length;
-        self.look_ahead(frame, roster, ego, furthest, way);
-        let Some(to_foe) = self.scene(frame, roster).distance_to(way, ego, foe) else { return false };
+        self.look_ahead(frame, roster, ego, furthest, ahead);
+        let Some(to_foe) = self.scene(frame, roster).distance_to(ahead, ego, foe) else { return false };
         let height = frame.state(found.ego_row).z;
         for other in near {
             let scene = self.scene(frame, roster);
@@ -48,20 +48,20 @@ impl Detector {
                 continue;
             }
             // The poses are the ego's until one is found to be on its path.
-            if scene.distance_to(way, ego, other).is_none_or(|distance| distance >= to_foe) {
+            if scene.distance_to(ahead, ego, other).is_none_or(|distance| distance >= to_foe) {
                 continue;
             }
-            self.look_ahead(frame, roster, other, to_foe, way);
-            if self.scene(frame, roster).distance_to(way, other, foe).is_some_and(|distance| distance < to_foe) {
+            self.look_ahead(frame, roster, other, to_foe, ahead);
+            if self.scene(frame, roster).distance_to(ahead, other, foe).is_some_and(|distance| distance < to_foe) {
                 return true;
             }
-            self.look_ahead(frame, roster, ego, furthest, way);
+            self.look_ahead(frame, roster, ego, furthest, ahead);
         }
         false
     }
 
     /// Computes the poses of the road user in a slot as far as `furthest`.
-    fn look_ahead(&mut self, frame: &Frame, roster: &Roster, slot: u32, furthest: Metre, way: &mut Way) {
+    fn look_ahead(&mut self, frame: &Frame, roster: &Roster, slot: u32, furthest: Metre, ahead: &mut PathAhead) {
         let user = self.search.slots()[slot as usize];
         let moves = frame.state(user.row).moves();
         // One that stands still has the path on which it came.
@@ -70,9 +70,9 @@ impl Detector {
             self.lengthen(roster, &user, furthest);
         }
         let scene = self.scene(frame, roster);
-        way.poses.clear();
+        ahead.poses.clear();
         if let Some(first) = scene.carriages(&user).next() {
-            scene.course(&user, first, &[furthest], true, &mut way.poses);
+            scene.course(&user, first, &[furthest], true, &mut ahead.poses);
         }
     }
 }

@@ -31,19 +31,19 @@ pub(super) struct OneBetween {
     is_follower: Vec<bool>,
     /// The slots of such an ego and of a vehicle whose area meets its own, sorted.
     pub near: Vec<(u32, u32)>,
-    pub way: Way,
+    pub ahead: PathAhead,
 }
 
 /// The path that is being followed.
-pub(super) struct Way {
+pub(super) struct PathAhead {
     pub poses: Vec<Pose>,
     pub bisection: Bisection,
 }
 
 impl Default for OneBetween {
     fn default() -> Self {
-        let way = Way { poses: Vec::new(), bisection: Bisection::to_keep() };
-        Self { slots: Vec::new(), is_follower: Vec::new(), near: Vec::new(), way }
+        let ahead = PathAhead { poses: Vec::new(), bisection: Bisection::to_keep() };
+        Self { slots: Vec::new(), is_follower: Vec::new(), near: Vec::new(), ahead }
     }
 }
 
@@ -92,7 +92,12 @@ fn is_there(user: &User) -> bool {
 impl StepInputs<'_> {
     /// How far the road user in a slot has to go along these poses until it runs into where another one is now; none if it
     /// does not, or not from behind. Two that only graze pass each other.
-    pub(super) fn distance_to(&self, Way { poses, bisection }: &mut Way, slot: u32, other: u32) -> Option<Metre> {
+    pub(super) fn distance_to(
+        &self,
+        PathAhead { poses, bisection }: &mut PathAhead,
+        slot: u32,
+        other: u32,
+    ) -> Option<Metre> {
         let by = self.options.contact_tolerance / 2.0;
         let mut mover = *self.movers(slot).first()?;
         (mover.poses, mover.straight) = (poses, false);

@@ -80,8 +80,8 @@ impl<'a> Paths<'a> {
     }
 
     /// The lane at a distance ahead of a road user.
-    pub(super) fn lane_at(&self, user: UserIndex, way: Metre) -> Option<LaneIndex> {
-        self.paths[user.0 as usize].lane_at(self.of_net, way)
+    pub(super) fn lane_at(&self, user: UserIndex, ahead: Metre) -> Option<LaneIndex> {
+        self.paths[user.0 as usize].lane_at(self.of_net, ahead)
     }
 }
 

@@ -39,7 +39,7 @@ impl Detector {
     pub fn set_placement(&mut self, frame: &Frame, roster: &Roster, row: u32, placement: &Placement) {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
-        let way_back = self.way_back(&state);
+        let distance_back = self.distance_back(&state);
         let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
         let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
         if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
@@ -50,7 +50,7 @@ impl Detector {
             axis: direction(state.heading),
             chord: profile.chord,
             length: profile.length,
-            way_back,
+            distance_back,
             width: profile.width,
             speed: state.speed,
             sublane: self.sublane,
@@ -70,19 +70,19 @@ impl Detector {
         for (Row { user, state }, on_lanes) in frame.rows().zip(&self.on_lanes) {
             if *on_lanes || self.look.is_some() {
                 let profile = roster.profile_of(user);
-                let way = cover.reach(&state, profile, self.options.epsilon);
-                self.paths[user.0 as usize].extend(net, profile.length, way);
+                let distance = cover.reach(&state, profile, self.options.epsilon);
+                self.paths[user.0 as usize].extend(net, profile.length, distance);
             }
         }
     }
 
     /// Extends a road user's path this far ahead, if its route reaches that far.
-    pub(super) fn lengthen(&mut self, roster: &Roster, user: &User, way: Metre) {
+    pub(super) fn lengthen(&mut self, roster: &Roster, user: &User, distance: Metre) {
         if self.turns() == PathSource::Driven {
-            return self.lengthen_driven(user, way);
+            return self.lengthen_driven(user, distance);
         }
         if let Some(net) = &self.net {
-            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).length, way);
+            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).length, distance);
         }
     }
 
@@ -91,8 +91,8 @@ impl Detector {
         let (sight, scene, mut poses) = (self.sight(frame, roster), self.scene(frame, roster), Vec::new());
         let user = sight.user(row, &sight.see(row), &User::default());
         if let Some(first) = scene.carriages(&user).next() {
-            let way = AHEAD.max(frame.state(row).speed * HORIZON);
-            scene.course(&user, first, &[way], true, &mut poses);
+            let distance = AHEAD.max(frame.state(row).speed * HORIZON);
+            scene.course(&user, first, &[distance], true, &mut poses);
         }
         poses
     }

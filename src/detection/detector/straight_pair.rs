@@ -23,9 +23,9 @@ impl StraightPoses {
     fn of(front: Point, user: &User, stop: Metre, reach: Metre) -> Self {
         let now = straight::pose(front, user.axis, 0.0);
         let mut straight_poses = Self { poses: [now; 3], count: 1 };
-        for way in [stop, reach] {
-            if way > 0.0 {
-                straight_poses.poses[straight_poses.count] = straight::pose(front, user.axis, way);
+        for distance in [stop, reach] {
+            if distance > 0.0 {
+                straight_poses.poses[straight_poses.count] = straight::pose(front, user.axis, distance);
                 straight_poses.count += 1;
             }
         }

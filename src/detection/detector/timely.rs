@@ -4,7 +4,7 @@ use crate::braking::LateBraking;
 use crate::detection::measures::accident::BRAKES;
 use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::ttb::Evasion;
-use crate::traffic::driver::Driver;
+use crate::traffic::driver_distributions::Driver;
 use crate::util::units::{MetrePerSecondSquared, Second};
 
 /// The measures of a pair that follow from the courses of both.

@@ -71,7 +71,7 @@ impl Step {
     }
 
     /// How far its front goes.
-    pub fn way(&self) -> Metre {
+    pub fn travelled(&self) -> Metre {
         (self.poses[1].front - self.poses[0].front).norm()
     }
 

@@ -5,7 +5,7 @@
 //! CPI = Σ P(MADR < DRAC) Δt / Σ Δt
 //! ```
 
-use crate::traffic::driver::Driver;
+use crate::traffic::driver_distributions::Driver;
 use crate::util::units::{MetrePerSecondSquared, Probability};
 
 /// The probability that a driver's vehicle cannot brake as hard as the DRAC; 0 without one.

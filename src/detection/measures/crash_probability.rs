@@ -12,7 +12,7 @@
 //! If it sees the fall in too few nodes, it places new ones there. If the response time is fixed, the fall is a step at the
 //! deceleration with which wait = response, which is found by halving.
 
-use crate::traffic::driver::{Driver, Weighted};
+use crate::traffic::driver_distributions::{Driver, Weighted};
 use crate::util::units::{MetrePerSecondSquared, Probability, Second};
 
 /// From one node to the next, P(T > w(a)) may fall by so much: the error is then below 1e-3 for an attentive driver and 1e-2 for

@@ -145,20 +145,20 @@ mod tests {
     #[test]
     fn a_follower_that_turns_off_before_needs_less() {
         let leader = drive((30.0, 0.0), 0.0, 10.0, 0.0);
-        let turns_after = |way: f64| {
+        let turns_after = |travelled: f64| {
             let at = |distance, x, y, heading| Pose { distance, front: Point::new(x, y), axis: direction(heading) };
             let around = std::f64::consts::FRAC_PI_2;
             let poses = vec![
                 at(0.0, 0.0, 0.0, 0.0),
-                at(way, way, 0.0, 0.0),
-                at(way + 10.0, way + 6.4, 6.4, around),
-                at(way + 210.0, way + 6.4, 206.4, around),
+                at(travelled, travelled, 0.0, 0.0),
+                at(travelled + 10.0, travelled + 6.4, 6.4, around),
+                at(travelled + 210.0, travelled + 6.4, 206.4, around),
             ];
             found(&(poses, 20.0), &leader).map(|(drac, _)| drac)
         };
         // Both would touch after 2.5 s and 50 m, and be as fast after 5 s and 75 m.
         assert_eq!(turns_after(35.0), None);
-        let [early, late] = [51.0, 80.0].map(|way| turns_after(way).unwrap());
+        let [early, late] = [51.0, 80.0].map(|travelled| turns_after(travelled).unwrap());
         assert!(early > 0.1 && early < 1.8 && (late - 2.0).abs() < 0.05, "{early} and {late}");
     }
 

@@ -21,7 +21,7 @@ pub(crate) struct DrivenPath {
     poses: Vec<TimedPose>,
     carriages: SmallVec<[Carriage; 1]>,
     width: Metre,
-    ended: bool,
+    is_over: bool,
 }
 
 /// The position of its front bumper at a time, and its heading.
@@ -89,12 +89,12 @@ impl DrivenPath {
 
     /// Marks that it has left the scene.
     pub fn end(&mut self) {
-        self.ended = true;
+        self.is_over = true;
     }
 
     /// Whether it has left the scene.
     pub fn has_ended(&self) -> bool {
-        self.ended
+        self.is_over
     }
 
     /// From its front to the rear of its last carriage.
@@ -114,25 +114,25 @@ impl DrivenPath {
     /// The poses of a carriage whose front and rear go where the front bumper went, and straight on before that is known.
     fn trailing(&self, carriage: &Carriage) -> Vec<TimedPose> {
         let Some(first) = self.poses.first() else { return Vec::new() };
-        let mut way = 0.0;
-        let mut ways = vec![way];
-        ways.extend(self.poses.windows(2).map(|pair| {
-            way += (pair[1].front - pair[0].front).norm();
-            way
+        let mut travelled = 0.0;
+        let mut reached_after = vec![travelled];
+        reached_after.extend(self.poses.windows(2).map(|pair| {
+            travelled += (pair[1].front - pair[0].front).norm();
+            travelled
         }));
-        let place = |way: Metre| {
-            let next = ways.partition_point(|reached| *reached < way);
+        let place = |travelled: Metre| {
+            let next = reached_after.partition_point(|reached| *reached < travelled);
             if next == 0 {
-                return first.front + direction(first.heading) * way;
+                return first.front + direction(first.heading) * travelled;
             }
-            let part = (way - ways[next - 1]) / (ways[next] - ways[next - 1]);
+            let part = (travelled - reached_after[next - 1]) / (reached_after[next] - reached_after[next - 1]);
             self.poses[next - 1].front + (self.poses[next].front - self.poses[next - 1].front) * part
         };
-        let pose = |(pose, way): (&TimedPose, &Metre)| {
-            let [front, rear] = [0.0, carriage.length].map(|length| place(way - carriage.behind - length));
+        let pose = |(pose, travelled): (&TimedPose, &Metre)| {
+            let [front, rear] = [0.0, carriage.length].map(|length| place(travelled - carriage.behind - length));
             TimedPose { time: pose.time, front, heading: (front.y - rear.y).atan2(front.x - rear.x) }
         };
-        self.poses.iter().zip(&ways).map(pose).collect()
+        self.poses.iter().zip(&reached_after).map(pose).collect()
     }
 }
 

@@ -18,7 +18,7 @@ pub mod mttc;
 mod passage;
 pub mod pet;
 pub mod plane;
-pub mod rss;
+pub mod rss_lateral;
 pub mod threat;
 pub mod ttb;
 pub mod ttc;

@@ -110,9 +110,9 @@ impl<'a> Track<'a> {
         let poses = &self.course.poses;
         let mut nearest = (f64::INFINITY, Beside { aside: f64::INFINITY, angle: 0.0, is_on: false });
         let mut look = |[from, to]: [Point; 2], axes: [Vector; 2], widest: Radian| {
-            let (way, past) = (to - from, pose.front - from);
-            let part = (past.dot(&way) / way.norm_squared().max(1e-12)).clamp(0.0, 1.0);
-            let off = past - way * part;
+            let (displacement, past) = (to - from, pose.front - from);
+            let part = (past.dot(&displacement) / displacement.norm_squared().max(1e-12)).clamp(0.0, 1.0);
+            let off = past - displacement * part;
             let distance = off.norm();
             if distance < nearest.0 {
                 let axis = axes[0] * (1.0 - part) + axes[1] * part;
@@ -207,7 +207,7 @@ fn cleared(
 impl Crossing {
     /// Since when it has gone on with the first, if it does by this part of a step.
     fn joins(&mut self, step: &Step, until: f64, track: &Track) -> Option<Second> {
-        let parts = (step.way() / OFTEN).ceil().clamp(1.0, MOST_OFTEN);
+        let parts = (step.travelled() / OFTEN).ceil().clamp(1.0, MOST_OFTEN);
         let begin = step.part_at(self.enters);
         let mut off = begin;
         for part in (1..=parts as u32).map(|part| begin + (until - begin) * (f64::from(part) / parts)) {

@@ -96,10 +96,12 @@ mod tests {
     fn turn_of(mut course: DrivenPath, step: f64) -> DrivenPath {
         let steps = (4.0 / step).round() as u32;
         for time in (0..=steps).map(|number| f64::from(number) * step) {
-            let way = 8.0 * (time - 1.0);
-            let angle = (way / 9.0).clamp(0.0, std::f64::consts::FRAC_PI_2);
-            let beyond =
-                Point::new(9.0 * angle.cos() - way.max(9.0 * angle) + 9.0 * angle, 9.0 * angle.sin() + way.min(0.0));
+            let distance = 8.0 * (time - 1.0);
+            let angle = (distance / 9.0).clamp(0.0, std::f64::consts::FRAC_PI_2);
+            let beyond = Point::new(
+                9.0 * angle.cos() - distance.max(9.0 * angle) + 9.0 * angle,
+                9.0 * angle.sin() + distance.min(0.0),
+            );
             course.push(time, beyond, angle + std::f64::consts::FRAC_PI_2);
         }
         course

@@ -144,29 +144,31 @@ mod tests {
         /// Its distance after each hundredth of a second, if it brakes fully after a wait.
         fn driven(&self, wait: Second) -> Vec<f64> {
             const STEP: f64 = 1e-3;
-            let (mut speed, mut way, mut ways) = (self.speed, 0.0, vec![0.0]);
+            let (mut speed, mut travelled, mut travelled_at) = (self.speed, 0.0, vec![0.0]);
             for step in 1..=20_000 {
                 let time = f64::from(step) * STEP - STEP / 2.0;
                 let harder = ((time - wait) / 0.1).clamp(0.0, 1.0) * (8.0 - self.deceleration).max(0.0);
                 let next = (speed - (self.deceleration + harder) * STEP).max(0.0);
-                way += (speed + next) / 2.0 * STEP;
+                travelled += (speed + next) / 2.0 * STEP;
                 speed = next;
                 if step % 10 == 0 {
-                    ways.push(way);
+                    travelled_at.push(travelled);
                 }
             }
-            ways
+            travelled_at
         }
     }
 
     /// Whether an ego that waits so long touches the foe before a time, if it is `further` ahead throughout.
     fn touch(ego: &Drive, foe: &Drive, wait: Second, further: f64, until: Second) -> bool {
-        let at = |drive: &Drive, way: f64| {
+        let at = |drive: &Drive, travelled: f64| {
             let steady = SteadyMotion { deceleration: 0.0, speed: 1.0, ..drive.motion() };
-            steady.at(way.max(0.0))
+            steady.at(travelled.max(0.0))
         };
-        let ways = ego.driven(wait).into_iter().zip(foe.driven(f64::INFINITY));
-        ways.take((until * 100.0) as usize).any(|(own, other)| touches(&at(ego, own + further), &at(foe, other)))
+        let travelled_at = ego.driven(wait).into_iter().zip(foe.driven(f64::INFINITY));
+        travelled_at
+            .take((until * 100.0) as usize)
+            .any(|(own, other)| touches(&at(ego, own + further), &at(foe, other)))
     }
 
     fn wait_of(ego: &Drive, foe: &Drive) -> Option<(f64, f64)> {

@@ -99,8 +99,8 @@ impl SteadyMotion<'_> {
                     return None;
                 }
                 let is_even = |pose: &Pose| {
-                    let way = moves * pose.distance - last.distance * (pose.front - first.front).norm();
-                    way.abs() <= UNEVEN * last.distance
+                    let travelled = moves * pose.distance - last.distance * (pose.front - first.front).norm();
+                    travelled.abs() <= UNEVEN * last.distance
                 };
                 if !alike.clone().all(is_even) {
                     return None;

@@ -51,7 +51,7 @@ pub struct DrivenPlace {
 pub struct DrivenCourse {
     last: Option<DrivenPlace>,
     /// The way from the place before to the last.
-    way: Vector,
+    displacement: Vector,
     /// The heading at the last place.
     axis: Vector,
     /// The time of the last position, which may be no place, and the position and heading.
@@ -71,21 +71,23 @@ impl DrivenCourse {
         self.is_aside |= across > LEAST_JUMP && turn(&along, &step).abs() > LEAST_ASIDE;
         (self.time, self.before, self.axis_before) = (time, point, axis);
         let Some(last) = self.last.filter(|_| !jumps) else { return self.begin(time, point, axis, places) };
-        let way = point - last.point;
-        if way.norm() < SPACING {
+        let displacement = point - last.point;
+        if displacement.norm() < SPACING {
             return;
         }
         let ahead = if self.is_aside { AHEAD_OF_JUMP } else { AHEAD };
-        if turn(&(self.axis + axis), &way).abs() < ahead || turn(&self.way, &way).abs() < ahead {
-            (self.way, self.axis, self.is_aside) = (way, axis, false);
+        if turn(&(self.axis + axis), &displacement).abs() < ahead
+            || turn(&self.displacement, &displacement).abs() < ahead
+        {
+            (self.displacement, self.axis, self.is_aside) = (displacement, axis, false);
             self.push(DrivenPlace { time, point, begins: false }, places);
-        } else if cross(&axis, &way).abs().max(-axis.dot(&way)) > ELSEWHERE {
+        } else if cross(&axis, &displacement).abs().max(-axis.dot(&displacement)) > ELSEWHERE {
             self.begin(time, point, axis, places);
         }
     }
 
     fn begin(&mut self, time: Second, point: Point, axis: Vector, places: &mut Vec<DrivenPlace>) {
-        (self.way, self.axis, self.is_aside) = (axis, axis, false);
+        (self.displacement, self.axis, self.is_aside) = (axis, axis, false);
         places.push(DrivenPlace { time, point: point - axis * CAME_FROM, begins: true });
         self.push(DrivenPlace { time, point, begins: false }, places);
     }
@@ -142,8 +144,8 @@ impl DrivenPlaces {
         self.find_behind(now);
         path.begin_driven(self.behind.drain(..).rev(), now.front);
         let is_clear = |place: &DrivenPlace| {
-            let way = place.point - now.front;
-            way.norm() >= CLEAR && (way.norm() > ELSEWHERE || way.dot(&now.axis) > 0.0)
+            let displacement = place.point - now.front;
+            displacement.norm() >= CLEAR && (displacement.norm() > ELSEWHERE || displacement.dot(&now.axis) > 0.0)
         };
         let ahead = self.places.range(self.passed..).take_while(|place| !place.begins);
         self.taken = self.passed + ahead.take_while(|place| !is_clear(place)).count();
@@ -165,15 +167,15 @@ impl DrivenPlaces {
 
     /// Finds the places behind the road user, nearest first, and forgets those that it needs no more.
     fn find_behind(&mut self, now: &DrivenNow) {
-        let (mut nearest, mut way) = (now.front, 0.0);
+        let (mut nearest, mut driven) = (now.front, 0.0);
         let mut first = self.passed;
-        while first > 0 && way < now.behind && (first == self.passed || !self.places[first].begins) {
+        while first > 0 && driven < now.behind && (first == self.passed || !self.places[first].begins) {
             first -= 1;
             let place = self.places[first].point;
             let back = nearest - place;
             // Only the nearest may be in the way: it has reversed, or was moved.
             if !self.behind.is_empty() || (back.norm() >= CLEAR && back.dot(&now.axis) > 0.0) {
-                way += back.norm();
+                driven += back.norm();
                 nearest = place;
                 self.behind.push(place);
             }
@@ -262,9 +264,9 @@ mod tests {
     fn a_sharp_bend_of_a_lane_is_driven() {
         // The heading of a bus of 12 m lags behind: its rear is still before the bend.
         let bend = |step: u32| {
-            let way = f64::from(step) * 0.32 - 20.0;
-            let (beyond, heading) = (way.max(0.0), (way / 12.0).clamp(0.0, 1.0) * 0.8);
-            (way.min(0.0) + beyond * f64::cos(0.8), beyond * f64::sin(0.8), heading)
+            let driven = f64::from(step) * 0.32 - 20.0;
+            let (beyond, heading) = (driven.max(0.0), (driven / 12.0).clamp(0.0, 1.0) * 0.8);
+            (driven.min(0.0) + beyond * f64::cos(0.8), beyond * f64::sin(0.8), heading)
         };
         let found = places((0..150).map(bend));
         assert!(found.iter().skip(1).all(|place| !place.begins));

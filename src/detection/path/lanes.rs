@@ -57,7 +57,7 @@ pub(crate) struct PathStart {
     /// Length of the road user in m.
     pub length: Metre,
     /// How much further back the path is needed, in m.
-    pub way_back: Metre,
+    pub distance_back: Metre,
     /// Its width in m.
     pub width: Metre,
     /// Speed in m/s.
@@ -162,7 +162,7 @@ impl LanePath {
             self.own = Some(Box::new(own));
         }
         self.edge = (!against).then_some(0);
-        self.remove_behind(net, start.length + start.way_back + KEPT_BEHIND);
+        self.remove_behind(net, start.length + start.distance_back + KEPT_BEHIND);
         self.shrink();
     }
 
@@ -347,7 +347,7 @@ fn lanes_behind(
     start: &PathStart,
     route: &RouteAhead,
 ) -> SmallVec<[LaneIndex; 4]> {
-    let needed = start.length + start.way_back + KEPT_BEHIND;
+    let needed = start.length + start.distance_back + KEPT_BEHIND;
     let rear = start.front - start.axis * start.chord;
     let mut lanes = SmallVec::new();
     let mut covered = foot.distance;

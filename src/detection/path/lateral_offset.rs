@@ -253,10 +253,10 @@ mod tests {
             for vertex in lines.line(0) {
                 // Where a ray through the centre of the bend meets the middle.
                 let angle = vertex.point.y.atan2(vertex.point.x).clamp(0.0, FRAC_PI_2);
-                let way = 20.0 + vertex.point.y.min(0.0) + 10.0 * angle + (-vertex.point.x).max(0.0);
+                let expected = 20.0 + vertex.point.y.min(0.0) + 10.0 * angle + (-vertex.point.x).max(0.0);
                 // A vertex lies on the line that halves the corner of two pieces, half of 2.5° beside that ray.
                 let corner = f64::abs(aside) * (FRAC_PI_2 / 72.0).tan();
-                assert!((vertex.distance - way).abs() < 0.005 + corner, "{aside}: {vertex:?} {way}");
+                assert!((vertex.distance - expected).abs() < 0.005 + corner, "{aside}: {vertex:?} {expected}");
             }
         }
     }

@@ -46,10 +46,10 @@ impl Clip {
         let is_full = |user: &ClipUser| {
             let lists = [&user.x, &user.y, &user.heading, &user.speed];
             let limits = [POSITION, POSITION, ANGLE, SPEED];
-            let is_possible = |(list, limit): (&Vec<Option<f64>>, Limit)| {
+            let is_plausible = |(list, limit): (&Vec<Option<f64>>, Limit)| {
                 list.len() == count && list.iter().flatten().all(|value| limit.holds(*value))
             };
-            lists.into_iter().zip(limits).all(is_possible)
+            lists.into_iter().zip(limits).all(is_plausible)
                 && user.length <= LENGTH.most
                 && user.width <= WIDTH.most
                 && user.outlines.iter().flatten().flatten().all(|it| POSITION.holds(*it))

@@ -232,8 +232,8 @@ fn user_at(user: UserIndex, time: Second, source: &Source) -> ClipUser {
 
 /// The signals around a place of which it is known what they show.
 fn signals_near(net: &Net, at: Point, signals: &Signals, time: Second) -> Vec<(Signal, ClipSignal)> {
-    let ways = net.signals_near(at, AROUND);
-    let known = ways.filter(|(signal, _)| signals.at(*signal, time).is_some());
+    let nearby = net.signals_near(at, AROUND);
+    let known = nearby.filter(|(signal, _)| signals.at(*signal, time).is_some());
     let named = known.map(|(signal, lane)| {
         let light = net.lights[signal.light as usize].clone();
         (signal, ClipSignal { light, index: signal.index, lane: net.lane_id(lane).to_owned(), states: String::new() })

@@ -171,8 +171,8 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     if [ego, foe].into_iter().any(|party| party.course.stretches.is_empty() || party.course.is_against) {
         return false;
     }
-    let of_ego = ego.lanes_over([ego.way; 2]).collect::<Vec<LaneIndex>>();
-    let of_foe = foe.lanes_over([0.0, foe.way]).collect::<Vec<LaneIndex>>();
+    let of_ego = ego.lanes_over([ego.to_meeting; 2]).collect::<Vec<LaneIndex>>();
+    let of_foe = foe.lanes_over([0.0, foe.to_meeting]).collect::<Vec<LaneIndex>>();
     let is_known = !of_ego.is_empty() && !of_foe.is_empty();
     let relates = |one: LaneIndex, other: LaneIndex| {
         let is_beside = net.lanes[one.0 as usize].edge == net.lanes[other.0 as usize].edge;
@@ -188,7 +188,7 @@ fn waits_inside(net: &Net, waits: &Party, passes: &Party) -> bool {
         return false;
     };
     let comes_from_behind = || {
-        let front = passes.course.at(passes.way);
+        let front = passes.course.at(passes.to_meeting);
         front.is_some_and(|front| waits.lanes_over([0.0; 2]).any(|under| under == front))
     };
     passes.speed >= STANDS

@@ -94,13 +94,13 @@ impl Causes {
     }
 
     /// The same where, besides, one of the two stood because of a stop.
-    pub(crate) fn and_stood(mut self, manoeuvre: Option<Manoeuvre>) -> Self {
+    pub(crate) fn with_stops(mut self, manoeuvre: Option<Manoeuvre>) -> Self {
         self.add_if(Cause::Stood, true);
-        self.that_fit(manoeuvre)
+        self.plausible_for(manoeuvre)
     }
 
     /// Those without what only another manoeuvre than this is.
-    pub(super) fn that_fit(self, manoeuvre: Option<Manoeuvre>) -> Self {
+    pub(super) fn plausible_for(self, manoeuvre: Option<Manoeuvre>) -> Self {
         let fits = |cause| match cause {
             Cause::ChangedLane => matches!(manoeuvre, Some(Manoeuvre::CutIn | Manoeuvre::LaneChange)),
             Cause::Overtook => manoeuvre == Some(Manoeuvre::OvertakingOncoming),

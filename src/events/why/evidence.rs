@@ -41,7 +41,7 @@ pub(super) fn causes_of(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> Causes {
         let ran = causes.has(Cause::RanRed);
         causes.add_if(
             Cause::DidNotYield,
-            !ran && [(ego, foe), (foe, ego)].into_iter().any(|ways| did_not_yield(net, pair, ways)),
+            !ran && [(ego, foe), (foe, ego)].into_iter().any(|parties| did_not_yield(net, pair, parties)),
         );
     }
     causes.add_if(Cause::ChangedLane, pair.both().iter().any(|(a, b)| changed_into(pair, a, b).is_some()));
@@ -59,7 +59,7 @@ pub(super) fn causes_of(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> Causes {
     causes.add_if(Cause::TooFast, fast.into_iter().any(|(party, _)| is_too_fast(pair, party)));
     let is_new = |party: &Party| party.category != Category::Obstacle && pair.past.is_new(party.user, pair.time);
     causes.add_if(Cause::Appeared, pair.both().iter().any(|(party, _)| is_new(party)));
-    causes.that_fit(manoeuvre)
+    causes.plausible_for(manoeuvre)
 }
 
 /// Whether the ego approaches the end of a queue; in a tight curve that is a side conflict, too.
@@ -72,7 +72,7 @@ fn comes_to_queue(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> bool {
 }
 
 /// A road user and its way through the junction.
-type Way<'a> = (&'a Party, &'a Passage);
+type Entrant<'a> = (&'a Party, &'a Passage);
 
 /// What a traffic light shows to one that passes it: the letter, since how long, and how fast it is.
 struct Shown {
@@ -99,7 +99,7 @@ fn entered_on(pair: &Pair, party: &Party, passage: &Passage, is_wrong: fn(&Shown
     };
     let has_entered = || match party.category {
         Category::Person => party.speed >= STANDS && is_on_a_crossing(pair, party),
-        _ => party.way_to(passage.lanes[0]).is_some_and(|way| way < 0.0),
+        _ => party.distance_to(passage.lanes[0]).is_some_and(|distance| distance < 0.0),
     };
     let Some(signal) = passage.signal.filter(|_| has_entered()) else { return false };
     // Within a step it is not known whether the light or the road user came first.
@@ -112,8 +112,8 @@ fn entered(pair: &Pair, party: &Party, passage: &Passage) -> Option<Second> {
     match party.category {
         Category::Person if is_on_a_crossing(pair, party) => entered_crossing(pair, party),
         Category::Person => Some(pair.time),
-        _ => party.way_to(passage.lanes[0]).and_then(|way| match way {
-            ..0.0 => passed_before(pair, party, -way),
+        _ => party.distance_to(passage.lanes[0]).and_then(|distance| match distance {
+            ..0.0 => passed_before(pair, party, -distance),
             _ => Some(pair.time),
         }),
     }
@@ -130,11 +130,11 @@ fn passed_before(pair: &Pair, party: &Party, driven: Metre) -> Option<Second> {
     let mut left = driven;
     places.windows(2).rev().find_map(|ends| {
         let [(before, from), (after, to)] = *ends else { return None };
-        let way = (to - from).norm();
-        if way >= left && way > 0.0 {
-            return Some(after - (after - before) * left / way);
+        let distance = (to - from).norm();
+        if distance >= left && distance > 0.0 {
+            return Some(after - (after - before) * left / distance);
         }
-        left -= way;
+        left -= distance;
         None
     })
 }
@@ -149,14 +149,19 @@ fn entered_crossing(pair: &Pair, party: &Party) -> Option<Second> {
 
 /// Whether a road user that has to yield on its way goes on, having passed the place to wait or unable to stop there, and
 /// does not let the other go first.
-fn did_not_yield(net: &Net, pair: &Pair, (one, other): (Way, Way)) -> bool {
+fn did_not_yield(net: &Net, pair: &Pair, (one, other): (Entrant, Entrant)) -> bool {
     let (party, passage) = one;
     let goes_on = || match party.category {
         Category::Person => is_on_a_crossing(pair, party),
-        _ => passage.lanes.last().and_then(|lane| party.way_to(*lane)).is_some_and(|way| party.passes(way)),
+        _ => passage
+            .lanes
+            .last()
+            .and_then(|lane| party.distance_to(*lane))
+            .is_some_and(|distance| party.passes(distance)),
     };
     // The right of way holds between the two from when both are in the junction.
-    let both = || [one, other].into_iter().filter_map(|(party, way)| entered(pair, party, way)).reduce(f64::max);
+    let both =
+        || [one, other].into_iter().filter_map(|(party, passage)| entered(pair, party, passage)).reduce(f64::max);
     net.yields(passage, other.1)
         && goes_on()
         && !goes_second(pair, party, other.0)
@@ -165,7 +170,7 @@ fn did_not_yield(net: &Net, pair: &Pair, (one, other): (Way, Way)) -> bool {
 
 /// Whether one passes the conflict point behind the other, and with room, as both drive now.
 fn goes_second(pair: &Pair, one: &Party, other: &Party) -> bool {
-    one.way * other.speed > other.way * one.speed
+    one.to_meeting * other.speed > other.to_meeting * one.speed
         && pair.found.nearness.is_none_or(|near| near.ttc.is_none())
         && (pair.around.tadv)(pair.found).is_none_or(|tadv| tadv >= LETS_GO_FIRST)
 }

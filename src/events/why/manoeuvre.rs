@@ -160,7 +160,7 @@ fn follow_each_other(pair: &Pair) -> bool {
     let [ego, foe] = [&pair.ego, &pair.foe].map(|party| &party.course.stretches);
     let Some(first) = ego.iter().position(|stretch| pair.foe.course.of(stretch.lane).is_some()) else { return false };
     let of_foe = foe.iter().position(|stretch| stretch.lane == ego[first].lane);
-    (first == 0 || of_foe == Some(0)) && pair.ego.way >= ego[first].begin - AT_THE_JOINT
+    (first == 0 || of_foe == Some(0)) && pair.ego.to_meeting >= ego[first].begin - AT_THE_JOINT
 }
 
 /// Two that drive on one lane or beside each other.

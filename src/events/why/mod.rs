@@ -52,7 +52,7 @@ impl Why {
         let manoeuvre = later.manoeuvre.or(self.manoeuvre);
         let mut causes = self.causes;
         causes.add(later.causes);
-        let causes = causes.that_fit(manoeuvre);
+        let causes = causes.plausible_for(manoeuvre);
         let known = later.lane_change_reason.or(self.lane_change_reason);
         Self { manoeuvre, causes, lane_change_reason: known.filter(|_| causes.has(Cause::ChangedLane)), ..later }
     }

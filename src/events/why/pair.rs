@@ -62,7 +62,7 @@ pub(in crate::events) struct Party {
     /// How hard it can brake.
     pub brakes: MetrePerSecondSquared,
     /// How far it is from the conflict point.
-    pub way: Metre,
+    pub to_meeting: Metre,
     pub course: Course,
 }
 
@@ -83,12 +83,12 @@ pub(in crate::events) struct Pair<'a> {
 }
 
 impl Party {
-    fn of(frame: &Frame, roster: &Roster, (user, row, way): (UserIndex, u32, Metre), course: Course) -> Self {
+    fn of(frame: &Frame, roster: &Roster, (user, row, to_meeting): (UserIndex, u32, Metre), course: Course) -> Self {
         let (state, profile) = (frame.state(row), roster.profile_of(user));
         let (category, brakes) = (profile.category, profile.brakes.deceleration);
         let (front, heading, speed) = (state.front(), state.heading, state.speed);
         let (length, unprotected) = (profile.length, profile.unprotected);
-        Self { user, category, unprotected, front, heading, length, speed, brakes, way, course }
+        Self { user, category, unprotected, front, heading, length, speed, brakes, to_meeting, course }
     }
 
     pub(crate) fn is_vehicle(&self) -> bool {
@@ -120,20 +120,20 @@ impl Party {
 
     /// How far ahead of its front bumper a way through a junction begins or, behind its place to wait within the junction,
     /// goes on; negative where it is past that.
-    pub(crate) fn way_to(&self, lane: LaneIndex) -> Option<Metre> {
+    pub(crate) fn distance_to(&self, lane: LaneIndex) -> Option<Metre> {
         self.course.of(lane).map(|stretch| stretch.begin)
     }
 
     /// Whether it has passed a place, or can no longer stop before it.
-    pub fn passes(&self, way: Metre) -> bool {
-        way < 0.0 || self.speed * self.speed / (2.0 * self.brakes) > way
+    pub fn passes(&self, ahead: Metre) -> bool {
+        ahead < 0.0 || self.speed * self.speed / (2.0 * self.brakes) > ahead
     }
 
     /// Its ways through junctions, each with how far its conflict point is from there.
     fn passages<'a>(&'a self, net: &'a Net) -> impl Iterator<Item = (&'a Passage, Metre)> {
         self.course.stretches.iter().filter_map(|stretch| {
             let passage = net.passage(stretch.lane).filter(|passage| passage.from != passage.to)?;
-            Some((passage, (stretch.begin - self.way).max(self.way - stretch.end).max(0.0)))
+            Some((passage, (stretch.begin - self.to_meeting).max(self.to_meeting - stretch.end).max(0.0)))
         })
     }
 }
@@ -144,13 +144,13 @@ impl<'a> Pair<'a> {
         around: Surroundings<'a>,
         past: &'a Past,
     ) -> Self {
-        let party = |user, row, way| {
-            let mut course = (around.course)(row, way);
+        let party = |user, row, to_meeting| {
+            let mut course = (around.course)(row, to_meeting);
             if past.is_new(user, frame.time) {
                 // It has not driven the lanes behind it.
                 course.stretches.retain(|stretch| stretch.end > 0.0);
             }
-            Party::of(frame, roster, (user, row, way), course)
+            Party::of(frame, roster, (user, row, to_meeting), course)
         };
         let ego = party(found.ego, found.ego_row, found.ego_distance);
         let foe = party(found.foe, found.foe_row, found.foe_distance);
@@ -174,8 +174,12 @@ fn passages<'a>(net: &'a Net, ego: &Party, foe: &Party, at: Point) -> Option<[&'
         through.min_by(|a, b| a.1.total_cmp(&b.1)).and_then(|(passage, _)| owned(passage))
     };
     match [ego.category, foe.category] {
-        [Category::Vehicle, Category::Person] => crossing().and_then(|way| Some([nearest_of(ego, way)?, way])),
-        [Category::Person, Category::Vehicle] => crossing().and_then(|way| Some([way, nearest_of(foe, way)?])),
+        [Category::Vehicle, Category::Person] => {
+            crossing().and_then(|crossed| Some([nearest_of(ego, crossed)?, crossed]))
+        }
+        [Category::Person, Category::Vehicle] => {
+            crossing().and_then(|crossed| Some([crossed, nearest_of(foe, crossed)?]))
+        }
         [Category::Vehicle, Category::Vehicle] => {
             let through =
                 ego.passages(net).filter_map(|(passage, away)| Some((passage, away, nearest_of(foe, passage)?)));

@@ -18,15 +18,15 @@ const BESIDE_THE_ROAD: Metre = 0.45;
 pub(super) fn is_behind_curve(pair: &Pair) -> bool {
     let Some(net) = pair.around.net else { return false };
     let ahead = (pair.around.path)(pair.found.ego_row);
-    let Some((offset, place)) = sightline_offset(&ahead, pair.ego.way) else { return false };
+    let Some((offset, place)) = sightline_offset(&ahead, pair.ego.to_meeting) else { return false };
     offset > BESIDE_THE_ROAD && is_beside_the_road(net, pair, place) && !turns(net, pair)
 }
 
 /// How far the straight line from the begin of a path to the point this far along it is from the path at most, and where on
 /// that line that is.
-fn sightline_offset(path: &[Point], way: Metre) -> Option<(Metre, Point)> {
+fn sightline_offset(path: &[Point], reach: Metre) -> Option<(Metre, Point)> {
     let first = *path.first()?;
-    let mut left = way;
+    let mut left = reach;
     let mut seen = Vec::new();
     for ends in path.windows(2) {
         let piece = ends[1] - ends[0];
@@ -58,7 +58,8 @@ fn is_beside_the_road(net: &Net, pair: &Pair, place: Point) -> bool {
 
 /// Whether the ego turns before the conflict point where ways cross or join.
 fn turns(net: &Net, pair: &Pair) -> bool {
-    let ahead = pair.ego.course.stretches.iter().filter(|stretch| stretch.end > 0.0 && stretch.begin < pair.ego.way);
+    let ahead =
+        pair.ego.course.stretches.iter().filter(|stretch| stretch.end > 0.0 && stretch.begin < pair.ego.to_meeting);
     let mut passages = ahead.filter_map(|stretch| net.passage(stretch.lane));
     passages.any(|passage| {
         passage.direction != Direction::Straight && net.junctions[passage.junction as usize].has_foes(passage.link)

@@ -22,10 +22,11 @@ pub(in crate::events) fn one_will_wait(pair: &Pair) -> bool {
 /// Whether a vehicle will wait for one on another way: at its light, or where it has to yield, within the junction if there is
 /// a place for that.
 fn will_wait(net: &Net, pair: &Pair, (party, passage): (&Party, &Passage), other: &Passage) -> bool {
-    let can_stop =
-        |way: Option<f64>| way.is_some_and(|way| way > 0.0 && party.speed * party.speed <= 2.0 * ORDINARY * way);
-    let to_enter = party.way_to(passage.lanes[0]);
-    let to_go_on = passage.lanes.last().and_then(|lane| party.way_to(*lane));
+    let can_stop = |distance: Option<f64>| {
+        distance.is_some_and(|distance| distance > 0.0 && party.speed * party.speed <= 2.0 * ORDINARY * distance)
+    };
+    let to_enter = party.distance_to(passage.lanes[0]);
+    let to_go_on = passage.lanes.last().and_then(|lane| party.distance_to(*lane));
     let is_stopped = || !is_open(pair, passage, pair.time) && passage.signal.is_some();
     party.is_vehicle()
         && ((net.yields(passage, other) && can_stop(to_go_on.or(to_enter))) || (can_stop(to_enter) && is_stopped()))

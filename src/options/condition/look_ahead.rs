@@ -41,7 +41,7 @@ impl LookAhead {
     /// met where it stands, or where it may be within the PET.
     pub fn distance(&self, speed: MetrePerSecond, stop: Metre, horizon: Second) -> Metre {
         let Self { metres, seconds, response, pet, rss } = *self;
-        let stop = if rss { stop.max(rss::way(speed)) } else { stop };
+        let stop = if rss { stop.max(rss::stopping_distance(speed)) } else { stop };
         let speeding_up = (speed + SPEEDS_UP * pet / 2.0) * pet;
         let until_it_stands = stop + metres + speed * response;
         let steady = if speed > 0.0 { until_it_stands.max(speed * seconds.min(horizon)) } else { 0.0 };

@@ -72,13 +72,13 @@ impl Net {
 
 impl Overlaps {
     fn of(net: &Net) -> Self {
-        let ways = Ways::of(net);
+        let connected = Connected::of(net);
         let mut places = Vec::new();
         for index in (0..net.lanes.len() as u32).map(LaneIndex).filter(|lane| is_driven(net, *lane)) {
-            let window = aabb(&ways.bounds[index.0 as usize].grown(VEHICLE_WIDTH));
+            let window = aabb(&connected.bounds[index.0 as usize].grown(VEHICLE_WIDTH));
             let near = net.finder.lanes_in(&window);
             for other in near.filter(|other| *other > index && is_driven(net, *other)) {
-                let depth = ways.overlap(index, other);
+                let depth = connected.overlap(index, other);
                 if depth > ROUNDING {
                     places.push(Overlap { lanes: (index, other), depth });
                 }
@@ -129,7 +129,7 @@ fn is_driven(net: &Net, lane: LaneIndex) -> bool {
 }
 
 /// Which lanes belong together.
-struct Ways<'a> {
+struct Connected<'a> {
     net: &'a Net,
     /// By lane: for a junction lane, the lanes that its link leads from and to; for others, the lane itself twice.
     ends: Vec<[LaneIndex; 2]>,
@@ -138,7 +138,7 @@ struct Ways<'a> {
     bounds: Vec<Bounds>,
 }
 
-impl<'a> Ways<'a> {
+impl<'a> Connected<'a> {
     fn of(net: &'a Net) -> Self {
         let mut ends = (0..net.lanes.len() as u32).map(|lane| [LaneIndex(lane); 2]).collect::<Vec<_>>();
         let mut links = vec![None; net.lanes.len()];
@@ -213,16 +213,18 @@ impl<'a> Ways<'a> {
         // The lanes that are reached, each with the shortest way there so far; those behind `next` are still to be followed.
         let mut reached = vec![(from, 0.0)];
         let mut next = 0;
-        while let Some(&(lane, way)) = reached.get(next).filter(|_| reached.len() < MOST_LANES) {
+        while let Some(&(lane, travelled)) = reached.get(next).filter(|_| reached.len() < MOST_LANES) {
             next += 1;
             for link in &lane_of(self.net, lane).links {
                 let ahead = link.via.unwrap_or(link.to);
                 if ahead == to {
                     return true;
                 }
-                let way = way + lane_of(self.net, ahead).length.max(SHORTEST);
-                if way < within && !reached.iter().any(|(known, shorter)| *known == ahead && *shorter <= way) {
-                    reached.push((ahead, way));
+                let travelled = travelled + lane_of(self.net, ahead).length.max(SHORTEST);
+                if travelled < within
+                    && !reached.iter().any(|(known, shorter)| *known == ahead && *shorter <= travelled)
+                {
+                    reached.push((ahead, travelled));
                 }
             }
         }

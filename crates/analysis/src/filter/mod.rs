@@ -174,7 +174,7 @@ mod tests {
     use clap::Parser;
 
     use super::*;
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
 
     #[derive(Parser)]
     struct Words {

@@ -8,7 +8,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 
 use super::group_column::GroupColumn;
 use super::packed::{is_as_written, open};
-use super::possible::PossibleRows;
+use super::plausible::PlausibleRows;
 use closecall_run::output::parquet_columns::physical;
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use closecall_run::util::parquet_column::guarded;
@@ -36,7 +36,7 @@ pub(crate) struct ParquetLog {
     next: usize,
     /// How many rows were returned in all.
     rows: u64,
-    possible: PossibleRows,
+    plausible: PlausibleRows,
     /// Whether the file is as it was written; none where it does not tell.
     is_as_written: Option<bool>,
 }
@@ -72,7 +72,7 @@ impl ParquetLog {
             batch: 0..0,
             next: 0,
             rows: 0,
-            possible: PossibleRows::default(),
+            plausible: PlausibleRows::default(),
             is_as_written: is_as_written(path, &file)?,
             file,
         })
@@ -97,7 +97,7 @@ impl ParquetLog {
 
     /// Demands that the margins are below 0, as a run logs them unless its options say otherwise.
     pub(crate) fn demand_margins_below_zero(&mut self) {
-        self.possible.margins_below_zero = true;
+        self.plausible.margins_below_zero = true;
     }
 
     /// The columns, without the labels of a sweep.
@@ -162,7 +162,7 @@ impl ParquetLog {
         if self.is_as_written == Some(true) {
             return Ok(());
         }
-        self.possible.check(conflict).map_err(|message| self.unfit(&message))
+        self.plausible.check(conflict).map_err(|message| self.unfit(&message))
     }
 
     /// The conflict that was read last, with all columns but the snapshots.

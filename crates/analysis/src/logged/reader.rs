@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use super::csv::CsvLog;
+use super::conflicts_csv::CsvLog;
 use super::folders::PARQUET;
 use super::parquet::ParquetLog;
 use super::run::LoggedRun;

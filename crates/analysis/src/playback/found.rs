@@ -7,7 +7,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use crate::dataset::nets;
-use crate::logged::{LoggedRun, Which, record};
+use crate::logged::{ConflictSelector, LoggedRun, record};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Clip, MOST};
 use closecall::geometry::Point;
@@ -56,7 +56,7 @@ impl Playback {
     ///
     /// # Errors
     /// [`Error::Value`] where the log has no such conflict, or the conflict no clip; the errors of reading the log.
-    pub fn find(folder: &Path, which: Which, net: Option<&Path>) -> Result<Self> {
+    pub fn find(folder: &Path, which: ConflictSelector, net: Option<&Path>) -> Result<Self> {
         let conflict = which.find(folder)?;
         let clip = clips(folder, &[conflict.id])?.remove(&conflict.id).ok_or_else(|| no_clip(folder, &conflict))?;
         let (path, text) = record(folder)?;

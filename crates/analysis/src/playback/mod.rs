@@ -1,11 +1,11 @@
 //! A conflict of a log, played: as an animated picture, or in sumo-gui.
 
 mod animation;
+mod drawn_net;
 mod found;
 mod picture;
-mod roads;
 mod view;
 
+pub use drawn_net::{signal_bar, signal_colour};
 pub use found::{Playback, clips, may_have_clip};
 pub use picture::{stills, svg};
-pub use roads::{signal_bar, signal_colour};

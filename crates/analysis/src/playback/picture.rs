@@ -6,8 +6,8 @@
 use std::fmt::Write;
 
 use super::animation::{Changing, Loop};
+use super::drawn_net::{roads, signals};
 use super::found::Playback;
-use super::roads::{roads, signals};
 use super::view::{PANEL, SIZE, View, front, place_of};
 use closecall::detection::kind::Severity;
 use closecall::events::{ClipCategory, ClipUser};

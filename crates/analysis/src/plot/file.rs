@@ -7,7 +7,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend};
 
 use closecall_run::util::output_file;
-use closecall_run::util::xml_text::possible;
+use closecall_run::util::xml_text::valid;
 use closecall_run::{Error, Result};
 
 /// Writes a PNG with red, green and blue of one byte each.
@@ -52,7 +52,7 @@ pub(crate) fn svg<E: Display>(
         );
         text = text.replacen(&pixels, &shown, 1);
     }
-    output_file::write(path, possible(&text).as_bytes())
+    output_file::write(path, valid(&text).as_bytes())
 }
 
 fn undrawn(path: &Path, message: &impl Display) -> Error {

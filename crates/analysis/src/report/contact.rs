@@ -64,9 +64,9 @@ impl Body {
         let numbers = path.split(' ').filter_map(|number| number.parse::<f64>().ok()).collect::<Vec<_>>();
         for point in numbers.chunks_exact(2) {
             let (last, front) = (poses[poses.len() - 1], Point::new(point[0], point[1]));
-            let way = front - last.front;
-            if let Some(axis) = way.try_normalize(0.0) {
-                poses.push(Pose { distance: last.distance + way.norm(), front, axis });
+            let displacement = front - last.front;
+            if let Some(axis) = displacement.try_normalize(0.0) {
+                poses.push(Pose { distance: last.distance + displacement.norm(), front, axis });
             }
         }
         (length > 0.0 && width > 0.0).then_some(Self { poses, speed, length, width })
@@ -86,7 +86,7 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
 
     /// The parts of two cars: x, y, heading, speed.
     fn parts_of(ego: [f64; 4], foe: [f64; 4], foe_path: &str) -> Option<[Part; 2]> {

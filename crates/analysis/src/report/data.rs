@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 
 use super::contact::parts;
 use super::movements::Movements;
-use super::{clips, faults, roads};
+use super::{clips, faults, page_net};
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
 use crate::statistics::Effects;
@@ -51,7 +51,7 @@ pub fn json(found: Conflicts, before: Option<Value>) -> Result<String> {
         "runs": runs(&logs, records),
         "variants": variants.iter().map(|variant| json!({ "name": variant.name, "runs": variant.runs })).collect::<Vec<_>>(),
         "defaults": Options::default(),
-        "net": net.map(roads::json),
+        "net": net.map(page_net::json),
         "net_faults": faults::json(&logs)?,
         "notes": ground.notes,
         "before": before,
@@ -251,7 +251,7 @@ fn rounded(value: f64, decimals: i32) -> f64 {
 #[cfg(test)]
 mod tests {
     use crate::report::data::*;
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
 
     #[test]
     fn without_a_net_a_lane_is_where_its_id_says() {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use closecall_run::output::net_faults::{NET_FAULTS, NetFault, sort};
+use closecall_run::output::net_faults_csv::{NET_FAULTS, NetFault, sort};
 use closecall_run::util::csv_safe::plain;
 use closecall_run::{Error, Result};
 

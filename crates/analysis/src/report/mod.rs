@@ -8,7 +8,7 @@ mod contact;
 mod data;
 mod faults;
 mod movements;
-mod roads;
+mod page_net;
 
 use std::path::{Path, PathBuf};
 

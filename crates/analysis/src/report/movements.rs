@@ -196,29 +196,30 @@ impl<'a> Movements<'a> {
         }
         let from = place_of(index, Role::In);
         let vias = edge.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).filter_map(|link| link.via);
-        let ways = vias.filter_map(|via| net.passage(via)).collect::<Vec<_>>();
-        let first = ways.first().map(|way| edge_of(way.to));
-        let way = if ways.iter().all(|way| Some(edge_of(way.to)) == first) {
-            ways.first().copied()
+        let passages = vias.filter_map(|via| net.passage(via)).collect::<Vec<_>>();
+        let first = passages.first().map(|passage| edge_of(passage.to));
+        let passage = if passages.iter().all(|passage| Some(edge_of(passage.to)) == first) {
+            passages.first().copied()
         } else {
             let path = path();
-            let count = |way: &&Passage| {
-                let is_on = |place: &&Point| way.lanes.iter().any(|lane| is_beside(net, *lane, **place));
+            let count = |passage: &&Passage| {
+                let is_on = |place: &&Point| passage.lanes.iter().any(|lane| is_beside(net, *lane, **place));
                 path.iter().filter(is_on).count()
             };
-            let counts = ways.iter().map(count).collect::<Vec<_>>();
-            let best = (0..ways.len()).max_by_key(|place| counts[*place]);
+            let counts = passages.iter().map(count).collect::<Vec<_>>();
+            let best = (0..passages.len()).max_by_key(|place| counts[*place]);
             // Where two ways lead to different roads equally well, it is not known which.
             let is_sure = |best: &usize| {
-                let rivals = (0..ways.len()).filter(|place| edge_of(ways[*place].to) != edge_of(ways[*best].to));
+                let rivals =
+                    (0..passages.len()).filter(|place| edge_of(passages[*place].to) != edge_of(passages[*best].to));
                 rivals.into_iter().all(|place| counts[place] < counts[*best])
             };
-            best.filter(is_sure).map(|best| ways[best])
+            best.filter(is_sure).map(|best| passages[best])
         };
-        let to = way.and_then(|way| place_of(edge_of(way.to), Role::Out));
-        let is_alike = |other: &&Passage| way.is_some_and(|way| edge_of(other.to) == edge_of(way.to));
-        let alike = ways.iter().copied().filter(is_alike).collect::<Ways>();
-        (Movement { from, to, turn: way.map(|way| turn(way.direction)) }, alike)
+        let to = passage.and_then(|passage| place_of(edge_of(passage.to), Role::Out));
+        let is_alike = |other: &&Passage| passage.is_some_and(|passage| edge_of(other.to) == edge_of(passage.to));
+        let alike = passages.iter().copied().filter(is_alike).collect::<Ways>();
+        (Movement { from, to, turn: passage.map(|passage| turn(passage.direction)) }, alike)
     }
 
     /// The place of an approach, which is added where it is new.
@@ -277,10 +278,10 @@ fn point_of(net: &Net, edge: EdgeIndex, role: Role, away: Metre) -> Point {
     }
     let mut left = away;
     for ends in shape.windows(2) {
-        let way = ends[1] - ends[0];
-        let length = way.norm();
+        let displacement = ends[1] - ends[0];
+        let length = displacement.norm();
         if length > left {
-            return ends[0] + way * (left / length);
+            return ends[0] + displacement * (left / length);
         }
         left -= length;
     }
@@ -294,8 +295,8 @@ fn middle_of(shape: &[Point]) -> Point {
 }
 
 fn angle(middle: Point, place: Point) -> Radian {
-    let way = place - middle;
-    way.y.atan2(way.x)
+    let displacement = place - middle;
+    displacement.y.atan2(displacement.x)
 }
 
 fn is_beside(net: &Net, lane: LaneIndex, place: Point) -> bool {
@@ -308,9 +309,9 @@ fn samples(front: Option<(Metre, Metre)>, path: &str) -> Vec<Point> {
     let points = numbers.chunks_exact(2).map(|point| Point::new(point[0], point[1]));
     let points = front.map(|(x, y)| Point::new(x, y)).into_iter().chain(points).collect::<Vec<_>>();
     let between = points.windows(2).flat_map(|ends| {
-        let way = ends[1] - ends[0];
-        let steps = (way.norm() / STEP).ceil();
-        (0..steps as usize).map(move |step| ends[0] + way * (step as f64 / steps))
+        let displacement = ends[1] - ends[0];
+        let steps = (displacement.norm() / STEP).ceil();
+        (0..steps as usize).map(move |step| ends[0] + displacement * (step as f64 / steps))
     });
     between.chain(points.last().copied()).collect()
 }
@@ -327,7 +328,7 @@ fn turn(direction: Direction) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
 
     /// A conflict at a lane, with the ego on one and the foe on another, about to drive along a path.
     fn conflict(lane: &str, ego_lane: &str, foe_lane: &str, foe_path: &str) -> LoggedConflict {
@@ -352,13 +353,13 @@ mod tests {
         let mut movements = Movements::of(Some(&net));
         let mut turns = Vec::new();
         for (place, lane) in (0..).zip(&net.lanes) {
-            let Some(way) = net.passage(LaneIndex(place)) else { continue };
-            if net.function(LaneIndex(place)) != EdgeFunction::Internal || way.lanes[0].0 != place {
+            let Some(passage) = net.passage(LaneIndex(place)) else { continue };
+            if net.function(LaneIndex(place)) != EdgeFunction::Internal || passage.lanes[0].0 != place {
                 continue;
             }
-            let all = way.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].shape);
+            let all = passage.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].shape);
             let path = all.map(|point| format!("{} {}", point.x, point.y)).collect::<Vec<_>>().join(" ");
-            let both = movements.of_both(&conflict(&lane.id, &lane.id, net.lane_id(way.from), &path)).unwrap();
+            let both = movements.of_both(&conflict(&lane.id, &lane.id, net.lane_id(passage.from), &path)).unwrap();
             let [ego, foe] = both.movements;
             assert_eq!((ego, both.yields), (foe, None), "{}", lane.id);
             let Movement { from, to, turn } = movements.list[ego];
@@ -378,10 +379,11 @@ mod tests {
         )))
         .unwrap();
         let mut movements = Movements::of(Some(&net));
-        let ways = (0..net.lanes.len() as u32).map(LaneIndex).filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
-        let id = |way: &Passage| net.lane_id(way.lanes[0]);
+        let passages =
+            (0..net.lanes.len() as u32).map(LaneIndex).filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
+        let id = |passage: &Passage| net.lane_id(passage.lanes[0]);
         let mut found = 0;
-        for (one, other) in ways.iter().flat_map(|one| ways.iter().map(move |other| (one, other))) {
+        for (one, other) in passages.iter().flat_map(|one| passages.iter().map(move |other| (one, other))) {
             let has_to = |one, other| net.yields(one, other);
             let expected = if has_to(one, other) { Some(0) } else { has_to(other, one).then_some(1) };
             let both = movements.of_both(&conflict(id(one), id(one), id(other), "")).unwrap();

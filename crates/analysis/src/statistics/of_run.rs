@@ -183,11 +183,11 @@ mod tests {
     use crate::logged::{PARQUET, pack_in_place};
     use crate::statistics::of_run::*;
     use closecall_run::output::log::{CONFLICTS, RUN};
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
     use closecall_run::output::schema::COLUMNS;
 
     #[derive(Parser)]
-    struct Words {
+    struct Args {
         #[command(flatten)]
         filter: ConflictFilter,
     }
@@ -235,17 +235,17 @@ mod tests {
             fs::write(log.join(RUN), "{}\n").unwrap();
         }
         pack_in_place(&packed).unwrap();
-        let count = |log: &Arc<Path>, by: By, words: &str| {
-            let filter = Words::parse_from(["closecall"].into_iter().chain(words.split_whitespace())).filter;
+        let count = |log: &Arc<Path>, by: By, args: &str| {
+            let filter = Args::parse_from(["closecall"].into_iter().chain(args.split_whitespace())).filter;
             let of_run = OfRun::read((0, log), by, &filter, 5, &mut |_| ()).unwrap();
-            assert!(of_run.passed > 0, "{words}");
+            assert!(of_run.passed > 0, "{args}");
             format!("{of_run:?}").replace(&*log.to_string_lossy(), "log").replace(CONFLICTS, PARQUET)
         };
         let filters = ["", "--from 100", "--to 100", "--kind side", "--severity serious", "--manoeuvre merge"];
         let others = ["--cause too_fast", "--type bus", "--where J", "--where 0,0,50"];
-        for words in filters.into_iter().chain(others) {
+        for args in filters.into_iter().chain(others) {
             for by in By::value_variants() {
-                assert_eq!(count(&csv, *by, words), count(&packed, *by, words), "{by:?} {words}");
+                assert_eq!(count(&csv, *by, args), count(&packed, *by, args), "{by:?} {args}");
             }
         }
     }

@@ -62,7 +62,7 @@ impl Splits {
             }
         };
         let mut split = real;
-        let test = if ways(self.runs, self.first) <= self.most {
+        let test = if divisions(self.runs, self.first) <= self.most {
             split.sort_unstable_by(|a, b| b.cmp(a));
             examine(&split);
             while next(&mut split) {
@@ -84,7 +84,7 @@ impl Splits {
     pub(crate) fn smallest_p(&self) -> f64 {
         // If both sets have the same size, a split and its mirror image differ by the same amount.
         let alike = if 2 * self.first == self.runs { 2.0 } else { 1.0 };
-        (alike / ways(self.runs, self.first)).max(1.0 / (self.draws + 1) as f64)
+        (alike / divisions(self.runs, self.first)).max(1.0 / (self.draws + 1) as f64)
     }
 }
 
@@ -110,7 +110,7 @@ pub fn p_value(runs: usize, first: usize, difference: impl Fn(&[bool]) -> Option
 }
 
 /// The number of ways to choose `first` of `runs`.
-fn ways(runs: usize, first: usize) -> f64 {
+fn divisions(runs: usize, first: usize) -> f64 {
     (0..first).map(|i| (runs - i) as f64 / (i + 1) as f64).product()
 }
 
@@ -151,7 +151,7 @@ mod tests {
         all.sort();
         all.dedup();
         assert_eq!(all.len(), 10);
-        assert_eq!(ways(5, 2), 10.0);
+        assert_eq!(divisions(5, 2), 10.0);
     }
 
     fn means(values: &[f64]) -> impl Fn(&[bool]) -> Option<f64> {

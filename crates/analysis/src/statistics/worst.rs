@@ -145,19 +145,19 @@ fn show(run: &LoggedRun, conflict: &LoggedConflict) -> Option<String> {
         conflict.y,
         zoom(run).unwrap_or(ZOOM)
     );
-    let mut words = vec!["sumo-gui".to_owned()];
-    words.extend(kept(&run.sumo_words).map(|word| quoted(word)));
+    let mut args = vec!["sumo-gui".to_owned()];
+    args.extend(kept(&run.sumo_words).map(|word| quoted(word)));
     let begin = (conflict.begin - AROUND).max(run.summary.begin);
     let around = [("--breakpoints", begin), ("--end", conflict.end + AROUND)];
-    words.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
-    words.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
-    Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), words.join(" ")))
+    args.extend(around.iter().flat_map(|(option, time)| [(*option).to_owned(), format!("{time:.1}")]));
+    args.extend(["--start".to_owned(), "--gui-settings-file".to_owned(), "\"$view\"".to_owned()]);
+    Some(format!("view=$(mktemp) && printf %s {} > \"$view\" && {}", quoted(&view), args.join(" ")))
 }
 
 /// A run's words without the options that the command sets itself: SUMO accepts each option only once.
-fn kept(words: &[String]) -> impl Iterator<Item = &String> {
+fn kept(args: &[String]) -> impl Iterator<Item = &String> {
     let mut is_value = false;
-    words.iter().filter(move |word| {
+    args.iter().filter(move |word| {
         let (option, has_value) = word.split_once('=').map_or((word.as_str(), false), |(option, _)| (option, true));
         let is_anew = ["--end", "-e", "--gui-settings-file", "-g", "--breakpoints"].contains(&option);
         let is_left_out = is_value || is_anew;
@@ -202,8 +202,8 @@ mod tests {
 
     #[test]
     fn options_that_are_replaced_are_removed_in_every_spelling() {
-        let words = "-c a.sumocfg --end 9 --seed=3 --end=9 -e 9 -W".split(' ').map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(kept(&words).collect::<Vec<_>>(), ["-c", "a.sumocfg", "--seed=3", "-W"]);
+        let args = "-c a.sumocfg --end 9 --seed=3 --end=9 -e 9 -W".split(' ').map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(kept(&args).collect::<Vec<_>>(), ["-c", "a.sumocfg", "--seed=3", "-W"]);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! where two runs of one seed differ in it; where every seed has a file of its own, that is the seed's demand. Where a
 //! file lies, and what SUMO writes or prints, does not matter.
 
-mod settings;
+mod run_settings;
 
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, BTreeSet};
@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 use serde::Serialize;
 
 use super::logged::LoggedRun;
-use settings::{NONE, Values, settings};
+use run_settings::{NONE, Values, settings};
 
 /// The name of the setting that stands for all varied input files.
 const INPUTS: &str = "inputs";

@@ -41,21 +41,21 @@ pub fn is_output(option: &str) -> bool {
 }
 
 /// The first option that names a file to be written, of those on a command line of SUMO.
-pub fn output_in(words: &[String]) -> Option<&str> {
-    let options = words.iter().filter_map(|word| Some(word.strip_prefix('-')?.trim_start_matches('-')));
+pub fn output_in(args: &[String]) -> Option<&str> {
+    let options = args.iter().filter_map(|word| Some(word.strip_prefix('-')?.trim_start_matches('-')));
     let names = options.map(|option| option.split_once('=').map_or(option, |(name, _)| name));
     names.into_iter().find(|name| is_output(name))
 }
 
 /// Whether a run of this configuration with these options makes SUMO write files, and they all have the same names.
-pub fn has_outputs(configuration: &Path, words: &[String]) -> bool {
+pub fn has_outputs(configuration: &Path, args: &[String]) -> bool {
     let sets_prefix = |word: &String| word.split('=').next() == Some(PREFIX);
-    if words.iter().any(sets_prefix) {
+    if args.iter().any(sets_prefix) {
         return false;
     }
     let own = options_of(configuration).unwrap_or_default();
     let is_set = |SumoOption { name, value, .. }: &SumoOption| is_output(name) && !value.is_empty();
-    output_in(words).is_some() || own.iter().any(is_set) || {
+    output_in(args).is_some() || own.iter().any(is_set) || {
         // Detectors of additional files write what their `file` names.
         let named = files_of(configuration).unwrap_or_default();
         let mut additional = named.iter().filter(|(option, _)| *option == "additional-files");
@@ -77,10 +77,10 @@ mod tests {
         for option in ["seed", "net-file", "fcd-output.attributes", "output-prefix", "device.ssm.range", "load-state"] {
             assert!(!is_output(option), "{option}");
         }
-        let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
-        assert_eq!(output_in(&words("--scale 2 --fcd-output=a.xml")), Some("fcd-output"));
-        assert_eq!(output_in(&words("--no-warnings -l log.txt")), Some("l"));
-        assert_eq!(output_in(&words("--scale 2 --fcd-output.signals")), None);
+        let args = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        assert_eq!(output_in(&args("--scale 2 --fcd-output=a.xml")), Some("fcd-output"));
+        assert_eq!(output_in(&args("--no-warnings -l log.txt")), Some("l"));
+        assert_eq!(output_in(&args("--scale 2 --fcd-output.signals")), None);
     }
 
     #[test]

@@ -2,8 +2,8 @@
 
 mod attributes;
 mod connect;
-pub mod filter;
 pub mod projection;
 mod reader;
+pub mod selection;
 
 pub use reader::{parse, read};

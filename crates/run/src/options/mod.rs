@@ -3,8 +3,8 @@
 //! A TOML key or a Python keyword is the long option with underscores, and all three use the same parser
 //! ([`RunOptions::from_settings`]).
 
+mod named_values;
 mod series_format;
-mod settings;
 mod toml_file;
 mod word;
 

@@ -16,7 +16,7 @@ pub type Check = fn(&str, &str) -> std::result::Result<(), String>;
 #[derive(Debug, Default)]
 pub struct OptionsFile {
     /// The settings as command-line words. They precede the words that the user typed, so that the latter win.
-    pub words: Vec<String>,
+    pub args: Vec<String>,
     /// The `[type.NAME]` tables.
     pub types: FxHashMap<String, TypeOptions>,
     /// The `[driver]` table.
@@ -66,7 +66,7 @@ impl OptionsFile {
                     }
                     let value = plain_value(path, name, &value)?;
                     check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
-                    file.words.extend(word(name, &value));
+                    file.args.extend(word(name, &value));
                 }
             }
         }

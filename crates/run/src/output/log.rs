@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use super::clips::{CLIPS, ClipsFile};
 use super::csv_file::CsvFile;
-use super::net_faults::{self, NET_FAULTS, NetFault};
+use super::net_faults_csv::{self, NET_FAULTS, NetFault};
 use super::parquet_file::ParquetFile;
 use super::record::RunRecord;
 use super::schema::{COLUMNS, Column, Context, LoggedConflict};
@@ -174,7 +174,7 @@ impl Log {
     /// # Errors
     /// [`Error::File`] where it cannot be written.
     pub(crate) fn write_net_faults(&self, faults: &[NetFault]) -> Result<()> {
-        if faults.is_empty() { Ok(()) } else { net_faults::write(&self.folder, faults, self.conflicts.is_safe) }
+        if faults.is_empty() { Ok(()) } else { net_faults_csv::write(&self.folder, faults, self.conflicts.is_safe) }
     }
 
     /// Where it is.

@@ -75,9 +75,9 @@ mod tests {
             "/../../sumo_nets/priority/priority.net.xml"
         )))
         .unwrap();
-        let way = (0..net.lanes.len() as u32).filter_map(|lane| net.passage(LaneIndex(lane)));
-        let way = way.max_by_key(|way| way.lanes.len()).unwrap();
-        let through = [&[way.from][..], &way.lanes, &[way.to]].concat();
+        let passage = (0..net.lanes.len() as u32).filter_map(|lane| net.passage(LaneIndex(lane)));
+        let passage = passage.max_by_key(|passage| passage.lanes.len()).unwrap();
+        let through = [&[passage.from][..], &passage.lanes, &[passage.to]].concat();
         let total = |seen: &[&[LaneIndex]]| {
             let mut entering = Entering::default();
             for (user, lanes) in (0..).zip(seen) {
@@ -85,10 +85,10 @@ mod tests {
             }
             entering.by_junction(&net).values().sum::<u64>()
         };
-        assert!(way.lanes.len() > 1, "two parts");
+        assert!(passage.lanes.len() > 1, "two parts");
         assert_eq!(total(&[&through]), 1);
-        assert_eq!(total(&[&[way.from, way.to]]), 1, "through it between two steps");
-        assert_eq!(total(&[&[way.from], &[way.to]]), 0, "two vehicles that stay");
+        assert_eq!(total(&[&[passage.from, passage.to]]), 1, "through it between two steps");
+        assert_eq!(total(&[&[passage.from], &[passage.to]]), 0, "two vehicles that stay");
         assert_eq!(total(&[&through, &through]), 2);
     }
 }

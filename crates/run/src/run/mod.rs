@@ -10,7 +10,7 @@ mod obstacles;
 mod ordinary_driving;
 pub mod recorded;
 mod results;
-mod settings;
+mod setup;
 pub mod step;
 mod touching_lanes;
 mod warm_up;
@@ -24,7 +24,7 @@ use net_faults::NetFaults;
 use ordinary_driving::OrdinaryDriving;
 use rustc_hash::FxHashSet;
 
-use crate::net::filter::Filter;
+use crate::net::selection::Filter;
 use crate::options::RunOptions;
 use crate::output::summary::Summary;
 use crate::{Error, Result};

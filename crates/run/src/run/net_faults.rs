@@ -6,7 +6,7 @@ use ecow::EcoString;
 use rustc_hash::FxHashSet;
 
 use super::touching_lanes::touching_lanes;
-use crate::output::net_faults::{FaultKind, NetFault, sort};
+use crate::output::net_faults_csv::{FaultKind, NetFault, sort};
 use closecall::events::{Artefact, Conflict, STANDS};
 use closecall::traffic::net::{EdgeFunction, LaneIndex, Net};
 use closecall::traffic::roster::Roster;

@@ -12,7 +12,7 @@ use crate::output::folder::LogFolder;
 use crate::output::formats::{OutputFiles, Outputs};
 use crate::output::input_hash::Input;
 use crate::output::log::{self, Log};
-use crate::output::net_faults;
+use crate::output::net_faults_csv;
 use crate::output::record::RunRecord;
 use crate::output::summary::Summary;
 use crate::util::output_file::same_file;
@@ -110,7 +110,7 @@ impl RecordedRun {
         let (faults, road_users) = self.run.net_faults();
         let log = self.run.writing.log.as_ref();
         let faults_written = log.map_or(Ok(()), |log| log.write_net_faults(&faults));
-        let faults = net_faults::in_words(&faults, road_users, log.map(Log::folder));
+        let faults = net_faults_csv::in_words(&faults, road_users, log.map(Log::folder));
         let mut summary = self.run.summary.clone();
         summary.left_out.extend(left_out);
         summary.remarks.extend(faults.into_iter().chain(remarks).chain(self.earlier_log()));

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use super::Run;
 use crate::Result;
-use crate::output::net_faults::NetFault;
+use crate::output::net_faults_csv::NetFault;
 use crate::output::summary::{Skipped, Summary};
 use closecall::detection::encounter::Encounter;
 use closecall::events::{Alarm, Conflict, PetSoFar};

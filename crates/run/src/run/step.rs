@@ -52,12 +52,12 @@ impl Run {
         placed
     }
 
-    /// The second half of [`Run::step`]: both phases, the events and the log. `ended` is called after each part.
+    /// The second half of [`Run::step`]: both phases, the events and the log. `on_part_end` is called after each part.
     ///
     /// # Errors
     /// [`Error::Step`] if a road user is where none can be, or too many are in one place; [`Error::File`] that names an
     /// output that cannot be written, once: the steps after that one are checked, and nothing more is written.
-    pub fn finish_step(&mut self, mut ended: impl FnMut(StepPart)) -> Result<()> {
+    pub fn finish_step(&mut self, mut on_part_end: impl FnMut(StepPart)) -> Result<()> {
         if let Some((user, why)) = self.frame.impossible() {
             return Err(Error::step(self.frame.time, format!("\"{}\": {why}", self.roster.id(*user))));
         }
@@ -68,14 +68,14 @@ impl Run {
         self.warm_up.count_present(&mut self.summary.exposure);
         self.broad_phase();
         self.check_crowd()?;
-        ended(StepPart::BroadPhase);
+        on_part_end(StepPart::BroadPhase);
         self.narrow_phase();
         self.check_crowd()?;
-        ended(StepPart::NarrowPhase);
+        on_part_end(StepPart::NarrowPhase);
         self.close_conflicts();
-        ended(StepPart::Events);
+        on_part_end(StepPart::Events);
         let written = self.write();
-        ended(StepPart::Log);
+        on_part_end(StepPart::Log);
         recorded.and(written)
     }
 
@@ -113,10 +113,10 @@ impl Run {
     fn close_conflicts(&mut self) {
         let (detector, frame, roster) = (&self.detector, &self.frame, &self.roster);
         let path = |row| detector.path(frame, roster, row);
-        let course = |row, way| {
+        let course = |row, distance| {
             let user = frame.user(row);
             let edge = self.edges.iter().find(|(known, _)| *known == user).map(|(_, edge)| *edge);
-            detector.course(frame, roster, row, way).on_edge(self.net.as_deref(), edge, frame.state(row).front())
+            detector.course(frame, roster, row, distance).on_edge(self.net.as_deref(), edge, frame.state(row).front())
         };
         let chosen = |found: &Encounter| detector.chosen(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);

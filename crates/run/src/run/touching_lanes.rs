@@ -57,11 +57,11 @@ fn places(
     let rear = of.front - direction(of.heading) * of.length;
     let line = [rear, of.front].into_iter().chain(ahead.iter().copied()).collect::<Vec<_>>();
     let position = Foot::on_any_part(net.lines.line(lane.0), of.front).distance;
-    let way = line[1..].windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<Metre>();
+    let travelled = line[1..].windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<Metre>();
     let before = |lane: &Lane| lane.from.clone();
     let after = |lane: &Lane| lane.links.iter().map(|link| link.via.unwrap_or(link.to)).collect();
     let mut lanes = reached(net, lane, of.length - position, before);
-    lanes.extend(reached(net, lane, way - (net.lines.length(lane.0) - position), after));
+    lanes.extend(reached(net, lane, travelled - (net.lines.length(lane.0) - position), after));
     let away = |lane: LaneIndex, place: Point| (Foot::on_any_part(net.lines.line(lane.0), place).point - place).norm();
     let on = |place: Point| lanes.iter().copied().min_by(|a, b| away(*a, place).total_cmp(&away(*b, place)));
     Some(along(&line).filter_map(|place| Some((place, on(place)?))).collect())
@@ -84,11 +84,11 @@ fn lane_on_foot(net: &Net, place: Point) -> Option<LaneIndex> {
 fn reached(net: &Net, from: LaneIndex, within: Metre, next: impl Fn(&Lane) -> Vec<LaneIndex>) -> Vec<LaneIndex> {
     let mut reached = vec![(from, 0.0)];
     let mut at = 0;
-    while let Some(&(lane, way)) = reached.get(at).filter(|_| reached.len() < MOST_LANES) {
+    while let Some(&(lane, travelled)) = reached.get(at).filter(|_| reached.len() < MOST_LANES) {
         at += 1;
-        for next in next(&net.lanes[lane.0 as usize]).into_iter().filter(|_| way < within) {
+        for next in next(&net.lanes[lane.0 as usize]).into_iter().filter(|_| travelled < within) {
             if reached.iter().all(|(known, _)| *known != next) {
-                reached.push((next, way + net.lanes[next.0 as usize].length.max(SHORTEST)));
+                reached.push((next, travelled + net.lanes[next.0 as usize].length.max(SHORTEST)));
             }
         }
     }
@@ -98,9 +98,9 @@ fn reached(net: &Net, from: LaneIndex, within: Metre, next: impl Fn(&Lane) -> Ve
 /// Places along a line, its ends among them.
 fn along(line: &[Point]) -> impl Iterator<Item = Point> {
     let pieces = line.windows(2).flat_map(|ends| {
-        let way = ends[1] - ends[0];
-        let steps = (way.norm() / STEP).ceil().max(1.0);
-        (0..steps as usize).map(move |step| ends[0] + way * (step as f64 / steps))
+        let displacement = ends[1] - ends[0];
+        let steps = (displacement.norm() / STEP).ceil().max(1.0);
+        (0..steps as usize).map(move |step| ends[0] + displacement * (step as f64 / steps))
     });
     pieces.chain(line.last().copied())
 }

@@ -11,21 +11,21 @@ const PICTURES: u32 = 0x2400;
 
 /// The text between tags or in an attribute, with markup escaped.
 pub fn escaped(text: &str) -> Cow<'_, str> {
-    match possible(text) {
+    match valid(text) {
         Cow::Borrowed(text) => quick_xml::escape::escape(text),
         Cow::Owned(text) => Cow::Owned(quick_xml::escape::escape(text).into_owned()),
     }
 }
 
 /// The text, or a whole document, with only such characters as XML can hold.
-pub fn possible(text: &str) -> Cow<'_, str> {
-    if text.chars().all(is_possible) {
+pub fn valid(text: &str) -> Cow<'_, str> {
+    if text.chars().all(is_valid) {
         return Cow::Borrowed(text);
     }
-    Cow::Owned(text.chars().map(|sign| if is_possible(sign) { sign } else { picture(sign) }).collect())
+    Cow::Owned(text.chars().map(|sign| if is_valid(sign) { sign } else { picture(sign) }).collect())
 }
 
-fn is_possible(sign: char) -> bool {
+fn is_valid(sign: char) -> bool {
     matches!(sign, '\t' | '\n' | '\r' | ' '..='\u{d7ff}' | '\u{e000}'..='\u{fffd}' | '\u{10000}'..)
 }
 
@@ -56,7 +56,7 @@ mod tests {
     fn every_character_makes_a_file_that_a_parser_reads() {
         let all = (0..=0x1_1000).filter_map(char::from_u32).collect::<String>();
         let document = format!("<a b=\"{}\">{}</a>", escaped(&all), escaped(&all));
-        assert!(document.chars().all(is_possible));
+        assert!(document.chars().all(is_valid));
         let mut reader = quick_xml::Reader::from_str(&document);
         while !matches!(reader.read_event().unwrap(), quick_xml::events::Event::Eof) {}
     }

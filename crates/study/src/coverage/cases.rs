@@ -1,7 +1,7 @@
 //! The methods of statistics, each on processes that it may meet.
 
-use super::case::{Case, LEVEL, Told, case};
 use super::process::{Process, uniform};
+use super::trial::{Case, LEVEL, Told, case};
 use closecall::util::units::counted;
 use closecall_analysis::statistics::Ratio;
 use closecall_analysis::statistics::extremes::crashes;

@@ -3,9 +3,9 @@
 //! Conflicts come one by one (Poisson), or in clusters of a geometric size of three on average, so that the variance of
 //! a run's count is 2 · 3 − 1 = 5 times its mean. Values of a measure have tails of several shapes and are 0 at a crash.
 
-mod case;
 mod cases;
 mod process;
+mod trial;
 
 use std::fmt::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -14,11 +14,11 @@ use std::time::Instant;
 
 use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
-use case::{Case, LEVEL, Told};
 use cases::cases;
 use closecall::util::threads::processors;
 use closecall_analysis::statistics::rate::CONFIDENCE;
 use closecall_analysis::study::number::number;
+use trial::{Case, LEVEL, Told};
 
 /// Measures every case, several at a time.
 pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
@@ -145,7 +145,7 @@ mod tests {
 
     #[test]
     fn a_row_counts_what_an_interval_misses_on_either_side() {
-        let told = super::case::case("rate", "process".to_owned(), 100, |chance| match chance.below(4) {
+        let told = super::trial::case("rate", "process".to_owned(), 100, |chance| match chance.below(4) {
             0 => Told::Refused,
             1 => Told::Interval { low: 2.0, high: 3.0, estimate: 2.5, truth: 1.0 },
             _ => Told::Interval { low: 0.0, high: 3.0, estimate: 1.0, truth: 1.0 },

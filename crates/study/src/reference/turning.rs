@@ -18,7 +18,7 @@ pub(crate) struct Circling {
     /// Length and width in m.
     pub size: [f64; 2],
     /// How far it drives, in m.
-    pub way: f64,
+    pub until: f64,
 }
 
 /// A rectangle: centre, direction, half length and half width.
@@ -64,13 +64,13 @@ fn room(a: &Place, b: &Place) -> f64 {
 
 /// The ego's distance at which it first touches the area that the foe covers on its way, to within `precision`.
 pub(crate) fn first_touch(ego: &Circling, foe: &Circling, precision: f64) -> Option<f64> {
-    earliest(ego, foe, [0.0, ego.way], precision)
+    earliest(ego, foe, [0.0, ego.until], precision)
 }
 
 fn earliest(ego: &Circling, foe: &Circling, [from, to]: [f64; 2], precision: f64) -> Option<f64> {
     let middle = (from + to) / 2.0;
     let reach = (to - from) / 2.0 * ego.pace();
-    if is_clear(&ego.place(middle), foe, [0.0, foe.way], reach) {
+    if is_clear(&ego.place(middle), foe, [0.0, foe.until], reach) {
         return None;
     }
     if to - from <= precision {
@@ -99,15 +99,15 @@ mod tests {
 
     #[test]
     fn a_follower_touches_after_the_room_between() {
-        let ego = Circling { front: [0.0, 0.0], heading: 0.0, curvature: 0.0, size: [5.0, 2.0], way: 50.0 };
-        let foe = Circling { front: [15.0, 0.0], way: 20.0, ..ego };
+        let ego = Circling { front: [0.0, 0.0], heading: 0.0, curvature: 0.0, size: [5.0, 2.0], until: 50.0 };
+        let foe = Circling { front: [15.0, 0.0], until: 20.0, ..ego };
         assert!((first_touch(&ego, &foe, 1e-6).unwrap() - 10.0).abs() < 1e-5);
         assert_eq!(first_touch(&ego, &Circling { front: [15.0, 2.1], ..foe }, 1e-6), None);
     }
 
     #[test]
     fn a_quarter_circle_ends_a_radius_ahead_and_aside() {
-        let ego = Circling { front: [0.0, 0.0], heading: 0.0, curvature: 0.1, size: [0.0, 2.0], way: 50.0 };
+        let ego = Circling { front: [0.0, 0.0], heading: 0.0, curvature: 0.1, size: [0.0, 2.0], until: 50.0 };
         let ([x, y], heading) = ego.pose(5.0 * std::f64::consts::PI);
         assert!((x - 10.0).abs() + (y - 10.0).abs() + (heading - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
     }

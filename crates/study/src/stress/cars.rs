@@ -7,7 +7,7 @@ use closecall::detection::detector::Detector;
 use closecall::detection::encounter::Encounter;
 use closecall::events::Conflict;
 use closecall::options::Options;
-use closecall::traffic::driver::Driver;
+use closecall::traffic::driver_distributions::Driver;
 use closecall::traffic::frame::{Frame, State};
 use closecall::traffic::net::Net;
 use closecall::traffic::placement::Placement;

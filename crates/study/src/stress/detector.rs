@@ -122,8 +122,8 @@ fn stop(state: &State) -> Metre {
 
 /// An ego's distance to the area that the foe covers until it stands, if it gets there.
 fn distance_to(ego: &State, foe: &State) -> Option<Metre> {
-    let (axis, way) = (direction(foe.heading), stop(foe));
-    let area = Rectangle::behind(Point::new(foe.x, foe.y) + axis * way, axis, SIZE[0] + way, SIZE[1]);
+    let (axis, stopping) = (direction(foe.heading), stop(foe));
+    let area = Rectangle::behind(Point::new(foe.x, foe.y) + axis * stopping, axis, SIZE[0] + stopping, SIZE[1]);
     let found = contact::first_contact(&rectangle(ego), direction(ego.heading), &area).map(|found| nearest(&found));
     found.filter(|distance| *distance <= stop(ego) + Options::default().epsilon)
 }

@@ -114,8 +114,8 @@ fn check_left(chance: &mut Chance, pair: &MuInputs, gap: Metre, tally: &mut Tall
                 )
             })
         };
-        let (needs, ways, foe_way) = with(if found < f64::INFINITY { found } else { 0.0 });
-        tally.error(LEFT, error(found, &(precise(gap) - needs), &(ways + foe_way + precise(gap))), &inputs);
+        let (needs, travelled, foe_travelled) = with(if found < f64::INFINITY { found } else { 0.0 });
+        tally.error(LEFT, error(found, &(precise(gap) - needs), &(travelled + foe_travelled + precise(gap))), &inputs);
         let factor = 1.0 + chance.magnitude(1e-6, 1.0);
         let easier = [
             left(pair, gap * factor, model),
@@ -131,8 +131,8 @@ fn check_behind(chance: &mut Chance, braking: &LateBraking, leader: &Leader, tal
     let inputs = (braking, leader, found);
     let wait = wait(found);
     let room = reference::least_room_behind(leader, braking, wait);
-    let ways = precise(leader.room) + reference::late_distance(braking, wait);
-    tally.error(BEHIND, error(found, &room, &ways), &inputs);
+    let travelled = precise(leader.room) + reference::late_distance(braking, wait);
+    tally.error(BEHIND, error(found, &room, &travelled), &inputs);
     let factor = 1.0 + chance.magnitude(1e-6, 1.0);
     let slower = LateBraking { speed: braking.speed / factor, ..*braking };
     let harder = LateBraking { deceleration: braking.deceleration * factor, ..*braking };
@@ -168,13 +168,13 @@ fn wait(found: Second) -> Option<Second> {
     (found < f64::INFINITY).then_some(found.max(0.0))
 }
 
-/// The error of a longest wait that leads to a room, in units in the last place of `ways`: no room is left, and none is lacking. For a
+/// The error of a longest wait that leads to a room, in units in the last place of `travelled`: no room is left, and none is lacking. For a
 /// wait that may last for ever only the latter counts, and for one that is too long already only the former.
-fn error(wait: Second, room: &BigFloat, ways: &BigFloat) -> f64 {
-    if wait.is_nan() || *ways == BigFloat::ZERO {
+fn error(wait: Second, room: &BigFloat, travelled: &BigFloat) -> f64 {
+    if wait.is_nan() || *travelled == BigFloat::ZERO {
         return if wait.is_nan() { f64::INFINITY } else { 0.0 };
     }
-    let ulps = nearest(&(room / ways)) / f64::EPSILON;
+    let ulps = nearest(&(room / travelled)) / f64::EPSILON;
     match wait {
         f64::INFINITY => (-ulps).max(0.0),
         _ if wait <= 0.0 => ulps.max(0.0),

@@ -9,7 +9,7 @@ use closecall::detection::kind::Kind;
 use closecall::detection::measures::crash_probability::crash_probability;
 use closecall::detection::measures::injury::{Body, injury_probability};
 use closecall::options::{DriverModel, DriverOptions};
-use closecall::traffic::driver::Driver;
+use closecall::traffic::driver_distributions::Driver;
 
 /// The response time's distribution is a single formula.
 const LATE: Property = Property::within("response later than a time", 1e-13, Unit::Absolute);

@@ -6,8 +6,8 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use super::made::{Made, fill};
-use crate::logged::{Which, record};
+use super::extracted::{Extracted, fill};
+use crate::logged::{ConflictSelector, record};
 use crate::playback::Playback;
 use closecall::events::Clip;
 use closecall::geometry::{Bounds, Point};
@@ -37,11 +37,11 @@ pub type ConvertNet<'a> = dyn FnMut(&Path, &Bounds, &Path) -> Result<()> + 'a;
 /// those of `convert` and of reading and writing.
 pub fn extract_openscenario(
     folder: &Path,
-    which: Which,
+    which: ConflictSelector,
     net: Option<&Path>,
     out: &Path,
     convert: &mut ConvertNet,
-) -> Result<Made> {
+) -> Result<Extracted> {
     let Playback { conflict, clip, net_file, notes, .. } = Playback::find(folder, which, net)?;
     let date = written(folder)?;
     fill(out, |place, _| {
@@ -56,17 +56,17 @@ pub fn extract_openscenario(
         Some(_) => (!notes.is_empty()).then(|| notes.join(" ")),
         None => Some("no net was found, so that the scenario has no roads; --net gives one".to_owned()),
     };
-    Ok(Made { conflict, remark })
+    Ok(Extracted { conflict, remark })
 }
 
 /// Writes the clip of a conflict as a trace of OSI.
 ///
 /// # Errors
 /// [`Error::Value`] where the log has no such conflict, or the conflict no clip; those of reading and writing.
-pub fn extract_osi(folder: &Path, which: Which, out: &Path) -> Result<Made> {
+pub fn extract_osi(folder: &Path, which: ConflictSelector, out: &Path) -> Result<Extracted> {
     let Playback { conflict, clip, .. } = Playback::find(folder, which, None)?;
     output_file::write(out, &trace(&clip))?;
-    Ok(Made { conflict, remark: None })
+    Ok(Extracted { conflict, remark: None })
 }
 
 /// The part of the net that is converted.

@@ -9,10 +9,10 @@
 
 mod clip;
 mod configuration;
-mod made;
-mod settings;
+mod extracted;
+mod readme;
 mod source;
-mod words;
+mod toml_options;
 
 use std::ffi::OsString;
 use std::fs;
@@ -22,7 +22,7 @@ use serde_json::Value;
 
 use crate::batch::regress::running::{Job, Runner};
 use crate::batch::regress::scenario::{SETTINGS, Scenario};
-use crate::logged::{ConflictReader, LoggedConflict, LoggedRun, Which};
+use crate::logged::{ConflictReader, ConflictSelector, LoggedConflict, LoggedRun};
 pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
 use closecall::util::units::{Metre, SAME_MOMENT, Second};
 use closecall_run::output::input_hash::Input;
@@ -30,10 +30,10 @@ use closecall_run::util::decimal::Written;
 use closecall_run::util::output_file;
 use closecall_run::{Error, Result};
 use configuration::{CONFIGURATION, Configuration, STATE};
-pub use made::Made;
-use made::fill;
+pub use extracted::Extracted;
+use extracted::fill;
+use readme::Readme;
 use source::{Period, check_can_be_run};
-use words::Words;
 
 /// Margins that differ by more than this are those of different conflicts. A log has six digits after the point.
 const SAME_MARGIN: Metre = 1e-6;
@@ -64,13 +64,13 @@ pub type SaveConfiguration<'a> = dyn FnMut(&[String], &Path) -> Result<()> + 'a;
 /// # Errors
 /// [`Error::Value`] where the log has no such conflict; [`Error::Content`] where SUMO cannot run it again, or it is another
 /// one then, or `out` is not empty; [`Error::Stopped`] if the user interrupted it; those of reading and writing.
-pub fn extract(folder: &Path, which: Which, out: &Path, tools: &mut Tools) -> Result<Made> {
+pub fn extract(folder: &Path, which: ConflictSelector, out: &Path, tools: &mut Tools) -> Result<Extracted> {
     let conflict = which.find(folder)?;
     let run = LoggedRun::read(folder)?;
     let seed = check_can_be_run(&run).map_err(|why| Error::content(folder, why))?;
     let remark =
         fill(out, |place, logs| Cut { conflict: &conflict, run: &run, seed, place, logs }.make(folder, tools))?;
-    Ok(Made { conflict, remark })
+    Ok(Extracted { conflict, remark })
 }
 
 /// A conflict that is being cut out.
@@ -107,14 +107,14 @@ impl Cut<'_> {
         })?;
         let mut remark = None;
         let sumo = run.versions.sumo.as_deref().unwrap_or_default();
-        let mut words = Words { conflict: self.conflict, scenario: run.name(), sumo, until: period.end, from: None };
+        let mut args = Readme { conflict: self.conflict, scenario: run.name(), sumo, until: period.end, from: None };
         if period.is_within {
             let short = whole.clone().without("route-files").without("load-state");
             let short = short.with("load-state", STATE).with("begin", period.from);
             self.write_scenario(&short, period.warm_up, filter.as_deref())?;
             match self.look(Vec::new(), tools, [1, all])? {
                 Ok(()) => {
-                    words.from = Some(period.from);
+                    args.from = Some(period.from);
                     kept = short.files();
                     kept.extend(filter);
                     kept.push(STATE.to_owned());
@@ -127,7 +127,7 @@ impl Cut<'_> {
                 }
             }
         }
-        for (name, text) in [("README.md", words.readme()), ("test_conflict.py", words.test(CONFIGURATION))] {
+        for (name, text) in [("README.md", args.readme()), ("test_conflict.py", args.test(CONFIGURATION))] {
             output_file::write(&place.join(name), text.as_bytes())?;
             kept.push(name.to_owned());
         }
@@ -151,7 +151,7 @@ impl Cut<'_> {
         if let Some(filter) = filter {
             first += &format!("filter = {}\n", Value::from(filter));
         }
-        let text = settings::toml(&self.run.options, &first);
+        let text = toml_options::toml(&self.run.options, &first);
         let text = format!("{text}\n[regress]\nsumocfg = \"{CONFIGURATION}\"\nseeds = [{}]\n", self.seed);
         output_file::write(&self.place.join(SETTINGS), text.trim_start().as_bytes())
     }
@@ -168,8 +168,8 @@ impl Cut<'_> {
             interrupted: tools.interrupted,
             progress: &mut |more, _| (tools.progress)(done + more, all),
         };
-        let ended = runner.run(&[Job { scenario: &scenario, number: 0, seed: self.seed, log: log.clone() }])?;
-        match ended.into_iter().next() {
+        let ends = runner.run(&[Job { scenario: &scenario, number: 0, seed: self.seed, log: log.clone() }])?;
+        match ends.into_iter().next() {
             Some(Err(why)) => Ok(Err(why)),
             _ => self.found_in(&log),
         }

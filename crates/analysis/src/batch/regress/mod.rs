@@ -3,32 +3,32 @@
 //! [`scenario`] → [`running`] (a process per scenario and seed) → [`outcome`] → [`exact`] or [`statistics`] → [`Report`],
 //! printed by its `Display` and by [`junit`].
 
-mod compared;
 pub mod exact;
 mod fingerprint;
+pub mod joint_permutation;
 pub mod junit;
 mod matching;
 pub mod outcome;
-pub mod permutation;
 mod provenance;
 mod report;
 pub mod running;
 pub mod scenario;
 pub mod statistics;
+mod verdict;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use closecall_run::{Error, Result};
+use joint_permutation::{fewest_seeds, smallest_p};
 use outcome::{Outcome, SeedSummary};
-use permutation::{fewest_seeds, smallest_p};
 use running::Job;
 use statistics::comparisons;
 
-pub use compared::Compared;
 pub use report::{Report, Verdict, summary};
 pub use running::Runner;
 pub use scenario::{Level, Scenario};
+pub use verdict::Compared;
 
 /// Runs the scenarios and compares each with its expected outcome, or blesses the new one.
 ///

@@ -2,9 +2,9 @@
 
 use std::fmt;
 
-use super::compared::Compared;
 use super::exact::Differences;
 use super::scenario::{Level, Scenario};
+use super::verdict::Compared;
 use closecall::util::units::counted;
 use closecall_run::{Error, Result};
 

@@ -47,14 +47,14 @@ impl Runner<'_> {
     pub(in crate::batch) fn run(&mut self, jobs: &[Job]) -> Result<Vec<JobResult>> {
         let next = AtomicUsize::new(0);
         let stop = AtomicBool::new(false);
-        let ended = Mutex::new(vec![None; jobs.len()]);
+        let ends = Mutex::new(vec![None; jobs.len()]);
         let closecall = &self.closecall;
         let work = || {
             while !stop.load(Ordering::Relaxed) {
                 let number = next.fetch_add(1, Ordering::Relaxed);
                 let Some(job) = jobs.get(number) else { return };
                 let end = one(closecall, job, &stop);
-                ended.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(end);
+                ends.lock().unwrap_or_else(PoisonError::into_inner)[number] = Some(end);
             }
         };
         std::thread::scope(|scope| {
@@ -63,7 +63,7 @@ impl Runner<'_> {
                 if (self.interrupted)() {
                     stop.store(true, Ordering::Relaxed);
                 }
-                let done = ended.lock().unwrap_or_else(PoisonError::into_inner).iter().flatten().count();
+                let done = ends.lock().unwrap_or_else(PoisonError::into_inner).iter().flatten().count();
                 (self.progress)(done as u64, jobs.len() as u64);
                 std::thread::sleep(ASKED_EVERY);
             }
@@ -72,8 +72,8 @@ impl Runner<'_> {
         if stop.into_inner() || (self.interrupted)() {
             return Err(Error::Stopped);
         }
-        let ended = ended.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Ok(ended.into_iter().map(|end| end.unwrap_or_else(|| Err("it never ran".to_owned()))).collect())
+        let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok(ends.into_iter().map(|end| end.unwrap_or_else(|| Err("it never ran".to_owned()))).collect())
     }
 }
 
@@ -104,14 +104,14 @@ fn one(closecall: &[OsString], job: &Job, stop: &AtomicBool) -> JobResult {
 }
 
 fn start(closecall: &[OsString], job: &Job, told: &Path) -> Result<Child> {
-    let Some((program, words)) = closecall.split_first() else {
+    let Some((program, args)) = closecall.split_first() else {
         return Err(Error::Value("the command that runs SUMO is empty".to_owned()));
     };
     std::fs::create_dir_all(&job.log).map_err(|source| Error::file(&job.log, source))?;
     let stderr = File::create(told).map_err(|source| Error::file(told, source))?;
     let scenario = job.scenario;
     let mut command = Command::new(program);
-    command.args(words).args(scenario.words());
+    command.args(args).args(scenario.args());
     // The jobs already keep the processor's threads busy.
     command.args(["--quiet", "--threads=1", "--seed", &job.seed.to_string(), "--out"]).arg(&job.log);
     if !scenario.settings.sumo_options.is_empty() {

@@ -143,7 +143,7 @@ impl Scenario {
             OptionsFile::default()
         };
         let is_output = |word: &&String| OutputFiles::OPTIONS.iter().any(|option| word.starts_with(option));
-        if let Some(word) = file.words.iter().find(is_output) {
+        if let Some(word) = file.args.iter().find(is_output) {
             let message =
                 "a scenario's settings name no file to be written: give it on the command line of closecall run";
             return Err(Error::content(&path, format!("{}: {message}", word.trim_start_matches('-'))));
@@ -157,7 +157,7 @@ impl Scenario {
             None => RegressSettings::default(),
         };
         if settings.seeds.is_empty() {
-            settings.seeds = match seed_of(&file.words) {
+            settings.seeds = match seed_of(&file.args) {
                 Some(seed) => vec![seed],
                 None => SEEDS.to_vec(),
             };
@@ -174,12 +174,12 @@ impl Scenario {
     }
 
     /// The command line of a run in the folder, after the program's name, up to its own options.
-    pub fn words(&self) -> Vec<OsString> {
-        let mut words = vec!["run".into(), self.sumocfg.clone().into_os_string()];
+    pub fn args(&self) -> Vec<OsString> {
+        let mut args = vec!["run".into(), self.sumocfg.clone().into_os_string()];
         if self.has_settings {
-            words.extend(["--config", SETTINGS].map(OsString::from));
+            args.extend(["--config", SETTINGS].map(OsString::from));
         }
-        words
+        args
     }
 
     /// The scenario with other seeds, unless `seeds` is empty.
@@ -252,8 +252,8 @@ fn entries(folder: &Path) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-fn seed_of(words: &[String]) -> Option<u32> {
-    words.iter().find_map(|word| word.strip_prefix("--seed="))?.parse().ok()
+fn seed_of(args: &[String]) -> Option<u32> {
+    args.iter().find_map(|word| word.strip_prefix("--seed="))?.parse().ok()
 }
 
 /// Checks the settings; the error says what is wrong.

@@ -1,10 +1,10 @@
 //! [`super::Level::Statistics`]: the runs of several seeds, compared by one permutation test.
 //!
 //! Each run becomes a row of measures: counts by kind and severity, collisions, rates per vehicle-kilometre, traffic,
-//! and the 10th, 50th and 90th percentiles of TTC, PET and margin. The test is [`super::permutation`].
+//! and the 10th, 50th and 90th percentiles of TTC, PET and margin. The test is [`super::joint_permutation`].
 
+use super::joint_permutation::adjusted_p;
 use super::outcome::{Outcome, SeedConflict, SeedSummary};
-use super::permutation::adjusted_p;
 use super::scenario::{RegressSettings, Tolerance};
 use crate::statistics::quantile;
 use closecall::detection::kind::{Kind, Severity};

@@ -20,9 +20,9 @@ pub(super) fn contents(files: &[PathBuf]) -> Result<Vec<String>> {
 }
 
 /// The hash of everything that defines a run.
-pub(super) fn fingerprint(words: &[String], labels: &[Label], read: &[String]) -> String {
+pub(super) fn fingerprint(args: &[String], labels: &[Label], read: &[String]) -> String {
     let mut hasher = Hasher::default();
-    for part in [env!("CARGO_PKG_VERSION")].into_iter().chain(words.iter().chain(read).map(String::as_str)) {
+    for part in [env!("CARGO_PKG_VERSION")].into_iter().chain(args.iter().chain(read).map(String::as_str)) {
         hasher.add((part.len() as u64).to_le_bytes());
         hasher.add(part);
     }

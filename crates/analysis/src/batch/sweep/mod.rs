@@ -34,7 +34,7 @@ pub struct Sweep {
 }
 
 impl Sweep {
-    /// Plans a sweep of the scenario whose `closecall run` has these `words` and these options `for_sumo`.
+    /// Plans a sweep of the scenario whose `closecall run` has these `args` and these options `for_sumo`.
     ///
     /// `also_read` are the files that closecall itself reads; a run is done only if their contents are unchanged.
     ///
@@ -42,7 +42,7 @@ impl Sweep {
     /// [`Error::Value`] if an option is varied twice, two runs have the same name, or there are too many runs;
     /// [`Error::File`] if a file cannot be read.
     pub fn plan(
-        words: &[String],
+        args: &[String],
         for_sumo: &[String],
         seeds: &Seeds,
         varied: &[Vary],
@@ -58,7 +58,7 @@ impl Sweep {
             return Err(Error::Value(format!("that would be more than {MOST} runs")));
         }
         let settings = vary::product(varied).iter().map(|chosen| Setting::of(chosen)).collect::<Vec<_>>();
-        Self::of_settings(words, for_sumo, seeds, &settings, out, also_read)
+        Self::of_settings(args, for_sumo, seeds, &settings, out, also_read)
     }
 
     /// Plans the runs of these settings; the other arguments are those of [`Sweep::plan`].
@@ -66,7 +66,7 @@ impl Sweep {
     /// # Errors
     /// [`Error::Value`] if two runs have the same name; [`Error::File`] if a file cannot be read.
     pub fn of_settings(
-        words: &[String],
+        args: &[String],
         for_sumo: &[String],
         seeds: &Seeds,
         settings: &[Setting],
@@ -76,13 +76,13 @@ impl Sweep {
         let read = done::contents(also_read)?;
         // Side by side, runs would write into the same files.
         let has_outputs = seeds.0.len() * settings.len() > 1
-            && words.first().is_some_and(|scenario| has_outputs(Path::new(scenario), for_sumo));
+            && args.first().is_some_and(|scenario| has_outputs(Path::new(scenario), for_sumo));
         let mut tasks = Vec::new();
         let mut names = BTreeSet::new();
         for &seed in &seeds.0 {
             for setting in settings {
                 let name = format!("{}seed-{seed}", setting.name);
-                let mut own = words.iter().chain(&setting.words).cloned().collect::<Vec<_>>();
+                let mut own = args.iter().chain(&setting.args).cloned().collect::<Vec<_>>();
                 own.extend(["--seed".to_owned(), seed.to_string()]);
                 let mut sumo = setting.without_its_options(for_sumo);
                 sumo.extend_from_slice(&setting.for_sumo);
@@ -99,7 +99,7 @@ impl Sweep {
                     return Err(Error::Value(format!("two runs would both be called {name}")));
                 }
                 let fingerprint = done::fingerprint(&own, &labels, &read);
-                tasks.push(Task { name, words: own, out: out.to_owned(), labels, fingerprint });
+                tasks.push(Task { name, args: own, out: out.to_owned(), labels, fingerprint });
             }
         }
         Ok(Self { tasks, out: out.to_owned() })

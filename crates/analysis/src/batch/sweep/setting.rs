@@ -9,7 +9,7 @@ pub struct Setting {
     /// The beginning of the names of its runs.
     pub(super) name: String,
     /// Its words for `closecall run`.
-    pub(super) words: Vec<String>,
+    pub(super) args: Vec<String>,
     /// Its words for SUMO.
     pub(super) for_sumo: Vec<String>,
     /// Its columns in the data set.
@@ -24,7 +24,7 @@ impl Setting {
         let mut setting = Self::default();
         for (vary, value) in chosen {
             setting.name += &format!("{}-{}_", plain(&vary.parameter), plain(value));
-            if vary.is_sumos() { &mut setting.for_sumo } else { &mut setting.words }.push(vary.word(value));
+            if vary.is_sumos() { &mut setting.for_sumo } else { &mut setting.args }.push(vary.word(value));
             setting.labels.push(vary.label(value));
             setting.options.push(vary.option().to_owned());
         }
@@ -35,14 +35,14 @@ impl Setting {
     pub(super) fn without_its_options(&self, for_sumo: &[String]) -> Vec<String> {
         let is_value = |word: &String| !word.starts_with('-') || word.parse::<f64>().is_ok();
         let mut left = Vec::with_capacity(for_sumo.len());
-        let mut words = for_sumo.iter().peekable();
-        while let Some(word) = words.next() {
+        let mut args = for_sumo.iter().peekable();
+        while let Some(word) = args.next() {
             let name = word.trim_start_matches('-');
             let (name, has_value) = name.split_once('=').map_or((name, false), |(name, _)| (name, true));
             if is_value(word) || !self.options.iter().any(|option| option == name) {
                 left.push(word.clone());
             } else if !has_value {
-                words.next_if(|next| is_value(next));
+                args.next_if(|next| is_value(next));
             }
         }
         left
@@ -57,13 +57,13 @@ mod tests {
     fn what_a_setting_sets_is_not_set_twice() {
         let vary = "sumo:scale=2".parse::<Vary>().unwrap();
         let setting = Setting::of(&[(&vary, "2")]);
-        let words = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
+        let args = |text: &str| text.split(' ').map(str::to_owned).collect::<Vec<_>>();
         for before in [
             "--no-warnings --scale 1.5 --end 9",
             "--no-warnings --scale=-1 --end 9",
             "--no-warnings --scale -1 --end 9",
         ] {
-            assert_eq!(setting.without_its_options(&words(before)), words("--no-warnings --end 9"), "{before}");
+            assert_eq!(setting.without_its_options(&args(before)), args("--no-warnings --end 9"), "{before}");
         }
     }
 }

@@ -23,7 +23,7 @@ pub struct Task {
     /// Its name, from the varied options and the seed.
     pub name: String,
     /// The words of `closecall run`, without `--out`.
-    pub words: Vec<String>,
+    pub args: Vec<String>,
     /// The sweep's folder.
     pub out: PathBuf,
     /// The columns that distinguish it from the other runs.

@@ -1,7 +1,7 @@
 //! The contents of the tables.
 
 use super::cells::{Cell, Table};
-use super::compared::{measure_differences, planned, rate_differences, transferred};
+use super::two_sets::{measure_differences, planned, rate_differences, transferred};
 use crate::statistics::{
     Extrapolation, GroupStatistics, HotSpot, IntervalMethod, Quantiles, RankedConflict, Rate, Ratio, Statistics,
     VariantStatistics,

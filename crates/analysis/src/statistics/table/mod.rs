@@ -1,13 +1,13 @@
 //! Statistics as tables, printed as text, CSV or HTML.
 
 mod cells;
-mod compared;
 mod contents;
-mod csv;
 mod html;
+mod table_csv;
 mod text;
+mod two_sets;
 
-pub use crate::statistics::table::csv::csv;
+pub use crate::statistics::table::table_csv::csv;
 pub use contents::tables;
 pub use html::html;
 pub use text::text;

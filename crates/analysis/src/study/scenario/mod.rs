@@ -4,8 +4,8 @@
 //! the settings of each axis over pairs of runs with the same seed, so that the noise of seeds is separated from the error of
 //! the step. docs/step_length.md states the method.
 
-mod chart;
 mod comparison;
+mod error_chart;
 mod estimate;
 mod measures;
 mod page;
@@ -28,7 +28,7 @@ pub use plan::Plan;
 /// An error that names the file that cannot be written.
 pub fn write(study: &Study, folder: &Path, scenario: &str) -> Result<String> {
     rows::write(study, &folder.join("study.csv"))?;
-    let charts = chart::draw(study, folder)?;
+    let charts = error_chart::draw(study, folder)?;
     let answer = page::answer(study);
     output_file::write(&folder.join("study.md"), page::of(study, scenario, &answer, &charts).as_bytes())?;
     Ok(answer)

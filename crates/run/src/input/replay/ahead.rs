@@ -4,8 +4,8 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 use std::vec;
 
+use super::recorded_step::{RecordedRow, RecordedStep};
 use super::recording::Recording;
-use super::rows::{RecordedRow, RecordedStep};
 use crate::util::panics;
 use crate::{Error, Result};
 
@@ -157,8 +157,8 @@ fn next_batch(recording: &mut Recording, known: &mut [usize; 2]) -> Batch {
         let mut step = RecordedStep::default();
         match recording.next_step(&mut step) {
             Ok(true) => {}
-            ended => {
-                batch.end = Some(ended.map(|_| ()));
+            outcome => {
+                batch.end = Some(outcome.map(|_| ()));
                 break;
             }
         }

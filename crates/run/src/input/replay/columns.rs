@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::fields::{Attribute, Scope};
+use super::fcd_attributes::{Attribute, Scope};
 use crate::util::header;
 use crate::{Error, Result};
 

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::clock;
 use super::columns::{Columns, NamedColumn};
-use super::fields::{Fields, Scope};
+use super::fcd_attributes::{Fields, Scope};
 use super::names::Users;
-use super::rows::{RecordedStep, cut_short, in_order};
+use super::recorded_step::{RecordedStep, cut_short, in_order};
 use super::source::{ByteWindow, find_all};
 use crate::util::input_file::longer;
 use crate::{Error, Result};

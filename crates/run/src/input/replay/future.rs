@@ -5,8 +5,8 @@ use std::path::Path;
 use std::vec::Drain;
 
 use super::lanes::heading;
+use super::recorded_step::RecordedStep;
 use super::recording::Recording;
-use super::rows::RecordedStep;
 use crate::Result;
 use crate::net::projection::Projection;
 use closecall::detection::path::driven::{DrivenCourse, DrivenPlace};

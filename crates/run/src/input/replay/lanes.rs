@@ -1,6 +1,6 @@
 //! Finds the recording's lanes in the net, and how a road user stands to its lane.
 
-use super::rows::RecordedRow;
+use super::recorded_step::RecordedRow;
 use closecall::detection::path::Foot;
 use closecall::geometry::Point;
 use closecall::geometry::rectangle::direction;

@@ -2,7 +2,7 @@
 
 use super::Replay;
 use super::lanes::distance;
-use super::rows::RecordedRow;
+use super::recorded_step::RecordedRow;
 use closecall::traffic::net::Net;
 use closecall::util::units::Metre;
 

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use super::clock;
 use super::columns::Columns;
-use super::fields::{Attribute, Scope};
+use super::fcd_attributes::{Attribute, Scope};
 use super::names::Users;
-use super::rows::{RecordedStep, in_order};
+use super::recorded_step::{RecordedStep, in_order};
 use crate::util::header::Wanted;
 use crate::util::parquet_rows::ParquetRows;
 use crate::util::parquet_values::Value;

@@ -4,10 +4,10 @@ use std::io::{BufRead, Read};
 use std::path::Path;
 
 use super::csv::CsvRecording;
-use super::fields::Scope;
+use super::fcd_attributes::Scope;
 use super::names::Users;
 use super::parquet::ParquetRecording;
-use super::rows::{RecordedRow, RecordedStep};
+use super::recorded_step::{RecordedRow, RecordedStep};
 use super::source::ByteWindow;
 use super::xml::XmlRecording;
 use crate::util::input_file;

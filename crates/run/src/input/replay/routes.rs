@@ -10,14 +10,14 @@ use std::sync::Arc;
 
 use tempfile::SpooledTempFile;
 
-use super::complete::complete;
+use super::complete_route::complete;
 use super::connections::Connections;
 use super::demand::PlannedRoutes;
 use super::drive::Moment;
 use super::lanes::{Lanes, edges_of, is_against};
 use super::lists::{ListWriter, Lists, Place, temporary, unusable};
+use super::recorded_step::RecordedStep;
 use super::recording::Recording;
-use super::rows::RecordedStep;
 use super::vehicles::{Vehicle, Vehicles};
 use crate::net::projection::Projection;
 use crate::{Error, Result};

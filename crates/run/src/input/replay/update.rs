@@ -11,8 +11,8 @@ use std::path::Path;
 use rustc_hash::FxHashMap;
 
 use super::lanes::heading;
+use super::recorded_step::{RecordedRow, RecordedStep};
 use super::recording::Recording;
-use super::rows::{RecordedRow, RecordedStep};
 use crate::net::projection::Projection;
 use crate::{Error, Result};
 use closecall::geometry::Vector;

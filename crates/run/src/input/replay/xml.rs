@@ -6,9 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use super::clock;
-use super::fields::{Attribute, Scope};
+use super::fcd_attributes::{Attribute, Scope};
 use super::names::Users;
-use super::rows::{RecordedStep, cut_short, in_order};
+use super::recorded_step::{RecordedStep, cut_short, in_order};
 use super::source::{ByteWindow, find};
 use super::tags::{Tag, TagFault, next_tag};
 use crate::util::decimal::Written;
@@ -83,7 +83,7 @@ impl XmlRecording {
             })?;
             let Some(end) = next else { return Err(cut("the file ends before </fcd-export>")) };
             let wrong = |message| Error::line(&self.path, self.source.line(), message);
-            let mut ended = false;
+            let mut is_complete = false;
             match Tag::of(&self.source.rest()[1..end]) {
                 Tag::Start(kind @ (b"vehicle" | b"person"), attributes) if inside => {
                     let pattern = &mut self.patterns[usize::from(kind == b"person")];
@@ -99,9 +99,9 @@ impl XmlRecording {
                     in_order(self.last, time).map_err(wrong)?;
                     step.begin(time, users);
                     inside = true;
-                    ended = attributes.ends_with(b"/");
+                    is_complete = attributes.ends_with(b"/");
                 }
-                Tag::End(b"timestep") if inside => ended = true,
+                Tag::End(b"timestep") if inside => is_complete = true,
                 Tag::End(b"fcd-export") if inside => return Err(wrong(unclosed(step.time))),
                 Tag::End(b"fcd-export") => {
                     self.source.consume(end + 1);
@@ -115,7 +115,7 @@ impl XmlRecording {
                 Tag::End(_) | Tag::Other => {}
             }
             self.source.consume(end + 1);
-            if ended {
+            if is_complete {
                 step.end(users);
                 self.last = Some(step.time);
                 return Ok(true);

@@ -3,12 +3,12 @@
 
 use std::io::Result;
 
-use super::complete::Completer;
 use super::field::Field;
-use super::filter::JumpFinder;
 use super::headings::Headings;
 use super::jumps::Jumps;
+use super::kalman::JumpFinder;
 use super::mapped_table::Table;
+use super::missing_values::Completer;
 use super::smooth::Smoother;
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::users::Users;

@@ -1,6 +1,6 @@
 //! What the names of classes in public data mean.
 
-use super::sample::PEDESTRIAN;
+use super::fcd_row::PEDESTRIAN;
 
 /// What the name of a class means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,8 +3,8 @@
 
 use std::path::Path;
 
+use super::fcd_row::{FcdWriter, PEDESTRIAN, Sample};
 use super::said::Said;
-use super::sample::{FcdWriter, PEDESTRIAN, Sample};
 use super::table::maybe_cut;
 use crate::util::header;
 use crate::util::input_file::{self, next_line};

@@ -43,8 +43,8 @@ impl Headings {
             self.begin = Some((row.user, place));
             return;
         };
-        let way = place - begin;
-        if way.norm() < STRETCH {
+        let displacement = place - begin;
+        if displacement.norm() < STRETCH {
             return;
         }
         self.begin = Some((row.user, place));
@@ -52,7 +52,7 @@ impl Headings {
             return;
         }
         self.stretches += 1;
-        let along = way.normalize();
+        let along = displacement.normalize();
         self.contradict += u64::from(direction(heading).dot(&along) < CONTRADICTS);
         let number = self.unit.number(heading, self.is_picture);
         for (fit, unit) in self.fit.iter_mut().zip(HeadingUnit::ALL) {
@@ -116,8 +116,8 @@ mod tests {
 
     #[test]
     fn headings_against_the_movement_are_noticed_but_one_that_reverses_is_not() {
-        let ways = [10.0, 100.0, 190.0, 280.0];
-        let against = ways.map(|way| (way, way + 180.0));
+        let directions = [10.0, 100.0, 190.0, 280.0];
+        let against = directions.map(|direction| (direction, direction + 180.0));
         let remark = seen(HeadingUnit::Degree, &against).remark("yaw").unwrap();
         assert!(remark.contains("16 of 16 contradict the movement"), "{remark}");
         let one = [(10.0, 190.0), (100.0, 100.0), (190.0, 190.0), (280.0, 280.0)];

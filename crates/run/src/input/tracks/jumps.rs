@@ -1,6 +1,6 @@
 //! Jumps of tracks, and identities that two road users exchange: counted, and told with the first of each.
 
-use super::filter::Jump;
+use super::kalman::Jump;
 use crate::util::decimal::Written;
 
 /// Jumps that are compared with each other: a recording with more is useless.
@@ -46,9 +46,9 @@ impl Jumps {
         let jumps = self.count - 2 * pairs.len() as u64;
         let alone = self.jumps.iter().zip(&exchanged).find(|(_, exchanged)| !**exchanged);
         if let Some((jump, _)) = alone {
-            let (times, way) = (if jumps == 1 { "time" } else { "times" }, (jump.found - jump.expected).norm());
+            let (times, distance) = (if jumps == 1 { "time" } else { "times" }, (jump.found - jump.expected).norm());
             remarks.push(format!(
-                "jumps: {jumps} {times} a road user is where it cannot have driven, first \"{}\" at {} s, {way:.1} m from where its \
+                "jumps: {jumps} {times} a road user is where it cannot have driven, first \"{}\" at {} s, {distance:.1} m from where its \
                  movement led; nothing is mended",
                 id(jump.user),
                 Written(jump.time)
@@ -88,10 +88,10 @@ mod tests {
     #[test]
     fn an_exchange_is_no_jump() {
         let mut jumps = Jumps::default();
-        for (user, time, way) in
+        for (user, time, distance) in
             [(5, 9.0, [0.0, 8.25]), (1, 2.0, [0.0, 4.1]), (2, 2.0, [4.0, 0.2]), (3, 2.0, [50.0, 54.0])]
         {
-            jumps.add(jump(user, time, way));
+            jumps.add(jump(user, time, distance));
         }
         let remarks = jumps.remarks(|user| ["", "a", "b", "c", "", "e"][user as usize]);
         assert_eq!(remarks.len(), 2, "{remarks:?}");

@@ -5,25 +5,25 @@
 
 mod by_track;
 mod classes;
-mod complete;
 mod detect;
+mod fcd_row;
 mod field;
-mod filter;
 mod format;
 mod fzp;
 mod guess;
 mod headings;
 mod inspect;
 mod jumps;
+mod kalman;
 mod layouts;
 mod mapped_table;
 mod mapping;
 mod matching;
 mod meta;
-mod rows;
+mod missing_values;
 mod said;
-mod sample;
 mod smooth;
+mod sorted_rows;
 mod spill;
 mod table;
 mod trj;
@@ -36,14 +36,14 @@ use tempfile::TempPath;
 use crate::input::replay::columns_of_fcd;
 use crate::{Error, Result};
 use closecall::traffic::net::Net;
-pub use filter::USUAL_NOISE;
+use fcd_row::FcdWriter;
 pub use format::RecordingFormat;
 pub use inspect::inspect;
+pub use kalman::USUAL_NOISE;
 use mapped_table::Table;
 pub use mapping::{NOISE, Origin as TrackOrigin, TrackOptions};
 use matching::LaneFinder;
 use said::Said;
-use sample::FcdWriter;
 
 /// A recording as files that replay reads; they are gone when it is dropped.
 #[derive(Debug)]
@@ -155,7 +155,7 @@ pub fn open(
             for (path, format) in paths.iter().zip(formats) {
                 tables.push(Table { path, mapping: layouts::mapping_of(format, options)?, names: table::names(path)? });
             }
-            rows::convert(&tables, options.smooth, stopped, &mut writer)?
+            sorted_rows::convert(&tables, options.smooth, stopped, &mut writer)?
         }
     };
     said.doubtful.extend(writer.remarks());

@@ -1,9 +1,9 @@
-//! Places and headings of a track smoothed: Kalman's [`filter`](super::filter) forward, then Rauch, Tung and Striebel's smoother back (AIAA
+//! Places and headings of a track smoothed: Kalman's [`filter`](super::kalman) forward, then Rauch, Tung and Striebel's smoother back (AIAA
 //! Journal 3, 1965). Each piece between two jumps is smoothed alone, so that a jump stays what it is.
 
 use std::ops::Range;
 
-use super::filter::{Filter, Filtered, Jump, Model, jump};
+use super::kalman::{Filter, Filtered, Jump, Model, jump};
 use super::spill::Row;
 use closecall::util::units::Metre;
 
@@ -106,15 +106,15 @@ impl Smoother {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::input::tracks::filter::JumpFinder;
+    use crate::input::tracks::kalman::JumpFinder;
 
     /// A track of 10 s at 25 Hz that speeds up and turns; noise of 0.3 m if wanted.
     fn track(noise: bool) -> Vec<Row> {
         let shake = |step: u32, by: u32| 0.3 * 1.73 * (f64::from(step.wrapping_mul(by) % 1009) / 504.0 - 1.0);
         let row = |step: u32| {
             let time = f64::from(step) / 25.0;
-            let way = 5.0 * time + 0.5 * time * time;
-            let angle = way / 40.0;
+            let distance = 5.0 * time + 0.5 * time * time;
+            let angle = distance / 40.0;
             let off = if noise { [shake(step, 7919), shake(step, 104_729)] } else { [0.0; 2] };
             let values =
                 [40.0 * angle.sin() + off[0], 40.0 * (1.0 - angle.cos()) + off[1], f64::NAN, f64::NAN, 4.5, 1.8];

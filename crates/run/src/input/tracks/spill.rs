@@ -15,7 +15,7 @@ pub(super) struct Row {
     pub user: u32,
     /// The number of its class.
     pub class: u32,
-    /// The time, then what [`super::rows`] keeps.
+    /// The time, then what [`super::sorted_rows`] keeps.
     pub time: f64,
     pub values: [f64; 6],
 }

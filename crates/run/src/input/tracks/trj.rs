@@ -9,8 +9,8 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
+use super::fcd_row::{FcdWriter, Sample};
 use super::said::Said;
-use super::sample::{FcdWriter, Sample};
 use crate::output::formats::{FAR, origin_of_trajectories};
 use crate::util::decimal::Written;
 use crate::util::input_file;

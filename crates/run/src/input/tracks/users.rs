@@ -153,7 +153,7 @@ fn note(names: &mut Vec<String>, name: &str) {
 
 impl Counts {
     /// Says what was assumed.
-    pub fn say(&self, said: &mut Said) {
+    pub fn note_assumed(&self, said: &mut Said) {
         for (what, rows, instead) in [
             ("headings", self.headings, "they follow from how the road user moved"),
             ("speeds", self.speeds, "they follow from how far the road user moved"),

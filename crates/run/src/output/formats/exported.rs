@@ -5,7 +5,7 @@ use std::path::Path;
 use super::geojson::GeoJson;
 use super::geoparquet::GeoParquet;
 use super::gpkg::GeoPackage;
-use super::place::Frame;
+use super::map_point::Frame;
 use super::poi::Poi;
 use super::ssm::Ssm;
 use crate::Result;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Map, Value as Json, json};
 
-use super::place::{Frame, place};
+use super::map_point::{Frame, place};
 use crate::output::schema::{Column, LoggedConflict, Value};
 use crate::util::output_file::OutputFile;
 use crate::{Error, Result};

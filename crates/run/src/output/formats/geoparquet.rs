@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
-use super::place::{Frame, place, well_known};
+use super::map_point::{Frame, place, well_known};
 use crate::Result;
 use crate::output::parquet_file::ParquetFile;
 use crate::output::schema::{Column, LoggedConflict};

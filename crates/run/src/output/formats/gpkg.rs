@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use rusqlite::{Connection, params};
 
-use super::place::{Frame, place, well_known};
+use super::map_point::{Frame, place, well_known};
 use crate::output::schema::{Column, ColumnType, LoggedConflict, Value};
 use crate::util::output_file::{OutputFile, folder_of};
 use crate::{Error, Result};
@@ -100,8 +100,8 @@ impl GeoPackage {
             "UPDATE gpkg_contents SET (min_x, min_y, max_x, max_y) =
              (SELECT min({x}), min({y}), max({x}), max({y}) FROM conflicts)"
         );
-        let ended = self.database.execute(&bounds, params![]).and_then(|_| self.database.execute_batch("COMMIT"));
-        ended.map_err(|error| self.unwritable(&error))?;
+        let committed = self.database.execute(&bounds, params![]).and_then(|_| self.database.execute_batch("COMMIT"));
+        committed.map_err(|error| self.unwritable(&error))?;
         let Self { mut out, path, database, draft, .. } = self;
         drop(database);
         let copied = File::open(&draft).and_then(|mut written| std::io::copy(&mut written, &mut out));

@@ -6,7 +6,7 @@ mod exported;
 mod geojson;
 mod geoparquet;
 mod gpkg;
-mod place;
+mod map_point;
 mod poi;
 mod ssm;
 mod trajectories;

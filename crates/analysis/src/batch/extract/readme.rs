@@ -7,7 +7,7 @@ use closecall::util::units::Second;
 use closecall_run::util::decimal::Written;
 
 /// What the words are about.
-pub struct Words<'a> {
+pub struct Readme<'a> {
     /// The conflict.
     pub conflict: &'a LoggedConflict,
     /// The name of the scenario that it was found in.
@@ -20,7 +20,7 @@ pub struct Words<'a> {
     pub until: Second,
 }
 
-impl Words<'_> {
+impl Readme<'_> {
     /// A few lines for a reader.
     pub(crate) fn readme(&self) -> String {
         let LoggedConflict { id, margin, .. } = self.conflict;
@@ -68,7 +68,7 @@ impl Words<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use closecall_run::output::sample::sample;
+    use closecall_run::output::sample_conflict::sample;
 
     /// A critical side conflict of a with b at 30 s.
     fn conflict() -> LoggedConflict {
@@ -79,7 +79,7 @@ mod tests {
     fn the_test_names_the_pair_as_python_does() {
         let conflict = conflict();
         let scenario = "town".to_owned();
-        let words = Words { conflict: &conflict, scenario, sumo: "SUMO 1.28.0", from: Some(19.5), until: 36.0 };
+        let words = Readme { conflict: &conflict, scenario, sumo: "SUMO 1.28.0", from: Some(19.5), until: 36.0 };
         let test = words.test("c.sumocfg");
         assert!(test.contains("EGO, FOE, TIME = \"a\\\"\\\\\", \"b\", 30.0\n"), "{test}");
         assert!(test.contains("    assert found == [(\"side\", pytest.approx(-2.5, abs=1e-6))]\n"), "{test}");

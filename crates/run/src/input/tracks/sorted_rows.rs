@@ -6,13 +6,13 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use super::by_track::Tracks;
+use super::fcd_row::{FcdWriter, Sample};
 use super::field::Field;
 use super::layouts::hint;
 use super::mapped_table::Table;
 use super::mapping::{Origin, Places};
 use super::meta::{Meta, name_beside, read_meta};
 use super::said::Said;
-use super::sample::{FcdWriter, Sample};
 use super::spill::{Order, Row, Sorted, Sorter};
 use super::table::{self, Cell};
 use super::users::Users;
@@ -60,7 +60,7 @@ pub(super) fn convert(
         written.map_err(|why| Error::content(path, format!("\"{id}\" at {} s: {why}", Written(time))))?;
         ask(&mut rows, stopped)?;
     }
-    users.counts.say(&mut said);
+    users.counts.note_assumed(&mut said);
     said.doubtful.extend(tracks.remarks(|user| users.id(user)));
     Ok(said)
 }

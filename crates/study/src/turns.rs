@@ -31,7 +31,7 @@ const SCENES: [&str; 3] = [BOTH, FOE, "side by side"];
 
 /// A road user on its way, as poses and the areas between them.
 struct Mover {
-    way: Circling,
+    circling: Circling,
     poses: Vec<Pose>,
     covers: Vec<SweptBounds>,
     cover: SweptBounds,
@@ -39,19 +39,19 @@ struct Mover {
 
 impl Mover {
     /// Poses so close that no corner leaves the line between two by more than a tolerance.
-    fn new(way: &Circling, tolerance: Metre) -> Self {
-        let radius = 1.0 / way.curvature.abs() + way.size[0];
-        let parts = (way.way * way.curvature.abs() / (8.0 * tolerance / radius).sqrt()).ceil().max(1.0);
+    fn new(circling: &Circling, tolerance: Metre) -> Self {
+        let radius = 1.0 / circling.curvature.abs() + circling.size[0];
+        let parts = (circling.until * circling.curvature.abs() / (8.0 * tolerance / radius).sqrt()).ceil().max(1.0);
         let pose = |part: u32| {
-            let distance = way.way * f64::from(part) / parts;
-            let ([x, y], heading) = way.pose(distance);
+            let distance = circling.until * f64::from(part) / parts;
+            let ([x, y], heading) = circling.pose(distance);
             Pose { distance, front: Point::new(x, y), axis: direction(heading) }
         };
-        let straight = |part: u32| Pose { axis: direction(way.heading), ..pose(part) };
-        let pose: &dyn Fn(u32) -> Pose = if way.curvature == 0.0 { &straight } else { &pose };
+        let straight = |part: u32| Pose { axis: direction(circling.heading), ..pose(part) };
+        let pose: &dyn Fn(u32) -> Pose = if circling.curvature == 0.0 { &straight } else { &pose };
         let poses = (0..=parts as u32).map(pose).collect::<Vec<_>>();
         let cover = |poses: &[Pose]| SweptBounds::of(poses, SIZE[0], SIZE[1]).unwrap_or(SweptBounds::NOWHERE);
-        Self { way: *way, covers: poses.windows(2).map(cover).collect(), cover: cover(&poses), poses }
+        Self { circling: *circling, covers: poses.windows(2).map(cover).collect(), cover: cover(&poses), poses }
     }
 
     fn participant(&self) -> Participant<'_> {
@@ -62,13 +62,13 @@ impl Mover {
             setback: 0.0,
             shape: &[],
             poses: &self.poses,
-            straight: self.way.curvature == 0.0,
-            reach: self.way.way,
+            straight: self.circling.curvature == 0.0,
+            reach: self.circling.until,
             cover: &self.cover,
             covers: &self.covers,
             speed: 10.0,
             brakes: &BRAKES,
-            stop: self.way.way,
+            stop: self.circling.until,
         }
     }
 }
@@ -83,7 +83,7 @@ struct Method {
 
 /// The ego's distance to the foe's area, and whether the first of the two is the ego.
 fn meet(method: Method, bisection: &mut Bisection, pair: &[Circling; 2]) -> Option<(bool, Metre)> {
-    let [first, second] = pair.each_ref().map(|way| Mover::new(way, method.poses));
+    let [first, second] = pair.each_ref().map(|circling| Mover::new(circling, method.poses));
     if !first.cover.meets(&second.cover) {
         return None;
     }
@@ -109,19 +109,19 @@ fn truth([first, second]: &[Circling; 2]) -> Option<(bool, Metre)> {
 
 /// Two that are near each other, of which at least one turns.
 fn pair(chance: &mut Chance, scene: &str) -> [Circling; 2] {
-    let mut way = |[x, y]: [[Metre; 2]; 2], heading: Radian, curvature: Metre| Circling {
+    let mut circling = |[x, y]: [[Metre; 2]; 2], heading: Radian, curvature: Metre| Circling {
         front: [chance.between(x[0], x[1]), chance.between(y[0], y[1])],
         heading: chance.between(-heading, heading),
         curvature: chance.between(0.1, 1.0) * chance.pick(&[curvature, -curvature]),
         size: SIZE,
-        way: chance.between(5.0, 60.0),
+        until: chance.between(5.0, 60.0),
     };
     let (origin, around) = ([[0.0; 2]; 2], [[-40.0, 40.0]; 2]);
     match scene {
-        BOTH => [way(origin, PI, 0.1), way(around, PI, 0.1)],
-        FOE => [way(origin, PI, 0.0), way(around, PI, 0.1)],
+        BOTH => [circling(origin, PI, 0.1), circling(around, PI, 0.1)],
+        FOE => [circling(origin, PI, 0.0), circling(around, PI, 0.1)],
         // On the next lane, turning a little: one comes along the flank of the way of the other.
-        _ => [way(origin, 0.02, 0.01), way([[-10.0, 25.0], [2.1, 4.0]], 0.1, 0.03)],
+        _ => [circling(origin, 0.02, 0.01), circling([[-10.0, 25.0], [2.1, 4.0]], 0.1, 0.03)],
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::fields::{Fields, SPEED_PLACE, Scope, are_possible};
+use super::fcd_attributes::{Fields, SPEED_PLACE, Scope, are_plausible};
 use super::names::{Numbers, Users};
 use crate::Error;
 use crate::net::projection::Projection;
@@ -123,7 +123,7 @@ impl RecordedStep {
             }
             fields.parse(&mut values)?;
         }
-        if !are_possible(&values) {
+        if !are_plausible(&values) {
             if is_noise(values[SPEED_PLACE]) {
                 values[SPEED_PLACE] = 0.0;
                 self.left_out.below_zero += 1;

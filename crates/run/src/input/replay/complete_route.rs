@@ -59,7 +59,7 @@ pub(super) fn complete(
 mod tests {
     use std::path::Path;
 
-    use crate::input::replay::complete::*;
+    use crate::input::replay::complete_route::*;
 
     /// A street a b c d e, each 40 m, with a turnaround from each edge onto the edge back, A to E, and a side street x
     /// from a to d.

@@ -27,7 +27,7 @@ const ASIDE: Limit = Limit { least: -SPEED.most, ..SPEED };
 
 /// Whether all values are within their limits, or not given where that is possible.
 #[inline]
-pub(super) fn are_possible([x, y, angle, speed, z, position, lateral_speed]: &[f64; 7]) -> bool {
+pub(super) fn are_plausible([x, y, angle, speed, z, position, lateral_speed]: &[f64; 7]) -> bool {
     POSITION.holds(*x)
         & POSITION.holds(*y)
         & ANGLE.holds(*angle)

@@ -111,15 +111,15 @@ impl Detector {
             state.heading += turn(&before, &after);
             return;
         }
-        let way = (state.front() - last.front()).norm();
+        let driven_straight = (state.front() - last.front()).norm();
         self.on_lanes[row as usize] = false;
-        if way > self.driven_at_most(user, state.speed) {
+        if driven_straight > self.driven_at_most(user, state.speed) {
             self.speeds[user.0 as usize] = LastSpeed::default();
-        } else if way > 0.0 {
+        } else if driven_straight > 0.0 {
             let ends = [last.front(), state.front()];
             let arc = Bow::new(ends, [last.heading, state.heading]);
             let bow = if arc.turn.abs() > MOST_TURN { Bow::new(ends, [state.heading; 2]) } else { arc };
-            let back = (driven / way).min(1.0);
+            let back = (driven / driven_straight).min(1.0);
             let front = bow.at(1.0 - back);
             (state.x, state.y) = (front.x, front.y);
             state.heading -= bow.turn * back;
@@ -141,8 +141,8 @@ impl Detector {
                 beside = (off - direction * along).norm();
                 came -= along / scale;
             }
-            let way = (state.front() - last.front()).norm();
-            let is_along = || came * scale >= ALONG * way - ROUNDED;
+            let driven_straight = (state.front() - last.front()).norm();
+            let is_along = || came * scale >= ALONG * driven_straight - ROUNDED;
             let heads_along = || !is_askew(&path.track.chord(lines, profile.chord), state);
             (beside < BESIDE && (is_along() || heads_along())).then_some(came.max(0.0))
         })
@@ -155,7 +155,7 @@ impl Detector {
     }
 
     /// How far a path has to reach back beyond the road user's length.
-    pub(super) fn way_back(&self, state: &State) -> Metre {
+    pub(super) fn distance_back(&self, state: &State) -> Metre {
         state.speed * self.behind()
     }
 }

@@ -6,7 +6,7 @@ use std::io::{ErrorKind, Write};
 use closecall_run::{Error, Result};
 
 /// Prints results. A reader that closes its end of the pipe early is not an error.
-pub(super) fn say(text: impl Display) -> Result<()> {
+pub(super) fn print(text: impl Display) -> Result<()> {
     let mut output = std::io::stdout();
     match write!(output, "{text}").and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(value(format!("standard output: {error}"))),

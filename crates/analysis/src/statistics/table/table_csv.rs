@@ -41,7 +41,7 @@ pub fn csv(tables: &[Table], is_safe: bool) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::super::cells::Cell;
-    use crate::statistics::table::csv::*;
+    use crate::statistics::table::table_csv::*;
 
     #[test]
     fn interval_ends_are_named_after_their_value() {

@@ -11,7 +11,7 @@ use closecall::braking::{LateBraking, Leader};
 use closecall::detection::measures::crash_probability::crash_probability;
 use closecall::detection::measures::ttb::Evasion;
 use closecall::options::{DriverModel, DriverOptions};
-use closecall::traffic::driver::Driver;
+use closecall::traffic::driver_distributions::Driver;
 use closecall::util::units::{Metre, MetrePerSecondSquared, Second};
 
 const SCENES: [&str; 2] = ["behind a leader", "across a foe's way"];

@@ -12,14 +12,14 @@ use closecall_run::{Error, Result};
 
 /// Which conflict of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
+pub enum ConflictSelector {
     /// That with this `id`.
     Id(u64),
     /// The worst, the second worst, … of those that are traffic's: 1, 2, …
     Worst(usize),
 }
 
-impl Which {
+impl ConflictSelector {
     /// Finds it, with its snapshots.
     ///
     /// # Errors

@@ -225,13 +225,13 @@ mod tests {
         let driver = Driver::new(DriverModel::Competent, &none, &none, 1.0);
         let vehicle = LateBraking { speed: 20.0, present: 0.0, build_up: 0.1, deceleration: 9.0 };
         let (braking, step) = (driver.braking_with(0.774 * 9.806_65, &vehicle), 1e-4);
-        let (mut speed, mut deceleration, mut way) = (20.0, 0.0, 0.0);
+        let (mut speed, mut deceleration, mut distance) = (20.0, 0.0, 0.0);
         while speed > 0.0 {
             deceleration = f64::min(deceleration + 12.65 * step, 0.774 * 9.806_65);
-            way += speed * step;
+            distance += speed * step;
             speed -= deceleration * step;
         }
-        let wait = braking.longest_wait_at(100.0, way + 20.0 * 1.15);
+        let wait = braking.longest_wait_at(100.0, distance + 20.0 * 1.15);
         assert!((wait - 1.15).abs() < 1e-3, "{wait}");
     }
 

@@ -7,12 +7,12 @@ use closecall::geometry::Vector;
 use closecall::{Net, Point, Profile, State};
 
 /// A lane through these points.
-pub struct Way {
+pub struct Road {
     points: Vec<Point>,
     pub net: Arc<Net>,
 }
 
-impl Way {
+impl Road {
     pub fn through(points: Vec<Point>) -> Self {
         let shape = points.iter().map(|point| format!("{},{}", point.x, point.y)).collect::<Vec<_>>().join(" ");
         let length = points.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum::<f64>();

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use super::comparison::{SHOWN, Study};
 use super::plan::{Axis, Choice};
-use crate::study::chart::{self, Panel, Point};
+use crate::study::error_over_time::{self, Panel, Point};
 use closecall_run::Result;
 
 /// Draws the charts of steps and of the other axes; returns their names.
@@ -30,7 +30,7 @@ pub(super) fn draw(study: &Study, folder: &Path) -> Result<Vec<&'static str>> {
                 |measure| panel(in_words(measure), (0..axes.len()).flat_map(|axis| points(measure, axis)).collect());
             SHOWN.map(of).into()
         };
-        chart::draw(folder, name, &panels, note)?;
+        error_over_time::draw(folder, name, &panels, note)?;
         drawn.push(name);
     }
     Ok(drawn)

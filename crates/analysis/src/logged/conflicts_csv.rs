@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
-use super::possible::PossibleRows;
+use super::plausible::PlausibleRows;
 use closecall_run::output::input_hash::Hasher;
 use closecall_run::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use closecall_run::util::csv_safe::plain;
@@ -20,7 +20,7 @@ pub(crate) struct CsvLog {
     row: csv::StringRecord,
     /// Where in a row each of the [`COLUMNS`] is; none where the file lacks it or it is not to be read.
     places: [Option<usize>; COLUMNS.len()],
-    possible: PossibleRows,
+    plausible: PlausibleRows,
     /// Whether the run wrote texts so that no spreadsheet runs them.
     is_safe: bool,
 }
@@ -49,7 +49,7 @@ impl CsvLog {
             header,
             row: csv::StringRecord::new(),
             places: [None; COLUMNS.len()],
-            possible: PossibleRows::default(),
+            plausible: PlausibleRows::default(),
             is_safe: false,
         };
         log.read_columns(|presence| presence != Presence::Snapshot);
@@ -78,7 +78,7 @@ impl CsvLog {
 
     /// Demands that the margins are below 0, as a run logs them unless its options say otherwise.
     pub(crate) fn demand_margins_below_zero(&mut self) {
-        self.possible.margins_below_zero = true;
+        self.plausible.margins_below_zero = true;
     }
 
     /// The SHA-256 of what was read: once no row is left, that of the file.
@@ -109,7 +109,7 @@ impl CsvLog {
             Some(text) => COLUMNS[column].column_type.parse(text),
             None => Ok(Value::Missing),
         };
-        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.possible.check(&row).map(|()| Some(row)));
+        let checked = LoggedConflict::from_cells(cell).and_then(|row| self.plausible.check(&row).map(|()| Some(row)));
         checked.map_err(|message| Error::line(&self.path, line, message))
     }
 }
@@ -162,7 +162,7 @@ fn unreadable(path: &Path, line: u64, error: &csv::Error) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use crate::logged::csv::*;
+    use crate::logged::conflicts_csv::*;
     use std::fs;
 
     use crate::logged::ConflictReader;

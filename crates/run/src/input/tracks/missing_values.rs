@@ -38,18 +38,18 @@ impl Completer {
     fn complete(&mut self, mut row: Row, next: Option<Row>, counts: &mut Counts) -> Row {
         let here = place(&row);
         let (from, to) = (self.before.unwrap_or(here), next.as_ref().map_or(here, place));
-        let (lasted, way) = (to.0 - from.0, to.1 - from.1);
+        let (lasted, displacement) = (to.0 - from.0, to.1 - from.1);
         if self.before.is_none() {
             self.heading = f64::NAN;
         }
         let values = &mut row.values;
         if values[2].is_nan() {
             counts.headings += 1;
-            values[2] = if way.norm() >= MOVED { way.y.atan2(way.x) } else { self.heading };
+            values[2] = if displacement.norm() >= MOVED { displacement.y.atan2(displacement.x) } else { self.heading };
         }
         if values[3].is_nan() {
             counts.speeds += 1;
-            values[3] = if lasted > 0.0 { way.norm() / lasted } else { 0.0 };
+            values[3] = if lasted > 0.0 { displacement.norm() / lasted } else { 0.0 };
         }
         if self.heading.is_nan() && !values[2].is_nan() {
             let user = row.user as usize;

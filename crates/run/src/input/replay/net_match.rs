@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::lanes::{Lanes, distance};
+use super::recorded_step::{RecordedRow, RecordedStep};
 use super::recording::Recording;
-use super::rows::{RecordedRow, RecordedStep};
 use crate::net::projection::Projection;
 use crate::{Error, Result};
 use closecall::traffic::net::{LaneIndex, Net};

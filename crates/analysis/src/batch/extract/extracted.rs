@@ -9,7 +9,7 @@ use closecall_run::{Error, Result};
 
 /// What was cut out.
 #[derive(Debug)]
-pub struct Made {
+pub struct Extracted {
     /// The conflict.
     pub conflict: LoggedConflict,
     /// What the user should know about it.

@@ -1,6 +1,6 @@
 //! Everything that closecall reads, as functions of bytes: for the fuzz targets, and for the test that throws garbage.
 
-#![allow(dead_code, reason = "each fuzz target has one door")]
+#![allow(dead_code, reason = "each fuzz target has one entry point")]
 
 use std::fs;
 use std::path::Path;
@@ -8,23 +8,23 @@ use std::sync::Arc;
 
 use closecall::Net;
 use closecall_analysis::filter::{ConflictFilter, Place};
-use closecall_analysis::logged::{ConflictReader, LoggedRun, Which};
+use closecall_analysis::logged::{ConflictReader, ConflictSelector, LoggedRun};
 use closecall_analysis::playback::{Playback, svg};
 use closecall_analysis::statistics::{Observed, Request, Statistics};
 use closecall_analysis::{export, plot, report};
 use closecall_run::RunOptions;
 use closecall_run::input::replay::demand;
 use closecall_run::input::replay::lights::RecordedLights;
+use closecall_run::input::replay::recorded_step::RecordedStep;
 use closecall_run::input::replay::recording::Recording;
-use closecall_run::input::replay::rows::RecordedStep;
 use closecall_run::input::sumo_files::{check_xml, fault};
 use closecall_run::input::tracks::{Opened, TrackOptions, inspect, open};
-use closecall_run::net::filter::Filter;
+use closecall_run::net::selection::Filter;
 use closecall_run::options::OptionsFile;
 use closecall_run::output::formats::ExportFormat;
 use closecall_run::{Replay, Run};
 
-/// A door: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
+/// An entry point: its name, which is that of its fuzz target and of its examples in tests/fuzz, and what it does.
 pub type Door = (&'static str, fn(&[u8]));
 
 pub const ALL: [Door; 17] = [
@@ -96,7 +96,7 @@ pub fn config(bytes: &[u8]) {
     let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, RunOptions::check_setting) else {
         return;
     };
-    let settings = file.words.iter().filter_map(|word| word.trim_start_matches("--").split_once('='));
+    let settings = file.args.iter().filter_map(|word| word.trim_start_matches("--").split_once('='));
     let settings = settings.map(|(name, value)| (name, value.to_owned())).collect::<Vec<_>>();
     let _ = RunOptions::from_settings(settings);
 }
@@ -234,7 +234,7 @@ pub fn clips(bytes: &[u8]) {
     log.iter().for_each(|(name, bytes)| fs::write(folder.path().join(name), bytes).unwrap());
     let net = folder.path().join("net.xml");
     fs::write(&net, NET).unwrap();
-    if let Ok(playback) = Playback::find(folder.path(), Which::Worst(1), Some(&net)) {
+    if let Ok(playback) = Playback::find(folder.path(), ConflictSelector::Worst(1), Some(&net)) {
         assert!(!svg(&playback).contains("NaN"));
         serde_json::to_string(&playback.show()).unwrap();
     }

@@ -83,7 +83,7 @@ fn lines(shapes: &[&[Point]]) -> Vec<i64> {
 
 #[cfg(test)]
 mod tests {
-    use crate::report::roads::*;
+    use crate::report::page_net::*;
 
     #[test]
     fn a_line_is_its_count_and_differences() {

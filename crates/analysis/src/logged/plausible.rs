@@ -17,13 +17,13 @@ static LIMITED: LazyLock<Vec<(&Column, &Limit)>> =
 
 /// What the rows so far demand of the next.
 #[derive(Debug, Default)]
-pub(crate) struct PossibleRows {
+pub(crate) struct PlausibleRows {
     /// Whether the log is of conflicts in the sense of margin < 0 only.
     pub margins_below_zero: bool,
     last_id: u64,
 }
 
-impl PossibleRows {
+impl PlausibleRows {
     /// Checks the next row.
     ///
     /// # Errors

@@ -86,7 +86,7 @@ fn add_up(runs: &[Vec<f64>], chosen: &[bool], sums: &mut [f64]) {
 
 #[cfg(test)]
 mod tests {
-    use crate::batch::regress::permutation::*;
+    use crate::batch::regress::joint_permutation::*;
 
     fn column(values: &[f64]) -> Vec<Vec<f64>> {
         values.iter().map(|value| vec![*value]).collect()

@@ -70,8 +70,8 @@ mod tests {
         let known = ["mu", "response-time", "obstacles", "log", "measures", "align", "epsilon", "warmup"];
         let file =
             OptionsFile::parse(Path::new("closecall.toml"), &text, &known.map(str::to_owned), |_, _| Ok(())).unwrap();
-        let words = file.words.iter().map(|word| word.trim_start_matches("--").split_once('=').unwrap());
-        let mut read = RunOptions::from_settings(words.map(|(name, value)| (name, value.to_owned()))).unwrap();
+        let args = file.args.iter().map(|word| word.trim_start_matches("--").split_once('=').unwrap());
+        let mut read = RunOptions::from_settings(args.map(|(name, value)| (name, value.to_owned()))).unwrap();
         read.set_tables(file);
         assert_eq!(read, RunOptions { log: LogOptions { warmup: 2.5, ..options.log.clone() }, ..options });
     }

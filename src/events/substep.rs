@@ -44,7 +44,7 @@ pub(super) struct Between<'a> {
 struct Leg<'a> {
     from: &'a Moment,
     to: &'a Moment,
-    ways: [Bow; 2],
+    bows: [Bow; 2],
     profiles: [&'a Profile; 2],
 }
 
@@ -105,11 +105,11 @@ impl Between<'_> {
 
     fn legs(&self) -> impl Iterator<Item = Leg<'_>> {
         self.moments.windows(2).map(|ends| {
-            let ways = [0, 1].map(|one| {
+            let bows = [0, 1].map(|one| {
                 let states = [&ends[0].1[one], &ends[1].1[one]];
                 Bow::new(states.map(State::front), states.map(|state| state.heading))
             });
-            Leg { from: &ends[0], to: &ends[1], ways, profiles: self.profiles }
+            Leg { from: &ends[0], to: &ends[1], bows, profiles: self.profiles }
         })
     }
 
@@ -123,7 +123,7 @@ impl Between<'_> {
 impl<'a> Leg<'a> {
     /// Where they are closest in each part in which they hardly turn, and their distance there.
     fn lows(self) -> impl Iterator<Item = (Self, f64, Metre)> + use<'a> {
-        let turn = self.ways.iter().map(|way| way.turn.abs()).sum::<Radian>();
+        let turn = self.bows.iter().map(|bow| bow.turn.abs()).sum::<Radian>();
         let parts = (turn / TURN).ceil().max(1.0);
         (0..parts as u32).map(move |part| {
             let [from, to] = [part, part + 1].map(|part| f64::from(part) / parts);
@@ -141,11 +141,11 @@ impl<'a> Leg<'a> {
             if -self.room(middle) > tolerance { after = middle } else { before = middle }
         }
         let part = after;
-        let speeds = [0, 1].map(|one| between([self.from.1[one].speed, self.to.1[one].speed], part));
+        let speeds = [0, 1].map(|one| interpolated([self.from.1[one].speed, self.to.1[one].speed], part));
         let rectangles = [0, 1].map(|one| self.rectangle(one, part));
         let fronts = rectangles.map(|rectangle| rectangle.centre + rectangle.axis * rectangle.half_length);
         FirstContact {
-            time: between([self.from.0, self.to.0], part),
+            time: interpolated([self.from.0, self.to.0], part),
             fronts,
             axes: rectangles.map(|rectangle| rectangle.axis),
             speeds,
@@ -156,15 +156,15 @@ impl<'a> Leg<'a> {
     fn most_change(&self) -> Metre {
         let moves = [0, 1].map(|one| self.to.1[one].front() - self.from.1[one].front());
         let turns = [0, 1].map(|one| {
-            let (way, Profile { length, width, .. }) = (self.ways[one], self.profiles[one]);
-            way.turn.abs() * length.hypot(*width) + 2.0 * way.depth()
+            let (bow, Profile { length, width, .. }) = (self.bows[one], self.profiles[one]);
+            bow.turn.abs() * length.hypot(*width) + 2.0 * bow.depth()
         });
         (moves[0] - moves[1]).norm() + turns[0] + turns[1]
     }
 
     /// How far their ways leave the straight line.
     fn depth(&self) -> Metre {
-        self.ways.iter().map(Bow::depth).sum()
+        self.bows.iter().map(Bow::depth).sum()
     }
 
     /// Their distance after a part of the way; below 0, how deep they overlap.
@@ -177,15 +177,15 @@ impl<'a> Leg<'a> {
     }
 
     fn rectangle(&self, one: usize, part: f64) -> Rectangle {
-        let way = &self.ways[one];
-        let heading = self.from.1[one].heading + way.turn * part;
+        let bow = &self.bows[one];
+        let heading = self.from.1[one].heading + bow.turn * part;
         let Profile { length, width, .. } = *self.profiles[one];
-        Rectangle::behind(way.at(part), direction(heading), length, width)
+        Rectangle::behind(bow.at(part), direction(heading), length, width)
     }
 }
 
 /// A value after a part of the way.
-fn between([from, to]: [f64; 2], part: f64) -> f64 {
+fn interpolated([from, to]: [f64; 2], part: f64) -> f64 {
     from + (to - from) * part
 }
 
@@ -297,8 +297,8 @@ mod tests {
             let from = [state(0.0, 0.0, 0.0, speeds[0]), state(x, y, heading, speeds[1])];
             let to = [0, 1].map(|one| {
                 let State { x, y, heading, speed, .. } = from[one];
-                let way = direction(heading + turns[one] / 2.0) * speed;
-                state(x + way.x, y + way.y, heading + turns[one], speed)
+                let moved = direction(heading + turns[one] / 2.0) * speed;
+                state(x + moved.x, y + moved.y, heading + turns[one], speed)
             });
             let car = car();
             let moments = [(0.0, from), (1.0, to)];

@@ -16,12 +16,12 @@ const ON_THE_PATH: Metre = 1.0;
 
 impl Detector {
     /// The course of the road user of a row, until it stands, or until it has gone this far if that is further.
-    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32, way: Metre) -> Course {
+    pub fn course(&self, frame: &Frame, roster: &Roster, row: u32, distance: Metre) -> Course {
         let (user, state) = (frame.user(row), frame.state(row));
         let profile = roster.profile_of(user);
         // Beyond, how far a path leads depends on the log's condition and on when it was last extended.
         let behind = -(profile.length + KEPT_BEHIND);
-        let ahead = reach(state, profile, self.options.epsilon).max(way);
+        let ahead = reach(state, profile, self.options.epsilon).max(distance);
         let last = self.speeds.get(user.0 as usize).copied().unwrap_or_default();
         let (deceleration, since_impossible_stop) = (last.deceleration(), last.since_impossible_stop());
         let mut course = Course { deceleration, since_impossible_stop, ..Course::default() };

@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use closecall_analysis::logged::Which;
+use closecall_analysis::logged::ConflictSelector;
 
 /// Which conflict.
 #[derive(Args)]
-pub(super) struct WhichArgs {
+pub(super) struct SelectorArgs {
     /// Log folder.
     #[arg(value_name = "LOG")]
     pub folder: PathBuf,
@@ -20,9 +20,9 @@ pub(super) struct WhichArgs {
     worst: Option<usize>,
 }
 
-impl WhichArgs {
+impl SelectorArgs {
     /// The choice.
-    pub fn which(&self) -> Which {
-        self.id.map_or(Which::Worst(self.worst.unwrap_or(1)), Which::Id)
+    pub fn which(&self) -> ConflictSelector {
+        self.id.map_or(ConflictSelector::Worst(self.worst.unwrap_or(1)), ConflictSelector::Id)
     }
 }
