@@ -51,7 +51,7 @@ impl Painter {
 
 fn pair<'py>(module: &Bound<'py, PyModule>, run: &Run, alarm: &Alarm) -> PyResult<Bound<'py, PyAny>> {
     let Alarm { ego, foe, severity, kind, at, nearness, .. } = *alarm;
-    let left = nearness.and_then(|near| near.response_left);
+    let left = nearness.and_then(|near| near.values.response_left());
     let (ego, foe) = (user(module, run, ego)?, user(module, run, foe)?);
     module.call_method1("Pair", (ego, foe, severity.name(), kind.name(), (at.x, at.y), left))
 }

@@ -15,7 +15,7 @@ use crate::braking::rss::safe_distance;
 use crate::geometry::{cross, left_of};
 use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::profile::{Category, Profile};
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Probability, Radian, Second};
 
 /// One road user of a pair in a step.
 #[derive(Clone, Copy)]
@@ -38,76 +38,55 @@ pub(super) struct PairInStep<'a> {
     pub crossing: Radian,
     /// How long the step lasted.
     pub step: Second,
+    /// The time advantage, where a chosen measure asks for it.
+    pub advantage: Option<Advantage>,
 }
 
 /// How long the chosen measures follow both of a pair along their paths; none where they do not.
 pub(super) fn need_courses(measures: Measures, found: &Encounter) -> Option<Second> {
     use ChosenMeasure::{ALatReq, Stn, T2, Tadv};
     let has = |any: [ChosenMeasure; 2]| any.into_iter().any(|measure| measures.has(measure));
-    match (found.kind, found.nearness.and_then(|nearness| nearness.ttc)) {
+    match (found.kind, found.nearness.and_then(|nearness| nearness.values.ttc())) {
         (Kind::Frontal | Kind::Side, None) if has([Tadv, T2]) => Some(HORIZON),
         (Kind::RearEnd | Kind::Frontal, Some(ttc)) if has([ALatReq, Stn]) && ttc > 0.0 => Some(ttc),
         _ => None,
     }
 }
 
+/// Makes the function that has the value of each measure of the rows of the table.
+macro_rules! value_measures {
+    ($( $(#[doc = $meaning:literal])+ $variant:ident $name:ident: $unit:ty, $over:ident = |$pair:ident| $value:expr; )+) => {
+        impl PairInStep<'_> {
+            fn value(&self, measure: ChosenMeasure) -> Option<f64> {
+                match measure {
+                    $( ChosenMeasure::$variant => { let $pair = self; $value } )+
+                }
+            }
+        }
+    };
+}
+
+crate::chosen_measures!(value_measures!);
+
 impl PairInStep<'_> {
     /// The values of the chosen measures.
     pub fn values(&self, measures: Measures) -> ChosenValues {
         let is_ahead = measures.has(ChosenMeasure::Tadv) || measures.has(ChosenMeasure::T2);
-        let advantage = if is_ahead { self.advantage() } else { None };
+        let pair = Self { advantage: if is_ahead { self.advantage() } else { None }, ..*self };
         // It tells an event in which step braking begins.
         let has_onset = [ChosenMeasure::Ta, ChosenMeasure::TaLevel].into_iter().any(|measure| measures.has(measure));
         ChosenMeasure::ALL.map(|measure| {
             let is_needed = has_onset && measure == ChosenMeasure::ConflictingSpeed;
             if measures.has(measure) || is_needed {
-                self.value(measure, advantage).filter(|value| value.is_finite())
+                pair.value(measure).filter(|value| value.is_finite())
             } else {
                 None
             }
         })
     }
 
-    fn value(&self, measure: ChosenMeasure, advantage: Option<Advantage>) -> Option<f64> {
-        let Self { found, ego, foe, .. } = *self;
-        let kind = found.kind;
-        let speeds = [ego.moving.speed, foe.moving.speed];
-        let drac = || found.nearness?.drac;
-        match measure {
-            ChosenMeasure::Tadv => advantage.map(|advantage| advantage.tadv),
-            ChosenMeasure::T2 => advantage.map(|advantage| advantage.t2),
-            ChosenMeasure::RssDistance => self.rss_distance(),
-            ChosenMeasure::RssLateralDistance => self.rss_lateral_distance(),
-            ChosenMeasure::RssViolation => self.rss_distance().map(|safe| f64::from(found.gap < safe)),
-            ChosenMeasure::Thw => headway::time_headway(kind, found.gap, foe.of.length, speeds[0]),
-            ChosenMeasure::Sgap => self.behind().map(|_| found.gap),
-            ChosenMeasure::Br => Some(-ego.acceleration).filter(|braking| *braking > 0.0),
-            ChosenMeasure::Mdrac => mdrac::mdrac(found.gap, speeds[0] - self.behind()?.speed),
-            ChosenMeasure::Mttc => self.mttc().map(|(time, _)| time),
-            ChosenMeasure::CrashIndex => self.mttc()?.1,
-            ChosenMeasure::Tet => Some(exposure::exposed(self.ttc())),
-            ChosenMeasure::Tit => Some(exposure::lacks(self.ttc())),
-            ChosenMeasure::Cpi if found.collision => Some(1.0),
-            ChosenMeasure::Cpi => Some(crash_potential::exceeds_brakes(&ego.of.driver, drac())),
-            ChosenMeasure::ALongReq => self.required_braking(),
-            ChosenMeasure::ALatReq => self.required_steering(),
-            ChosenMeasure::Btn => self.required_braking().map(|needed| needed / ego.of.brakes.deceleration),
-            ChosenMeasure::Stn => self.required_steering().map(|needed| needed / ego.of.brakes.deceleration),
-            ChosenMeasure::Ta => self.conflicting_speed().and(self.time_to_accident()),
-            ChosenMeasure::ConflictingSpeed => self.conflicting_speed(),
-            ChosenMeasure::TaLevel => {
-                self.conflicting_speed().zip(self.time_to_accident()).map(|(speed, ta)| accident::level(ta, speed))
-            }
-            ChosenMeasure::MaxS => Some(speeds[0].max(speeds[1])),
-            ChosenMeasure::DeltaS => self.ttc().map(|_| delta_s(&ego.moving, &foe.moving)),
-            ChosenMeasure::Dr | ChosenMeasure::MaxD => Some(ego.acceleration),
-            ChosenMeasure::Act => self.in_plane().and_then(|[ego, foe]| anticipated_collision_time(ego, foe)),
-            ChosenMeasure::Ei => self.in_plane().and_then(|[ego, foe]| emergency_index(ego, foe)),
-        }
-    }
-
     fn ttc(&self) -> Option<Second> {
-        self.found.nearness?.ttc
+        self.found.nearness?.values.ttc()
     }
 
     /// The foe's motion along the ego's path, if the ego follows it.
@@ -116,6 +95,15 @@ impl PairInStep<'_> {
         let Self { foe: UserInStep { moving, acceleration, .. }, .. } = self;
         let leader = Accelerating { speed: sigma * moving.speed, acceleration: sigma * acceleration };
         (self.found.kind == Kind::RearEnd).then_some(leader)
+    }
+
+    fn time_headway(&self) -> Option<Second> {
+        headway::time_headway(self.found.kind, self.found.gap, self.foe.of.length, self.ego.moving.speed)
+    }
+
+    fn crash_potential(&self) -> Probability {
+        let drac = self.found.nearness.and_then(|nearness| nearness.values.drac());
+        if self.found.collision { 1.0 } else { crash_potential::exceeds_brakes(&self.ego.of.driver, drac) }
     }
 
     fn mttc(&self) -> Option<(Second, Option<f64>)> {
@@ -163,7 +151,7 @@ impl PairInStep<'_> {
                 Some(threat::behind(self.found.gap, self.ego.moving.speed, speed, braking))
             }
             Some(_) => None,
-            None => self.found.nearness?.drac,
+            None => self.found.nearness?.values.drac(),
         }
     }
 

@@ -1,10 +1,11 @@
 //! The result of the detector in one step: pairs with a conflict point, and their measures.
 
 use super::kind::Kind;
+use super::measures::table::LoggedValues;
 use super::severity::Assessment;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, Radian, Second};
 
 /// A pair with a conflict point, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,24 +57,10 @@ pub struct Encounter {
 pub struct Nearness {
     /// Smallest distance between the two rectangles now.
     pub clearance: Metre,
-    /// Time to collision at the current speeds, along the paths; none if the two never touch.
-    pub ttc: Option<Second>,
-    /// Deceleration that just avoids contact, at most 12.68 m/s²; none if the two touch now or, at
-    /// the current speeds, never.
-    pub drac: Option<MetrePerSecondSquared>,
-    /// Whether neither that limit nor the ego's brakes avoid contact.
+    /// The measures that every log has.
+    pub values: LoggedValues,
+    /// Whether neither the limit of the DRAC nor the ego's brakes avoid contact.
     pub unavoidable: bool,
-    /// Longest response time with which the ego keeps clear of a foe that brakes now; none if the ego stands.
-    pub response_left: Option<Second>,
-    /// Time to brake: the longest wait before full braking avoids contact with a foe that goes on as now; 0 if even
-    /// braking at once is too late, none if the two would not touch.
-    pub ttb: Option<Second>,
-    /// Probability that the driver does not brake in time if the foe goes on as now.
-    pub crash_probability: f64,
-    /// The same if the foe brakes fully now.
-    pub crash_probability_braking: f64,
-    /// The larger ΔV of both if each brakes until they touch; none if the two would not touch.
-    pub extended_delta_v: Option<MetrePerSecond>,
     /// How severe it is by the values above, and by how the two brake.
     pub assessment: Assessment,
 }

@@ -28,8 +28,8 @@ impl StepValues<'_> {
             Measure::Mu => Some(found.mu),
             Measure::Margin => Some(found.margin),
             Measure::Clearance => found.nearness.map(|near| near.clearance),
-            Measure::Ttc => found.nearness?.ttc,
-            Measure::Drac => found.nearness?.drac,
+            Measure::Ttc => found.nearness?.values.ttc(),
+            Measure::Drac => found.nearness?.values.drac(),
             Measure::Pet => None,
             Measure::Headway => headway(found.kind, found.gap, ego_speed),
             Measure::Overlap => Some(found.overlap),
@@ -38,15 +38,15 @@ impl StepValues<'_> {
             Measure::FoeSpeed => Some(foe_speed),
             Measure::EgoDeltaV => Some(delta_v()[0]),
             Measure::FoeDeltaV => Some(delta_v()[1]),
-            Measure::ResponseLeft => found.nearness?.response_left,
-            Measure::Ttb => found.nearness?.ttb,
-            Measure::CrashProbability => found.nearness.map(|near| near.crash_probability),
-            Measure::CrashProbabilityBraking => found.nearness.map(|near| near.crash_probability_braking),
+            Measure::ResponseLeft => found.nearness?.values.response_left(),
+            Measure::Ttb => found.nearness?.values.ttb(),
+            Measure::CrashProbability => found.nearness?.values.crash_probability(),
+            Measure::CrashProbabilityBraking => found.nearness?.values.crash_probability_braking(),
             Measure::InjuryProbability => {
                 let [of_ego, of_foe] = delta_v();
                 Some(injury_probability(found.kind, Body::of(ego, of_ego), Body::of(foe, of_foe)))
             }
-            Measure::ExtendedDeltaV => found.nearness?.extended_delta_v,
+            Measure::ExtendedDeltaV => found.nearness?.values.extended_delta_v(),
         }
     }
 }

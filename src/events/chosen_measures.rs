@@ -1,55 +1,19 @@
 //! The measures of an event that a log has only if they are chosen: what it makes of the values of its steps.
 
+use crate::detection::measures::table::Over;
 use crate::options::measures::{ChosenMeasure, ChosenValues};
 use crate::util::units::Second;
 
-/// What an event makes of the values of its steps.
-#[derive(Clone, Copy, PartialEq)]
-enum Over {
-    /// The smallest.
-    Least,
-    /// The largest.
-    Most,
-    /// That of the step with the smallest margin.
-    Worst,
-    /// That of the step with the smallest TTC.
-    LeastTtc,
-    /// That of the step in which braking begins: the first with a conflicting speed.
-    Onset,
-    /// The first below 0, or else the smallest.
-    FirstBelowZero,
-    /// Their integral over time.
-    Integral,
-    /// Their mean over time.
-    Mean,
+/// Makes the function that has the rule of each measure of the rows of the table.
+macro_rules! rule_measures {
+    ($( $(#[doc = $meaning:literal])+ $variant:ident $name:ident: $unit:ty, $over:ident = $value:expr; )+) => {
+        fn over(measure: ChosenMeasure) -> Over {
+            match measure { $( ChosenMeasure::$variant => Over::$over, )+ }
+        }
+    };
 }
 
-fn over(measure: ChosenMeasure) -> Over {
-    match measure {
-        ChosenMeasure::Tadv
-        | ChosenMeasure::T2
-        | ChosenMeasure::Thw
-        | ChosenMeasure::Sgap
-        | ChosenMeasure::Mttc
-        | ChosenMeasure::MaxD
-        | ChosenMeasure::Act => Over::Least,
-        ChosenMeasure::Br
-        | ChosenMeasure::Mdrac
-        | ChosenMeasure::CrashIndex
-        | ChosenMeasure::ALongReq
-        | ChosenMeasure::ALatReq
-        | ChosenMeasure::Btn
-        | ChosenMeasure::Stn
-        | ChosenMeasure::MaxS
-        | ChosenMeasure::Ei => Over::Most,
-        ChosenMeasure::RssDistance | ChosenMeasure::RssLateralDistance => Over::Worst,
-        ChosenMeasure::DeltaS => Over::LeastTtc,
-        ChosenMeasure::Ta | ChosenMeasure::ConflictingSpeed | ChosenMeasure::TaLevel => Over::Onset,
-        ChosenMeasure::Dr => Over::FirstBelowZero,
-        ChosenMeasure::RssViolation | ChosenMeasure::Tet | ChosenMeasure::Tit => Over::Integral,
-        ChosenMeasure::Cpi => Over::Mean,
-    }
-}
+crate::chosen_measures!(rule_measures!);
 
 /// The chosen measures of an event so far.
 #[derive(Clone, Debug)]

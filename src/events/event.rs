@@ -1,7 +1,6 @@
 //! One conflict: what a run reports.
 
 use ecow::EcoString;
-use serde::Serialize;
 
 use super::Snapshot;
 use super::extremes::{Extremes, WorstStep};
@@ -12,19 +11,20 @@ use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures;
 use crate::detection::measures::injury::{Body, injury_probability};
 use crate::detection::measures::pet::Pet;
+use crate::detection::measures::table::LoggedValues;
 use crate::detection::severity::{Assessment, Consequence, NearnessLevel};
 use crate::options::measures::{ChosenMeasure, ChosenValues};
 use crate::options::thresholds::SeverityThresholds;
 use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::{ProfileIndex, Roster};
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// One conflict: a pair and a run of steps that meet the log's condition.
 ///
 /// The fields from `time` on describe the step with the smallest margin, except `collision` and the event's extremes, from
 /// `clearance` to `pet`; of two that struck each other, `kind`, `angle`, `x` and `y` are those of the first contact. The columns of a log follow from it: `output::schema`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Conflict {
     /// SUMO's id of the ego.
@@ -32,10 +32,8 @@ pub struct Conflict {
     /// SUMO's id of the foe.
     pub foe: EcoString,
     /// The ego's type.
-    #[serde(skip)]
     pub ego_profile: ProfileIndex,
     /// The foe's type.
-    #[serde(skip)]
     pub foe_profile: ProfileIndex,
     /// The kind at the smallest margin; of two that struck each other, at their first contact.
     pub kind: Kind,
@@ -61,25 +59,12 @@ pub struct Conflict {
     pub margin: Metre,
     /// Smallest distance between the two rectangles, in m.
     pub clearance: Metre,
-    /// Smallest time to collision, in s.
-    pub ttc: Option<Second>,
-    /// Largest deceleration rate to avoid the collision, in m/s².
-    pub drac: Option<MetrePerSecondSquared>,
+    /// The extremes of the measures that every log has.
+    pub values: LoggedValues,
     /// Whether in any step before contact no deceleration would have avoided it.
     pub unavoidable: bool,
-    /// Smallest of all steps of the longest response time with which the ego keeps clear of a foe that brakes now, in s; none
-    /// if the ego stood in all of them.
-    pub response_left: Option<Second>,
-    /// Smallest time to brake, in s; none if the two would not touch in any step.
-    pub ttb: Option<Second>,
-    /// Largest probability of all steps that the driver does not brake in time if the foe goes on as now.
-    pub crash_probability: f64,
-    /// The same if the foe brakes fully.
-    pub crash_probability_braking: f64,
     /// Probability of a fatal injury of the one worse off, at the ΔV below.
     pub injury_probability: f64,
-    /// Largest of all steps of the larger ΔV of both if each brakes until they touch, in m/s.
-    pub extended_delta_v: Option<MetrePerSecond>,
     /// Post-encroachment time, in s; none of followers.
     pub pet: Option<Second>,
     /// Speed change of the ego in a fully inelastic collision, in m/s.
@@ -97,10 +82,8 @@ pub struct Conflict {
     /// The same, y in m.
     pub y: Metre,
     /// The lane of the conflict point.
-    #[serde(skip)]
     pub lane: Option<LaneIndex>,
     /// The lanes of the ego and the foe, where their courses are known.
-    #[serde(skip)]
     pub lanes: [Option<LaneIndex>; 2],
     /// Whether the rectangles overlapped by more than the contact tolerance in any step.
     pub collision: bool,
@@ -116,19 +99,14 @@ pub struct Conflict {
     /// Why the one that changed lanes did so, where that is a cause and SUMO told it.
     pub lane_change_reason: Option<LaneChangeReason>,
     /// Where the ego was and would go.
-    #[serde(skip)]
     pub ego_snapshot: Snapshot,
     /// The same of the foe.
-    #[serde(skip)]
     pub foe_snapshot: Snapshot,
     /// When and where `ttc`, `drac` and `pet` were found.
-    #[serde(skip)]
     pub found: [Option<Moment>; 3],
     /// The measures that are logged only if they are chosen; none where none is.
-    #[serde(skip)]
     pub(crate) chosen: Option<Box<ChosenValues>>,
     /// Each of its steps as a conflict of its own, without paths and PET, where a series is wanted.
-    #[serde(skip)]
     pub steps: Vec<Self>,
 }
 
@@ -149,14 +127,8 @@ impl Conflict {
             collision_sumo,
             overlap,
             clearance,
-            ttc,
-            drac,
+            values,
             unavoidable,
-            response_left,
-            ttb,
-            crash_probability,
-            crash_probability_braking,
-            extended_delta_v,
             ref found,
             ref worst,
             struck,
@@ -197,15 +169,9 @@ impl Conflict {
             mu,
             margin,
             clearance,
-            ttc,
-            drac,
+            values,
             unavoidable,
-            response_left,
-            ttb,
-            crash_probability,
-            crash_probability_braking,
             injury_probability,
-            extended_delta_v,
             pet: pet.map(|pet| pet.lasts),
             ego_delta_v,
             foe_delta_v,

@@ -12,6 +12,10 @@ use super::why::{Artefact, Manoeuvre, Pair, STANDS, Surroundings, Why, one_will_
 use crate::detection::encounter::Encounter;
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::pet::Pet;
+use crate::detection::measures::table::LoggedMeasure::{
+    CrashProbability, CrashProbabilityBraking, ExtendedDeltaV, ResponseLeft, Ttb, Ttc,
+};
+use crate::detection::measures::table::LoggedValues;
 use crate::detection::severity::{AT_SPEED, Assessment, Consequence, LIKELY_CLEARANCE, LIKELY_PET, NearnessLevel};
 use crate::options::measures::ChosenValues;
 use crate::options::thresholds::SeverityThresholds;
@@ -19,7 +23,7 @@ use crate::traffic::frame::Frame;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
 /// Margins that differ by less than this are equal, in m: a pair that keeps its speeds has the same in every step.
 const SAME_MARGIN: Metre = 1e-9;
@@ -67,14 +71,8 @@ pub(super) struct Extremes {
     pub clearance: Metre,
     /// The smallest clearance in steps in which both cross each other's path at speed; infinite where there is none.
     pub passed_at: Metre,
-    pub ttc: Option<Second>,
-    pub drac: Option<MetrePerSecondSquared>,
+    pub values: LoggedValues,
     pub unavoidable: bool,
-    pub response_left: Option<Second>,
-    pub ttb: Option<Second>,
-    pub crash_probability: f64,
-    pub crash_probability_braking: f64,
-    pub extended_delta_v: Option<MetrePerSecond>,
     /// When and where the TTC and the DRAC were found.
     pub found: [Option<Moment>; 2],
     pub worst: WorstStep,
@@ -146,40 +144,16 @@ impl Observation<'_> {
         self.found.nearness.map_or(f64::INFINITY, |near| near.clearance)
     }
 
-    fn ttc(&self) -> Option<Second> {
-        self.found.nearness?.ttc
-    }
-
-    fn drac(&self) -> Option<MetrePerSecondSquared> {
-        self.found.nearness?.drac
+    fn values(&self) -> LoggedValues {
+        self.found.nearness.map_or(LoggedValues::NONE, |near| near.values)
     }
 
     fn is_unavoidable(&self) -> bool {
         self.found.nearness.is_some_and(|near| near.unavoidable)
     }
 
-    fn response_left(&self) -> Option<Second> {
-        self.found.nearness?.response_left
-    }
-
-    fn ttb(&self) -> Option<Second> {
-        self.found.nearness?.ttb
-    }
-
-    fn crash_probability(&self) -> f64 {
-        self.found.nearness.map_or(0.0, |near| near.crash_probability)
-    }
-
-    fn crash_probability_braking(&self) -> f64 {
-        self.found.nearness.map_or(0.0, |near| near.crash_probability_braking)
-    }
-
-    fn extended_delta_v(&self) -> Option<MetrePerSecond> {
-        self.found.nearness?.extended_delta_v
-    }
-
     fn chosen_step(&self) -> Option<Step<'_>> {
-        self.chosen.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
+        self.chosen.map(|values| Step { values, ttc: self.values().ttc(), lasted: self.lasted })
     }
 
     fn pair(&self) -> Pair<'_> {
@@ -217,7 +191,7 @@ impl WorstStep {
 impl Extremes {
     /// Those of a first step, with the paths of both or without.
     pub fn of(seen: &Observation, has_paths: bool) -> Self {
-        let moment = |_| seen.moment();
+        let (values, moment) = (seen.values(), |_| seen.moment());
         let pair = seen.pair();
         let assessed = seen.assessment(&pair);
         let artefact = Artefact::of(&pair);
@@ -235,15 +209,9 @@ impl Extremes {
             collision_sumo: None,
             clearance: seen.clearance(),
             passed_at: seen.passed_at(),
-            ttc: seen.ttc(),
-            drac: seen.drac(),
+            values,
             unavoidable: seen.is_unavoidable(),
-            response_left: seen.response_left(),
-            ttb: seen.ttb(),
-            crash_probability: seen.crash_probability(),
-            crash_probability_braking: seen.crash_probability_braking(),
-            extended_delta_v: seen.extended_delta_v(),
-            found: [seen.ttc().map(moment), seen.drac().map(moment)],
+            found: [values.ttc().map(moment), values.drac().map(moment)],
             worst: WorstStep::of(seen, has_paths),
             struck: None,
             chosen: seen.chosen_step().map(|step| Box::new(ChosenMeasures::of(&step))),
@@ -281,13 +249,7 @@ impl Extremes {
         self.collision |= seen.found.collision;
         self.overlap = self.overlap.max(seen.found.overlap);
         self.unavoidable |= seen.is_unavoidable();
-        take_if(&mut self.response_left, seen.response_left(), f64::lt);
-        take_if(&mut self.ttb, seen.ttb(), f64::lt);
-        self.crash_probability = self.crash_probability.max(seen.crash_probability());
-        self.crash_probability_braking = self.crash_probability_braking.max(seen.crash_probability_braking());
-        take_if(&mut self.extended_delta_v, seen.extended_delta_v(), f64::gt);
-        let taken = [take_if(&mut self.ttc, seen.ttc(), f64::lt), take_if(&mut self.drac, seen.drac(), f64::gt)];
-        for (found, taken) in self.found.iter_mut().zip(taken) {
+        for (found, taken) in self.found.iter_mut().zip(self.values.take_all(&seen.values())) {
             if taken {
                 *found = Some(seen.moment());
             }
@@ -396,21 +358,13 @@ impl Extremes {
         if let Some((assessment, artefact)) = assessed {
             self.assess(assessment, || artefact);
         }
-        self.response_left = Some(0.0);
-        self.ttb = Some(0.0);
-        (self.crash_probability, self.crash_probability_braking) = (1.0, 1.0);
-        take_if(&mut self.extended_delta_v, Some(struck.delta_v[0].max(struck.delta_v[1])), f64::gt);
-        if take_if(&mut self.ttc, Some(0.0), f64::lt) {
+        for (measure, now) in [(ResponseLeft, 0.0), (Ttb, 0.0), (CrashProbability, 1.0), (CrashProbabilityBraking, 1.0)]
+        {
+            self.values.take(measure, Some(now));
+        }
+        self.values.take(ExtendedDeltaV, Some(struck.delta_v[0].max(struck.delta_v[1])));
+        if self.values.take(Ttc, Some(0.0)) {
             self.found[0] = Some(struck.moment_of(self.worst.ego));
         }
     }
-}
-
-/// Takes the value of a step where it is beyond the extreme so far; returns whether it was.
-fn take_if(known: &mut Option<f64>, now: Option<f64>, is_beyond: fn(&f64, &f64) -> bool) -> bool {
-    let is_taken = now.is_some_and(|now| known.is_none_or(|known| is_beyond(&now, &known)));
-    if is_taken {
-        *known = now;
-    }
-    is_taken
 }

@@ -393,7 +393,7 @@ mod tests {
         }
         let [crash] = scene.tracker.finish(&scene.roster) else { panic!() };
         assert!(crash.collision && crash.overlap > 1.0 && crash.clearance == 0.0);
-        assert_eq!((crash.severity, crash.ttc), (Severity::Critical, Some(0.0)));
+        assert_eq!((crash.severity, crash.values.ttc()), (Severity::Critical, Some(0.0)));
         let Moment { time, x, speed, .. } = crash.found[0].unwrap();
         assert!(0.3 < time && time < 0.5 && (x - (25.0 * time - 10.0)).abs() < 1e-9 && speed == 25.0, "{time} {x}");
     }

@@ -5,56 +5,28 @@ use std::str::FromStr;
 
 use serde::{Serialize, Serializer};
 
-/// Makes [`ChosenMeasure`], with the name of its column in the log.
-macro_rules! measures {
-    ($($variant:ident $name:literal),+ $(,)?) => {
+/// Makes [`ChosenMeasure`] of the rows of the table.
+macro_rules! name_measures {
+    ($( $(#[doc = $meaning:literal])+ $variant:ident $name:ident: $unit:ty, $over:ident = $value:expr; )+) => {
         /// A measure that is computed and logged only if it is chosen; docs/measures.md describes each.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum ChosenMeasure {
-            $( #[doc = concat!("The column `", $name, "`.")] $variant, )+
+            $( $(#[doc = $meaning])+ $variant, )+
         }
 
         impl ChosenMeasure {
             /// All, in the order of their columns.
-            pub const ALL: [Self; [$($name),+].len()] = [$(Self::$variant),+];
+            pub const ALL: [Self; [$(stringify!($name)),+].len()] = [$(Self::$variant),+];
 
             /// The name of its column.
             pub fn name(self) -> &'static str {
-                match self { $( Self::$variant => $name, )+ }
+                match self { $( Self::$variant => stringify!($name), )+ }
             }
         }
     };
 }
 
-measures! {
-    Tadv "tadv",
-    T2 "t2",
-    RssDistance "rss_distance",
-    RssLateralDistance "rss_lateral_distance",
-    RssViolation "rss_violation",
-    Thw "thw",
-    Sgap "sgap",
-    Br "br",
-    Mdrac "mdrac",
-    Mttc "mttc",
-    CrashIndex "crash_index",
-    Tet "tet",
-    Tit "tit",
-    Cpi "cpi",
-    ALongReq "a_long_req",
-    ALatReq "a_lat_req",
-    Btn "btn",
-    Stn "stn",
-    Ta "ta",
-    ConflictingSpeed "conflicting_speed",
-    TaLevel "ta_level",
-    MaxS "max_s",
-    DeltaS "delta_s",
-    Dr "dr",
-    MaxD "max_d",
-    Act "act",
-    Ei "ei",
-}
+crate::chosen_measures!(name_measures!);
 
 /// A value of each [`ChosenMeasure`], in their order; none where it is not chosen or does not exist.
 pub(crate) type ChosenValues = [Option<f64>; ChosenMeasure::ALL.len()];

@@ -48,7 +48,7 @@ fn steps_at(detector: &mut Detector, net: Option<(&Net, Vec<f64>)>, steps: &[&[S
         detector.broad_phase(&frame, &roster);
         _ = detector.narrow_phase(&frame, &roster);
     }
-    let ttc = detector.encounters().find_map(|found| found.nearness?.ttc);
+    let ttc = detector.encounters().find_map(|found| found.nearness?.values.ttc());
     (frame.rows().map(|row| row.state).collect(), ttc)
 }
 

@@ -109,8 +109,8 @@ fn oncoming_vehicles_that_will_only_graze_have_no_ttc() {
         for foe_speed in [0.0, 5.0] {
             let oncoming = encounter([(0.0, 0.0, 0.0, 10.0), (5.0, aside, std::f64::consts::PI, foe_speed)]);
             let nearness = oncoming.unwrap().nearness.unwrap();
-            assert_eq!(nearness.ttc.is_some(), touches, "{aside} m aside");
-            assert_eq!(nearness.drac.is_some(), touches, "{aside} m aside");
+            assert_eq!(nearness.values.ttc().is_some(), touches, "{aside} m aside");
+            assert_eq!(nearness.values.drac().is_some(), touches, "{aside} m aside");
             assert_eq!(nearness.assessment.severity, if touches { Severity::Critical } else { Severity::Caution });
         }
     }
@@ -120,7 +120,7 @@ fn oncoming_vehicles_that_will_only_graze_have_no_ttc() {
 fn one_whose_corner_will_only_graze_has_no_ttc() {
     // The ego passes behind a foe that crosses: that leaves just before, or just after.
     let crossing = |behind: f64| encounter([(0.0, 0.0, 0.0, 10.0), (10.0, 6.0 + behind, NORTH, 10.0)]);
-    let ttc = |behind: f64| crossing(behind).and_then(|found| found.nearness?.ttc);
+    let ttc = |behind: f64| crossing(behind).and_then(|found| found.nearness?.values.ttc());
     assert_eq!([ttc(-9.4), ttc(-9.6)].map(|ttc| ttc.is_some()), [false, true]);
 }
 
@@ -128,13 +128,13 @@ fn one_whose_corner_will_only_graze_has_no_ttc() {
 fn without_a_tolerance_a_graze_ahead_has_a_ttc() {
     let mut cars = TwoCars::new(&Options { contact_tolerance: 0.0, ..Options::default() });
     let oncoming = cars.step([(0.0, 0.0, 0.0, 10.0), (12.0, 1.9, std::f64::consts::PI, 0.0)]).unwrap();
-    assert!((oncoming.nearness.unwrap().ttc.unwrap() - 1.2).abs() < 1e-9);
+    assert!((oncoming.nearness.unwrap().values.ttc().unwrap() - 1.2).abs() < 1e-9);
 }
 
 #[test]
 fn a_follower_that_touches_at_the_horizon_has_a_ttc() {
     for (gap, touches) in [(0.999, true), (1.001, false)] {
         let follower = encounter([(0.0, 0.0, 0.0, 5.0), (5.0 + gap, 0.0, 0.0, 4.9)]).unwrap();
-        assert_eq!(follower.nearness.unwrap().ttc.is_some(), touches, "{gap} m");
+        assert_eq!(follower.nearness.unwrap().values.ttc().is_some(), touches, "{gap} m");
     }
 }

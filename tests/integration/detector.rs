@@ -71,7 +71,7 @@ fn a_followers_gap_is_the_room_between_the_bumpers() {
     // 20 m of response; then both brake alike, 400/16 − 100/16.
     assert!((found.mu - (20.0 + 25.0 - 6.25 + 0.5)).abs() < 0.05, "{}", found.mu);
     assert!(found.in_conflict());
-    assert!((found.nearness.unwrap().ttc.unwrap() - 2.5).abs() < 1e-9);
+    assert!((found.nearness.unwrap().values.ttc().unwrap() - 2.5).abs() < 1e-9);
 }
 
 #[test]
@@ -353,7 +353,7 @@ fn a_foe_that_slows_down_far_ahead_is_found_by_its_ttc() {
     let options = logging("ttc < 4");
     let [(found, ego)] = &look_at(&mut Detector::new(&options, None), &options, &cars)[..] else { panic!() };
     assert_eq!((found.kind, ego.as_str()), (Kind::RearEnd, "a"));
-    assert!((found.nearness.unwrap().ttc.unwrap() - 3.5).abs() < 1e-9 && found.is_logged());
+    assert!((found.nearness.unwrap().values.ttc().unwrap() - 3.5).abs() < 1e-9 && found.is_logged());
     assert!((found.gap - 70.0).abs() < 1e-9 && found.margin > 0.0);
 }
 
@@ -398,7 +398,7 @@ proptest! {
         let (near, all) = (logging("ttc < 3"), logging("ttc < 10"));
         let [near, all] = [near, all].map(|options| {
             let found = look_at(&mut Detector::new(&options, None), &options, &cars);
-            let is_near = |found: &Encounter| found.nearness.is_some_and(|near| near.ttc.is_some_and(|ttc| ttc < 3.0));
+            let is_near = |found: &Encounter| found.nearness.is_some_and(|near| near.values.ttc().is_some_and(|ttc| ttc < 3.0));
             let found = found.into_iter().map(|(found, _)| found).filter(is_near);
             found.map(|found| [found.ego.min(found.foe), found.ego.max(found.foe)]).collect::<Vec<_>>()
         });

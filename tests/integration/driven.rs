@@ -69,7 +69,7 @@ fn a_turn_to_come_is_met_with_the_right_ttc_and_mu() {
     replay(file.path(), None, &[("path", "driven"), ("log", "ttc < 5")], |time, run| {
         for found in run.in_conflict().filter(|_| time < 3.8) {
             seen += 1;
-            let ttc = found.nearness.unwrap().ttc.unwrap();
+            let ttc = found.nearness.unwrap().values.ttc().unwrap();
             assert!((ttc - (4.0 - time)).abs() < 2e-3, "{ttc} s at {time} s");
             // They cross at a right angle at the latest moment; then μ is the stopping distance and ε.
             if (found.angle - FRAC_PI_2).abs() < 1e-3 {

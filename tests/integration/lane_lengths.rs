@@ -62,9 +62,9 @@ fn is_as_on_the_lane(lengths: [f64; 2], position: f64, speed: f64) {
     let near = |found: f64, right: f64| (found - right).abs() < 0.075;
     assert!(near(found.gap, 35.0) && near(found.mu, as_drawn.mu), "{lengths:?} at {position}: {found:?}");
     let closing = 20.0 - speed;
-    let ttc = found.nearness.unwrap().ttc.unwrap();
+    let ttc = found.nearness.unwrap().values.ttc().unwrap();
     assert!((ttc - 35.0 / closing).abs() < 1e-6, "{lengths:?} at {position}: TTC {ttc}");
-    let drac = found.nearness.unwrap().drac.unwrap();
+    let drac = found.nearness.unwrap().values.drac().unwrap();
     assert!((drac - closing * closing / 70.0).abs() < 0.01, "{lengths:?} at {position}: DRAC {drac}");
 }
 
@@ -89,7 +89,7 @@ fn a_lane_half_a_percent_longer_than_drawn_is_as_long_as_it_says() {
     for lengths in [[100.5, 100.5], [100.05, 100.0], [99.5, 100.5]] {
         for position in [30.0, lengths[0] - 20.0] {
             let found = encounter(lengths, [(position, 20.0), (position + 40.0, 10.0)]).unwrap();
-            let ttc = found.nearness.unwrap().ttc.unwrap();
+            let ttc = found.nearness.unwrap().values.ttc().unwrap();
             // The leader is drawn as long as where it is now, also on the next lane.
             let is_as_on_the_lane = (found.gap - 35.0).abs() < 0.03 && (ttc - 3.5).abs() < 6e-3;
             assert!(is_as_on_the_lane, "{lengths:?} at {position}: {} m, {ttc} s", found.gap);

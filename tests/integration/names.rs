@@ -118,8 +118,8 @@ proptest! {
             prop_assert_eq!((&a.ego, &a.foe, a.kind, a.severity, a.collision), (&b.ego, &b.foe, b.kind, b.severity, b.collision));
             let values = |of: &Conflict| {
                 [
-                    Some(of.begin), Some(of.time), Some(of.gap), Some(of.mu), Some(of.clearance), of.ttc, of.pet,
-                    of.response_left, Some(of.ego_delta_v), Some(of.foe_delta_v), Some(of.ego_speed), Some(of.angle),
+                    Some(of.begin), Some(of.time), Some(of.gap), Some(of.mu), Some(of.clearance), of.values.ttc(), of.pet,
+                    of.values.response_left(), Some(of.ego_delta_v), Some(of.foe_delta_v), Some(of.ego_speed), Some(of.angle),
                 ]
             };
             for (a, b) in values(a).into_iter().zip(values(b)) {

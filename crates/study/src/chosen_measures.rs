@@ -61,7 +61,7 @@ impl Method {
 
     /// The value of a conflict that is compared.
     fn value(self, conflict: &Conflict) -> Option<f64> {
-        if let Self::One(measure) = self { conflict.chosen(measure) } else { conflict.ttc }
+        if let Self::One(measure) = self { conflict.chosen(measure) } else { conflict.values.ttc() }
     }
 }
 

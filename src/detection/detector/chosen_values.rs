@@ -53,6 +53,6 @@ impl Detector {
             }
         });
         let crossing = self.options.kind_bounds().rear_end_below;
-        PairInStep { found, ego, foe, crossing, step: self.step }.values(measures)
+        PairInStep { found, ego, foe, crossing, step: self.step, advantage: None }.values(measures)
     }
 }

@@ -6,7 +6,7 @@ use super::occupancy::Carriages;
 use super::overlap::shrinks;
 use super::reach::User;
 use super::step::StepInputs;
-use super::timely::Timely;
+use super::timely::{of_collision, of_course, with_evasion};
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader, MuModel, rss};
 use crate::detection::encounter::{Encounter, Nearness};
@@ -16,6 +16,7 @@ use crate::detection::measures::accident::BRAKES;
 use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::drac;
 use crate::detection::measures::injury::{Body, injury_probability};
+use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
 use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
@@ -145,8 +146,8 @@ impl StepInputs<'_> {
         } else {
             pairs(pair).map(clearance).fold(f64::INFINITY, f64::min)
         };
-        let timely = if encounter.collision { Timely::COLLISION } else { self.timely(scratch, pair, met, encounter) };
-        let Timely { ttc, drac, ttb, crash_probability } = timely;
+        let timely = if encounter.collision { of_collision() } else { self.timely(scratch, pair, met, encounter) };
+        let (ttc, drac) = (timely.ttc(), timely.drac());
         let [ego, foe] = [&pair[0][0], &pair[1][0]];
         let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
         let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
@@ -158,8 +159,8 @@ impl StepInputs<'_> {
             ttc,
             drac,
             ego_deceleration,
-            ttb,
-            crash_probability,
+            ttb: timely.ttb(),
+            crash_probability: timely.crash_probability().unwrap_or(0.0),
             braking: self.evasive_braking(users, encounter.kind),
             delta_v: of_ego.max(of_foe),
             injury_probability: injury_probability(
@@ -169,17 +170,20 @@ impl StepInputs<'_> {
             ),
             collision,
         };
+        let extended_delta_v =
+            ttc.map(|left| measures::extended_delta_v(movements[0], movements[1], encounter.angle, left));
+        let values = timely
+            .with(LoggedMeasure::Drac, drac.map(|drac| drac.min(drac::LIMIT)))
+            .with(LoggedMeasure::ResponseLeft, self.response_left([ego, foe], met, encounter))
+            .with(
+                LoggedMeasure::CrashProbabilityBraking,
+                Some(self.crash_probability_braking([ego, foe], met, encounter)),
+            )
+            .with(LoggedMeasure::ExtendedDeltaV, extended_delta_v);
         Nearness {
             clearance,
-            ttc,
-            drac: drac.map(|drac| drac.min(drac::LIMIT)),
+            values,
             unavoidable,
-            response_left: self.response_left([ego, foe], met, encounter),
-            ttb,
-            crash_probability,
-            crash_probability_braking: self.crash_probability_braking([ego, foe], met, encounter),
-            extended_delta_v: ttc
-                .map(|left| measures::extended_delta_v(movements[0], movements[1], encounter.angle, left)),
             assessment: Assessment::of(&inputs, self.options.severity_thresholds()),
         }
     }
@@ -235,13 +239,23 @@ impl StepInputs<'_> {
     }
 
     /// The measures that follow from the courses of both; of several carriages, those of the two that are worst.
-    fn timely(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> Timely {
+    fn timely(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> LoggedValues {
         let each = pairs(pair).map(|pair| self.timely_of(scratch, pair, met, encounter));
-        each.reduce(Timely::worse).unwrap_or(Timely::APART)
+        let worse = |mut one: LoggedValues, other: LoggedValues| {
+            one.take_all(&other);
+            one
+        };
+        each.reduce(worse).unwrap_or(LoggedValues::NONE)
     }
 
     /// The same for a carriage of each of the two.
-    fn timely_of(&self, scratch: &mut Scratch, pair: [&Participant; 2], met: &Met, encounter: &Encounter) -> Timely {
+    fn timely_of(
+        &self,
+        scratch: &mut Scratch,
+        pair: [&Participant; 2],
+        met: &Met,
+        encounter: &Encounter,
+    ) -> LoggedValues {
         let users = met.slots.map(|slot| self.user(slot));
         for ((user, of), poses) in users.into_iter().zip(pair).zip(scratch.courses.iter_mut()) {
             poses.clear();
@@ -266,17 +280,17 @@ impl StepInputs<'_> {
         let braking = self.late_braking(met.slots[0], pair[0]);
         if self.is_obstacle(met.slots[1]) {
             let mut time_to = |ego| ttc::time_to_fixed(halves, ego, self.roster.shape(encounter.foe));
-            let Some(time) = time_to(&smaller_ego).and_then(|_| time_to(&ego)) else { return Timely::APART };
+            let Some(time) = time_to(&smaller_ego).and_then(|_| time_to(&ego)) else { return LoggedValues::NONE };
             let evasion = Evasion::Behind(Leader { room: ego.speed * time, speed: 0.0, deceleration: 0.0 });
             let drac = Some(ego.speed / (2.0 * time)).filter(|drac| *drac > 0.0);
-            return Timely { ttc: Some(time), drac, ..Timely::APART }.with(&evasion, &braking, driver(met.slots[0]));
+            return with_evasion(of_course(Some(time), drac), &evasion, &braking, driver(met.slots[0]));
         }
         // The smaller two may touch too late to be found.
         let touch_at_last = || contact::touches(&ego.at(ttc::HORIZON), &foe.at(ttc::HORIZON));
         let ttc = ttc::time_to_collision(&ego, &foe)
             .filter(|_| ttc::time_to_collision(&smaller_ego, &smaller_foe).is_some() || touch_at_last());
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
-        let timely = Timely { ttc, drac, ..Timely::APART };
+        let timely = of_course(ttc, drac);
         // Both go on as now.
         let ([ego, foe], [smaller_ego, smaller_foe]) = along(users.map(|user| self.deceleration(user)));
         let meets = ttc::time_to_collision(&smaller_ego, &smaller_foe).and_then(|_| ttc::time_to_collision(&ego, &foe));
@@ -287,14 +301,14 @@ impl StepInputs<'_> {
             let or_at = if let Some(Evasion::At(limits)) = alone { Some(limits) } else { None };
             let (share, room) = (-met.sigma.min(0.0), encounter.gap);
             let evasion = Evasion::Towards { foe: foe_braking, share, room, or_at };
-            return timely.with(&evasion, &braking, driver(met.slots[0]));
+            return with_evasion(timely, &evasion, &braking, driver(met.slots[0]));
         }
         if let Some(evasion) = alone {
-            return timely.with(&evasion, &braking, driver(met.slots[0]));
+            return with_evasion(timely, &evasion, &braking, driver(met.slots[0]));
         }
         // The foe comes to where the ego is now: only the foe can avoid contact.
         let of_foe = ttb::to_stay_behind(halves, limits, [&foe, &ego], &foe_braking, meets);
-        timely.with(&of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
+        with_evasion(timely, &of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
     }
 }
 

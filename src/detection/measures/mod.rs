@@ -19,6 +19,7 @@ mod passage;
 pub mod pet;
 pub mod plane;
 pub mod rss_lateral;
+pub mod table;
 pub mod threat;
 pub mod ttb;
 pub mod ttc;

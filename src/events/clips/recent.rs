@@ -82,7 +82,7 @@ impl Recent {
         step.dangers.extend(now.map(|Alarm { ego, foe, severity, nearness, .. }| Danger {
             pair: [ego.min(foe), ego.max(foe)],
             severity,
-            time_left: nearness.and_then(|near| near.response_left),
+            time_left: nearness.and_then(|near| near.values.response_left()),
         }));
         self.steps.push_back(step);
         true

@@ -171,7 +171,7 @@ fn did_not_yield(net: &Net, pair: &Pair, (one, other): (Entrant, Entrant)) -> bo
 /// Whether one passes the conflict point behind the other, and with room, as both drive now.
 fn goes_second(pair: &Pair, one: &Party, other: &Party) -> bool {
     one.to_meeting * other.speed > other.to_meeting * one.speed
-        && pair.found.nearness.is_none_or(|near| near.ttc.is_none())
+        && pair.found.nearness.is_none_or(|near| near.values.ttc().is_none())
         && (pair.around.tadv)(pair.found).is_none_or(|tadv| tadv >= LETS_GO_FIRST)
 }
 

@@ -71,9 +71,15 @@ impl Eq for Rank {}
 
 impl From<&Conflict> for Rank {
     fn from(conflict: &Conflict) -> Self {
-        let Conflict { collision, severity, ttc, margin, ego_delta_v, foe_delta_v, crash_probability, .. } = *conflict;
+        let Conflict { collision, severity, values, margin, ego_delta_v, foe_delta_v, .. } = *conflict;
         let is_traffic = conflict.artefact.is_none();
-        Self::new((is_traffic, collision, severity), ego_delta_v.max(foe_delta_v), crash_probability, ttc, margin)
+        Self::new(
+            (is_traffic, collision, severity),
+            ego_delta_v.max(foe_delta_v),
+            values.crash_probability().unwrap_or_default(),
+            values.ttc(),
+            margin,
+        )
     }
 }
 

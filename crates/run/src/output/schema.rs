@@ -1,9 +1,8 @@
 //! The schema of a conflict: one row per column of `conflicts.csv`.
 //!
 //! The log, both readers, the Parquet files of a sweep, the report's data and Python's `Conflict` loop over [`COLUMNS`];
-//! a test compares the table in docs/log.md and the Python stub with it. To add a measure, write its formula in
-//! [`closecall::detection::measures`] and add an `Optional` row here (logs of earlier versions have no such column), or a `Chosen`
-//! one and its name in [`closecall::options::measures`]: then only logs of runs that ask for it have it.
+//! a test compares the table in docs/log.md and the Python stub with it. The columns of measures that only logs of runs have
+//! that ask for them follow from the table of measures, [`closecall::chosen_measures`].
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
@@ -39,36 +38,47 @@ pub struct Context<'a> {
     pub roster: &'a Roster,
 }
 
-/// Makes [`LoggedConflict`] and [`COLUMNS`] of the rows below: the meaning; which logs have the column; its name; its type,
-/// which names the unit; how to get the value from a [`Conflict`] and its [`Context`].
+macro_rules! column {
+    ($name:ident: $type:ty, $presence:ident, $($meaning:literal)+) => {
+        Column {
+            name: stringify!($name),
+            meaning: concat!($($meaning),+),
+            presence: Presence::$presence,
+            column_type: <$type as Field>::TYPE,
+            rust_type: stringify!($type),
+            get: |conflict| conflict.$name.value(),
+            set: |conflict, value| conflict.$name.set(value),
+        }
+    };
+}
+
+/// Makes [`LoggedConflict`] and [`COLUMNS`] of the rows below and those of the table of measures. A row is the meaning; which
+/// logs have the column; its name; its type, which names the unit; how to get the value from a [`Conflict`] and its [`Context`].
 macro_rules! columns {
     (|$conflict:ident, $context:ident| $(
         $(#[doc = $meaning:literal])+
         [$presence:ident] $name:ident: $type:ty = $value:expr;
+    )+ chosen: $(
+        $(#[doc = $chosen_meaning:literal])+
+        $variant:ident $chosen:ident: $unit:ty, $over:ident = $formula:expr;
     )+) => {
         /// A conflict as a log has it: one field per column.
         #[derive(Clone, Debug, PartialEq)]
         pub struct LoggedConflict {
             $( $(#[doc = $meaning])+ pub $name: $type, )+
+            $( $(#[doc = $chosen_meaning])+ pub $chosen: Option<$unit>, )+
         }
 
         /// The columns of `conflicts.csv`, in their order.
-        pub static COLUMNS: [Column; [$(stringify!($name)),+].len()] = [$(
-            Column {
-                name: stringify!($name),
-                meaning: concat!($($meaning),+),
-                presence: Presence::$presence,
-                column_type: <$type as Field>::TYPE,
-                rust_type: stringify!($type),
-                get: |conflict| conflict.$name.value(),
-                set: |conflict, value| conflict.$name.set(value),
-            },
-        )+];
+        pub static COLUMNS: [Column; [$(stringify!($name),)+ $(stringify!($chosen)),+].len()] = [
+            $( column!($name: $type, $presence, $($meaning)+), )+
+            $( column!($chosen: Option<$unit>, Chosen, $($chosen_meaning)+), )+
+        ];
 
         impl LoggedConflict {
             /// The log's row of a conflict.
             pub fn new($conflict: &Conflict, $context: Context) -> Self {
-                Self { $( $name: $value, )+ }
+                Self { $( $name: $value, )+ $( $chosen: $conflict.chosen(ChosenMeasure::$variant), )+ }
             }
 
             /// A conflict from its cells; `cell` gets the place of a column and returns what is there.
@@ -77,13 +87,16 @@ macro_rules! columns {
             /// What `cell` returns, or which value does not fit its column.
             pub fn from_cells<'a>(cell: impl Fn(usize) -> Result<Value<'a>, String>) -> Result<Self, String> {
                 let mut columns = COLUMNS.iter().enumerate();
-                Ok(Self { $( $name: next_field(&mut columns, &cell)?, )+ })
+                Ok(Self {
+                    $( $name: next_field(&mut columns, &cell)?, )+
+                    $( $chosen: next_field(&mut columns, &cell)?, )+
+                })
             }
         }
     };
 }
 
-columns! { |conflict, context|
+closecall::chosen_measures! { columns! |conflict, context|
     /// 1, 2, 3, … in the order of the file
     [Required] id: u64 = context.number;
     /// SUMO's id of the ego: the one with the longer distance to the conflict point
@@ -117,10 +130,10 @@ columns! { |conflict, context|
     /// smallest distance between the two rectangles, in any step or between two
     [Required] clearance: Metre = conflict.clearance;
     /// smallest time to collision of all steps, if both keep their speed along their paths
-    [Required] ttc: Option<Second> = conflict.ttc;
+    [Required] ttc: Option<Second> = conflict.values.ttc();
     /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
     /// foe comes towards it; at most 12.68 m/s²
-    [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
+    [Required] drac: Option<MetrePerSecondSquared> = conflict.values.drac();
     /// whether in any step before contact no deceleration would have avoided it
     [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
     /// time between the first leaving and the second entering the conflict area, from what both really drove; empty for
@@ -182,20 +195,20 @@ columns! { |conflict, context|
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
     /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
     /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood
-    [Optional] response_left: Option<Second> = conflict.response_left;
+    [Optional] response_left: Option<Second> = conflict.values.response_left();
     /// time to brake: smallest of all steps of the longest wait before full braking with which contact is avoided, if the foe
     /// goes on as now; 0 if even braking at once is too late; empty if the two would not touch
-    [Optional] ttb: Option<Second> = conflict.ttb;
+    [Optional] ttb: Option<Second> = conflict.values.ttb();
     /// largest of all steps of the probability that the driver does not brake in time, if the foe goes on as now
-    [Optional] crash_probability: Option<Probability> = Some(conflict.crash_probability);
+    [Optional] crash_probability: Option<Probability> = conflict.values.crash_probability();
     /// the same if the foe brakes fully now
-    [Optional] crash_probability_braking: Option<Probability> = Some(conflict.crash_probability_braking);
+    [Optional] crash_probability_braking: Option<Probability> = conflict.values.crash_probability_braking();
     /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of those on foot or two wheels at the impact
     /// speed, `ego_delta_v` + `foe_delta_v`
     [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
     /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
     /// would not touch
-    [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
+    [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.values.extended_delta_v();
     /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`,
     /// `left_turn_across`, `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`,
     /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
@@ -224,64 +237,7 @@ columns! { |conflict, context|
     [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
     /// latitude of `x` and `y`
     [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
-    /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
-    /// course; side and frontal conflicts only
-    [Chosen] tadv: Option<Second> = conflict.chosen(ChosenMeasure::Tadv);
-    /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their paths; the
-    /// TTC on a collision course; side and frontal conflicts only
-    [Chosen] t2: Option<Second> = conflict.chosen(ChosenMeasure::T2);
-    /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
-    [Chosen] rss_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssDistance);
-    /// safe lateral distance by RSS; rear-end and frontal conflicts only
-    [Chosen] rss_lateral_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssLateralDistance);
-    /// how long of the conflict the gap was below `rss_distance`
-    [Chosen] rss_violation: Option<Second> = conflict.chosen(ChosenMeasure::RssViolation);
-    /// time headway from front to front: smallest of all steps; rear-end conflicts only
-    [Chosen] thw: Option<Second> = conflict.chosen(ChosenMeasure::Thw);
-    /// space gap: smallest gap of all steps; rear-end conflicts only
-    [Chosen] sgap: Option<Metre> = conflict.chosen(ChosenMeasure::Sgap);
-    /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
-    [Chosen] br: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Br);
-    /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²;
-    /// rear-end conflicts only
-    [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Mdrac);
-    /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
-    [Chosen] mttc: Option<Second> = conflict.chosen(ChosenMeasure::Mttc);
-    /// crash index: largest of all steps; rear-end conflicts only
-    [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.chosen(ChosenMeasure::CrashIndex);
-    /// time exposed to a TTC of at most 3 s
-    [Chosen] tet: Option<Second> = conflict.chosen(ChosenMeasure::Tet);
-    /// integral over time of what the TTC lacks to 3 s
-    [Chosen] tit: Option<SecondSquared> = conflict.chosen(ChosenMeasure::Tit);
-    /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
-    [Chosen] cpi: Option<Probability> = conflict.chosen(ChosenMeasure::Cpi);
-    /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most 12.68 m/s²
-    [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALongReq);
-    /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²; rear-end and
-    /// frontal conflicts only
-    [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALatReq);
-    /// brake threat number: `a_long_req` over the ego's braking deceleration
-    [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
-    /// steer threat number: `a_lat_req` over the ego's braking deceleration
-    [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
-    /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none then
-    [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
-    /// speed of the one that brakes then, before it does
-    [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);
-    /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
-    [Chosen] ta_level: Option<Ratio> = conflict.chosen(ChosenMeasure::TaLevel);
-    /// SSAM's MaxS: the largest speed of both in any step
-    [Chosen] max_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::MaxS);
-    /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
-    [Chosen] delta_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::DeltaS);
-    /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
-    [Chosen] dr: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Dr);
-    /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
-    [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::MaxD);
-    /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
-    [Chosen] act: Option<Second> = conflict.chosen(ChosenMeasure::Act);
-    /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
-    [Chosen] ei: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::Ei);
+    chosen:
 }
 
 impl LoggedConflict {

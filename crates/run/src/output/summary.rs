@@ -199,7 +199,7 @@ impl Summary {
             return;
         }
         self.collisions += u64::from(conflict.collision);
-        self.risk_index += conflict.crash_probability;
+        self.risk_index += conflict.values.crash_probability().unwrap_or(0.0);
         if let Some(of_sumo) = &mut self.collisions_sumo {
             of_sumo.in_conflict += u64::from(conflict.collision_sumo == Some(true));
         }

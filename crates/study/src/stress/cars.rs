@@ -111,7 +111,7 @@ impl CarRun {
 
     /// The TTC of the first pair in conflict.
     pub fn ttc(&self) -> Option<Second> {
-        self.run.in_conflict().next()?.nearness?.ttc
+        self.run.in_conflict().next()?.nearness?.values.ttc()
     }
 
     /// Makes one step with all cars placed on one lane.
@@ -151,8 +151,9 @@ impl CarRun {
 }
 
 fn is_finite(found: &Encounter) -> bool {
-    let nearness =
-        found.nearness.map_or(0.0, |near| near.clearance + near.ttc.unwrap_or(0.0) + near.drac.unwrap_or(0.0));
+    let nearness = found
+        .nearness
+        .map_or(0.0, |near| near.clearance + near.values.ttc().unwrap_or(0.0) + near.values.drac().unwrap_or(0.0));
     (found.gap + found.mu + found.angle + found.ego_distance + found.foe_distance + found.x + found.y + nearness)
         .is_finite()
 }

@@ -172,7 +172,7 @@ fn check_lane(factor: f64, room: Metre, [speed, of_leader]: [MetrePerSecond; 2],
     tally.holds(FOUND, found.is_some(), &inputs);
     let Some(found) = found else { return };
     tally.error(ALONG, (found.gap - room).abs(), &(inputs, found.gap));
-    let ttc = found.nearness.and_then(|near| near.ttc);
+    let ttc = found.nearness.and_then(|near| near.values.ttc());
     let expected = room / (speed - of_leader);
     tally.error(TTC_ALONG, ttc.map_or(f64::INFINITY, |ttc| (ttc - expected).abs()), &(inputs, ttc, expected));
 }

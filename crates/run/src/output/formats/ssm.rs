@@ -44,10 +44,11 @@ impl Ssm {
 
     /// Appends a conflict.
     pub(crate) fn write_conflict(&mut self, conflict: &Conflict) -> Result<()> {
-        let Conflict { kind, collision, begin, end, ttc, drac, pet, found, .. } = *conflict;
+        let Conflict { kind, collision, begin, end, pet, found, values: extremes, .. } = *conflict;
         let (ego, foe) = (&*conflict.ego, &*conflict.foe);
         let artefact = conflict.artefact.map(Artefact::name).unwrap_or_default();
-        self.append(&Element { ego, foe, artefact, kind, collision, begin, end, values: [ttc, drac, pet], found })
+        let values = [extremes.ttc(), extremes.drac(), pet];
+        self.append(&Element { ego, foe, artefact, kind, collision, begin, end, values, found })
     }
 
     /// Appends a conflict of a log, which does not tell when and where its extremes were.
