@@ -23,7 +23,7 @@ pub(super) const REAR_END_BELOW: Radian = FRAC_PI_6;
 pub(super) const FRONTAL_ABOVE: Radian = 5.0 * FRAC_PI_6;
 /// Default crash probability from which a conflict is serious: a driver more likely brakes too late than not.
 pub(super) const SERIOUS_PROBABILITY: f64 = 0.5;
-/// Default ΔV from which a conflict is serious, in m/s: 10 km/h (docs/model.md has the figures).
+/// Default ΔV from which a conflict is serious, in m/s: 10 km/h (docs/validation.md has the figures).
 pub(super) const SERIOUS_DELTA_V: MetrePerSecond = 10.0 / 3.6;
 /// Default TTC below which a conflict is serious, in s (FHWA-HRT-08-051).
 pub(super) const SERIOUS_TTC: Second = 1.5;
