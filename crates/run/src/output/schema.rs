@@ -84,29 +84,30 @@ macro_rules! columns {
 }
 
 columns! { |conflict, context|
-    /// 1, 2, 3, … in the order of the file
+    /// 1, 2, 3, … in the file's order
     [Required] id: u64 = context.number;
-    /// SUMO's id of the ego: the one with the longer distance to the conflict point
+    /// SUMO's id of the ego: the one farther from the conflict point
     [Required] ego: String = conflict.ego.to_string();
     /// SUMO's id of the foe
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all steps
+    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all
+    /// steps
     [Required] severity: Severity = conflict.severity;
     /// how near to a crash it was: `possible`, `likely`, `near_certain`
     [Optional] nearness: OptionalText = conflict.nearness.name().to_owned();
     /// what a crash would have meant: `minor`, `moderate`, `severe`
     [Optional] consequence: OptionalText = conflict.consequence.name().to_owned();
-    /// why it is SUMO's or a tracker's making, not traffic's, and is not counted: `drawn_overlap`, `appeared`, `stopped_at_once`,
-    /// `jumped`, `tracking` ([rules](artefacts.md)); empty for the rest
+    /// why it is not traffic's and not counted: `drawn_overlap`, `appeared`, `stopped_at_once`, `jumped`, `tracking`
+    /// ([rules](artefacts.md)); empty for the rest
     [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().to_owned();
     /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
-    /// last step that meets the log's condition
+    /// last such step
     [Required] end: Second = conflict.end;
-    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and those that
-    /// say that they are an extreme of all steps
+    /// first step with the smallest margin. Unless they say otherwise, the columns below describe it; minima and maxima are of
+    /// all steps
     [Required] time: Second = conflict.time;
     /// the room that is left
     [Required] gap: Metre = conflict.gap;
@@ -114,21 +115,20 @@ columns! { |conflict, context|
     [Required] mu: Metre = conflict.mu;
     /// `gap` − `mu`
     [Required] margin: Metre = conflict.margin;
-    /// smallest distance between the two rectangles, in any step or between two
+    /// minimum distance between the rectangles, also between steps
     [Required] clearance: Metre = conflict.clearance;
-    /// smallest time to collision of all steps, if both keep their speed along their paths
+    /// minimum time to collision at constant speeds along the paths
     [Required] ttc: Option<Second> = conflict.ttc;
-    /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
-    /// foe comes towards it; at most 12.68 m/s²
+    /// maximum of the least constant deceleration with which the ego (or both, if the foe comes towards it) just avoids
+    /// contact; at most 12.68 m/s²
     [Required] drac: Option<MetrePerSecondSquared> = conflict.drac;
     /// whether in any step before contact no deceleration would have avoided it
     [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
-    /// time between the first leaving and the second entering the conflict area, from what both really drove; empty for
-    /// followers
+    /// from the first leaving to the second entering the conflict area, as driven; empty for followers
     [Required] pet: Option<Second> = conflict.pet;
     /// speed change of the ego in a fully inelastic collision
     [Required] ego_delta_v: MetrePerSecond = conflict.ego_delta_v;
-    /// speed change of the foe in a fully inelastic collision
+    /// speed change of the foe
     [Optional] foe_delta_v: Option<MetrePerSecond> = Some(conflict.foe_delta_v);
     /// speed of the ego
     [Required] ego_speed: MetrePerSecond = conflict.ego_speed;
@@ -136,151 +136,145 @@ columns! { |conflict, context|
     [Required] foe_speed: MetrePerSecond = conflict.foe_speed;
     /// between the headings at the conflict point, 0 to π
     [Required] angle: Radian = conflict.angle;
-    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    /// the ego's front bumper at the conflict point, or the front of the carriage that touches
     [Required] x: Metre = conflict.x;
-    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    /// as `x`
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
     [Required] lane: OptionalText = context.lane(conflict).to_owned();
-    /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
+    /// whether the rectangles overlapped by more than the contact tolerance, also between steps
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
     [Optional] collision_sumo: Option<bool> = conflict.collision_sumo;
     /// SUMO's type of the ego
     [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
-    /// SUMO's type of the foe; an obstacle's is `polygon:` and the polygon's type
+    /// SUMO's type of the foe; `polygon:` and its type for an obstacle
     [Optional] foe_type: OptionalText = context.type_name(conflict.foe_profile);
     /// the ego's front bumper
     [Snapshot] ego_x: Option<Metre> = Some(conflict.ego_snapshot.front.x);
-    /// the ego's front bumper
+    /// as `ego_x`
     [Snapshot] ego_y: Option<Metre> = Some(conflict.ego_snapshot.front.y);
-    /// from the ego's rear to its front bumper, counter-clockwise from +x
+    /// from rear to front bumper, counter-clockwise from +x
     [Snapshot] ego_heading: Option<Radian> = Some(conflict.ego_snapshot.heading);
     /// length of the ego
     [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
     /// width of the ego
     [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
-    /// where the ego's front bumper would go until it has braked to a stand, and ε further (the reserve that is searched
-    /// too), `x y x y …`, to the centimetre; empty for a road user that stands
+    /// where the ego's front bumper would go until it stands, and ε (the reserve) further: `x y x y …`, to the centimetre;
+    /// empty if it stands
     [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
     /// the foe's front bumper; a corner of an obstacle
     [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
-    /// the foe's front bumper; a corner of an obstacle
+    /// as `foe_x`
     [Snapshot] foe_y: Option<Metre> = Some(conflict.foe_snapshot.front.y);
-    /// from the foe's rear to its front bumper, counter-clockwise from +x
+    /// as `ego_heading`
     [Snapshot] foe_heading: Option<Radian> = Some(conflict.foe_snapshot.heading);
     /// length of the foe; 0 for an obstacle
     [Snapshot] foe_length: Option<Metre> = Some(conflict.foe_snapshot.length);
     /// width of the foe; 0 for an obstacle
     [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
-    /// where the foe's front bumper would go, as in `ego_path`
+    /// as `ego_path`, of the foe
     [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
-    /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
+    /// time headway: the room to the foe's rear over the ego's speed; rear-end only
     [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
-    /// deepest overlap of the two rectangles, in any step or between two: the shortest displacement that parts them; 0 if they
-    /// never overlapped
+    /// maximum overlap, also between steps: the shortest displacement that parts the rectangles; 0 if none
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
-    /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
-    /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood
+    /// minimum remaining response time: the longest t1 + t2 with which μ fits into the gap, if the foe brakes fully now; 0 if
+    /// too late; empty if the ego stood
     [Optional] response_left: Option<Second> = conflict.response_left;
-    /// time to brake: smallest of all steps of the longest wait before full braking with which contact is avoided, if the foe
-    /// goes on as now; 0 if even braking at once is too late; empty if the two would not touch
+    /// time to brake: minimum of the longest wait before full braking that avoids contact, if the foe goes on as now; 0 if too
+    /// late; empty without contact
     [Optional] ttb: Option<Second> = conflict.ttb;
-    /// largest of all steps of the probability that the driver does not brake in time, if the foe goes on as now
+    /// maximum probability that the driver brakes too late, if the foe goes on as now
     [Optional] crash_probability: Option<Probability> = Some(conflict.crash_probability);
     /// the same if the foe brakes fully now
     [Optional] crash_probability_braking: Option<Probability> = Some(conflict.crash_probability_braking);
-    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of those on foot or two wheels at the impact
-    /// speed, `ego_delta_v` + `foe_delta_v`
+    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of others at `ego_delta_v` + `foe_delta_v`
     [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
-    /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
-    /// would not touch
+    /// extended ΔV: maximum of the larger ΔV, if each brakes with 8 m/s² until they touch; empty without contact
     [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.extended_delta_v;
-    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`,
-    /// `left_turn_across`, `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`,
-    /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
+    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`, `left_turn_across`,
+    /// `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`, `person_along`,
+    /// `person_standing`, `object` ([rules](causes.md)); empty if their lanes are unknown
     [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
-    /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
+    /// why it came about, strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `behind_curve`, `leader_braked`, `too_close`, `too_fast`,
-    /// `appeared` ([rules](causes.md)); empty where none of them is known
+    /// `appeared` ([rules](causes.md)); empty if none is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
-    /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
-    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where it is not known, as in a replay
+    /// SUMO's lane-change reason: `traci` (a script), `strategic`, `cooperative`, `speed_gain`, `keep_right`, `sublane`; empty
+    /// without the cause `changed_lane`, and if unknown, as in a replay
     [Optional] lane_change_reason: OptionalText =
         conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
-    /// the lane of the ego's front bumper; the nearest where its way is not known
+    /// lane of the ego's front bumper; the nearest if its path is unknown
     [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
-    /// how far along that lane it is, in SUMO's metres of the lane
+    /// how far along that lane, in SUMO's metres
     [Optional] ego_lane_position: Option<Metre> = context.on_lane(conflict, 0).map(|(_, position)| position);
-    /// the lane of the foe's front bumper, or of an obstacle's corner
+    /// lane of the foe's front bumper, or of an obstacle's corner
     [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
-    /// how far along that lane it is
+    /// how far along that lane
     [Optional] foe_lane_position: Option<Metre> = context.on_lane(conflict, 1).map(|(_, position)| position);
     /// the edge of `lane`
     [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
     /// the junction that `lane` is within; empty outside junctions
     [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
-    /// longitude of `x` and `y`, by the net's own projection, as SUMO converts it; empty for a net without one
+    /// longitude of `x` and `y` by the net's projection, as SUMO converts it; empty without one
     [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
     /// latitude of `x` and `y`
     [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
-    /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a collision
-    /// course; side and frontal conflicts only
+    /// time advantage, the predicted PET: minimum at constant speeds; 0 on a collision course; side and frontal only
     [Chosen] tadv: Option<Second> = conflict.chosen(ChosenMeasure::Tadv);
-    /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their paths; the
-    /// TTC on a collision course; side and frontal conflicts only
+    /// T2: minimum time until the second enters the conflict area at constant speeds; the TTC on a collision course; side and
+    /// frontal only
     [Chosen] t2: Option<Second> = conflict.chosen(ChosenMeasure::T2);
-    /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
+    /// safe longitudinal distance by RSS; rear-end and frontal only
     [Chosen] rss_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssDistance);
-    /// safe lateral distance by RSS; rear-end and frontal conflicts only
+    /// safe lateral distance by RSS; rear-end and frontal only
     [Chosen] rss_lateral_distance: Option<Metre> = conflict.chosen(ChosenMeasure::RssLateralDistance);
-    /// how long of the conflict the gap was below `rss_distance`
+    /// how long the gap was below `rss_distance`
     [Chosen] rss_violation: Option<Second> = conflict.chosen(ChosenMeasure::RssViolation);
-    /// time headway from front to front: smallest of all steps; rear-end conflicts only
+    /// minimum time headway from front to front; rear-end only
     [Chosen] thw: Option<Second> = conflict.chosen(ChosenMeasure::Thw);
-    /// space gap: smallest gap of all steps; rear-end conflicts only
+    /// space gap: minimum gap; rear-end only
     [Chosen] sgap: Option<Metre> = conflict.chosen(ChosenMeasure::Sgap);
-    /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
+    /// brake rate: the ego's maximum deceleration; empty if none
     [Chosen] br: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Br);
-    /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²;
-    /// rear-end conflicts only
+    /// modified DRAC: maximum deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²; rear-end only
     [Chosen] mdrac: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Mdrac);
-    /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
+    /// modified TTC: minimum at constant accelerations; rear-end only
     [Chosen] mttc: Option<Second> = conflict.chosen(ChosenMeasure::Mttc);
-    /// crash index: largest of all steps; rear-end conflicts only
+    /// crash index: maximum; rear-end only
     [Chosen] crash_index: Option<MetreSquaredPerSecondCubed> = conflict.chosen(ChosenMeasure::CrashIndex);
     /// time exposed to a TTC of at most 3 s
     [Chosen] tet: Option<Second> = conflict.chosen(ChosenMeasure::Tet);
-    /// integral over time of what the TTC lacks to 3 s
+    /// integral of what the TTC lacks to 3 s
     [Chosen] tit: Option<SecondSquared> = conflict.chosen(ChosenMeasure::Tit);
-    /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
+    /// crash potential index: mean probability that the ego's brakes are weaker than the DRAC
     [Chosen] cpi: Option<Probability> = conflict.chosen(ChosenMeasure::Cpi);
-    /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most 12.68 m/s²
+    /// maximum required longitudinal deceleration; the DRAC unless rear-end; at most 12.68 m/s²
     [Chosen] a_long_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALongReq);
-    /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²; rear-end and
-    /// frontal conflicts only
+    /// maximum required lateral acceleration to be beside the foe at the TTC; at most 12.68 m/s²; rear-end and frontal only
     [Chosen] a_lat_req: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::ALatReq);
     /// brake threat number: `a_long_req` over the ego's braking deceleration
     [Chosen] btn: Option<Ratio> = conflict.chosen(ChosenMeasure::Btn);
     /// steer threat number: `a_lat_req` over the ego's braking deceleration
     [Chosen] stn: Option<Ratio> = conflict.chosen(ChosenMeasure::Stn);
-    /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none then
+    /// time to accident: the TTC when the first brakes with at least 1.3 m/s²; empty if there is none
     [Chosen] ta: Option<Second> = conflict.chosen(ChosenMeasure::Ta);
-    /// speed of the one that brakes then, before it does
+    /// speed of that one before it brakes
     [Chosen] conflicting_speed: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::ConflictingSpeed);
-    /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
+    /// severity level of the Swedish technique, 1 to 30; serious from 26 on
     [Chosen] ta_level: Option<Ratio> = conflict.chosen(ChosenMeasure::TaLevel);
-    /// SSAM's MaxS: the largest speed of both in any step
+    /// SSAM's MaxS: the maximum speed of either
     [Chosen] max_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::MaxS);
-    /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
+    /// SSAM's DeltaS: size of the velocity difference at the minimum TTC
     [Chosen] delta_s: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::DeltaS);
-    /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
+    /// SSAM's DR: the ego's first acceleration below 0, or else its smallest
     [Chosen] dr: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::Dr);
-    /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
+    /// SSAM's MaxD: the ego's minimum acceleration, below 0 where it brakes
     [Chosen] max_d: Option<MetrePerSecondSquared> = conflict.chosen(ChosenMeasure::MaxD);
-    /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
+    /// anticipated collision time: minimum of the distance over the speed at which it decreases
     [Chosen] act: Option<Second> = conflict.chosen(ChosenMeasure::Act);
-    /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
+    /// emergency index: maximum of how deep both would overlap over the time until they are nearest
     [Chosen] ei: Option<MetrePerSecond> = conflict.chosen(ChosenMeasure::Ei);
 }
 
