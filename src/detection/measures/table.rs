@@ -110,70 +110,67 @@ impl LoggedValues {
 macro_rules! chosen_measures {
     ($make:ident! $($given:tt)*) => {
         $make! { $($given)*
-            /// time advantage, the predicted PET: smallest of all steps, if both keep their speed along their paths; 0 on a
-            /// collision course; side and frontal conflicts only
+            /// time advantage, the predicted PET: minimum at constant speeds; 0 on a collision course; side and frontal only
             Tadv tadv: Second, Least = |pair| pair.advantage.map(|advantage| advantage.tadv);
-            /// T2: smallest of all steps of when the second enters the conflict area, if both keep their speed along their
-            /// paths; the TTC on a collision course; side and frontal conflicts only
+            /// T2: minimum time until the second enters the conflict area at constant speeds; the TTC on a collision course;
+            /// side and frontal only
             T2 t2: Second, Least = |pair| pair.advantage.map(|advantage| advantage.t2);
-            /// safe longitudinal distance by RSS; rear-end and frontal conflicts only
+            /// safe longitudinal distance by RSS; rear-end and frontal only
             RssDistance rss_distance: Metre, Worst = |pair| pair.rss_distance();
-            /// safe lateral distance by RSS; rear-end and frontal conflicts only
+            /// safe lateral distance by RSS; rear-end and frontal only
             RssLateralDistance rss_lateral_distance: Metre, Worst = |pair| pair.rss_lateral_distance();
-            /// how long of the conflict the gap was below `rss_distance`
+            /// how long the gap was below `rss_distance`
             RssViolation rss_violation: Second, Integral =
                 |pair| pair.rss_distance().map(|safe| f64::from(pair.found.gap < safe));
-            /// time headway from front to front: smallest of all steps; rear-end conflicts only
+            /// minimum time headway from front to front; rear-end only
             Thw thw: Second, Least = |pair| pair.time_headway();
-            /// space gap: smallest gap of all steps; rear-end conflicts only
+            /// space gap: minimum gap; rear-end only
             Sgap sgap: Metre, Least = |pair| pair.behind().map(|_| pair.found.gap);
-            /// brake rate: the ego's largest deceleration of all steps; empty if it never braked
+            /// brake rate: the ego's maximum deceleration; empty if none
             Br br: MetrePerSecondSquared, Most = |pair| Some(-pair.ego.acceleration).filter(|braking| *braking > 0.0);
-            /// modified DRAC: largest of all steps of the deceleration that is enough after a reaction time of 1 s; at most
-            /// 12.68 m/s²; rear-end conflicts only
+            /// modified DRAC: maximum deceleration that is enough after a reaction time of 1 s; at most 12.68 m/s²; rear-end
+            /// only
             Mdrac mdrac: MetrePerSecondSquared, Most =
                 |pair| mdrac::mdrac(pair.found.gap, pair.ego.moving.speed - pair.behind()?.speed);
-            /// modified TTC: smallest of all steps, if both keep their acceleration; rear-end conflicts only
+            /// modified TTC: minimum at constant accelerations; rear-end only
             Mttc mttc: Second, Least = |pair| pair.mttc().map(|(time, _)| time);
-            /// crash index: largest of all steps; rear-end conflicts only
+            /// crash index: maximum; rear-end only
             CrashIndex crash_index: MetreSquaredPerSecondCubed, Most = |pair| pair.mttc()?.1;
             /// time exposed to a TTC of at most 3 s
             Tet tet: Second, Integral = |pair| Some(exposure::exposed(pair.ttc()));
-            /// integral over time of what the TTC lacks to 3 s
+            /// integral of what the TTC lacks to 3 s
             Tit tit: SecondSquared, Integral = |pair| Some(exposure::lacks(pair.ttc()));
-            /// crash potential index: mean over time of the probability that the ego's brakes are weaker than the DRAC
+            /// crash potential index: mean probability that the ego's brakes are weaker than the DRAC
             Cpi cpi: Probability, Mean = |pair| Some(pair.crash_potential());
-            /// required longitudinal deceleration: largest of all steps; the DRAC unless the conflict is rear-end; at most
-            /// 12.68 m/s²
+            /// maximum required longitudinal deceleration; the DRAC unless rear-end; at most 12.68 m/s²
             ALongReq a_long_req: MetrePerSecondSquared, Most = |pair| pair.required_braking();
-            /// required lateral acceleration to be beside the foe at the TTC: largest of all steps; at most 12.68 m/s²;
-            /// rear-end and frontal conflicts only
+            /// maximum required lateral acceleration to be beside the foe at the TTC; at most 12.68 m/s²; rear-end and frontal
+            /// only
             ALatReq a_lat_req: MetrePerSecondSquared, Most = |pair| pair.required_steering();
             /// brake threat number: `a_long_req` over the ego's braking deceleration
             Btn btn: Ratio, Most = |pair| pair.required_braking().map(|needed| needed / pair.ego.of.brakes.deceleration);
             /// steer threat number: `a_lat_req` over the ego's braking deceleration
             Stn stn: Ratio, Most = |pair| pair.required_steering().map(|needed| needed / pair.ego.of.brakes.deceleration);
-            /// time to accident: the TTC when the first of both begins to brake with at least 1.3 m/s²; empty if there is none
-            /// then
+            /// time to accident: the TTC when the first brakes with at least 1.3 m/s²; empty if there is none
             Ta ta: Second, Onset = |pair| pair.conflicting_speed().and(pair.time_to_accident());
-            /// speed of the one that brakes then, before it does
+            /// speed of that one before it brakes
             ConflictingSpeed conflicting_speed: MetrePerSecond, Onset = |pair| pair.conflicting_speed();
-            /// severity level of the Swedish technique, 1 to 30, by `ta` and `conflicting_speed`; serious from 26 on
+            /// severity level of the Swedish technique, 1 to 30; serious from 26 on
             TaLevel ta_level: Ratio, Onset = |pair| {
                 pair.conflicting_speed().zip(pair.time_to_accident()).map(|(speed, ta)| accident::level(ta, speed))
             };
-            /// SSAM's MaxS: the largest speed of both in any step
+            /// SSAM's MaxS: the maximum speed of either
             MaxS max_s: MetrePerSecond, Most = |pair| Some(pair.ego.moving.speed.max(pair.foe.moving.speed));
-            /// SSAM's DeltaS: the size of the difference of both velocities in the step with the smallest TTC
+            /// SSAM's DeltaS: size of the velocity difference at the minimum TTC
             DeltaS delta_s: MetrePerSecond, LeastTtc =
                 |pair| pair.ttc().map(|_| delta_s(&pair.ego.moving, &pair.foe.moving));
-            /// SSAM's DR: the first acceleration below 0 of the ego, or else its smallest
+            /// SSAM's DR: the ego's first acceleration below 0, or else its smallest
             Dr dr: MetrePerSecondSquared, FirstBelowZero = |pair| Some(pair.ego.acceleration);
-            /// SSAM's MaxD: the ego's smallest acceleration of all steps, below 0 where it brakes
+            /// SSAM's MaxD: the ego's minimum acceleration, below 0 where it brakes
             MaxD max_d: MetrePerSecondSquared, Least = |pair| Some(pair.ego.acceleration);
-            /// anticipated collision time: smallest of all steps of the distance over the speed at which it decreases
+            /// anticipated collision time: minimum of the distance over the speed at which it decreases
             Act act: Second, Least = |pair| pair.in_plane().and_then(|[ego, foe]| anticipated_collision_time(ego, foe));
-            /// emergency index: largest of all steps of how deep both would overlap over the time until they are nearest
+            /// emergency index: maximum of how deep both would overlap over the time until they are nearest
             Ei ei: MetrePerSecond, Most = |pair| pair.in_plane().and_then(|[ego, foe]| emergency_index(ego, foe));
         }
     };

@@ -97,29 +97,30 @@ macro_rules! columns {
 }
 
 closecall::chosen_measures! { columns! |conflict, context|
-    /// 1, 2, 3, … in the order of the file
+    /// 1, 2, 3, … in the file's order
     [Required] id: u64 = context.number;
-    /// SUMO's id of the ego: the one with the longer distance to the conflict point
+    /// SUMO's id of the ego: the one farther from the conflict point
     [Required] ego: String = conflict.ego.to_string();
     /// SUMO's id of the foe
     [Required] foe: String = conflict.foe.to_string();
     /// `rear_end`, `frontal`, `side`: by the angle at the conflict point
     [Required] kind: Kind = conflict.kind;
-    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all steps
+    /// `critical`, `serious`, `caution`: by [a table](numbers.md#severity) of `nearness` and `consequence`; the worst of all
+    /// steps
     [Required] severity: Severity = conflict.severity;
     /// how near to a crash it was: `possible`, `likely`, `near_certain`
     [Optional] nearness: OptionalText = conflict.nearness.name().to_owned();
     /// what a crash would have meant: `minor`, `moderate`, `severe`
     [Optional] consequence: OptionalText = conflict.consequence.name().to_owned();
-    /// why it is SUMO's or a tracker's making, not traffic's, and is not counted: `drawn_overlap`, `appeared`, `stopped_at_once`,
-    /// `jumped`, `tracking` ([rules](artefacts.md)); empty for the rest
+    /// why it is not traffic's and not counted: `drawn_overlap`, `appeared`, `stopped_at_once`, `jumped`, `tracking`
+    /// ([rules](artefacts.md)); empty for the rest
     [Optional] artefact: OptionalText = conflict.artefact.map(Artefact::name).unwrap_or_default().to_owned();
     /// first step that meets the log's condition
     [Required] begin: Second = conflict.begin;
-    /// last step that meets the log's condition
+    /// last such step
     [Required] end: Second = conflict.end;
-    /// the (first) step with the smallest margin. The columns below describe that step, except `collision` and those that
-    /// say that they are an extreme of all steps
+    /// first step with the smallest margin. Unless they say otherwise, the columns below describe it; minima and maxima are of
+    /// all steps
     [Required] time: Second = conflict.time;
     /// the room that is left
     [Required] gap: Metre = conflict.gap;
@@ -127,21 +128,20 @@ closecall::chosen_measures! { columns! |conflict, context|
     [Required] mu: Metre = conflict.mu;
     /// `gap` − `mu`
     [Required] margin: Metre = conflict.margin;
-    /// smallest distance between the two rectangles, in any step or between two
+    /// minimum distance between the rectangles, also between steps
     [Required] clearance: Metre = conflict.clearance;
-    /// smallest time to collision of all steps, if both keep their speed along their paths
+    /// minimum time to collision at constant speeds along the paths
     [Required] ttc: Option<Second> = conflict.values.ttc();
-    /// largest of all steps of the least constant deceleration with which the ego just avoids contact; of both where the
-    /// foe comes towards it; at most 12.68 m/s²
+    /// maximum of the least constant deceleration with which the ego (or both, if the foe comes towards it) just avoids
+    /// contact; at most 12.68 m/s²
     [Required] drac: Option<MetrePerSecondSquared> = conflict.values.drac();
     /// whether in any step before contact no deceleration would have avoided it
     [Optional] unavoidable: Option<bool> = Some(conflict.unavoidable);
-    /// time between the first leaving and the second entering the conflict area, from what both really drove; empty for
-    /// followers
+    /// from the first leaving to the second entering the conflict area, as driven; empty for followers
     [Required] pet: Option<Second> = conflict.pet;
     /// speed change of the ego in a fully inelastic collision
     [Required] ego_delta_v: MetrePerSecond = conflict.ego_delta_v;
-    /// speed change of the foe in a fully inelastic collision
+    /// speed change of the foe
     [Optional] foe_delta_v: Option<MetrePerSecond> = Some(conflict.foe_delta_v);
     /// speed of the ego
     [Required] ego_speed: MetrePerSecond = conflict.ego_speed;
@@ -149,91 +149,88 @@ closecall::chosen_measures! { columns! |conflict, context|
     [Required] foe_speed: MetrePerSecond = conflict.foe_speed;
     /// between the headings at the conflict point, 0 to π
     [Required] angle: Radian = conflict.angle;
-    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    /// the ego's front bumper at the conflict point, or the front of the carriage that touches
     [Required] x: Metre = conflict.x;
-    /// the ego's front bumper at the conflict point; for an articulated vehicle, the front of the carriage that touches
+    /// as `x`
     [Required] y: Metre = conflict.y;
     /// the lane of the conflict point
     [Required] lane: OptionalText = context.lane(conflict).to_owned();
-    /// whether the rectangles overlapped by more than the contact tolerance, in any step or between two
+    /// whether the rectangles overlapped by more than the contact tolerance, also between steps
     [Required] collision: bool = conflict.collision;
     /// whether SUMO reported a collision of the two during the conflict; empty for a recording
     [Optional] collision_sumo: Option<bool> = conflict.collision_sumo;
     /// SUMO's type of the ego
     [Optional] ego_type: OptionalText = context.type_name(conflict.ego_profile);
-    /// SUMO's type of the foe; an obstacle's is `polygon:` and the polygon's type
+    /// SUMO's type of the foe; `polygon:` and its type for an obstacle
     [Optional] foe_type: OptionalText = context.type_name(conflict.foe_profile);
     /// the ego's front bumper
     [Snapshot] ego_x: Option<Metre> = Some(conflict.ego_snapshot.front.x);
-    /// the ego's front bumper
+    /// as `ego_x`
     [Snapshot] ego_y: Option<Metre> = Some(conflict.ego_snapshot.front.y);
-    /// from the ego's rear to its front bumper, counter-clockwise from +x
+    /// from rear to front bumper, counter-clockwise from +x
     [Snapshot] ego_heading: Option<Radian> = Some(conflict.ego_snapshot.heading);
     /// length of the ego
     [Snapshot] ego_length: Option<Metre> = Some(conflict.ego_snapshot.length);
     /// width of the ego
     [Snapshot] ego_width: Option<Metre> = Some(conflict.ego_snapshot.width);
-    /// where the ego's front bumper would go until it has braked to a stand, and ε further (the reserve that is searched
-    /// too), `x y x y …`, to the centimetre; empty for a road user that stands
+    /// where the ego's front bumper would go until it stands, and ε (the reserve) further: `x y x y …`, to the centimetre;
+    /// empty if it stands
     [Snapshot] ego_path: OptionalText = path(&conflict.ego_snapshot);
     /// the foe's front bumper; a corner of an obstacle
     [Snapshot] foe_x: Option<Metre> = Some(conflict.foe_snapshot.front.x);
-    /// the foe's front bumper; a corner of an obstacle
+    /// as `foe_x`
     [Snapshot] foe_y: Option<Metre> = Some(conflict.foe_snapshot.front.y);
-    /// from the foe's rear to its front bumper, counter-clockwise from +x
+    /// as `ego_heading`
     [Snapshot] foe_heading: Option<Radian> = Some(conflict.foe_snapshot.heading);
     /// length of the foe; 0 for an obstacle
     [Snapshot] foe_length: Option<Metre> = Some(conflict.foe_snapshot.length);
     /// width of the foe; 0 for an obstacle
     [Snapshot] foe_width: Option<Metre> = Some(conflict.foe_snapshot.width);
-    /// where the foe's front bumper would go, as in `ego_path`
+    /// as `ego_path`, of the foe
     [Snapshot] foe_path: OptionalText = path(&conflict.foe_snapshot);
-    /// time headway: the room to the foe's rear over the ego's speed; rear-end conflicts only
+    /// time headway: the room to the foe's rear over the ego's speed; rear-end only
     [Optional] headway: Option<Second> = headway(conflict.kind, conflict.gap, conflict.ego_speed);
-    /// deepest overlap of the two rectangles, in any step or between two: the shortest displacement that parts them; 0 if they
-    /// never overlapped
+    /// maximum overlap, also between steps: the shortest displacement that parts the rectangles; 0 if none
     [Optional] overlap: Option<Metre> = Some(conflict.overlap);
-    /// smallest of all steps of the longest response time t1 + t2 with which μ still fits into the gap: the time left if the
-    /// foe brakes fully now; 0 if even an immediate response is too late; empty if the ego stood
+    /// minimum remaining response time: the longest t1 + t2 with which μ fits into the gap, if the foe brakes fully now; 0 if
+    /// too late; empty if the ego stood
     [Optional] response_left: Option<Second> = conflict.values.response_left();
-    /// time to brake: smallest of all steps of the longest wait before full braking with which contact is avoided, if the foe
-    /// goes on as now; 0 if even braking at once is too late; empty if the two would not touch
+    /// time to brake: minimum of the longest wait before full braking that avoids contact, if the foe goes on as now; 0 if too
+    /// late; empty without contact
     [Optional] ttb: Option<Second> = conflict.values.ttb();
-    /// largest of all steps of the probability that the driver does not brake in time, if the foe goes on as now
+    /// maximum probability that the driver brakes too late, if the foe goes on as now
     [Optional] crash_probability: Option<Probability> = conflict.values.crash_probability();
     /// the same if the foe brakes fully now
     [Optional] crash_probability_braking: Option<Probability> = conflict.values.crash_probability_braking();
-    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of those on foot or two wheels at the impact
-    /// speed, `ego_delta_v` + `foe_delta_v`
+    /// probability of a fatal injury of the one worse off: of occupants at their ΔV, of others at `ego_delta_v` + `foe_delta_v`
     [Optional] injury_probability: Option<Probability> = Some(conflict.injury_probability);
-    /// extended ΔV: largest of all steps of the larger ΔV of both, if each brakes with 8 m/s² until they touch; empty if they
-    /// would not touch
+    /// extended ΔV: maximum of the larger ΔV, if each brakes with 8 m/s² until they touch; empty without contact
     [Optional] extended_delta_v: Option<MetrePerSecond> = conflict.values.extended_delta_v();
-    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`,
-    /// `left_turn_across`, `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`,
-    /// `person_along`, `person_standing`, `object` ([rules](causes.md)); empty where the lanes of the two are not known
+    /// what the two were doing: `following`, `cut_in`, `lane_change`, `side_by_side`, `merge`, `crossing`, `left_turn_across`,
+    /// `right_turn_across`, `turn_into`, `overtaking_oncoming`, `head_on`, `person_crossing`, `person_along`,
+    /// `person_standing`, `object` ([rules](causes.md)); empty if their lanes are unknown
     [Optional] manoeuvre: OptionalText = conflict.manoeuvre.map(Manoeuvre::name).unwrap_or_default().to_owned();
-    /// why it came about, the strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
+    /// why it came about, strongest evidence first, separated by spaces: `ran_red`, `late_amber`, `did_not_yield`,
     /// `changed_lane`, `overtook`, `outside_crossing`, `stood`, `behind_curve`, `leader_braked`, `too_close`, `too_fast`,
-    /// `appeared` ([rules](causes.md)); empty where none of them is known
+    /// `appeared` ([rules](causes.md)); empty if none is known
     [Optional] cause: OptionalText = conflict.causes.to_string();
-    /// why the one that changed lanes did so, as SUMO told when it did: `traci` (a script), `strategic`, `cooperative`,
-    /// `speed_gain`, `keep_right`, `sublane`; empty without the cause `changed_lane`, and where it is not known, as in a replay
+    /// SUMO's lane-change reason: `traci` (a script), `strategic`, `cooperative`, `speed_gain`, `keep_right`, `sublane`; empty
+    /// without the cause `changed_lane`, and if unknown, as in a replay
     [Optional] lane_change_reason: OptionalText =
         conflict.lane_change_reason.map(LaneChangeReason::name).unwrap_or_default().to_owned();
-    /// the lane of the ego's front bumper; the nearest where its way is not known
+    /// lane of the ego's front bumper; the nearest if its path is unknown
     [Optional] ego_lane: OptionalText = context.on_lane(conflict, 0).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
-    /// how far along that lane it is, in SUMO's metres of the lane
+    /// how far along that lane, in SUMO's metres
     [Optional] ego_lane_position: Option<Metre> = context.on_lane(conflict, 0).map(|(_, position)| position);
-    /// the lane of the foe's front bumper, or of an obstacle's corner
+    /// lane of the foe's front bumper, or of an obstacle's corner
     [Optional] foe_lane: OptionalText = context.on_lane(conflict, 1).map(|(lane, _)| lane.to_owned()).unwrap_or_default();
-    /// how far along that lane it is
+    /// how far along that lane
     [Optional] foe_lane_position: Option<Metre> = context.on_lane(conflict, 1).map(|(_, position)| position);
     /// the edge of `lane`
     [Optional] edge: OptionalText = edge_of(context.lane(conflict)).to_owned();
     /// the junction that `lane` is within; empty outside junctions
     [Optional] junction: OptionalText = junction_of(context.lane(conflict)).to_owned();
-    /// longitude of `x` and `y`, by the net's own projection, as SUMO converts it; empty for a net without one
+    /// longitude of `x` and `y` by the net's projection, as SUMO converts it; empty without one
     [Optional] lon: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[0]);
     /// latitude of `x` and `y`
     [Optional] lat: Option<Degree> = context.degrees(conflict).map(|degrees| degrees[1]);
