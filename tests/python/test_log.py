@@ -132,7 +132,7 @@ def beyond_its_thresholds(file: Path) -> dict[frozenset[str], set[str]]:
 
 
 CROSSING_OR_LEFT = {"10", "11", "17"}
-"""The device's types whose arrival times and conflict areas differ from closecall's: docs/statistics.md."""
+"""The device's types whose arrival times and conflict areas differ from closecall's: docs/statistics_how.md."""
 
 
 @pytest.mark.parametrize(("net", "end", "least"), [("left_turn", "120", 60), ("signals", "150", 80)])

@@ -1,4 +1,4 @@
-"""TTC, DRAC and PET against SUMO's device.ssm, step by step; docs/statistics.md explains each difference."""
+"""TTC, DRAC and PET against SUMO's device.ssm, step by step; docs/statistics_how.md explains each difference."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@
 //! *A default Bayesian procedure for the generalized Pareto distribution*), that of the number of excesses Λ^(−1/2). The
 //! interval covers like one of profile likelihood, and its median is less biased than the plug-in of maximum likelihood,
 //! which is low: P(excess > threshold) is 0 as soon as the fitted distribution ends before the threshold.
-//! docs/statistics.md has the coverage that `closecall study` measures.
+//! docs/statistics_how.md has the coverage that `closecall study` measures.
 //!
 //! In θ = ξ/σ and σ the posterior has a closed form over σ: with m excesses below the bound, A(θ) the sum of their
 //! ln(1 + θ y) and B(θ) that of all ln(1 + θ y) / θ it is

@@ -1,8 +1,8 @@
 //! Near-miss statistics of one or many runs: counts and rates, quantiles, hot spots, the worst conflicts, crash
 //! frequencies, and the comparison of two sets of runs.
 //!
-//! One pass over the logs fills a [`Collection`]; all statistics come from it. docs/statistics.md states each estimator
-//! and test with its source.
+//! One pass over the logs fills a [`Collection`]; all statistics come from it. docs/statistics_how.md states each
+//! estimator and test with its source.
 
 mod chosen;
 mod collect;

@@ -307,7 +307,8 @@ impl Column {
 
     /// The unit of its values; empty where they have none.
     pub fn unit(&self) -> &'static str {
-        match self.rust_type.trim_start_matches("Option<").trim_end_matches('>') {
+        let within = self.rust_type.trim_start_matches("Option").trim_matches(['<', '>', ' ']);
+        match within {
             "Second" => "s",
             "Metre" => "m",
             "MetrePerSecond" => "m/s",

@@ -1,4 +1,4 @@
-//! How often the intervals of docs/statistics.md hold the truth, and how often its tests are wrong, on known processes.
+//! How often the intervals of docs/statistics_how.md hold the truth, and its tests are wrong, on known processes.
 //!
 //! Conflicts come one by one (Poisson), or in clusters of a geometric size of three on average, so that the variance of
 //! a run's count is 2 · 3 − 1 = 5 times its mean. Values of a measure have tails of several shapes and are 0 at a crash.
