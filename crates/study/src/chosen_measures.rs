@@ -40,8 +40,8 @@ impl Method {
     /// Measures of a kind have a colour in common.
     fn name(self) -> &'static str {
         use ChosenMeasure::{
-            ALatReq, ALongReq, Act, Br, Btn, ConflictingSpeed, Cpi, CrashIndex, DeltaS, Dr, Ei, MaxD, MaxS, Mdrac,
-            Mttc, RssDistance, RssLateralDistance, RssViolation, Sgap, Stn, T2, Ta, TaLevel, Tadv, Tet, Thw, Tit,
+            Br, ConflictingSpeed, Cpi, CrashIndex, DeltaS, Dr, MaxD, MaxS, Mdrac, Mttc, RssDistance, RssLateralDistance,
+            RssViolation, Sgap, T2, Ta, TaLevel, Tadv, Tet, Thw, Tit,
         };
         match self {
             Self::Nothing => "none added (its TTC)",
@@ -51,7 +51,7 @@ impl Method {
             Self::One(Thw | Sgap | MaxS | DeltaS | Ta | ConflictingSpeed | TaLevel) => "gaps and speeds",
             Self::One(Br | Mdrac | Mttc | CrashIndex | Dr | MaxD) => "accelerations",
             Self::One(Tet | Tit | Cpi) => "exposure, potential",
-            Self::One(ALongReq | ALatReq | Btn | Stn | Act | Ei) => "threat, emergency",
+            Self::One(_) => "threat, emergency",
         }
     }
 
