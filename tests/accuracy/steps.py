@@ -1,4 +1,4 @@
-"""How far SUMO's step length decides what is found, with and without `--align`: the tables of docs/step_length.md.
+"""How far SUMO's step length decides what is found, with and without `--align`: the tables in README.md beside it.
 
 python tests/accuracy/steps.py FOLDER [SCENARIO ...] [--seeds 1-5]
 
