@@ -173,6 +173,7 @@ def of_step(row: Row, size: Row, run: Run) -> dict[str, float | None]:
         "max_s": max(own, other),
         "delta_s": float(np.hypot(*(velocity(row, "ego") - velocity(row, "foe")))) if row["ttc"] else None,
         "max_d": a,
+        "max_braking": max((braking for braking in (-a, -b) if braking >= 1.3), default=None),
         "act": act(row, size),
         "ei": ei(row, size),
         "mttc": mttc(gap, (own, leader), (a, leader_a)) if follows else None,
@@ -187,7 +188,7 @@ def of_step(row: Row, size: Row, run: Run) -> dict[str, float | None]:
     return found
 
 
-EDGES: dict[str, tuple[float, float]] = {"mttc": (9.9, 10.1), "act": (1e3, math.inf), "br": (0, 1e-4), "ei": (0, 1e-3)}
+EDGES: dict[str, tuple[float, float]] = {"mttc": (9.9, 10.1), "act": (1e3, math.inf), "br": (0, 1e-4), "max_braking": (1.2999, 1.3001), "ei": (0, 1e-3)}
 """Values that rounding may leave empty on one side."""
 
 
@@ -212,12 +213,12 @@ def test_the_measures_of_a_step_are_what_its_formulas_give(net: str, measured: C
                 assert is_near(found, expected, measure), (measure, found, expected, row)
                 compared[measure] += found is not None
     needed = {"act", "delta_s", "ei", "max_d", "max_s", "rss_distance"}
-    needed |= {"a_long_req", "br", "btn", "crash_index", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
+    needed |= {"a_long_req", "br", "btn", "crash_index", "max_braking", "mdrac", "mttc", "sgap", "thw"} if net == "reckless" else set()
     assert all(compared[measure] >= 10 for measure in needed), compared
 
 
 LEAST = ("tadv", "t2", "thw", "sgap", "mttc", "max_d", "act")
-MOST = ("br", "mdrac", "crash_index", "a_long_req", "a_lat_req", "btn", "stn", "max_s", "ei")
+MOST = ("br", "mdrac", "crash_index", "a_long_req", "a_lat_req", "btn", "stn", "max_s", "ei", "max_braking")
 
 
 def test_a_conflict_has_the_extremes_and_integrals_of_its_steps(measured: Callable[[str], Run]) -> None:

@@ -1,5 +1,6 @@
 //! Time to accident (TA), conflicting speed and severity level of the Swedish traffic conflict technique (Hydén 1987; Svensson
-//! 1998): the time left until contact, and the speed of the road user that evades, when its evasive action begins.
+//! 1998): the time left until contact, and the speed of the road user that evades, when its evasive action begins. Also how
+//! hard it really brakes, which needs no prediction.
 //!
 //! The levels are lines in the diagram of TA and conflicting speed V (in m/s), each half a second apart; from level 26 on a
 //! conflict is serious. The border of level 26 and the distance between the lines are second-hand: neither could be checked in
@@ -33,6 +34,13 @@ pub fn conflicting_speed(
     evading.map(|(speed, acceleration)| speed - acceleration * step).reduce(f64::max)
 }
 
+/// The deceleration of the vehicle that brakes harder, as far as braking counts as an evasive action; none if neither brakes so
+/// hard. `vehicles` are the accelerations of those of the pair that are vehicles: a person stops at once, which is no sign of
+/// danger.
+pub fn evasive_braking(vehicles: impl Iterator<Item = MetrePerSecondSquared>) -> Option<MetrePerSecondSquared> {
+    vehicles.map(|acceleration| -acceleration).filter(|braking| *braking >= BRAKES).reduce(f64::max)
+}
+
 /// The severity level of a TA and a conflicting speed.
 pub fn level(ta: Second, speed: MetrePerSecond) -> Ratio {
     let border = 1.5 * speed / (16.7 * (-0.0306 * speed / 2.0).exp());
@@ -48,6 +56,13 @@ mod tests {
         let speed = 50.0 / 3.6;
         assert_eq!([1.544, 1.542, 1.0, 0.0].map(|ta| level(ta, speed)), [25.0, 26.0, 27.0, 29.0]);
         assert_eq!([level(20.0, speed), level(0.0, 60.0)], [1.0, 30.0]);
+    }
+
+    #[test]
+    fn the_harder_braking_counts_if_it_evades() {
+        let braking = |accelerations: [f64; 2]| evasive_braking(accelerations.into_iter());
+        assert_eq!([[-2.0, -6.0], [1.0, -1.3]].map(braking), [Some(6.0), Some(1.3)]);
+        assert_eq!(braking([-1.2, 0.0]), None);
     }
 
     #[test]
