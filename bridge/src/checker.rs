@@ -81,6 +81,7 @@ impl Checker {
             (None, None) => None,
         };
         let mut run = Run::new(&options, net).map_err(exception)?;
+        run.keep_probabilities();
         run.keep_closed_conflicts(keep.unwrap_or(if out.is_some() { KEPT } else { usize::MAX }));
         let feed = match source {
             Some(source) => {

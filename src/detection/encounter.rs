@@ -5,7 +5,7 @@ use super::measures::table::LoggedValues;
 use super::severity::Assessment;
 use crate::traffic::net::LaneIndex;
 use crate::traffic::roster::UserIndex;
-use crate::util::units::{Metre, Radian, Second};
+use crate::util::units::{Metre, Probability, Radian, Second};
 
 /// A pair with a conflict point, in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,12 +57,31 @@ pub struct Encounter {
 pub struct Nearness {
     /// Smallest distance between the two rectangles now.
     pub clearance: Metre,
-    /// The measures that every log has.
+    /// The measures that every log has. A crash probability that was not worked out is missing:
+    /// [`Detector::crash_probability`](super::detector::Detector::crash_probability) does.
     pub values: LoggedValues,
+    /// Upper bounds of the crash probabilities: if the foe goes on as now, and if it brakes fully.
+    pub crash_at_most: [Probability; 2],
+    /// How they are worked out.
+    pub(crate) chances: ChancesIndex,
     /// Whether neither the limit of the DRAC nor the ego's brakes avoid contact.
     pub unavoidable: bool,
     /// How severe it is by the values above, and by how the two brake.
     pub assessment: Assessment,
+}
+
+/// Which of a step's chances are those of a pair: those of a thread, and the place among them. Where they are says nothing about
+/// the pair.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ChancesIndex {
+    pub worker: u32,
+    pub place: u32,
+}
+
+impl PartialEq for ChancesIndex {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
 }
 
 impl Encounter {

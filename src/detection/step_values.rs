@@ -1,27 +1,30 @@
 //! The values of a pair in a step that a condition compares.
 
-use super::encounter::Encounter;
+use super::encounter::{Encounter, Nearness};
 use super::measures;
 use super::measures::headway::headway;
 use super::measures::injury::{Body, injury_probability};
+use super::measures::table::LoggedMeasure;
 use crate::options::condition::Measure;
 use crate::traffic::profile::Profile;
-use crate::util::units::MetrePerSecond;
+use crate::util::units::{MetrePerSecond, Probability};
 
 /// A pair in a step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy)]
 pub(super) struct StepValues<'a> {
     pub found: &'a Encounter,
     /// The ego's and the foe's.
     pub speeds: [MetrePerSecond; 2],
     /// The ego's and the foe's.
     pub types: [&'a Profile; 2],
+    /// Works out a crash probability.
+    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Probability,
 }
 
 impl StepValues<'_> {
     /// The value of a measure, if the pair has it in this step.
     pub fn of(&self, measure: Measure) -> Option<f64> {
-        let &Self { found, speeds: [ego_speed, foe_speed], types: [ego, foe] } = self;
+        let &Self { found, speeds: [ego_speed, foe_speed], types: [ego, foe], crash_probability } = self;
         let delta_v = || measures::delta_v((ego_speed, ego.mass), (foe_speed, foe.mass), found.angle);
         match measure {
             Measure::Gap => Some(found.gap),
@@ -40,8 +43,10 @@ impl StepValues<'_> {
             Measure::FoeDeltaV => Some(delta_v()[1]),
             Measure::ResponseLeft => found.nearness?.values.response_left(),
             Measure::Ttb => found.nearness?.values.ttb(),
-            Measure::CrashProbability => found.nearness?.values.crash_probability(),
-            Measure::CrashProbabilityBraking => found.nearness?.values.crash_probability_braking(),
+            Measure::CrashProbability => Some(crash_probability(&found.nearness?, LoggedMeasure::CrashProbability)),
+            Measure::CrashProbabilityBraking => {
+                Some(crash_probability(&found.nearness?, LoggedMeasure::CrashProbabilityBraking))
+            }
             Measure::InjuryProbability => {
                 let [of_ego, of_foe] = delta_v();
                 Some(injury_probability(found.kind, Body::of(ego, of_ego), Body::of(foe, of_foe)))

@@ -35,6 +35,7 @@ pub struct Alarm {
     pub time: Second,
     /// The margin in that step, in m.
     pub margin: Metre,
-    /// The measures of that step.
+    /// The measures of that step; with the crash probability if [`Tracker::keep_probabilities`](super::Tracker::keep_probabilities)
+    /// was called.
     pub nearness: Option<Nearness>,
 }

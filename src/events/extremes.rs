@@ -9,7 +9,7 @@ use super::snapshot::Snapshot;
 use super::struck::Struck;
 use super::substep::Closest;
 use super::why::{Artefact, Manoeuvre, Pair, STANDS, Surroundings, Why, one_will_wait};
-use crate::detection::encounter::Encounter;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::{Kind, Severity};
 use crate::detection::measures::pet::Pet;
 use crate::detection::measures::table::LoggedMeasure::{
@@ -144,8 +144,28 @@ impl Observation<'_> {
         self.found.nearness.map_or(f64::INFINITY, |near| near.clearance)
     }
 
-    fn values(&self) -> LoggedValues {
-        self.found.nearness.map_or(LoggedValues::NONE, |near| near.values)
+    /// The values of this step. A crash probability that cannot be beyond one that is known already is not worked out.
+    fn values(&self, known: &LoggedValues) -> LoggedValues {
+        let Some(near) = &self.found.nearness else { return LoggedValues::NONE };
+        let known = [known.crash_probability(), known.crash_probability_braking()];
+        let mut values = near.values;
+        for (which, measure) in [CrashProbability, CrashProbabilityBraking].into_iter().enumerate() {
+            if known[which].is_none_or(|known| near.crash_at_most[which] > known) {
+                values = values.with(measure, Some((self.around.crash_probability)(near, measure)));
+            }
+        }
+        values
+    }
+
+    /// The measures of this step with its crash probability.
+    pub fn nearness_with_probability(&self) -> Option<Nearness> {
+        let near = self.found.nearness?;
+        let value = Some((self.around.crash_probability)(&near, CrashProbability));
+        Some(Nearness { values: near.values.with(CrashProbability, value), ..near })
+    }
+
+    fn ttc(&self) -> Option<Second> {
+        self.found.nearness?.values.ttc()
     }
 
     fn is_unavoidable(&self) -> bool {
@@ -153,7 +173,7 @@ impl Observation<'_> {
     }
 
     fn chosen_step(&self) -> Option<Step<'_>> {
-        self.chosen.map(|values| Step { values, ttc: self.values().ttc(), lasted: self.lasted })
+        self.chosen.map(|values| Step { values, ttc: self.ttc(), lasted: self.lasted })
     }
 
     fn pair(&self) -> Pair<'_> {
@@ -191,7 +211,7 @@ impl WorstStep {
 impl Extremes {
     /// Those of a first step, with the paths of both or without.
     pub fn of(seen: &Observation, has_paths: bool) -> Self {
-        let (values, moment) = (seen.values(), |_| seen.moment());
+        let (values, moment) = (seen.values(&LoggedValues::NONE), |_| seen.moment());
         let pair = seen.pair();
         let assessed = seen.assessment(&pair);
         let artefact = Artefact::of(&pair);
@@ -249,7 +269,7 @@ impl Extremes {
         self.collision |= seen.found.collision;
         self.overlap = self.overlap.max(seen.found.overlap);
         self.unavoidable |= seen.is_unavoidable();
-        for (found, taken) in self.found.iter_mut().zip(self.values.take_all(&seen.values())) {
+        for (found, taken) in self.found.iter_mut().zip(self.values.take_all(&seen.values(&self.values))) {
             if taken {
                 *found = Some(seen.moment());
             }

@@ -43,7 +43,7 @@ impl Tracker {
     pub fn new(options: &Options, keeps_steps: bool) -> Self {
         Self {
             pets: Pets { widest: options.kind_bounds().rear_end_below, longest: options.log.longest_pet() },
-            keeps: Keeps { met: options.log.needs_pet(), steps: keeps_steps },
+            keeps: Keeps { met: options.log.needs_pet(), steps: keeps_steps, probability: false },
             rules: Rules {
                 contact_tolerance: options.contact_tolerance,
                 severity: options.severity_thresholds(),
@@ -94,6 +94,11 @@ impl Tracker {
         }
         self.past.add(frame, roster.len());
         &self.closed
+    }
+
+    /// Works out the crash probability of each step of a conflict, because alarms are asked for it.
+    pub fn keep_probabilities(&mut self) {
+        self.keeps.probability = true;
     }
 
     /// The vehicles in conflict that stood in the last step. The next one is to tell which of them stop there: SUMO says so of
@@ -255,6 +260,7 @@ mod tests {
             path: &|_| Vec::new(),
             course: &|_, _| Default::default(),
             chosen: &|_| None,
+            crash_probability: &|near, _| near.crash_at_most[0],
             tadv: &|_| None,
         }
     }

@@ -101,6 +101,8 @@ pub(super) struct Keeps {
     pub met: bool,
     /// Each step.
     pub steps: bool,
+    /// The crash probability of the last step, for alarms.
+    pub probability: bool,
 }
 
 impl Event {
@@ -127,6 +129,7 @@ impl Event {
         if seen.found.is_logged() {
             let (severity, time, at) = (self.followed.extremes.last.severity, seen.frame.time, Point::new(x, y));
             let (_, artefact) = self.followed.extremes.verdict();
+            let nearness = if keeps.probability { seen.nearness_with_probability() } else { nearness };
             self.alarm = Some(Alarm { ego, foe, severity, artefact, kind, at, time, margin, nearness });
         }
         if let Some(met) = &mut self.met {

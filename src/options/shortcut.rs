@@ -16,4 +16,7 @@ pub enum Shortcut {
     /// A road user that is still on its known path is not asked for its lane.
     #[cfg_attr(feature = "clap", value(alias = "known_paths"))]
     KnownPaths,
+    /// A crash probability is not worked out where an upper bound shows that it decides nothing.
+    #[cfg_attr(feature = "clap", value(alias = "known_chances"))]
+    KnownChances,
 }

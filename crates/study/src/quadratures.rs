@@ -50,7 +50,7 @@ impl Approach {
 
     /// The longest wait of a driver that brakes with this.
     fn wait(&self, deceleration: MetrePerSecondSquared) -> Second {
-        let evasion = if self.limits.is_empty() { Evasion::Behind(self.leader) } else { Evasion::At(&self.limits) };
+        let evasion = if self.limits.is_empty() { Evasion::Behind(self.leader) } else { Evasion::At(&self.limits[..]) };
         evasion.longest_wait(&LateBraking { deceleration, ..self.braking })
     }
 }

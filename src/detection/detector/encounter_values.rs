@@ -1,32 +1,35 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the measures of a pair in
 //! conflict.
 
+use super::chances::{Chance, Chances};
 use super::cover;
 use super::occupancy::Carriages;
 use super::overlap::shrinks;
 use super::reach::User;
 use super::step::StepInputs;
-use super::timely::{of_collision, of_course, with_evasion};
+use super::timely::Timely;
 use super::worker::{Findings, Met, Scratch, Worker};
 use crate::braking::{self, LateBraking, Leader, MuModel, rss};
-use crate::detection::encounter::{Encounter, Nearness};
+use crate::detection::encounter::{ChancesIndex, Encounter, Nearness};
 use crate::detection::kind::Kind;
 use crate::detection::measures;
 use crate::detection::measures::accident::BRAKES;
-use crate::detection::measures::crash_probability::crash_probability;
 use crate::detection::measures::drac;
 use crate::detection::measures::injury::{Body, injury_probability};
-use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
+use crate::detection::measures::table::LoggedMeasure;
 use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::detection::path::Pose;
-use crate::detection::severity::{Assessment, SeverityInputs};
+use crate::detection::severity::{Assessment, LIKELY, SeverityInputs};
 use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::traffic::profile::Category;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
+
+/// The measures of the two chances of a pair.
+const CHANCES: [LoggedMeasure; 2] = [LoggedMeasure::CrashProbability, LoggedMeasure::CrashProbabilityBraking];
 
 impl StepInputs<'_> {
     /// How far ahead a road user's path has to be known to measure a pair that it is in.
@@ -36,14 +39,14 @@ impl StepInputs<'_> {
 
     /// Measures the pairs that a worker could not measure at once.
     pub(super) fn measure_all(&self, worker: &mut Worker) {
-        let Findings { encounters, unmeasured, scratch, .. } = &mut worker.found;
+        let Findings { encounters, unmeasured, scratch, chances, .. } = &mut worker.found;
         for (index, met) in unmeasured {
-            self.as_met(met.further).measure(scratch, met, &mut encounters[*index as usize]);
+            self.as_met(met.further).measure(scratch, chances, met, &mut encounters[*index as usize]);
         }
     }
 
     /// Completes the encounter of a pair that would meet: the ego and its foe.
-    pub(super) fn measure(&self, scratch: &mut Scratch, met: &Met, encounter: &mut Encounter) {
+    pub(super) fn measure(&self, scratch: &mut Scratch, chances: &mut Chances, met: &Met, encounter: &mut Encounter) {
         let pair = met.slots.map(|slot| {
             let carriages = self.movers(slot).into_iter();
             carriages.map(|carriage| carriage.shrunk(met.shrinks)).collect::<Carriages>()
@@ -57,8 +60,8 @@ impl StepInputs<'_> {
             }
         }
         if self.measures(encounter) {
-            encounter.nearness = Some(self.nearness(scratch, &pair, met, encounter));
-            encounter.pet_below = self.pet_below(met.slots, encounter);
+            encounter.nearness = Some(self.nearness(scratch, chances, &pair, met, encounter));
+            encounter.pet_below = self.pet_below(chances, met.slots, encounter);
         }
     }
 
@@ -68,7 +71,7 @@ impl StepInputs<'_> {
     }
 
     /// The PET that its event has to be below so that the step is logged. A collision always is.
-    fn pet_below(&self, slots: [u32; 2], encounter: &Encounter) -> Second {
+    fn pet_below(&self, chances: &Chances, slots: [u32; 2], encounter: &Encounter) -> Second {
         if encounter.collision || (self.options.log.is_default() && encounter.in_conflict()) {
             return Second::INFINITY;
         }
@@ -77,6 +80,7 @@ impl StepInputs<'_> {
             found: encounter,
             speeds: users.map(|user| self.state(user).speed),
             types: users.map(|user| self.profile(user)),
+            crash_probability: &|nearness, measure| chances.of(nearness, measure, self.roster),
         };
         let may_have_pet = encounter.may_cross() && !self.is_obstacle(slots[1]);
         self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
@@ -136,7 +140,14 @@ impl StepInputs<'_> {
         left.fold(meeting.foe_distance, f64::max)
     }
 
-    fn nearness(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> Nearness {
+    fn nearness(
+        &self,
+        scratch: &mut Scratch,
+        chances: &mut Chances,
+        pair: &[Carriages; 2],
+        met: &Met,
+        encounter: &Encounter,
+    ) -> Nearness {
         let clearance = |[ego, foe]: [&Participant; 2]| match foe.shape {
             [] => contact::room(&ego.rectangle, &foe.rectangle),
             shape => polygon::distance(shape, &ego.rectangle),
@@ -146,8 +157,26 @@ impl StepInputs<'_> {
         } else {
             pairs(pair).map(clearance).fold(f64::INFINITY, f64::min)
         };
-        let timely = if encounter.collision { of_collision() } else { self.timely(scratch, pair, met, encounter) };
-        let (ttc, drac) = (timely.ttc(), timely.drac());
+        let timely = if encounter.collision {
+            Timely::of_collision()
+        } else {
+            self.timely(scratch, chances, pair, met, encounter)
+        };
+        let each = [timely.chance, self.chance_braking([&pair[0][0], &pair[1][0]], met, encounter)];
+        let (mut values, mut crash_at_most) = (timely.values, [0.0; 2]);
+        for ((measure, chance), at_most) in CHANCES.into_iter().zip(&each).zip(&mut crash_at_most) {
+            *at_most = if self.shortcuts.known_chances { chances.at_most(chance, self.roster) } else { 1.0 };
+            let decides = *at_most >= self.options.severity_thresholds().least_probability(LIKELY);
+            let value = match chance {
+                Chance::Known(known) => Some(*known),
+                _ if *at_most == 0.0 => Some(0.0),
+                _ if decides => Some(chances.value(chance, self.roster)),
+                _ => None,
+            };
+            values = values.with(measure, value);
+            *at_most = value.unwrap_or(*at_most);
+        }
+        let (ttc, drac) = (values.ttc(), values.drac());
         let [ego, foe] = [&pair[0][0], &pair[1][0]];
         let (ego_deceleration, collision) = (ego.brakes.deceleration, encounter.collision);
         let unavoidable = drac.is_some_and(|drac| drac > ego_deceleration.max(drac::LIMIT));
@@ -159,8 +188,9 @@ impl StepInputs<'_> {
             ttc,
             drac,
             ego_deceleration,
-            ttb: timely.ttb(),
-            crash_probability: timely.crash_probability().unwrap_or(0.0),
+            ttb: values.ttb(),
+            // Where it is not worked out, its bound decides the same.
+            crash_probability: crash_at_most[0],
             braking: self.evasive_braking(users, encounter.kind),
             delta_v: of_ego.max(of_foe),
             injury_probability: injury_probability(
@@ -172,17 +202,15 @@ impl StepInputs<'_> {
         };
         let extended_delta_v =
             ttc.map(|left| measures::extended_delta_v(movements[0], movements[1], encounter.angle, left));
-        let values = timely
+        let values = values
             .with(LoggedMeasure::Drac, drac.map(|drac| drac.min(drac::LIMIT)))
             .with(LoggedMeasure::ResponseLeft, self.response_left([ego, foe], met, encounter))
-            .with(
-                LoggedMeasure::CrashProbabilityBraking,
-                Some(self.crash_probability_braking([ego, foe], met, encounter)),
-            )
             .with(LoggedMeasure::ExtendedDeltaV, extended_delta_v);
         Nearness {
             clearance,
             values,
+            crash_at_most,
+            chances: ChancesIndex { worker: chances.worker, place: chances.add(each) },
             unavoidable,
             assessment: Assessment::of(&inputs, self.options.severity_thresholds()),
         }
@@ -214,22 +242,21 @@ impl StepInputs<'_> {
         Some(left).filter(|left| left.is_finite())
     }
 
-    /// The probability that the ego's driver does not brake in time for contact, if the foe brakes fully now. As in μ and
+    /// The chance that the ego's driver does not brake in time for contact, if the foe brakes fully now. As in μ and
     /// [`Self::response_left`], the ego keeps its speed until its driver responds, and a foe for σ ≤ 0 responds as always.
-    fn crash_probability_braking(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> f64 {
+    fn chance_braking(&self, [ego, foe]: [&Participant; 2], met: &Met, encounter: &Encounter) -> Chance {
         if encounter.collision {
-            return 1.0;
+            return Chance::Known(1.0);
         }
         if self.stops_before(met) {
-            return 0.0;
+            return Chance::Known(0.0);
         }
         let leader = braking::leader(foe.braking(), met.sigma, encounter.gap);
         let braking = self.late_braking(met.slots[0], ego);
         let has_responded = braking.present >= BRAKES;
         let braking = LateBraking { present: if has_responded { braking.present } else { 0.0 }, ..braking };
-        let driver = &self.profile(self.user(met.slots[0])).driver;
-        let wait = |deceleration| driver.braking_with(deceleration, &braking).longest_wait_behind(&leader);
-        crash_probability(driver, has_responded, wait)
+        let driver = self.user(met.slots[0]).profile;
+        Chance::Of { driver, braking, evasion: Evasion::Behind(leader), has_responded }
     }
 
     /// How a road user brakes if it goes on as now for a while.
@@ -239,23 +266,31 @@ impl StepInputs<'_> {
     }
 
     /// The measures that follow from the courses of both; of several carriages, those of the two that are worst.
-    fn timely(&self, scratch: &mut Scratch, pair: &[Carriages; 2], met: &Met, encounter: &Encounter) -> LoggedValues {
-        let each = pairs(pair).map(|pair| self.timely_of(scratch, pair, met, encounter));
-        let worse = |mut one: LoggedValues, other: LoggedValues| {
-            one.take_all(&other);
-            one
-        };
-        each.reduce(worse).unwrap_or(LoggedValues::NONE)
+    fn timely(
+        &self,
+        scratch: &mut Scratch,
+        chances: &mut Chances,
+        pair: &[Carriages; 2],
+        met: &Met,
+        encounter: &Encounter,
+    ) -> Timely {
+        let mut worst: Option<Timely> = None;
+        for pair in pairs(pair) {
+            let found = self.timely_of(scratch, chances, pair, met, encounter);
+            worst = Some(worst.map_or(found, |worst| worst.worse(&found, chances, self.roster)));
+        }
+        worst.unwrap_or(Timely::APART)
     }
 
     /// The same for a carriage of each of the two.
     fn timely_of(
         &self,
         scratch: &mut Scratch,
+        chances: &mut Chances,
         pair: [&Participant; 2],
         met: &Met,
         encounter: &Encounter,
-    ) -> LoggedValues {
+    ) -> Timely {
         let users = met.slots.map(|slot| self.user(slot));
         for ((user, of), poses) in users.into_iter().zip(pair).zip(scratch.courses.iter_mut()) {
             poses.clear();
@@ -276,21 +311,21 @@ impl StepInputs<'_> {
             (full, [0, 1].map(|one| steady(&smaller[one], &smaller_courses[one], slow_down[one])))
         };
         let ([ego, foe], [smaller_ego, smaller_foe]) = along([0.0; 2]);
-        let driver = |slot| &self.profile(self.user(slot)).driver;
+        let driver = |slot| self.user(slot).profile;
         let braking = self.late_braking(met.slots[0], pair[0]);
         if self.is_obstacle(met.slots[1]) {
             let mut time_to = |ego| ttc::time_to_fixed(halves, ego, self.roster.shape(encounter.foe));
-            let Some(time) = time_to(&smaller_ego).and_then(|_| time_to(&ego)) else { return LoggedValues::NONE };
+            let Some(time) = time_to(&smaller_ego).and_then(|_| time_to(&ego)) else { return Timely::APART };
             let evasion = Evasion::Behind(Leader { room: ego.speed * time, speed: 0.0, deceleration: 0.0 });
             let drac = Some(ego.speed / (2.0 * time)).filter(|drac| *drac > 0.0);
-            return with_evasion(of_course(Some(time), drac), &evasion, &braking, driver(met.slots[0]));
+            return Timely::of_course(Some(time), drac).with(&evasion, braking, driver(met.slots[0]), chances);
         }
         // The smaller two may touch too late to be found.
         let touch_at_last = || contact::touches(&ego.at(ttc::HORIZON), &foe.at(ttc::HORIZON));
         let ttc = ttc::time_to_collision(&ego, &foe)
             .filter(|_| ttc::time_to_collision(&smaller_ego, &smaller_foe).is_some() || touch_at_last());
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
-        let timely = of_course(ttc, drac);
+        let timely = Timely::of_course(ttc, drac);
         // Both go on as now.
         let ([ego, foe], [smaller_ego, smaller_foe]) = along(users.map(|user| self.deceleration(user)));
         let meets = ttc::time_to_collision(&smaller_ego, &smaller_foe).and_then(|_| ttc::time_to_collision(&ego, &foe));
@@ -301,14 +336,14 @@ impl StepInputs<'_> {
             let or_at = if let Some(Evasion::At(limits)) = alone { Some(limits) } else { None };
             let (share, room) = (-met.sigma.min(0.0), encounter.gap);
             let evasion = Evasion::Towards { foe: foe_braking, share, room, or_at };
-            return with_evasion(timely, &evasion, &braking, driver(met.slots[0]));
+            return timely.with(&evasion, braking, driver(met.slots[0]), chances);
         }
         if let Some(evasion) = alone {
-            return with_evasion(timely, &evasion, &braking, driver(met.slots[0]));
+            return timely.with(&evasion, braking, driver(met.slots[0]), chances);
         }
         // The foe comes to where the ego is now: only the foe can avoid contact.
         let of_foe = ttb::to_stay_behind(halves, limits, [&foe, &ego], &foe_braking, meets);
-        with_evasion(timely, &of_foe.unwrap_or(Evasion::None), &foe_braking, driver(met.slots[1]))
+        timely.with(&of_foe.unwrap_or(Evasion::None), foe_braking, driver(met.slots[1]), chances)
     }
 }
 

@@ -131,12 +131,12 @@ impl StepInputs<'_> {
             pet_below: f64::NEG_INFINITY,
         };
         found.encounters.push(encounter);
-        let Findings { encounters, unmeasured, scratch, .. } = found;
+        let Findings { encounters, unmeasured, scratch, chances, .. } = found;
         let (number, Some(encounter)) = (encounters.len() as u32 - 1, encounters.last_mut()) else { return };
         if leaves || self.measures(encounter) {
             let met = Met { slots: roles.slots, meeting: *meeting, sigma, leaves, shrinks, further: self.is_further() };
             if [ego, foe].into_iter().all(|user| self.reaches(user, self.distance_to_measure(user, meeting))) {
-                self.measure(scratch, &met, encounter);
+                self.measure(scratch, chances, &met, encounter);
                 if self.conflicts_only && !encounter.may_be_logged() {
                     encounters.pop();
                 }

@@ -6,6 +6,7 @@
 //! the same for any number of threads.
 
 mod candidates;
+mod chances;
 mod chosen_values;
 mod course_ahead;
 mod cover;
@@ -174,6 +175,9 @@ impl Detector {
         self.team = Team::new(threads);
         self.pairs.resize_with(self.team.threads(), Vec::new);
         self.workers.resize_with(self.team.threads(), Worker::default);
+        for (number, worker) in (0..).zip(&mut self.workers) {
+            worker.found.chances.worker = number;
+        }
     }
 
     /// Sets whether routes stay the same while a road user is in the scene. A path then holds until the road user leaves

@@ -14,6 +14,8 @@ pub struct Shortcuts {
     pub in_line: bool,
     /// [`Shortcut::KnownPaths`].
     pub known_paths: bool,
+    /// [`Shortcut::KnownChances`].
+    pub known_chances: bool,
 }
 
 impl Shortcuts {
@@ -25,6 +27,7 @@ impl Shortcuts {
             paths_apart: shortcuts(Shortcut::PathsApart),
             in_line: shortcuts(Shortcut::InLine),
             known_paths: shortcuts(Shortcut::KnownPaths),
+            known_chances: shortcuts(Shortcut::KnownChances),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One thread's memory for its part of a step, and what it finds.
 
+use super::chances::Chances;
 use super::occupancy::{MOST_POSES, OccupancyCache};
 use super::work_counts::Work;
 use crate::detection::encounter::Encounter;
@@ -30,6 +31,8 @@ pub(super) struct Findings {
     pub meets: bool,
     /// Which of them are not measured yet.
     pub unmeasured: Vec<(u32, Met)>,
+    /// What the crash probabilities of those that are measured follow from.
+    pub chances: Chances,
     pub scratch: Scratch,
 }
 
@@ -76,5 +79,6 @@ impl Findings {
     pub fn clear(&mut self) {
         self.encounters.clear();
         self.unmeasured.clear();
+        self.chances.clear();
     }
 }

@@ -12,13 +12,14 @@ use crate::braking::{LateBraking, Leader};
 use crate::geometry::bisection::Bisection;
 use crate::util::units::{Metre, Second};
 
-/// What one road user can do to avoid contact with another, if it brakes in time.
+/// What one road user can do to avoid contact with another, if it brakes in time. `Limits` is a slice of times and distances, or
+/// tells where one is.
 #[derive(Clone, Copy, Debug)]
-pub enum Evasion<'a> {
+pub enum Evasion<Limits> {
     /// Stay behind a leader in line.
     Behind(Leader),
     /// Be no further than each of these distances at each of these times; the first decides if the ego brakes fully.
-    At(&'a [(Second, Metre)]),
+    At(Limits),
     /// Stop before an oncoming foe, which brakes after the same wait.
     Towards {
         /// How the foe brakes.
@@ -28,13 +29,27 @@ pub enum Evasion<'a> {
         /// The room between both.
         room: Metre,
         /// The same as for [`Evasion::At`], if waiting until the foe has left is possible, too.
-        or_at: Option<&'a [(Second, Metre)]>,
+        or_at: Option<Limits>,
     },
     /// Nothing.
     None,
 }
 
-impl Evasion<'_> {
+impl<Limits: Copy> Evasion<Limits> {
+    /// The same with other limits.
+    pub(crate) fn map<Other>(&self, mut limits: impl FnMut(Limits) -> Other) -> Evasion<Other> {
+        match *self {
+            Self::Behind(leader) => Evasion::Behind(leader),
+            Self::At(own) => Evasion::At(limits(own)),
+            Self::Towards { foe, share, room, or_at } => {
+                Evasion::Towards { foe, share, room, or_at: or_at.map(limits) }
+            }
+            Self::None => Evasion::None,
+        }
+    }
+}
+
+impl Evasion<&[(Second, Metre)]> {
     /// The longest wait before it brakes like this, in s. Infinite if it need not brake harder than now; below 0 if even
     /// braking at once is too late.
     pub fn longest_wait(&self, braking: &LateBraking) -> Second {
@@ -59,7 +74,7 @@ pub(crate) fn to_stay_behind<'a>(
     [ego, foe]: [&SteadyMotion; 2],
     braking: &LateBraking,
     meets: Second,
-) -> Option<Evasion<'a>> {
+) -> Option<Evasion<&'a [(Second, Metre)]>> {
     limits.clear();
     let ahead = 2.0 * meets;
     let straight = (ego.straight_for(ego.travel(ahead)), foe.straight_for(foe.travel(ahead)));
@@ -212,7 +227,7 @@ mod tests {
             keep_binding(&mut limits);
             assert!(limits.len() < all.len());
             // How much too late it is already may differ.
-            let [kept, all] = [&limits, &all].map(|limits| Evasion::At(limits).longest_wait(&braking).max(0.0));
+            let [kept, all] = [&limits, &all].map(|limits| Evasion::At(&limits[..]).longest_wait(&braking).max(0.0));
             assert!(kept == all || (kept - all).abs() < 1e-12 * kept, "{kept}, not {all}");
         }
     }

@@ -1,8 +1,9 @@
 //! What is known of a pair in a step: where both come from and go to, and where their ways meet.
 
 use crate::detection::course::Course;
-use crate::detection::encounter::Encounter;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::kind::Kind;
+use crate::detection::measures::table::LoggedMeasure;
 use crate::events::past::Past;
 use crate::geometry::Point;
 use crate::geometry::polylines::Vertex;
@@ -12,7 +13,7 @@ use crate::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net, Passage};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
 use crate::traffic::signals::Signals;
-use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
+use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Probability, Radian, Second};
 
 /// A vehicle's front bumper may be this far before a crossing when it touches a person there, in m.
 pub(super) const BESIDE_A_CROSSING: Metre = 1.0;
@@ -45,6 +46,8 @@ pub struct Surroundings<'a> {
     pub course: &'a dyn Fn(u32, Metre) -> Course,
     /// The chosen measures of an encounter, if any is chosen.
     pub chosen: &'a dyn Fn(&Encounter) -> Option<Box<ChosenValues>>,
+    /// A crash probability of an encounter.
+    pub crash_probability: &'a dyn Fn(&Nearness, LoggedMeasure) -> Probability,
     /// The time advantage of an encounter.
     pub tadv: &'a dyn Fn(&Encounter) -> Option<Second>,
 }

@@ -13,6 +13,11 @@ use closecall::traffic::net::Net;
 use closecall::traffic::roster::UserIndex;
 
 impl Run {
+    /// Works out the crash probability of each step of a conflict, because alarms are asked for it.
+    pub fn keep_probabilities(&mut self) {
+        self.tracker.keep_probabilities();
+    }
+
     /// The pairs that met the log's condition in the last step, or will with the PET of their events.
     pub fn in_conflict(&self) -> impl ExactSizeIterator<Item = &Encounter> {
         self.detector.encounters()
@@ -30,6 +35,8 @@ impl Run {
     }
 
     /// The conflicts that are still open in this step.
+    ///
+    /// Their crash probabilities are there if [`Run::keep_probabilities`] was called before.
     pub fn alarms(&self) -> impl Iterator<Item = Alarm> {
         self.tracker.alarms()
     }

@@ -3,7 +3,8 @@
 use super::Run;
 use super::results::count;
 use crate::{Error, Result};
-use closecall::detection::encounter::Encounter;
+use closecall::detection::encounter::{Encounter, Nearness};
+use closecall::detection::measures::table::LoggedMeasure;
 use closecall::events::{Scene, Surroundings};
 use closecall::geometry::Point;
 
@@ -120,6 +121,8 @@ impl Run {
         };
         let chosen = |found: &Encounter| detector.chosen(frame, roster, found);
         let tadv = |found: &Encounter| detector.tadv(frame, roster, found);
+        let crash_probability =
+            |near: &Nearness, measure: LoggedMeasure| detector.crash_probability(roster, near, measure);
         let net = self.net.as_deref();
         let (signals, stopped, step) = (&self.signals, &self.stopped, self.step_length.unwrap_or_default());
         let around = Surroundings {
@@ -131,6 +134,7 @@ impl Run {
             path: &path,
             course: &course,
             chosen: &chosen,
+            crash_probability: &crash_probability,
             tadv: &tadv,
         };
         let closed = self.tracker.step(frame, roster, detector.encounters(), around, self.collided.as_deref());

@@ -1,0 +1,117 @@
+//! Crash probabilities: an upper bound for each pair that is measured, the value where somebody asks for it.
+//!
+//! A driver whose vehicle brakes as weakly as it may has the shortest wait, so the probability that it responds later than that
+//! wait is an upper bound of the crash probability. It takes one closed form instead of sixteen. The value is worked out if
+//! it could be the conflict's largest so far, decide its severity or a condition, or stand in an alarm or a series.
+
+use super::Detector;
+use crate::braking::LateBraking;
+use crate::detection::encounter::Nearness;
+use crate::detection::measures::crash_probability::{at_most, crash_probability};
+use crate::detection::measures::table::LoggedMeasure;
+use crate::detection::measures::ttb::Evasion;
+use crate::traffic::driver_distributions::Driver;
+use crate::traffic::roster::{ProfileIndex, Roster};
+use crate::util::units::{Metre, MetrePerSecondSquared, Probability, Second};
+
+/// What a crash probability of a pair follows from.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Chance {
+    /// It is known.
+    Known(Probability),
+    /// It follows from how this driver can evade.
+    Of {
+        /// The type of the one that has to brake.
+        driver: ProfileIndex,
+        braking: LateBraking,
+        evasion: Evasion<Limits>,
+        has_responded: bool,
+    },
+}
+
+/// A range of [`Chances::limits`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    begin: u32,
+    end: u32,
+}
+
+/// The chances of all pairs that one thread measures in a step.
+#[derive(Default)]
+pub(super) struct Chances {
+    /// The thread's number.
+    pub worker: u32,
+    /// Of each pair: if the foe goes on as now, and if it brakes fully.
+    of_pairs: Vec<[Chance; 2]>,
+    /// How far an ego may be at which times.
+    limits: Vec<(Second, Metre)>,
+}
+
+impl Chances {
+    /// Forgets those of the last step.
+    pub fn clear(&mut self) {
+        self.of_pairs.clear();
+        self.limits.clear();
+    }
+
+    /// Keeps an evasion until the end of the step.
+    pub fn keep(&mut self, evasion: &Evasion<&[(Second, Metre)]>) -> Evasion<Limits> {
+        evasion.map(|limits| {
+            let begin = self.limits.len() as u32;
+            self.limits.extend_from_slice(limits);
+            Limits { begin, end: self.limits.len() as u32 }
+        })
+    }
+
+    /// Adds a pair; returns its number.
+    pub fn add(&mut self, of_pair: [Chance; 2]) -> u32 {
+        self.of_pairs.push(of_pair);
+        self.of_pairs.len() as u32 - 1
+    }
+
+    /// An upper bound of a probability.
+    pub fn at_most(&self, chance: &Chance, roster: &Roster) -> Probability {
+        self.work_out(chance, roster, |driver, has_responded, wait| at_most(driver, has_responded, wait))
+    }
+
+    /// A probability.
+    pub fn value(&self, chance: &Chance, roster: &Roster) -> Probability {
+        self.work_out(chance, roster, |driver, has_responded, wait| crash_probability(driver, has_responded, wait))
+    }
+
+    /// A probability of a pair that was measured.
+    pub fn of(&self, nearness: &Nearness, measure: LoggedMeasure, roster: &Roster) -> Probability {
+        let (known, which) = match measure {
+            LoggedMeasure::CrashProbabilityBraking => (nearness.values.crash_probability_braking(), 1),
+            _ => (nearness.values.crash_probability(), 0),
+        };
+        known.unwrap_or_else(|| self.value(&self.of_pairs[nearness.chances.place as usize][which], roster))
+    }
+
+    fn work_out(
+        &self,
+        chance: &Chance,
+        roster: &Roster,
+        formula: fn(&Driver, bool, &dyn Fn(MetrePerSecondSquared) -> Second) -> Probability,
+    ) -> Probability {
+        match chance {
+            Chance::Known(known) => *known,
+            Chance::Of { driver, braking, evasion, has_responded } => {
+                let driver = &roster.profile_at(*driver).driver;
+                let evasion = evasion.map(|Limits { begin, end }| &self.limits[begin as usize..end as usize]);
+                let wait = |deceleration: MetrePerSecondSquared| {
+                    evasion.longest_wait(&driver.braking_with(deceleration, braking))
+                };
+                formula(driver, *has_responded, &wait)
+            }
+        }
+    }
+}
+
+impl Detector {
+    /// A crash probability of a pair that was measured in this step, [`LoggedMeasure::CrashProbability`] or
+    /// [`LoggedMeasure::CrashProbabilityBraking`].
+    pub fn crash_probability(&self, roster: &Roster, nearness: &Nearness, measure: LoggedMeasure) -> Probability {
+        self.workers[nearness.chances.worker as usize].found.chances.of(nearness, measure, roster)
+    }
+}
