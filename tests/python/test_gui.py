@@ -14,7 +14,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import closecall, python, rows
+from conftest import closecall, closecall_apart, python, rows
 from PIL import Image
 
 Copy = Callable[[str], Path]
@@ -129,7 +129,9 @@ def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_pat
 @pytest.mark.usefixtures("display")
 def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
-    done = closecall("run", config, "--gui", "--label", "--quit-on-end", "--end", "8", "--out", tmp_path / "shown")
+    done = closecall_apart(
+        "run", config, "--gui", "--label", "--quit-on-end", "--end", "8", "--out", tmp_path / "shown"
+    )
     assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr
     assert closecall("run", config, "--end", "8", "--out", tmp_path / "unseen").returncode == 0
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
@@ -207,5 +209,5 @@ def test_show_plays_a_clip_where_the_conflict_was(scenario: Copy, tmp_path: Path
     assert pixels_like(shot, WHITE) > 400
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
         shutil.copy(shot, pictures)
-    done = closecall("show", log, "--worst", "1", "--quit-on-end")
+    done = closecall_apart("show", log, "--worst", "1", "--quit-on-end")
     assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr

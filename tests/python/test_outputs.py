@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, Callable, NamedTuple
 
 import pytest
-from conftest import NETS, closecall, parked, rows
+from conftest import NETS, closecall, closecall_apart, parked, rows
 
 Copy = Callable[[str], Path]
 
@@ -177,7 +177,7 @@ def test_an_output_never_overwrites_an_input(scenario: Copy, tmp_path: Path) -> 
         ("--ssm-output", tmp_path / "one", "--trj-output", "one"),
     ]
     for others in refused:
-        done = closecall(*words, *others, cwd=tmp_path)
+        done = closecall_apart(*words, *others, cwd=tmp_path)
         assert (done.returncode, done.stderr) == (2, f"closecall: --ssm-output would be written over {others[-1]}\n")
     assert (routes.read_bytes(), recording.read_bytes()) == (before, recorded)
     assert not (tmp_path / "out").exists()

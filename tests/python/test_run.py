@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, python, rows, wait_for_rows
+from conftest import begin, closecall, closecall_apart, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,nearness,consequence,artefact,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
@@ -218,7 +218,7 @@ def test_a_configuration_for_traci_runs_without_a_client(scenario: Copy, tmp_pat
 
 
 def test_a_last_option_without_value_is_left_to_sumo(scenario: Copy, tmp_path: Path) -> None:
-    done = closecall("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
+    done = closecall_apart("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
     # SUMO takes the missing value as "true", a file name here.
     assert done.returncode == 0 and (tmp_path / "true").is_file(), done.stderr
 

@@ -18,7 +18,7 @@ from typing import Any, Callable, NamedTuple
 
 import psutil
 import pytest
-from conftest import NETS, Once, begin, closecall, is_alive, is_one_message, python, rows, until
+from conftest import NETS, Once, begin, closecall, closecall_apart, is_alive, is_one_message, python, rows, until
 
 Copy = Callable[[str], Path]
 
@@ -28,7 +28,7 @@ LEFT_TURN = NETS / "left_turn" / "left_turn.sumocfg"
 
 def sweep(*words: str | Path, status: int = 0, **options: Any) -> subprocess.CompletedProcess[str]:
     """Run a sweep, which must end with this exit status."""
-    done = closecall("sweep", *words, **options)
+    done = (closecall_apart if options else closecall)("sweep", *words, **options)
     assert done.returncode == status, done.stdout + done.stderr
     return done
 
@@ -428,7 +428,7 @@ def test_unusable_arguments_get_one_clear_line(scenario: Copy, tmp_path: Path) -
         ((config, "--seeds", "1", "--scheduler", "tcp://127.0.0.1:9"), "127.0.0.1:9"),
         ((config, "--seeds", "1", "--scheduler", "a", "--workers", "1"), "cannot be used with"),
     ):
-        done = closecall("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path, env=impatient)
+        done = closecall_apart("sweep", *words, "--out", tmp_path / "out", cwd=tmp_path, env=impatient)
         assert done.returncode == 2 and is_one_message(done.stderr), (words, done.stderr)
         assert message in done.stderr, (words, done.stderr)
     assert not files(tmp_path / "out")
