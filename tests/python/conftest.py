@@ -180,8 +180,8 @@ def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
     return make
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
     """Headless Chromium, a package of the system, which .ci/run installs."""
     chromium = shutil.which("chromium")
     if chromium is None:
@@ -191,6 +191,14 @@ def browser() -> Iterator[Any]:
         browser = driver.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def browser(chromium: Any) -> Iterator[Any]:
+    """Chromium for one test, whose pages are closed after it: they would go on drawing."""
+    yield chromium
+    for context in chromium.contexts:
+        context.close()
 
 
 @pytest.fixture(scope="module")

@@ -58,7 +58,7 @@ left = [*sumo.polygon.getIDList(), *sumo.poi.getIDList()]
 conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
              for conflict in checker.conflicts]
 print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}), flush=True)
-signal.alarm(10)  # sumo-gui 1.28 does not always close; the system then ends the process
+signal.alarm(2)  # sumo-gui 1.28 does not always close; the system then ends the process
 _sumo.close(gui=True)
 """
 
@@ -170,7 +170,7 @@ player.sumo.simulationStep()
 player.painter.clear()
 left = [*player.sumo.polygon.getIDList(), *player.sumo.poi.getIDList()]
 print(json.dumps({"seen": seen, "left": left}), flush=True)
-signal.alarm(10)
+signal.alarm(2)
 _sumo.close(gui=True)
 """
 
