@@ -188,7 +188,16 @@ def test_valgrind_finds_no_fault_in_compiled_calls(tmp_path: Path) -> None:
     # All in one process, as valgrind takes 13 s to import libsumo.
     script = f"{CHECK}\nfrom closecall._closecall import main\n"
     for scene, end in (("signals", "60"), ("town", "8")):
-        run = ["closecall", "run", NETS / scene / f"{scene}.sumocfg", "--end", end, "--out", tmp_path / scene, "--quiet"]
+        run = [
+            "closecall",
+            "run",
+            NETS / scene / f"{scene}.sumocfg",
+            "--end",
+            end,
+            "--out",
+            tmp_path / scene,
+            "--quiet",
+        ]
         sumo = ["--tripinfo-output", tmp_path / f"{scene}.xml", "--time-to-teleport", "2", "--no-warnings"]
         script += f"assert main({[str(word) for word in (*run, '--', *sumo)]}) == 0\n"
     output = under_valgrind(tmp_path, "-c", script, NETS / "crowd" / "crowd.sumocfg", tmp_path / "out", "10", "none")
