@@ -76,7 +76,7 @@ print(json.dumps({"calls": asked, "entered": entered, "taken": taken, **seen}))
 not at the path that it states. `older`: of the module's version closecall knows only libsumo's interface. `unknown`: it
 knows nothing of it. At the end the script removes a vehicle (its id is then unknown) and loads the simulation again."""
 
-SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 20)]
+SCENES = [("bridge", 60), ("pedestrian", 60), ("crowd", 165), ("town", 10)]
 """Scenes with roads on two levels, with pedestrians, with bus passengers, and with all kinds of vehicles."""
 
 

@@ -29,7 +29,7 @@ BESIDE_ENDS = {"town": 8, "bridge": 60}
 SEEDS = {"town": 44}
 """With this seed a stale path of a vehicle that had been in no pair for a while would change the conflict at 23 s."""
 
-METHODS = {"arc": {"path": "arc"}, "paper": {"mode": "paper"}}
+METHODS: dict[str, dict[str, Any]] = {"arc": {"path": "arc"}, "paper": {"mode": "paper"}}
 
 BY_DEFINITION = {"one was not there yet", "both stand", "both are persons", "on different levels"}
 OF_THE_SCENE = {"no sumo-gui", "none enters the scene"}

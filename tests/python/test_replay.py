@@ -244,8 +244,8 @@ def repeat(recording: Path, times: int, seconds: float) -> None:
 
 def test_ctrl_c_ends_a_replay_cleanly(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    recording = record(config, "fcd.xml", "--end", "40")
-    repeat(recording, 5, 40)
+    recording = record(config, "fcd.xml", "--end", "25")
+    repeat(recording, 8, 25)
     words = ("--quiet", "--net", config.with_suffix(".net.xml"), "--out", tmp_path / "out")
     process = begin("replay", recording, *words)
     wait_for_rows(tmp_path / "out" / "conflicts.csv", process, 2)

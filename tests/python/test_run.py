@@ -238,13 +238,13 @@ def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) ->
 
 def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    process = begin("run", config, "--end", "100", "--out", tmp_path / "killed")
+    process = begin("run", config, "--end", "60", "--out", tmp_path / "killed")
     log = tmp_path / "killed" / "conflicts.csv"
-    wait_for_rows(log, process, 400)
+    wait_for_rows(log, process, 200)
     os.kill(process.pid, signal.SIGKILL)
     process.communicate(timeout=60)
     killed = log.read_text()
-    assert closecall("run", config, "--end", "100", "--out", tmp_path / "whole").returncode == 0
+    assert closecall("run", config, "--end", "60", "--out", tmp_path / "whole").returncode == 0
     assert (tmp_path / "whole" / "conflicts.csv").read_text().startswith(killed)
 
     # A kill may cut the last row short, but too rarely for a test: cut it here.
