@@ -6,7 +6,7 @@ export PYTHONDONTWRITEBYTECODE :=
 SOURCES := $(shell find src crates bridge/src bridge/python -type f -not -name '*.pyc') \
 	Cargo.toml Cargo.lock bridge/Cargo.toml bridge/build.rs pyproject.toml THIRD-PARTY.txt
 
-.PHONY: demo test rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation bench quick docs clean help
+.PHONY: demo test test-all rust-tests lint regress stress study fuzz torture soak versions licences advisories accuracy validation bench quick docs clean help
 
 demo: $(VENV)/wheel ## set everything up and check the town in sumo_nets/
 	$(BIN)/closecall run sumo_nets/town/town.sumocfg --end 200 --out closecall-out -- --no-warnings
@@ -21,6 +21,10 @@ test: $(VENV)/wheel ## set everything up and run all tests, Rust and Python
 	$(RUST_TESTS)
 	$(BIN)/closecall stress --cases 100000
 	$(BIN)/pytest --numprocesses auto --dist worksteal
+
+# What takes long by itself is mostly one process: two at a time.
+test-all: test ## all tests, and then the whole nets, each SUMO of PyPI, a soak and torture
+	$(MAKE) --no-print-directory --jobs 2 --output-sync=target torture regress versions soak
 
 rust-tests:
 	$(RUST_TESTS) --no-run
@@ -120,7 +124,7 @@ clean: ## remove what the targets made
 	rm -rf $(VENV) target closecall-out
 
 help: ## list the targets
-	@grep -E '^[a-z]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
+	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 10
 
 target/tools/bin/cargo-fuzz:
 	rustup toolchain list | grep -q nightly || rustup toolchain install nightly --profile minimal

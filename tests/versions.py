@@ -16,7 +16,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from conftest import NETS, python, rows
+from conftest import NETS, closecall_apart, python, rows
 from recordings import record, replay, same
 
 ROOT = Path(__file__).parents[1]
@@ -91,7 +91,7 @@ def check(version: str, scene: str, out: Path) -> tuple[str, int, str]:
     config = out / scene / f"{scene}.sumocfg"
     end = SCENES[scene]
     try:
-        recording = record(config, "fcd.xml", "--end", end, sumo=("--no-warnings",))
+        recording = record(config, "fcd.xml", "--end", end, sumo=("--no-warnings",), run=closecall_apart)
     except AssertionError as error:
         return "", 0, f"closecall run: {error}".strip()
     logs = {"closecall run": config.parent / "live"}

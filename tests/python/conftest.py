@@ -9,14 +9,17 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager, redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any, Callable
 
 import psutil
 import pytest
+from closecall._closecall import main
 from playwright import sync_api
 
 NETS = Path(__file__).parents[2] / "sumo_nets"
@@ -50,10 +53,39 @@ def pytest_make_collect_report(collector: Any) -> Any:
     forbid_skip(outcome.get_result())
 
 
-def closecall(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run the command to its end, with its output captured."""
-    command = [sys.executable, "-m", "closecall", *map(str, words)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=TIMEOUT, check=False, **options)
+def closecall(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    """Call the library with the words of a command, in this process, with what it prints captured."""
+    texts = list(map(str, words))
+    with captured() as said:
+        status = main(["closecall", *texts])
+    return subprocess.CompletedProcess(texts, status, *said)
+
+
+@contextmanager
+def captured() -> Iterator[list[str]]:
+    """Collects what is printed meanwhile, by C++ and Rust too: standard output, then standard error."""
+    said: list[str] = []
+    with ExitStack() as restored:
+        files = []
+        for number, redirect in ((1, redirect_stdout), (2, redirect_stderr)):
+            file = restored.enter_context(tempfile.TemporaryFile("w+"))
+            kept = os.dup(number)
+            restored.callback(os.close, kept)
+            restored.callback(os.dup2, kept, number)
+            os.dup2(file.fileno(), number)
+            restored.enter_context(redirect(file))
+            files.append(file)
+        yield said
+        for file in files:
+            file.flush()
+            file.seek(0)
+            said.append(file.read())
+
+
+def closecall_apart(*words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
+    """Run the command to its end in a process of its own, with its output captured."""
+    started = [sys.executable, "-m", "closecall", *map(str, words)]
+    return subprocess.run(started, capture_output=True, text=True, timeout=TIMEOUT, check=False, **options)
 
 
 def python(script: str, *words: str | Path, **options: Any) -> subprocess.CompletedProcess[str]:
@@ -148,8 +180,8 @@ def once(tmp_path_factory: pytest.TempPathFactory) -> Once:
     return make
 
 
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
     """Headless Chromium, a package of the system, which .ci/run installs."""
     chromium = shutil.which("chromium")
     if chromium is None:
@@ -159,6 +191,14 @@ def browser() -> Iterator[Any]:
         browser = driver.chromium.launch(executable_path=chromium, args=["--no-sandbox"])
         yield browser
         browser.close()
+
+
+@pytest.fixture
+def browser(chromium: Any) -> Iterator[Any]:
+    """Chromium for one test, whose pages are closed after it: they would go on drawing."""
+    yield chromium
+    for context in chromium.contexts:
+        context.close()
 
 
 @pytest.fixture(scope="module")

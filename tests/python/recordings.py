@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
+import subprocess
 from pathlib import Path
+from typing import Callable
 
 import pytest
 from conftest import Row, closecall
 
+Done = subprocess.CompletedProcess[str]
+
 FULL = ("--fcd-output.attributes", "all", "--precision", "9")
 
 
-def record(config: Path, name: str, *words: str, sumo: tuple[str, ...] = ()) -> Path:
+def record(
+    config: Path, name: str, *words: str, sumo: tuple[str, ...] = (), run: Callable[..., Done] = closecall
+) -> Path:
     """Run a scenario live and record it, with these words for SUMO; its log is in the folder `live` beside it."""
     recording = config.parent / name
     log = config.parent / "live"
-    done = closecall("run", config, *words, "--quiet", "--out", log, "--", "--fcd-output", recording, *FULL, *sumo)
+    done = run("run", config, *words, "--quiet", "--out", log, "--", "--fcd-output", recording, *FULL, *sumo)
     assert done.returncode == 0, done.stderr
     return recording
 

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import closecall, is_one_message, python
+from conftest import closecall, closecall_apart, is_one_message, python
 
 Copy = Callable[[str], Path]
 
@@ -137,7 +137,7 @@ def test_a_full_disk_is_reported_and_no_row_is_cut(scenario: Copy, tmp_path: Pat
         resource.setrlimit(resource.RLIMIT_FSIZE, (10_000, 10_000))
 
     words = ("--quiet", "--out", tmp_path, "--", "--no-warnings")
-    done = closecall("run", scenario("reckless"), *words, preexec_fn=limit)
+    done = closecall_apart("run", scenario("reckless"), *words, preexec_fn=limit)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert "conflicts.csv: " in done.stderr
     written = (tmp_path / "conflicts.csv").read_text()
@@ -167,7 +167,7 @@ def test_a_libsumo_that_cannot_be_loaded_is_not_called_missing(scenario: Copy, t
     (package / "__init__.py").write_text("from . import _libsumo\n")
     # The loader refuses it as it refuses one whose libraries the system lacks.
     (package / "_libsumo.so").write_bytes(b"")
-    done = closecall("run", scenario("rear_end"), env={**os.environ, "PYTHONPATH": str(tmp_path)})
+    done = closecall_apart("run", scenario("rear_end"), env={**os.environ, "PYTHONPATH": str(tmp_path)})
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert "libsumo cannot be loaded (" in done.stderr
     assert "apt install libgl1" in done.stderr

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import NETS, closecall
+from conftest import NETS, closecall, closecall_apart
 from lxml import etree
 
 SCHEMA = etree.XMLSchema(file=distribution("scenariogeneration").locate_file("schemas/OpenSCENARIO_1_2.xsd"))
@@ -142,7 +142,7 @@ def recording(tmp_path_factory: pytest.TempPathFactory) -> Path:
     (folder / "tracks.csv").write_text("\n".join(rows))
     columns = "id=id,time=t,x=x,y=y,heading=heading[deg],speed=speed,class=class"
     words = ["--columns", columns, "--path", "straight", "--log-clips", "caution", "--quiet", "--out", "log"]
-    done = closecall("replay", "tracks.csv", *words, cwd=folder)
+    done = closecall_apart("replay", "tracks.csv", *words, cwd=folder)
     assert done.returncode == 0, done.stderr
     clip = clip_of(folder / "log", 1)
     crate = [[10.0, 4.0], [12.0, 4.0], [12.0, 5.0]]

@@ -14,7 +14,7 @@ from typing import Any, Callable
 
 import numpy as np
 import pytest
-from conftest import closecall, python, rows
+from conftest import closecall, closecall_apart, python, rows
 from PIL import Image
 
 Copy = Callable[[str], Path]
@@ -58,7 +58,7 @@ left = [*sumo.polygon.getIDList(), *sumo.poi.getIDList()]
 conflicts = [[conflict.ego, conflict.foe, conflict.kind, conflict.begin, conflict.end]
              for conflict in checker.conflicts]
 print(json.dumps({"states": states, "before": before, "left": left, "conflicts": conflicts}), flush=True)
-signal.alarm(10)  # sumo-gui 1.28 does not always close; the system then ends the process
+signal.alarm(2)  # sumo-gui 1.28 does not always close; the system then ends the process
 _sumo.close(gui=True)
 """
 
@@ -129,7 +129,9 @@ def test_a_conflict_is_painted_while_it_lasts(kind: str, scenario: Copy, tmp_pat
 @pytest.mark.usefixtures("display")
 def test_the_command_shows_the_run_and_logs_the_same(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("side")
-    done = closecall("run", config, "--gui", "--label", "--quit-on-end", "--end", "8", "--out", tmp_path / "shown")
+    done = closecall_apart(
+        "run", config, "--gui", "--label", "--quit-on-end", "--end", "8", "--out", tmp_path / "shown"
+    )
     assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr
     assert closecall("run", config, "--end", "8", "--out", tmp_path / "unseen").returncode == 0
     assert rows(tmp_path / "shown" / "conflicts.csv") == rows(tmp_path / "unseen" / "conflicts.csv")
@@ -168,7 +170,7 @@ player.sumo.simulationStep()
 player.painter.clear()
 left = [*player.sumo.polygon.getIDList(), *player.sumo.poi.getIDList()]
 print(json.dumps({"seen": seen, "left": left}), flush=True)
-signal.alarm(10)
+signal.alarm(2)
 _sumo.close(gui=True)
 """
 
@@ -207,5 +209,5 @@ def test_show_plays_a_clip_where_the_conflict_was(scenario: Copy, tmp_path: Path
     assert pixels_like(shot, WHITE) > 400
     if pictures := os.environ.get("CLOSECALL_PICTURES"):
         shutil.copy(shot, pictures)
-    done = closecall("show", log, "--worst", "1", "--quit-on-end")
+    done = closecall_apart("show", log, "--worst", "1", "--quit-on-end")
     assert done.returncode == 0 or "sumo-gui does not close" in done.stderr, done.stderr

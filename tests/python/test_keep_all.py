@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
+import sys
 from pathlib import Path
 from typing import Any
 
+import closecall as cc
+import libsumo
 import pytest
-from conftest import NETS, closecall, python
+from conftest import NETS, closecall
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 Found = tuple[dict[str, bytes], dict[str, Any]]
 """The files of a log, and its record without the fields that tell only how it was computed."""
@@ -15,43 +24,12 @@ Found = tuple[dict[str, bytes], dict[str, Any]]
 END = 100
 ENDS = {"town": 25, "bridge": 60}
 """Ends in s: with every pair kept, the time of a step grows with the square of the road users."""
-BESIDE_ENDS = {"town": 12, "bridge": 60}
+BESIDE_ENDS = {"town": 8, "bridge": 60}
 """The same where several checkers follow one simulation."""
 SEEDS = {"town": 44}
 """With this seed a stale path of a vehicle that had been in no pair for a while would change the conflict at 23 s."""
 
-BESIDE = """
-import sys
-from pathlib import Path
-from closecall import _sumo
-libsumo = _sumo.import_libsumo()
-import closecall
-try:
-    import tomllib
-except ImportError:
-    import tomli as tomllib
-
-config, out, end = Path(sys.argv[1]), sys.argv[2], float(sys.argv[3])
-settings = tomllib.loads((config.parent / "closecall.toml").read_text())
-for of_a_run in ("regress", "end"):
-    settings.pop(of_a_run, None)
-libsumo.start(["sumo", "-c", str(config), "--no-warnings"])
-methods = {"arc": {"path": "arc"}, "paper": {"mode": "paper"}}
-checkers = [
-    closecall.Checker(libsumo, out=f"{out}/{name}/{keep_all}", log_series=True, keep_all=keep_all, **method, **settings)
-    for name, method in methods.items()
-    for keep_all in (False, True)
-]
-last = libsumo.simulation.getEndTime()
-end = min(end, last) if last >= 0 else end
-while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < end:
-    libsumo.simulationStep()
-    for checker in checkers:
-        checker.step()
-for checker in checkers:
-    checker.close()
-"""
-"""Checkers of two other methods beside one another, each with every test and without what the scene does not need."""
+METHODS: dict[str, dict[str, Any]] = {"arc": {"path": "arc"}, "paper": {"mode": "paper"}}
 
 BY_DEFINITION = {"one was not there yet", "both stand", "both are persons", "on different levels"}
 OF_THE_SCENE = {"no sumo-gui", "none enters the scene"}
@@ -97,9 +75,27 @@ def test_leaving_out_changes_no_result(config: Path, tmp_path: Path) -> None:
 
 @all_scenarios
 def test_leaving_out_changes_no_result_of_other_methods(config: Path, tmp_path: Path) -> None:
-    done = python(BESIDE, config, tmp_path, str(BESIDE_ENDS.get(config.stem, END)))
-    assert done.returncode == 0, done.stderr
-    for method in ("arc", "paper"):
+    settings = tomllib.loads((config.parent / "closecall.toml").read_text())
+    for of_a_run in ("regress", "end"):
+        settings.pop(of_a_run, None)
+    libsumo.start(["sumo", "-c", str(config), "--no-warnings"])
+    checkers = [
+        cc.Checker(
+            libsumo, out=tmp_path / name / str(keep_all), log_series=True, keep_all=keep_all, **method, **settings
+        )
+        for name, method in METHODS.items()
+        for keep_all in (False, True)
+    ]
+    last = libsumo.simulation.getEndTime()
+    end = min(BESIDE_ENDS.get(config.stem, END), last if last >= 0 else math.inf)
+    while libsumo.simulation.getMinExpectedNumber() > 0 and libsumo.simulation.getTime() < end:
+        libsumo.simulationStep()
+        for checker in checkers:
+            checker.step()
+    for checker in checkers:
+        checker.close()
+    libsumo.close()
+    for method in METHODS:
         found, whole = (logged(tmp_path / method / str(keep_all), keep_all) for keep_all in (False, True))
         left_out, kept = differ_only_in_what_is_left_out(found, whole)
         # Paper mode leaves out only pairs that are too far apart, and a small scene has none.
@@ -108,7 +104,7 @@ def test_leaving_out_changes_no_result_of_other_methods(config: Path, tmp_path: 
 
 @pytest.mark.parametrize("net", ["left_turn", "reckless"])
 def test_leaving_out_changes_no_result_of_a_wider_condition(net: str, tmp_path: Path) -> None:
-    config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "100")
+    config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "50")
     found, whole = (
         checked(config, tmp_path / "left_out", *wider),
         checked(config, tmp_path / "kept", *wider, "--keep-all"),

@@ -24,7 +24,7 @@ def logged(net: str, out: Path, *words: str) -> list[Row]:
 def test_a_wider_condition_leaves_every_margin_the_same(net: str, tmp_path: Path) -> None:
     in_conflict = []
     for name, condition in (("narrow", "margin < 0"), ("wide", "margin < 0 or ttc < 5 or gap < 20")):
-        logged(net, tmp_path / name, "--log", condition, "--log-series", "--end", "120")
+        logged(net, tmp_path / name, "--log", condition, "--log-series", "--end", "80")
         steps = rows(tmp_path / name / "series.csv")
         steps = [{name: cell for name, cell in row.items() if name != "conflict"} for row in steps]
         in_conflict.append(
@@ -37,7 +37,7 @@ def test_a_wider_condition_leaves_every_margin_the_same(net: str, tmp_path: Path
 
 
 def test_a_logged_conflict_meets_the_condition_in_its_steps(tmp_path: Path) -> None:
-    found = logged("left_turn", tmp_path, "--log", "ttc < 2 or drac > 4", "--log-series")
+    found = logged("left_turn", tmp_path, "--log", "ttc < 2 or drac > 4", "--log-series", "--end", "150")
     steps = rows(tmp_path / "series.csv")
     assert len(found) > 5
     assert all(float(row["ttc"] or "inf") < 2 or float(row["drac"] or "0") > 4 for row in steps)
@@ -47,11 +47,11 @@ def test_a_logged_conflict_meets_the_condition_in_its_steps(tmp_path: Path) -> N
 
 
 def test_a_pair_may_be_logged_for_its_pet_alone(tmp_path: Path) -> None:
-    found = logged("left_turn", tmp_path / "pet", "--log", "pet < 3")
+    found = logged("left_turn", tmp_path / "pet", "--log", "pet < 3", "--end", "150")
     assert found and all(0 <= float(row["pet"]) < 3 and row["kind"] != "rear_end" for row in found if row["pet"])
     assert all(row["pet"] or row["collision"] == "true" for row in found)
-    rest = logged("left_turn", tmp_path / "rest", "--log", "margin < 0")
-    both = logged("left_turn", tmp_path / "both", "--log", "pet < 3 or margin < 0")
+    rest = logged("left_turn", tmp_path / "rest", "--log", "margin < 0", "--end", "150")
+    both = logged("left_turn", tmp_path / "both", "--log", "pet < 3 or margin < 0", "--end", "150")
     pairs_of = [{frozenset((row["ego"], row["foe"])) for row in one} for one in (found, rest, both)]
     assert pairs_of[2] == pairs_of[0] | pairs_of[1]
     assert pairs_of[0] - pairs_of[1], "the default misses some"
@@ -135,7 +135,7 @@ CROSSING_OR_LEFT = {"10", "11", "17"}
 """The device's types whose arrival times and conflict areas differ from closecall's: docs/statistics_how.md."""
 
 
-@pytest.mark.parametrize(("net", "end", "least"), [("left_turn", "120", 60), ("signals", "150", 80)])
+@pytest.mark.parametrize(("net", "end", "least"), [("left_turn", "120", 60), ("signals", "110", 50)])
 def test_pairs_of_the_ssm_device_are_logged_or_explained(net: str, end: str, least: int, tmp_path: Path) -> None:
     words = ["--device.ssm.probability", "1", "--device.ssm.measures", "TTC DRAC PET", "--precision", "6"]
     words += ["--device.ssm.thresholds", "3 3 2", "--device.ssm.file", str(tmp_path / "ssm.xml"), "--no-warnings"]

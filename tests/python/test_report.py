@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, Callable
 
 import pytest
-from conftest import closecall, counted, python, rows
+from conftest import closecall, closecall_apart, counted, python, rows
 from report_page import ALL, PALETTE, Opened, made_up, severe
 
 Copy = Callable[[str], Path]
@@ -216,7 +216,7 @@ def test_unusable_input_gets_one_clear_line(tmp_path: Path) -> None:
         ((log, "--from", "9", "--to", "3"), "--from 9 is after --to 3"),
         ((log, "--against", tmp_path / "gone"), "gone: No such file"),
     ):
-        done = closecall("report", *words, cwd=tmp_path)
+        done = closecall_apart("report", *words, cwd=tmp_path)
         assert (done.returncode, done.stderr.count("\n")) == (2, 1), (words, done.stderr)
         assert message in done.stderr, (words, done.stderr)
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Callable
 
 import pytest
-from conftest import begin, closecall, python, rows, wait_for_rows
+from conftest import begin, closecall, closecall_apart, python, rows, wait_for_rows
 
 CONFLICT_COLUMNS = (
     "id,ego,foe,kind,severity,nearness,consequence,artefact,begin,end,time,gap,mu,margin,clearance,ttc,drac,unavoidable,pet,"
@@ -218,7 +218,7 @@ def test_a_configuration_for_traci_runs_without_a_client(scenario: Copy, tmp_pat
 
 
 def test_a_last_option_without_value_is_left_to_sumo(scenario: Copy, tmp_path: Path) -> None:
-    done = closecall("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
+    done = closecall_apart("run", scenario("curves"), "--end", "5", "--", "--fcd-output", cwd=tmp_path)
     # SUMO takes the missing value as "true", a file name here.
     assert done.returncode == 0 and (tmp_path / "true").is_file(), done.stderr
 
@@ -238,13 +238,13 @@ def test_the_last_step_is_sumos_own(end: str, scenario: Copy, tmp_path: Path) ->
 
 def test_a_killed_runs_log_is_a_prefix_of_the_whole(scenario: Copy, tmp_path: Path) -> None:
     config = scenario("town")
-    process = begin("run", config, "--end", "100", "--out", tmp_path / "killed")
+    process = begin("run", config, "--end", "60", "--out", tmp_path / "killed")
     log = tmp_path / "killed" / "conflicts.csv"
-    wait_for_rows(log, process, 400)
+    wait_for_rows(log, process, 200)
     os.kill(process.pid, signal.SIGKILL)
     process.communicate(timeout=60)
     killed = log.read_text()
-    assert closecall("run", config, "--end", "100", "--out", tmp_path / "whole").returncode == 0
+    assert closecall("run", config, "--end", "60", "--out", tmp_path / "whole").returncode == 0
     assert (tmp_path / "whole" / "conflicts.csv").read_text().startswith(killed)
 
     # A kill may cut the last row short, but too rarely for a test: cut it here.

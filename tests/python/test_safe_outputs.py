@@ -14,7 +14,7 @@ from typing import Callable
 
 import closecall as cc
 import pytest
-from conftest import begin, closecall, until
+from conftest import begin, closecall, closecall_apart, until
 
 Copy = Callable[[str], Path]
 
@@ -134,7 +134,7 @@ def test_a_full_disk_leaves_the_output_as_it_was(command: str, log: Path, tmp_pa
     out.write_text("before")
     more = ("--format", "html") if command == "stats" else ()
     target = out.parent if command == "plot" else out
-    done = closecall(command, log, *more, "-o", target, preexec_fn=full)
+    done = closecall_apart(command, log, *more, "-o", target, preexec_fn=full)
     assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
     assert f"{out}: " in done.stderr
     assert [path.name for path in out.parent.iterdir()] == [out.name] and out.read_text() == "before"

@@ -14,6 +14,7 @@ import pytest
 from conftest import NETS, Once, Row, closecall, rows
 
 FOLLOWER, CROSSING_FOLLOWER = "2", "11"
+ENDS = {"left_turn": "220", "priority": "280", "rear_end": "280", "side": "280", "signals": "230"}
 
 
 class Step(NamedTuple):
@@ -50,9 +51,8 @@ def compared(once: Once) -> Compared:
         words += ["--device.ssm.thresholds", "1000 0 1000", "--device.ssm.range", "100"]
         words += ["--device.ssm.trajectories", "true", "--device.ssm.file", str(out / "ssm.xml"), "--no-warnings"]
         words += ["--fcd-output", str(out / "fcd.xml"), "--fcd-output.attributes", "x,y,angle,lane,pos"]
-        done = closecall(
-            "run", NETS / name / f"{name}.sumocfg", "--out", out, "--align", "never", "--log-series", "--", *words
-        )
+        own = ("--end", ENDS[name], "--out", out, "--align", "never", "--log-series")
+        done = closecall("run", NETS / name / f"{name}.sumocfg", *own, "--", *words)
         assert done.returncode == 0, done.stderr
         encounters = rows(out / "series.csv")
         pairs = {(row["ego"], row["foe"]) for row in encounters}

@@ -10,9 +10,9 @@ from conftest import begin, closecall, until
 
 
 def test_the_same_seed_gives_the_same_table() -> None:
-    first = closecall("stress", "--cases", "2000", "--seed", "5")
+    first = closecall("stress", "--cases", "100", "--seed", "5")
     assert first.returncode == 0, first.stdout
-    assert closecall("stress", "--cases", "2000", "--seed", "5").stdout == first.stdout
+    assert closecall("stress", "--cases", "100", "--seed", "5").stdout == first.stdout
     assert "all " in first.stdout.splitlines()[-1]
 
 
@@ -29,7 +29,7 @@ def test_zero_cases_are_refused() -> None:
 
 def test_ctrl_c_ends_stress_at_once() -> None:
     process = begin("stress", "--cases", "1000000000")
-    until(lambda: psutil.Process(process.pid).cpu_times().user > 1)
+    until(lambda: psutil.Process(process.pid).cpu_times().user > 0.3)
     begun = time.monotonic()
     process.send_signal(signal.SIGINT)
     assert process.communicate(timeout=30) == ("", "")

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import csv
 import gzip
+import io
 import json
 import math
+import sys
+from contextlib import redirect_stdout
 from pathlib import Path
+from types import ModuleType
 
+import agreement
+import draw
+import hundred_car
 import numpy as np
+import police
 import pytest
-from conftest import closecall, python
+from conftest import closecall
 from draw import shares
 from measures import RULES, Measure
 from page import MARKS, write_tables
@@ -23,15 +31,13 @@ VALIDATION = Path(__file__).parents[1] / "validation"
 PAIR = Pair("one", frozenset("ab"), crash=True, begin=0, closest=2000, same_direction=True)
 
 
-def script(name: str, *words: str | Path) -> str:
-    """What a script of tests/validation prints."""
-    done = python(
-        f"import runpy, sys; sys.path.insert(0, {str(VALIDATION)!r}); "
-        f"sys.argv = {[name, *map(str, words)]!r}; "
-        f"runpy.run_path({str(VALIDATION / name)!r}, run_name='__main__')"
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
+def script(module: ModuleType, *words: str | Path) -> str:
+    """What a script of tests/validation prints, with intervals from few resamples."""
+    with pytest.MonkeyPatch.context() as patch, redirect_stdout(io.StringIO()) as said:
+        patch.setattr(sys, "argv", [module.__name__, *map(str, words)])
+        patch.setattr(module, "RESAMPLES", 200, raising=False)
+        module.main()
+    return said.getvalue()
 
 
 def test_auc_counts_ties_half() -> None:
@@ -121,7 +127,7 @@ def test_raw_events_of_the_100_car_study_become_crashes(tmp_path: Path, other: s
     (tmp_path / "100CarEventVideoReducedData_v1_5.txt").write_text("\t".join(event) + "\n")
     out = tmp_path / "out"
     # The second event has no description.
-    assert "1 events, 1 left out" in script("hundred_car.py", tmp_path, out)
+    assert "1 events, 1 left out" in script(hundred_car, tmp_path, out)
     recording = read(out / "crash" / "8000.csv", crash=True)
     ego, target = recording.tracks["8000_ego"], recording.tracks["8000_target"]
     gap = abs(target.x - ego.x) - (target.length + ego.length) / 2
@@ -132,6 +138,7 @@ def test_raw_events_of_the_100_car_study_become_crashes(tmp_path: Path, other: s
     assert {row["ego"] for row in steps.values()} == {"8000_target" if other == "following" else "8000_ego"}
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
 def test_police_reports_are_ranked_against_conflicts(tmp_path: Path) -> None:
     junctions = [(0, 3), (200, 2), (400, 1), (600, 0)]
     lines = "".join(f'<junction id="j{x}" type="priority" x="{x}" y="0"/>' for x, _ in junctions)
@@ -147,9 +154,7 @@ def test_police_reports_are_ranked_against_conflicts(tmp_path: Path) -> None:
     rows += ["600,0,serious,side,0.5,drawn_overlap"] * 9
     (tmp_path / "conflicts.csv").write_text("x,y,severity,kind,crash_probability,artefact\n" + "\n".join(rows) + "\n")
     (tmp_path / "run.json").write_text(json.dumps({"summary": {"entered": {f"j{x}": 9 for x, _ in junctions}}}))
-    printed = script(
-        "police.py", "--net", tmp_path / "net.net.xml", "--crashes", tmp_path / "crashes.csv", "--", tmp_path
-    )
+    printed = script(police, "--net", tmp_path / "net.net.xml", "--crashes", tmp_path / "crashes.csv", "--", tmp_path)
     assert printed.startswith("6 crashes within 40 m of 4 junctions")
     assert "| serious or critical | 1.00 [" in printed
 
@@ -167,7 +172,7 @@ def test_readers_get_positions_and_nothing_else(tmp_path: Path) -> None:
             times = [100.0, 100.1, 100.2]
             clip = {"conflict": number, "times": times, "severity": ["serious"] * 3, "users": [user, user, user]}
             clips.write(json.dumps(clip) + "\n")
-    printed = script("draw.py", out, log, "--count", "50")
+    printed = script(draw, out, log, "--count", "50")
     assert "2 of 3 severe conflicts" in printed and "begin too late: 1" in printed
     cases = sorted((out / "cases").iterdir())
     assert [case.name for case in cases] == ["01.csv", "02.csv"]
@@ -191,7 +196,7 @@ def test_agreement_of_two_readers_is_cohens_kappa(tmp_path: Path) -> None:
     key = "".join(f"{case:02},log,{case},serious,side\n" for case in range(10))
     (tmp_path / "key.csv").write_text("case,log,conflict,severity,kind\n" + key)
     sheets = [tmp_path / f"answers_{reader}.csv" for reader in (0, 1)]
-    printed = script("agreement.py", *sheets, "--key", tmp_path / "key.csv")
+    printed = script(agreement, *sheets, "--key", tmp_path / "key.csv")
     by_chance = 0.6 * 0.4 + 0.2 * 0.3 + 0.2 * 0.3
     assert f"kappa {(0.7 - by_chance) / (1 - by_chance):.2f} [" in printed
     assert "| near miss | 0 | 4 | 2 | 0 |" in printed and "| serious (10) | 1 | 60 %" in printed
@@ -205,7 +210,7 @@ def test_a_crash_is_worse_than_a_near_miss_and_counted_with_it(tmp_path: Path) -
     key = "".join(f"{case:02},log,{case},critical,side\n" for case in range(4))
     (tmp_path / "key.csv").write_text("case,log,conflict,severity,kind\n" + key)
     sheets = [tmp_path / f"answers_{reader}.csv" for reader in (0, 1)]
-    printed = script("agreement.py", *sheets, "--key", tmp_path / "key.csv")
+    printed = script(agreement, *sheets, "--key", tmp_path / "key.csv")
     assert "a crash counted as a near miss: kappa 1.00" in printed
     assert "| crash | 1 | 1 | 0 | 0 |" in printed and "| critical (4) | 1 | 75 %" in printed
 
