@@ -57,7 +57,8 @@ fn look_at(detector: &mut Detector, options: &Options, cars: &[(f64, f64, f64, f
     detector.track_paths(&frame, &roster);
     detector.broad_phase(&frame, &roster);
     let found = detector.narrow_phase(&frame, &roster).copied().collect::<Vec<_>>();
-    found.into_iter().map(|found| (found, roster.id(found.ego).to_string())).collect()
+    let found = found.into_iter().map(|found| detector.with_probabilities(&roster, &found));
+    found.map(|found| (found, roster.id(found.ego).to_string())).collect()
 }
 
 const WEST: f64 = std::f64::consts::PI;
@@ -292,7 +293,8 @@ fn turned_by(
         detector.broad_phase(&frame, roster);
     }
     let by_number = |found: &Encounter| Encounter { ego_row: found.ego.0, foe_row: found.foe.0, ..*found };
-    detector.narrow_phase(&frame, roster).map(by_number).collect()
+    _ = detector.narrow_phase(&frame, roster);
+    detector.encounters().map(|found| by_number(&detector.with_probabilities(roster, found))).collect()
 }
 
 /// With many vehicles the detector forgets paths, and builds them again.

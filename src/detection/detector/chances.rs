@@ -4,15 +4,21 @@
 //! wait is an upper bound of the crash probability. It takes one closed form instead of sixteen. The value is worked out if
 //! it could be the conflict's largest so far, decide its severity or a condition, or stand in an alarm or a series.
 
+use std::cell::Cell;
+
 use super::Detector;
 use crate::braking::LateBraking;
-use crate::detection::encounter::Nearness;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::measures::crash_probability::{at_most, crash_probability};
-use crate::detection::measures::table::LoggedMeasure;
+use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
 use crate::detection::measures::ttb::Evasion;
 use crate::traffic::driver_distributions::Driver;
 use crate::traffic::roster::{ProfileIndex, Roster};
 use crate::util::units::{Metre, MetrePerSecondSquared, Probability, Second};
+
+/// The measures of the two chances of a pair.
+pub(super) const CHANCES: [LoggedMeasure; 2] =
+    [LoggedMeasure::CrashProbability, LoggedMeasure::CrashProbabilityBraking];
 
 /// What a crash probability of a pair follows from.
 #[derive(Clone, Copy, Debug)]
@@ -41,6 +47,9 @@ pub(super) struct Limits {
 pub(super) struct Chances {
     /// The thread's number.
     pub worker: u32,
+    /// How many probabilities were not worked out since the run began, and how many of them were later.
+    left_out: u64,
+    asked_for: Cell<u64>,
     /// Of each pair: if the foe goes on as now, and if it brakes fully.
     of_pairs: Vec<[Chance; 2]>,
     /// How far an ego may be at which times.
@@ -63,8 +72,9 @@ impl Chances {
         })
     }
 
-    /// Adds a pair; returns its number.
-    pub fn add(&mut self, of_pair: [Chance; 2]) -> u32 {
+    /// Adds a pair of which so many probabilities were not worked out; returns its number.
+    pub fn add(&mut self, of_pair: [Chance; 2], left_out: usize) -> u32 {
+        self.left_out += left_out as u64;
         self.of_pairs.push(of_pair);
         self.of_pairs.len() as u32 - 1
     }
@@ -85,7 +95,15 @@ impl Chances {
             LoggedMeasure::CrashProbabilityBraking => (nearness.values.crash_probability_braking(), 1),
             _ => (nearness.values.crash_probability(), 0),
         };
-        known.unwrap_or_else(|| self.value(&self.of_pairs[nearness.chances.place as usize][which], roster))
+        known.unwrap_or_else(|| {
+            self.asked_for.set(self.asked_for.get() + 1);
+            self.value(&self.of_pairs[nearness.chances.place as usize][which], roster)
+        })
+    }
+
+    /// How many probabilities were never worked out.
+    pub fn left_out(&self) -> u64 {
+        self.left_out.saturating_sub(self.asked_for.get())
     }
 
     fn work_out(
@@ -113,5 +131,16 @@ impl Detector {
     /// [`LoggedMeasure::CrashProbabilityBraking`].
     pub fn crash_probability(&self, roster: &Roster, nearness: &Nearness, measure: LoggedMeasure) -> Probability {
         self.workers[nearness.chances.worker as usize].found.chances.of(nearness, measure, roster)
+    }
+
+    /// An encounter of this step with its crash probabilities.
+    pub fn with_probabilities(&self, roster: &Roster, found: &Encounter) -> Encounter {
+        let with = |near: Nearness| {
+            let crash_at_most = CHANCES.map(|measure| self.crash_probability(roster, &near, measure));
+            let add = |values: LoggedValues, (measure, value)| values.with(measure, Some(value));
+            let values = CHANCES.into_iter().zip(crash_at_most).fold(near.values, add);
+            Nearness { values, crash_at_most, ..near }
+        };
+        Encounter { nearness: found.nearness.map(with), ..*found }
     }
 }

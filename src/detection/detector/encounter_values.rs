@@ -1,7 +1,7 @@
 //! Narrow phase, second half: the gap of a pair whose foe first has to arrive and leave, and the measures of a pair in
 //! conflict.
 
-use super::chances::{Chance, Chances};
+use super::chances::{CHANCES, Chance, Chances};
 use super::cover;
 use super::occupancy::Carriages;
 use super::overlap::shrinks;
@@ -27,9 +27,6 @@ use crate::geometry::{contact, polygon};
 use crate::options::Mode;
 use crate::traffic::profile::Category;
 use crate::util::units::{Metre, MetrePerSecondSquared, Second};
-
-/// The measures of the two chances of a pair.
-const CHANCES: [LoggedMeasure; 2] = [LoggedMeasure::CrashProbability, LoggedMeasure::CrashProbabilityBraking];
 
 impl StepInputs<'_> {
     /// How far ahead a road user's path has to be known to measure a pair that it is in.
@@ -163,7 +160,7 @@ impl StepInputs<'_> {
             self.timely(scratch, chances, pair, met, encounter)
         };
         let each = [timely.chance, self.chance_braking([&pair[0][0], &pair[1][0]], met, encounter)];
-        let (mut values, mut crash_at_most) = (timely.values, [0.0; 2]);
+        let (mut values, mut crash_at_most, mut left_out) = (timely.values, [0.0; 2], 0);
         for ((measure, chance), at_most) in CHANCES.into_iter().zip(&each).zip(&mut crash_at_most) {
             *at_most = if self.shortcuts.known_chances { chances.at_most(chance, self.roster) } else { 1.0 };
             let decides = *at_most >= self.options.severity_thresholds().least_probability(LIKELY);
@@ -175,6 +172,7 @@ impl StepInputs<'_> {
             };
             values = values.with(measure, value);
             *at_most = value.unwrap_or(*at_most);
+            left_out += usize::from(value.is_none());
         }
         let (ttc, drac) = (values.ttc(), values.drac());
         let [ego, foe] = [&pair[0][0], &pair[1][0]];
@@ -210,7 +208,7 @@ impl StepInputs<'_> {
             clearance,
             values,
             crash_at_most,
-            chances: ChancesIndex { worker: chances.worker, place: chances.add(each) },
+            chances: ChancesIndex { worker: chances.worker, place: chances.add(each, left_out) },
             unavoidable,
             assessment: Assessment::of(&inputs, self.options.severity_thresholds()),
         }

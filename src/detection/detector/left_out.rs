@@ -61,6 +61,7 @@ pub(super) fn left_out(work: &Work, shortcuts: Shortcuts) -> Vec<LeftOut> {
         ("narrow-phase tests", "the boxes around the two paths do not meet", work.paths_apart),
         ("sweeps", "both drive straight ahead in parallel, so one dimension is enough", work.in_line),
         ("lane lookups", "vehicle still on its predicted path", work.known_paths),
+        ("crash probabilities", "an upper bound shows that they decide nothing", work.known_chances),
     ];
     let done_without = counted.into_iter().filter(|(_, _, times)| *times > 0);
     let done_without = done_without.map(|(what, why, times)| LeftOut { what, why, times: Some(times) });

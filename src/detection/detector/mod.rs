@@ -233,12 +233,13 @@ impl Detector {
 
     /// What was left out so far.
     pub fn left_out(&self) -> Vec<LeftOut> {
-        left_out::left_out(&self.work, self.shortcuts)
+        left_out::left_out(&self.work(), self.shortcuts)
     }
 
     /// The work done so far.
     pub fn work(&self) -> Work {
-        Work { sorted_anew: self.search.sorted_anew(), ..self.work }
+        let known_chances = self.workers.iter().map(|worker| worker.found.chances.left_out()).sum();
+        Work { sorted_anew: self.search.sorted_anew(), known_chances, ..self.work }
     }
 
     /// Forgets a road user that has left the scene, as its index may be given to another.

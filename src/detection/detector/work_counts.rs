@@ -29,6 +29,8 @@ pub struct Work {
     pub side: u64,
     /// Road users that were still on the path built before.
     pub known_paths: u64,
+    /// Crash probabilities that were not worked out.
+    pub known_chances: u64,
     /// Steps in which the areas of all road users were sorted anew, not only those that had changed places.
     pub sorted_anew: u64,
 }
@@ -48,6 +50,7 @@ impl std::ops::AddAssign for Work {
         self.frontal += other.frontal;
         self.side += other.side;
         self.known_paths += other.known_paths;
+        self.known_chances += other.known_chances;
         self.sorted_anew += other.sorted_anew;
     }
 }
