@@ -39,9 +39,9 @@ pub enum Consequence {
 }
 
 /// From this crash probability on a crash is likely: a driver more likely brakes too late than not.
-pub(crate) const LIKELY: Probability = 0.5;
+const LIKELY: Probability = 0.5;
 /// From this crash probability on a crash is near certain: of twenty drivers one brakes in time (our choice).
-pub(crate) const NEAR_CERTAIN: Probability = 0.95;
+const NEAR_CERTAIN: Probability = 0.95;
 /// Evasive braking from this on, in m/s², if needed, makes a crash likely: more than the 0.45 g from which naturalistic
 /// studies look for near-crashes (Simons-Morton et al. 2012, doi:10.1093/aje/kwr440), and than SUMO's cars brake by default.
 pub(crate) const EVASIVE: MetrePerSecondSquared = 4.5;
@@ -180,6 +180,16 @@ impl Assessment {
         };
         Self { severity, nearness, ..self }
     }
+}
+
+/// Whether a severity may depend on where between two bounds a crash probability is.
+pub(crate) fn depends_on(thresholds: SeverityThresholds, [least, most]: [Probability; 2]) -> bool {
+    let own = match thresholds {
+        // A probability of 0 is never late.
+        SeverityThresholds::TimeLeft { probability, .. } => probability.max(f64::MIN_POSITIVE),
+        _ => LIKELY,
+    };
+    [LIKELY, NEAR_CERTAIN, own].iter().any(|threshold| least < *threshold && *threshold <= most)
 }
 
 /// The severity of a nearness and a consequence; it falls with neither.

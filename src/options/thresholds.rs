@@ -36,13 +36,6 @@ pub enum SeverityThresholds {
     },
 }
 
-impl SeverityThresholds {
-    /// The smallest crash probability that can decide a severity, if this one alone decides where a crash counts as likely.
-    pub(crate) fn least_probability(self, likely: Probability) -> Probability {
-        if let Self::TimeLeft { probability, .. } = self { probability.min(likely) } else { likely }
-    }
-}
-
 impl Options {
     /// The bounds between the kinds.
     pub(crate) fn kind_bounds(&self) -> KindBounds {

@@ -9,7 +9,7 @@ use std::cell::Cell;
 use super::Detector;
 use crate::braking::LateBraking;
 use crate::detection::encounter::{Encounter, Nearness};
-use crate::detection::measures::crash_probability::{at_most, crash_probability};
+use crate::detection::measures::crash_probability::{bounds, crash_probability};
 use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
 use crate::detection::measures::ttb::Evasion;
 use crate::traffic::driver_distributions::Driver;
@@ -79,14 +79,24 @@ impl Chances {
         self.of_pairs.len() as u32 - 1
     }
 
-    /// An upper bound of a probability.
-    pub fn at_most(&self, chance: &Chance, roster: &Roster) -> Probability {
-        self.work_out(chance, roster, |driver, has_responded, wait| at_most(driver, has_responded, wait))
+    /// A lower and an upper bound of a probability.
+    pub fn bounds(&self, chance: &Chance, roster: &Roster) -> [Probability; 2] {
+        self.work_out(
+            chance,
+            roster,
+            |known| [known; 2],
+            |driver, has_responded, wait| bounds(driver, has_responded, wait),
+        )
     }
 
     /// A probability.
     pub fn value(&self, chance: &Chance, roster: &Roster) -> Probability {
-        self.work_out(chance, roster, |driver, has_responded, wait| crash_probability(driver, has_responded, wait))
+        self.work_out(
+            chance,
+            roster,
+            |known| known,
+            |driver, has_responded, wait| crash_probability(driver, has_responded, wait),
+        )
     }
 
     /// A probability of a pair that was measured.
@@ -106,14 +116,16 @@ impl Chances {
         self.left_out.saturating_sub(self.asked_for.get())
     }
 
-    fn work_out(
+    /// What follows from a driver, whether it has responded, and its longest wait.
+    fn work_out<T>(
         &self,
         chance: &Chance,
         roster: &Roster,
-        formula: fn(&Driver, bool, &dyn Fn(MetrePerSecondSquared) -> Second) -> Probability,
-    ) -> Probability {
+        known: impl FnOnce(Probability) -> T,
+        formula: impl FnOnce(&Driver, bool, &dyn Fn(MetrePerSecondSquared) -> Second) -> T,
+    ) -> T {
         match chance {
-            Chance::Known(known) => *known,
+            Chance::Known(probability) => known(*probability),
             Chance::Of { driver, braking, evasion, has_responded } => {
                 let driver = &roster.profile_at(*driver).driver;
                 let evasion = evasion.map(|Limits { begin, end }| &self.limits[begin as usize..end as usize]);

@@ -21,7 +21,7 @@ use crate::detection::measures::ttb::{self, Evasion};
 use crate::detection::measures::ttc::{self, SteadyMotion};
 use crate::detection::narrow_phase::{self, ConflictPoint, Participant, side};
 use crate::detection::path::Pose;
-use crate::detection::severity::{Assessment, LIKELY, SeverityInputs};
+use crate::detection::severity::{Assessment, SeverityInputs, depends_on};
 use crate::detection::step_values::StepValues;
 use crate::geometry::{contact, polygon};
 use crate::options::Mode;
@@ -161,17 +161,17 @@ impl StepInputs<'_> {
         };
         let each = [timely.chance, self.chance_braking([&pair[0][0], &pair[1][0]], met, encounter)];
         let (mut values, mut crash_at_most, mut left_out) = (timely.values, [0.0; 2], 0);
-        for ((measure, chance), at_most) in CHANCES.into_iter().zip(&each).zip(&mut crash_at_most) {
-            *at_most = if self.shortcuts.known_chances { chances.at_most(chance, self.roster) } else { 1.0 };
-            let decides = *at_most >= self.options.severity_thresholds().least_probability(LIKELY);
-            let value = match chance {
-                Chance::Known(known) => Some(*known),
-                _ if *at_most == 0.0 => Some(0.0),
-                _ if decides => Some(chances.value(chance, self.roster)),
-                _ => None,
+        for (which, (measure, chance)) in CHANCES.into_iter().zip(&each).enumerate() {
+            let [least, most] = chances.bounds(chance, self.roster);
+            // Only the first decides a severity.
+            let decides = which == 0 && depends_on(self.options.severity_thresholds(), [least, most]);
+            let value = match () {
+                () if least == most => Some(most),
+                () if decides || !self.shortcuts.known_chances => Some(chances.value(chance, self.roster)),
+                () => None,
             };
             values = values.with(measure, value);
-            *at_most = value.unwrap_or(*at_most);
+            crash_at_most[which] = value.unwrap_or(most);
             left_out += usize::from(value.is_none());
         }
         let (ttc, drac) = (values.ttc(), values.drac());
@@ -325,8 +325,13 @@ impl StepInputs<'_> {
         let drac = ttc.map(|ttc| drac::drac(halves, &ego, &foe, ttc, encounter.kind)).filter(|drac| *drac > 0.0);
         let timely = Timely::of_course(ttc, drac);
         // Both go on as now.
-        let ([ego, foe], [smaller_ego, smaller_foe]) = along(users.map(|user| self.deceleration(user)));
-        let meets = ttc::time_to_collision(&smaller_ego, &smaller_foe).and_then(|_| ttc::time_to_collision(&ego, &foe));
+        let decelerations = users.map(|user| self.deceleration(user));
+        let ([ego, foe], [smaller_ego, smaller_foe]) = along(decelerations);
+        let meets = if decelerations == [0.0; 2] {
+            ttc
+        } else {
+            ttc::time_to_collision(&smaller_ego, &smaller_foe).and_then(|_| ttc::time_to_collision(&ego, &foe))
+        };
         let Some(meets) = meets else { return timely };
         let foe_braking = self.late_braking(met.slots[1], pair[1]);
         let alone = ttb::to_stay_behind(halves, limits, [&ego, &foe], &braking, meets);

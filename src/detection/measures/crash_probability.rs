@@ -34,25 +34,31 @@ pub fn crash_probability(
     if driver.is_punctual() {
         return driver.brakes_too_weakly(|deceleration| driver.responds_later_than(longest_wait(deceleration)) > 0.5);
     }
-    let most = at_most(driver, false, &longest_wait);
-    if most > 0.0 { late(driver, driver.reach(), driver.decelerations(), &longest_wait).clamp(0.0, most) } else { 0.0 }
+    let [least, most] = bounds(driver, false, &longest_wait);
+    if least == most {
+        return most;
+    }
+    late(driver, driver.reach(), driver.decelerations(), &longest_wait).clamp(least, most)
 }
 
-/// An upper bound of it: that of the weakest brakes. For a driver that has responded, or always responds after the same time, it is
-/// 0 or 1.
-pub fn at_most(
+/// A lower and an upper bound of it: with the strongest and with the weakest brakes.
+pub fn bounds(
     driver: &Driver,
     has_responded: bool,
     longest_wait: impl Fn(MetrePerSecondSquared) -> Second,
-) -> Probability {
-    let [weakest, _] = driver.reach();
-    let wait = longest_wait(weakest);
+) -> [Probability; 2] {
     let [_, latest] = driver.responses();
-    match () {
-        () if has_responded => f64::from(wait < 0.0),
-        () if wait > latest => 0.0,
-        () => driver.responds_later_than(wait),
-    }
+    let at = |deceleration| {
+        let wait = longest_wait(deceleration);
+        match () {
+            () if has_responded => f64::from(wait < 0.0),
+            () if wait > latest => 0.0,
+            () => driver.responds_later_than(wait),
+        }
+    };
+    let [weakest, strongest] = driver.reach();
+    let most = at(weakest);
+    [if most > 0.0 { at(strongest).min(most) } else { 0.0 }, most]
 }
 
 /// The probability of a deceleration in a range with which the driver responds too late. `nodes` stand for this range.

@@ -86,8 +86,8 @@ impl SteadyMotion<'_> {
         if self.deceleration == 0.0 { self.straight_for(self.speed * time) } else { None }
     }
 
-    /// Its rectangle now and its displacement over a distance, if it goes straight on for so long. None on a lane that is
-    /// longer or shorter than drawn: the displacement is not the distance there.
+    /// Its rectangle now and its displacement over a distance, if it goes straight on for so long, as beyond the last pose. None
+    /// on a lane that is longer or shorter than drawn: the displacement is not the distance there.
     pub(super) fn straight_for(&self, distance: Metre) -> Option<(Rectangle, Vector)> {
         let (first, by) = match self.poses {
             [only] => (only, only.axis * distance),
@@ -95,7 +95,8 @@ impl SteadyMotion<'_> {
                 let alike = self.poses.iter().take_while(|pose| pose.axis == first.axis);
                 let last = alike.clone().last()?;
                 let moves = (last.front - first.front).norm();
-                if last.distance < distance || (moves - last.distance).abs() > STRETCHED * last.distance {
+                let goes_on = alike.clone().count() == self.poses.len();
+                if (last.distance < distance && !goes_on) || (moves - last.distance).abs() > STRETCHED * last.distance {
                     return None;
                 }
                 let is_even = |pose: &Pose| {
@@ -105,8 +106,9 @@ impl SteadyMotion<'_> {
                 if !alike.clone().all(is_even) {
                     return None;
                 }
-                let part = if distance > 0.0 { distance / last.distance } else { 0.0 };
-                (first, (last.front - first.front) * part)
+                let within = distance.min(last.distance);
+                let part = if within > 0.0 { within / last.distance } else { 0.0 };
+                (first, (last.front - first.front) * part + last.axis * (distance - within))
             }
             [] => return None,
         };
