@@ -10,7 +10,7 @@
 //! ```
 
 use super::blocked_path::{PARALLEL, contact_distance, largest_need};
-use super::drac_straight::{straight, to_stay_behind};
+use super::drac_straight::{self, straight, to_stay_behind};
 use super::ttc::{HORIZON, SteadyMotion, touch_while_braking};
 use crate::detection::kind::Kind;
 use crate::geometry::bisection::Bisection;
@@ -55,13 +55,19 @@ fn alone(bisection: &mut Bisection, ego: &SteadyMotion, foe: &SteadyMotion, ttc:
 
 /// The least constant deceleration with which both have to brake. Infinite if [`LIMIT`] does not suffice.
 fn together(ego: &SteadyMotion, foe: &SteadyMotion) -> MetrePerSecondSquared {
-    if touch_while_braking(ego, foe, LIMIT) {
+    let straight = ego.straight(2.0 * HORIZON).zip(foe.straight(2.0 * HORIZON));
+    let velocities = straight.map(|pair| <[_; 2]>::from(pair).map(|(of, by)| (of, by / (2.0 * HORIZON))));
+    let touch = |deceleration| match velocities {
+        Some([ego, foe]) => drac_straight::touch_while_braking(ego, foe, deceleration, 2.0 * HORIZON),
+        None => touch_while_braking(ego, foe, deceleration),
+    };
+    if touch(LIMIT) {
         return f64::INFINITY;
     }
     let (mut touches, mut avoids) = (0.0, LIMIT);
     for _ in 0..HALVINGS {
         let middle = (touches + avoids) / 2.0;
-        if touch_while_braking(ego, foe, middle) {
+        if touch(middle) {
             touches = middle;
         } else {
             avoids = middle;
@@ -274,6 +280,23 @@ mod tests {
             let [enough, needed, all] = enough_needed_and_all(kind, 0.05);
             assert!(100 * enough.min(needed) >= least * all, "{kind:?}, turning: {enough} and {needed} of {all}");
         }
+    }
+
+    #[test]
+    fn both_braking_straight_on_is_what_small_parts_of_it_say() {
+        let (mut chance, mut compared) = (Rng::with_seed(3), 0);
+        for _ in 0..20_000 {
+            let [ego, foe] = any_pair(&mut chance, 0.0);
+            let (ego, foe) = (motion(&ego), motion(&foe));
+            let needed = together(&ego, &foe);
+            let least = if needed.is_finite() { 0.98 * needed - 0.01 } else { LIMIT };
+            if least > 0.01 {
+                assert!(touch_while_braking(&ego, &foe, least), "{needed}: {ego:?} {foe:?}");
+                assert!(needed.is_infinite() || !touch_while_braking(&ego, &foe, 1.02 * needed + 0.01));
+                compared += 1;
+            }
+        }
+        assert!(compared > 1000, "{compared}");
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use crate::geometry::Vector;
 use crate::geometry::rectangle::Rectangle;
-use crate::geometry::separating_axes::normals;
+use crate::geometry::separating_axes::{normals, slide};
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
 /// DRAC in m/s² if neither turns before this time, in closed form; what comes later does not count.
@@ -76,6 +76,57 @@ pub(super) fn straight(
         }
     }
     between[..count].iter().fold(needed(from).max(needed(to)), |most, time| most.max(needed(*time)))
+}
+
+/// Whether two that go straight on and both brake with this deceleration touch before they stand or this time is over, in closed
+/// form.
+///
+/// While both brake, the place of one relative to the other is a parabola. If they overlap along all four normals at any time,
+/// they do so at the beginning, at the end, or when they begin to overlap along one. When one stands, the other goes straight on.
+pub(super) fn touch_while_braking(
+    (one, velocity): (Rectangle, Vector),
+    (other, other_velocity): (Rectangle, Vector),
+    deceleration: MetrePerSecondSquared,
+    until: Second,
+) -> bool {
+    /// Where they begin to overlap, rounding may leave them this far apart, in m.
+    const ROUNDED: Metre = 1e-9;
+    let velocities = [velocity, other_velocity];
+    let ahead = velocities.map(|velocity| velocity.try_normalize(0.0).unwrap_or_default());
+    let stands = velocities.map(|velocity| velocity.norm() / deceleration);
+    let end = stands[0].min(stands[1]).min(until);
+    let (apart, speed) = (other.centre - one.centre, other_velocity - velocity);
+    let braked = (ahead[1] - ahead[0]) * (deceleration / 2.0);
+    let place = |time: Second| apart + speed * time - braked * (time * time);
+    let axes = normals(&one, &other);
+    let touch_at = |time: Second| {
+        let place = place(time);
+        axes.iter().all(|(normal, reach)| normal.dot(&place).abs() <= reach + ROUNDED)
+    };
+    let begins = |(normal, reach): &(Vector, Metre)| {
+        let (room, change, bend) = (normal.dot(&apart), normal.dot(&speed), normal.dot(&braked));
+        [-reach, *reach].into_iter().flat_map(move |side| roots(-bend, change, room - side))
+    };
+    let within = |time: &Second| (0.0..=end).contains(time);
+    if touch_at(0.0) || touch_at(end) || axes.iter().flat_map(begins).filter(within).any(touch_at) {
+        return true;
+    }
+    let moved = [0, 1].map(|which| {
+        let travelled = |time: Second| {
+            let brakes = time.min(stands[which]);
+            ahead[which] * ((velocities[which].norm() - deceleration * brakes / 2.0) * brakes)
+        };
+        (travelled(end), travelled(until) - travelled(end))
+    });
+    let at = |of: &Rectangle, by: Vector| Rectangle { centre: of.centre + by, ..*of };
+    slide(&at(&one, moved[0].0), &(moved[0].1 - moved[1].1), &at(&other, moved[1].0)).is_some()
+}
+
+/// The real roots of a t² + b t + c, without cancellation.
+fn roots(a: f64, b: f64, c: f64) -> [f64; 2] {
+    let root = (b * b - 4.0 * a * c).sqrt();
+    let sum = -(b + root.copysign(b)) / 2.0;
+    [sum / a, c / sum]
 }
 
 /// A distance that changes evenly over time.
