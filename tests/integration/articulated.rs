@@ -45,7 +45,7 @@ fn meet(road: &Road, profile: &Profile, steps: &[(f64, f64, State)], options: &O
         detector.broad_phase(&frame, &roster);
         let _ = detector.narrow_phase(&frame, &roster);
     }
-    detector.encounters().copied().collect()
+    detector.encounters().map(|found| detector.with_probabilities(&roster, found)).collect()
 }
 
 /// A car that stands along the bend, this far from the circle's centre.
