@@ -175,7 +175,7 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     let of_foe = foe.lanes_over([0.0, foe.to_meeting]).collect::<Vec<LaneIndex>>();
     let is_known = !of_ego.is_empty() && !of_foe.is_empty();
     let relates = |one: LaneIndex, other: LaneIndex| {
-        let is_beside = net.lanes[one.0 as usize].edge == net.lanes[other.0 as usize].edge;
+        let is_beside = net.lanes[one].edge == net.lanes[other].edge;
         net.relates(one, other) || (is_beside && changes_lanes(net, pair))
     };
     is_known && !of_ego.iter().any(|one| of_foe.iter().any(|other| relates(*one, *other)))

@@ -200,10 +200,10 @@ pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Se
     });
     let drifts = || -> Option<Second> {
         let (net, own) = pair.around.net.zip(course.at(0.0))?;
-        let lane = &net.lanes[own.0 as usize];
+        let lane = &net.lanes[own];
         let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
         let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) }?;
-        let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize)?;
+        let next = net.edges[lane.edge].lanes.get(next as usize)?;
         let is_towards = other.course.of(*next).is_some() && other.course.of(own).is_none();
         (is_towards && course.lateral_speed.abs() > DRIFT).then_some(pair.time)
     };

@@ -213,7 +213,7 @@ fn once(column: Value) -> Value {
 /// The edge or junction of a lane, in words; without a net, guessed from the lane's id.
 fn spot(lane: &str, net: Option<&Net>) -> String {
     let known = net.and_then(|net| {
-        let edge = &net.edges[net.lanes[net.lane(lane)?.0 as usize].edge.0 as usize];
+        let edge = &net.edges[net.lanes[net.lane(lane)?].edge];
         let within = edge.function != EdgeFunction::Normal && !edge.junction.is_empty();
         Some(if within { format!("junction {}", edge.junction) } else { format!("edge {}", edge.id) })
     });
