@@ -6,3 +6,4 @@ pub mod index;
 pub mod limits;
 pub mod threads;
 pub mod units;
+pub mod variants;
