@@ -1,14 +1,19 @@
 //! The kind and the severity of a conflict.
 
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 use crate::options::thresholds::KindBounds;
 use crate::util::units::Radian;
+use crate::util::variants::array;
 
 /// How the two road users of a pair meet, by the angle between their headings at the conflict point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, IntoStaticStr, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Kind {
     /// The ego runs into a foe that drives in the same direction.
     #[cfg_attr(feature = "clap", value(alias = "rear-end"))]
@@ -21,15 +26,11 @@ pub enum Kind {
 
 impl Kind {
     /// All kinds, in the order used in tables.
-    pub const ALL: [Self; 3] = [Self::RearEnd, Self::Frontal, Self::Side];
+    pub const ALL: [Self; Self::VARIANTS.len()] = array(Self::VARIANTS);
 
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::RearEnd => "rear_end",
-            Self::Frontal => "frontal",
-            Self::Side => "side",
-        }
+        self.into()
     }
 
     /// The kind at an angle α between the headings.
@@ -54,9 +55,12 @@ impl Kind {
 }
 
 /// How severe a conflict is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, IntoStaticStr, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Severity {
     /// None of the following.
     Caution,
@@ -68,14 +72,10 @@ pub enum Severity {
 
 impl Severity {
     /// All severities, mildest first.
-    pub const ALL: [Self; 3] = [Self::Caution, Self::Serious, Self::Critical];
+    pub const ALL: [Self; Self::VARIANTS.len()] = array(Self::VARIANTS);
 
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Caution => "caution",
-            Self::Serious => "serious",
-            Self::Critical => "critical",
-        }
+        self.into()
     }
 }

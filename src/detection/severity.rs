@@ -7,15 +7,19 @@
 //! **Consequence**: what would a crash have meant? By the ΔV of both, and the injuries to be expected from it.
 
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 use super::kind::Severity;
 use crate::options::thresholds::SeverityThresholds;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Probability, Second};
 
 /// How near to a crash a conflict was.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, IntoStaticStr, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum NearnessLevel {
     /// A crash would have taken more than an ordinary driver's response.
     Possible,
@@ -26,9 +30,12 @@ pub enum NearnessLevel {
 }
 
 /// What a crash would have meant.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, IntoStaticStr, VariantArray,
+)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Consequence {
     /// Damage at most.
     Minor,
@@ -99,16 +106,9 @@ pub struct Assessment {
 }
 
 impl NearnessLevel {
-    /// All, the farthest first.
-    pub const ALL: [Self; 3] = [Self::Possible, Self::Likely, Self::NearCertain];
-
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Possible => "possible",
-            Self::Likely => "likely",
-            Self::NearCertain => "near_certain",
-        }
+        self.into()
     }
 
     /// That of a step.
@@ -128,16 +128,9 @@ impl NearnessLevel {
 }
 
 impl Consequence {
-    /// All, the mildest first.
-    pub const ALL: [Self; 3] = [Self::Minor, Self::Moderate, Self::Severe];
-
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Minor => "minor",
-            Self::Moderate => "moderate",
-            Self::Severe => "severe",
-        }
+        self.into()
     }
 
     /// That of a collision in which a velocity changes by ΔV.
@@ -246,9 +239,10 @@ mod tests {
     fn the_table_falls_with_neither_answer() {
         for [one, other] in [[0, 1], [1, 2]] {
             for third in 0..3 {
-                let [near, far] = [other, one].map(|place| table(NearnessLevel::ALL[place], Consequence::ALL[third]));
+                let [near, far] =
+                    [other, one].map(|place| table(NearnessLevel::VARIANTS[place], Consequence::VARIANTS[third]));
                 let [worse, milder] =
-                    [other, one].map(|place| table(NearnessLevel::ALL[third], Consequence::ALL[place]));
+                    [other, one].map(|place| table(NearnessLevel::VARIANTS[third], Consequence::VARIANTS[place]));
                 assert!(near >= far && worse >= milder);
             }
         }

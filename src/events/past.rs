@@ -3,6 +3,8 @@
 
 use std::collections::VecDeque;
 
+use typed_index_collections::TiVec;
+
 use crate::geometry::Point;
 use crate::traffic::frame::{Frame, Row};
 use crate::traffic::roster::UserIndex;
@@ -35,12 +37,12 @@ pub(super) struct Past {
 struct PastStep {
     time: Second,
     /// By [`UserIndex`]: x and y of the front bumper, and the heading.
-    places: Vec<[f64; 3]>,
+    places: TiVec<UserIndex, [f64; 3]>,
 }
 
 impl PastStep {
     fn of(&self, user: UserIndex) -> Option<(Second, Point, Radian)> {
-        let &[x, y, heading]: &[Metre; 3] = self.places.get(user.0 as usize)?;
+        let &[x, y, heading]: &[Metre; 3] = self.places.get(user)?;
         (!x.is_nan()).then(|| (self.time, Point::new(x, y), heading))
     }
 }
@@ -62,7 +64,7 @@ impl Past {
         step.places.reserve_exact(users);
         step.places.resize(users, ABSENT);
         for Row { user, state } in frame.rows() {
-            step.places[user.0 as usize] = [state.x, state.y, state.heading];
+            step.places[user] = [state.x, state.y, state.heading];
         }
         self.steps.push_back(step);
     }
@@ -93,7 +95,7 @@ impl Past {
 
     /// Forgets a road user that has left, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
-        for place in self.steps.iter_mut().filter_map(|step| step.places.get_mut(user.0 as usize)) {
+        for place in self.steps.iter_mut().filter_map(|step| step.places.get_mut(user)) {
             *place = ABSENT;
         }
     }

@@ -4,8 +4,11 @@
 //! holds what changes in every step. Both are filled by the source of the data (the bridge from libsumo, replay
 //! from a file, a caller from arrays) and only read by the detector.
 
+use typed_index_collections::TiVec;
+
 use super::roster::UserIndex;
 use crate::geometry::Point;
+use crate::util::index::row_of;
 use crate::util::limits::{ANGLE, HEIGHT, POSITION, SPEED};
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
@@ -99,7 +102,7 @@ pub struct Frame {
     /// How long before `time` road users are where their states say, in s.
     behind: Second,
     /// By [`UserIndex`], the row.
-    rows: Vec<u32>,
+    rows: TiVec<UserIndex, u32>,
     /// The first road user that is where none can be, and why.
     impossible: Option<(UserIndex, String)>,
 }
@@ -112,7 +115,7 @@ impl Frame {
     pub fn begin(&mut self, time: Second) {
         self.time = time;
         for user in self.users.drain(..) {
-            self.rows[user.0 as usize] = ABSENT;
+            self.rows[user] = ABSENT;
         }
         self.states.clear();
         self.reported.clear();
@@ -182,12 +185,8 @@ impl Frame {
 
     /// Records the rows of the road users from this row on.
     fn number(&mut self, first: usize) {
-        for (row, UserIndex(user)) in (first as u32..).zip(&self.users[first..]) {
-            let place = *user as usize;
-            if place >= self.rows.len() {
-                self.rows.resize(place + 1, ABSENT);
-            }
-            self.rows[place] = row;
+        for (row, user) in (first as u32..).zip(&self.users[first..]) {
+            *row_of(&mut self.rows, *user, || ABSENT) = row;
         }
     }
 
@@ -244,7 +243,7 @@ impl Frame {
 
     /// The row of a road user, the last one if it has several; none where it is absent in this step.
     pub fn row_of(&self, user: UserIndex) -> Option<u32> {
-        self.rows.get(user.0 as usize).copied().filter(|row| *row != ABSENT)
+        self.rows.get(user).copied().filter(|row| *row != ABSENT)
     }
 }
 

@@ -1,9 +1,11 @@
 //! Why a vehicle changed lanes, as SUMO tells.
 
 use serde::{Serialize, Serializer};
+use strum::{IntoStaticStr, VariantArray};
 
-/// Why a vehicle changed lanes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Why a vehicle changed lanes, in the order in which reasons are looked for: SUMO may give several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr, VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum LaneChangeReason {
     /// A script told it to.
     Traci,
@@ -20,13 +22,9 @@ pub enum LaneChangeReason {
 }
 
 impl LaneChangeReason {
-    /// All reasons, in the order in which they are looked for: SUMO may give several.
-    pub const ALL: [Self; 6] =
-        [Self::Traci, Self::Strategic, Self::Cooperative, Self::SpeedGain, Self::KeepRight, Self::Sublane];
-
     /// The reason in SUMO's state of a lane change (`vehicle.getLaneChangeState`); none where it tells none.
     pub fn of(state: i32) -> Option<Self> {
-        Self::ALL.into_iter().find(|reason| state & reason.bit() != 0)
+        Self::VARIANTS.iter().copied().find(|reason| state & reason.bit() != 0)
     }
 
     /// SUMO's LCA_TRACI, LCA_STRATEGIC, …
@@ -43,14 +41,7 @@ impl LaneChangeReason {
 
     /// The name in columns.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Traci => "traci",
-            Self::Strategic => "strategic",
-            Self::Cooperative => "cooperative",
-            Self::SpeedGain => "speed_gain",
-            Self::KeepRight => "keep_right",
-            Self::Sublane => "sublane",
-        }
+        self.into()
     }
 }
 

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use ecow::EcoString;
 use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
 
 use super::profile::{Category, Profile, origins};
 use crate::Result;
 use crate::geometry::polygon::Polygon;
+use crate::util::index::index_tables;
 use crate::util::units::Second;
 
 /// A road user of a [`Roster`]: valid from when it enters the scene until it leaves, then given to another.
@@ -18,16 +20,18 @@ pub struct UserIndex(pub u32);
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct ProfileIndex(pub u32);
 
+index_tables!(UserIndex, ProfileIndex);
+
 /// The road users in the scene, by [`UserIndex`].
 #[derive(Clone, Debug, Default)]
 pub struct Roster {
     /// SUMO's ids.
-    ids: Vec<EcoString>,
-    types: Vec<ProfileIndex>,
+    ids: TiVec<UserIndex, EcoString>,
+    types: TiVec<UserIndex, ProfileIndex>,
     /// The shapes of obstacles, in convex parts.
     shapes: FxHashMap<UserIndex, Arc<[Polygon]>>,
-    profiles: Vec<Profile>,
-    free: Vec<u32>,
+    profiles: TiVec<ProfileIndex, Profile>,
+    free: Vec<UserIndex>,
     changes: u64,
     /// By category: a vehicle and a person may be of the same type.
     by_name: FxHashMap<String, [Option<ProfileIndex>; Category::COUNT]>,
@@ -43,16 +47,14 @@ impl Roster {
             return Ok(known);
         }
         profile.check()?;
-        let index = ProfileIndex(self.profiles.len() as u32);
-        self.by_name.entry(profile.name.clone()).or_default()[profile.category as usize] = Some(index);
-        self.profiles.push(profile);
-        Ok(index)
+        let of_name = self.by_name.entry(profile.name.clone()).or_default();
+        Ok(*of_name[profile.category as usize].insert(self.profiles.push_and_get_key(profile)))
     }
 
     /// Sets the response time of a type, from the next step on.
     pub fn set_response(&mut self, profile: ProfileIndex, response: Second) {
         self.changes += 1;
-        self.profiles[profile.0 as usize].brakes.response = response;
+        self.profiles[profile].brakes.response = response;
     }
 
     /// The type added under this name.
@@ -69,15 +71,14 @@ impl Roster {
     pub fn enter(&mut self, id: &str, profile: ProfileIndex) -> UserIndex {
         self.changes += 1;
         match self.free.pop() {
-            Some(index) => {
-                self.ids[index as usize] = id.into();
-                self.types[index as usize] = profile;
-                UserIndex(index)
+            Some(user) => {
+                self.ids[user] = id.into();
+                self.types[user] = profile;
+                user
             }
             None => {
                 self.ids.push(id.into());
-                self.types.push(profile);
-                UserIndex(self.ids.len() as u32 - 1)
+                self.types.push_and_get_key(profile)
             }
         }
     }
@@ -93,7 +94,7 @@ impl Roster {
     pub fn leave(&mut self, user: UserIndex) {
         self.changes += 1;
         self.shapes.remove(&user);
-        self.free.push(user.0);
+        self.free.push(user);
     }
 
     /// The number of times that a road user entered or left.
@@ -103,7 +104,7 @@ impl Roster {
 
     /// SUMO's id of this road user.
     pub fn id(&self, user: UserIndex) -> &EcoString {
-        &self.ids[user.0 as usize]
+        &self.ids[user]
     }
 
     /// The shape of an obstacle, in convex parts; empty for all others.
@@ -113,7 +114,7 @@ impl Roster {
 
     /// The index of this road user's type.
     pub(crate) fn type_of(&self, user: UserIndex) -> ProfileIndex {
-        self.types[user.0 as usize]
+        self.types[user]
     }
 
     /// The type of this road user.
@@ -123,7 +124,7 @@ impl Roster {
 
     /// The type of this index.
     pub fn profile_at(&self, profile: ProfileIndex) -> &Profile {
-        &self.profiles[profile.0 as usize]
+        &self.profiles[profile]
     }
 
     /// The number of indices in use or free: one more than the largest [`UserIndex`].

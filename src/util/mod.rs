@@ -2,6 +2,8 @@
 
 pub mod double_double;
 pub mod golden_section;
+pub mod index;
 pub mod limits;
 pub mod threads;
 pub mod units;
+pub mod variants;

@@ -110,13 +110,13 @@ impl Course {
     fn placement(&self, net: &Net, distance: f64) -> Placement {
         let index = self.lanes.partition_point(|(start, _)| *start <= distance).max(1) - 1;
         let (start, lane) = self.lanes[index];
-        let (drawn, edge) = (net.lines.length(lane.0), |lane: LaneIndex| net.lanes[lane.0 as usize].edge);
+        let (drawn, edge) = (net.lines.length(lane.0), |lane: LaneIndex| net.lanes[lane].edge);
         // Inside a junction, the position is that of the edge before it.
         let before = self.lanes[..=index].iter().rev().map(|(_, lane)| edge(*lane));
         let last = before.filter_map(|edge| self.route.iter().position(|known| *known == edge)).next();
         Placement {
             lane,
-            position: (distance - start) * net.lanes[lane.0 as usize].length / drawn,
+            position: (distance - start) * net.lanes[lane].length / drawn,
             route: Some(self.route.clone()),
             route_position: last.unwrap(),
             lateral_speed: 0.0,
@@ -126,9 +126,9 @@ impl Course {
 
 /// Every course from a lane that nothing leads to, to one that leads nowhere.
 fn courses(net: &Net) -> Vec<Course> {
-    let lane = |index: LaneIndex| &net.lanes[index.0 as usize];
-    let is_normal = |index: LaneIndex| net.edges[lane(index).edge.0 as usize].function == EdgeFunction::Normal;
-    let starts = (0..net.lanes.len() as u32).map(LaneIndex);
+    let lane = |index: LaneIndex| &net.lanes[index];
+    let is_normal = |index: LaneIndex| net.edges[lane(index).edge].function == EdgeFunction::Normal;
+    let starts = net.lanes.keys();
     let starts = starts.filter(|&start| is_normal(start) && lane(start).from.is_empty());
     let mut chains = starts.map(|start| vec![start]).collect::<Vec<_>>();
     let mut courses = Vec::new();
@@ -146,9 +146,9 @@ fn course(net: &Net, lanes: &[LaneIndex]) -> Course {
     let mut course = Course { lanes: Vec::new(), points: Vec::new(), route: Arc::new([]) };
     let mut route = Vec::new();
     for &index in lanes {
-        let lane = &net.lanes[index.0 as usize];
+        let lane = &net.lanes[index];
         course.lanes.push((course.points.last().map_or(0.0, |(distance, _)| *distance), index));
-        if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
+        if net.edges[lane.edge].function == EdgeFunction::Normal {
             route.push(lane.edge);
         }
         for &point in &lane.shape {

@@ -16,7 +16,7 @@ fn set_aside(net: &Net, drives: &[Drive], lasts: f64) -> Vec<(Option<Artefact>, 
 #[test]
 fn one_that_waits_inside_a_junction_is_passed() {
     let net = net_of("left_turn");
-    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap()].length;
     let waits = || drive(&LEFT[1..], length(LEFT[1]) + 3.0, |_| 0.0);
     let comes = |speed: fn(f64) -> f64| drive(&ONCOMING, length(ONCOMING[0]) - 30.0, speed);
     let passed = set_aside(&net, &[waits(), comes(|_| 12.0)], 6.0);
@@ -68,7 +68,7 @@ fn links_that_are_no_foes_cross_only_as_drawn() {
 #[test]
 fn foes_of_the_junction_are_traffic() {
     let net = net_of("left_turn");
-    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap()].length;
     let crash =
         [drive(&LEFT, length(LEFT[0]) - 15.0, |_| 10.0), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 12.0)];
     let found = set_aside(&net, &crash, 5.0);

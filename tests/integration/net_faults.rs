@@ -72,7 +72,7 @@ fn one_that_stands_counts_once_however_many_pass() {
 #[test]
 fn a_vehicle_that_waits_inside_is_one_fault() {
     let net = net_of("left_turn");
-    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap()].length;
     let waits = drive(&LEFT[1..], length(LEFT[1]) + 3.0, |_| 0.0);
     let passes = |number: u32| drive(&ONCOMING, length(ONCOMING[0]) - 30.0 - 25.0 * f64::from(number), |_| 12.0);
     let drives = [waits].into_iter().chain((0..7).map(passes)).collect::<Vec<Drive>>();

@@ -1,6 +1,5 @@
 //! The lane at a place of a net.
 
-use closecall::traffic::net::LaneIndex;
 use closecall::traffic::net::finder::{Finder, REACH, distance};
 use std::path::Path;
 
@@ -16,7 +15,7 @@ fn the_lane_found_is_the_nearest_of_all_lanes() {
     let mut found = 0;
     for (place, aside) in net.lanes.iter().map(|lane| lane.shape[1]).zip(asides.into_iter().cycle()) {
         let place = place + aside;
-        let of_all = (0..).map(LaneIndex).zip(&net.lanes).map(|(index, lane)| (distance(lane, place), index));
+        let of_all = net.lanes.iter_enumerated().map(|(index, lane)| (distance(lane, place), index));
         let nearest = of_all.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(distance, _)| *distance <= REACH);
         assert_eq!(finder.lane_at(&net.lanes, place), nearest.map(|(_, lane)| lane));
         found += usize::from(nearest.is_some());

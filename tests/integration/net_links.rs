@@ -23,10 +23,10 @@ const CORNER: &str = r#"<net>
 fn lanes_have_links_through_the_junction() {
     let net = net(CORNER).unwrap();
     let (ab, via, bc) = (net.lane("ab_0").unwrap(), net.lane(":b_0_0").unwrap(), net.lane("bc_0").unwrap());
-    assert_eq!(net.lanes[ab.0 as usize].links, [Link { to: bc, via: Some(via) }]);
-    assert_eq!(net.lanes[via.0 as usize].links, [Link { to: bc, via: None }]);
-    assert_eq!(net.lanes[bc.0 as usize].from, [via]);
-    assert_eq!(net.edges[net.edge(":b_0").unwrap().0 as usize].junction, "b");
+    assert_eq!(net.lanes[ab].links, [Link { to: bc, via: Some(via) }]);
+    assert_eq!(net.lanes[via].links, [Link { to: bc, via: None }]);
+    assert_eq!(net.lanes[bc].from, [via]);
+    assert_eq!(net.edges[net.edge(":b_0").unwrap()].junction, "b");
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn a_place_is_on_the_nearest_lane() {
 fn a_repeated_point_is_dropped() {
     let net = net(CORNER).unwrap();
     let index = net.lane("bc_0").unwrap();
-    let lane = &net.lanes[index.0 as usize];
+    let lane = &net.lanes[index];
     assert_eq!((lane.shape.len(), lane.width, net.lines.length(index.0)), (2, 2.5, 50.0));
 }
 

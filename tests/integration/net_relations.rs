@@ -1,6 +1,5 @@
 //! Which lanes of a net are related.
 
-use closecall::traffic::net::LaneIndex;
 use std::path::Path;
 
 #[test]
@@ -35,8 +34,8 @@ fn a_lane_is_related_to_what_leads_there_and_goes_on() {
         "/../../sumo_nets/left_turn/left_turn.net.xml"
     )))
     .unwrap();
-    for lane in (0..net.lanes.len() as u32).map(LaneIndex) {
-        for link in &net.lanes[lane.0 as usize].links {
+    for lane in net.lanes.keys() {
+        for link in &net.lanes[lane].links {
             let next = link.via.unwrap_or(link.to);
             assert!(net.relates(lane, next) && net.relates(next, lane));
         }

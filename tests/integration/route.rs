@@ -19,10 +19,10 @@ static TOWN: LazyLock<Net> = LazyLock::new(|| {
 fn route(net: &Net, begin: usize, choices: &[usize]) -> Vec<EdgeIndex> {
     let mut route = vec![EdgeIndex((begin % net.edges.len()) as u32)];
     for choice in choices {
-        let lanes = &net.edges[route[route.len() - 1].0 as usize].lanes;
-        let links = lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).collect::<Vec<_>>();
+        let lanes = &net.edges[route[route.len() - 1]].lanes;
+        let links = lanes.iter().flat_map(|lane| &net.lanes[*lane].links).collect::<Vec<_>>();
         let Some(link) = links.get(choice % links.len().max(1)) else { break };
-        route.push(net.lanes[link.to.0 as usize].edge);
+        route.push(net.lanes[link.to].edge);
     }
     route
 }

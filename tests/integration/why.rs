@@ -72,8 +72,8 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
             let mut position = *displacement;
             let mut lanes = drive.lanes.iter().map(|lane| net.lane(lane).unwrap()).peekable();
             let mut lane = lanes.next().unwrap();
-            while position > net.lanes[lane.0 as usize].length && lanes.peek().is_some() {
-                position -= net.lanes[lane.0 as usize].length;
+            while position > net.lanes[lane].length && lanes.peek().is_some() {
+                position -= net.lanes[lane].length;
                 lane = lanes.next().unwrap();
             }
             if let Some((_, to)) = drive.change.filter(|(since, _)| *since <= time) {
@@ -84,9 +84,9 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
             }
             let (at, heading) = place(&net, lane, position);
             run.frame.push(*user, State { x: at[0], y: at[1], z: 0.0, heading, speed });
-            let edges = drive.lanes.iter().map(|lane| net.lanes[net.lane(lane).unwrap().0 as usize].edge);
-            let route = edges.filter(|edge| !net.edges[edge.0 as usize].id.starts_with(':')).collect::<Vec<_>>();
-            let on = route.iter().position(|edge| *edge == net.lanes[lane.0 as usize].edge).unwrap_or(0);
+            let edges = drive.lanes.iter().map(|lane| net.lanes[net.lane(lane).unwrap()].edge);
+            let route = edges.filter(|edge| !net.edges[*edge].id.starts_with(':')).collect::<Vec<_>>();
+            let on = route.iter().position(|edge| *edge == net.lanes[lane].edge).unwrap_or(0);
             placements.push(Placement {
                 lane,
                 position,
@@ -116,7 +116,7 @@ pub(crate) fn run_of(net: &Net, drives: &[Drive], signals: &[(f64, &str)], stops
 
 /// The place and heading at a position on a lane.
 fn place(net: &Net, lane: closecall::LaneIndex, position: f64) -> ([f64; 2], f64) {
-    let shape = &net.lanes[lane.0 as usize].shape;
+    let shape = &net.lanes[lane].shape;
     let mut left = position;
     for ends in shape.windows(2) {
         let displacement = ends[1] - ends[0];
@@ -160,7 +160,7 @@ pub(crate) const ONCOMING: [&str; 3] = ["from_north_0", ":centre_1_0", "to_south
 fn at_the_crossing(routes: [(&[&'static str], f64); 2], signals: &[(f64, &str)]) -> Vec<[String; 3]> {
     let net = net_of("left_turn");
     let drives = routes.map(|(lanes, before)| {
-        let length = net.lanes[net.lane(lanes[0]).unwrap().0 as usize].length;
+        let length = net.lanes[net.lane(lanes[0]).unwrap()].length;
         drive(lanes, length - before, |_| 10.0)
     });
     logged(&net, &drives, signals, 5.0)
@@ -197,7 +197,7 @@ fn one_that_lets_the_other_go_first_has_yielded() {
 #[test]
 fn the_light_at_the_entry_leaves_the_right_of_way() {
     let net = net_of("left_turn");
-    let length = |lane: &str| net.lanes[net.lane(lane).unwrap().0 as usize].length;
+    let length = |lane: &str| net.lanes[net.lane(lane).unwrap()].length;
     let turns = |time: f64| if time < 2.0 { 0.0 } else { 6.0 };
     let routes =
         [drive(&LEFT[1..], length(LEFT[1]) - 1.0, turns), drive(&ONCOMING, length(ONCOMING[0]) - 18.0, |_| 10.0)];

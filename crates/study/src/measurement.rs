@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use strum::{IntoStaticStr, VariantArray};
 
 use closecall::util::units::Second;
+use closecall::util::variants::array;
 use closecall_run::Result;
 
 /// A choice in closecall's design.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, Serialize, IntoStaticStr, VariantArray)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Axis {
     /// The test whether two rectangles touch.
     Volume,
@@ -27,10 +30,10 @@ pub enum Axis {
     Numbers,
     /// How exactly a turn is swept.
     Turning,
-    /// The prediction of a road user's path.
-    Path,
     /// The window of states from which the curvature of an arc is taken.
     Curvature,
+    /// The prediction of a road user's path.
+    Path,
     /// The decimals and the period of a recording.
     Recording,
     /// How deep an overlap is a collision.
@@ -43,22 +46,7 @@ pub enum Axis {
 
 impl Axis {
     /// All axes, in the order of tables and charts.
-    pub const ALL: [Self; 14] = [
-        Self::Volume,
-        Self::Candidates,
-        Self::Time,
-        Self::Braking,
-        Self::Late,
-        Self::Probability,
-        Self::Numbers,
-        Self::Turning,
-        Self::Curvature,
-        Self::Path,
-        Self::Recording,
-        Self::Tolerance,
-        Self::Measures,
-        Self::Coverage,
-    ];
+    pub const ALL: [Self; Self::VARIANTS.len()] = array(Self::VARIANTS);
 
     /// Whether its items are recordings of SUMO runs.
     pub fn needs_sumo(self) -> bool {
@@ -67,22 +55,7 @@ impl Axis {
 
     /// The name in files and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Volume => "volume",
-            Self::Candidates => "candidates",
-            Self::Time => "time",
-            Self::Braking => "braking",
-            Self::Late => "late",
-            Self::Probability => "probability",
-            Self::Numbers => "numbers",
-            Self::Turning => "turning",
-            Self::Curvature => "curvature",
-            Self::Path => "path",
-            Self::Recording => "recording",
-            Self::Tolerance => "tolerance",
-            Self::Measures => "measures",
-            Self::Coverage => "coverage",
-        }
+        self.into()
     }
 }
 

@@ -74,7 +74,7 @@ impl Detector {
                 } else {
                     self.stop_on_path(row, user, profile, &state);
                     // It still bends along the path on which it came.
-                    self.on_lanes[row] = profile.carriages > 1 && !self.paths[user.0 as usize].track.is_empty();
+                    self.on_lanes[row] = profile.carriages > 1 && !self.paths[user].track.is_empty();
                 }
             }
         }
@@ -148,7 +148,7 @@ impl Detector {
         let (count, step) = (self.speeds.len(), self.step);
         let busy = self.team.busy(count);
         let share = share(busy, count);
-        let parts = self.speeds.chunks_mut(share).enumerate();
+        let parts = self.speeds.raw.chunks_mut(share).enumerate();
         self.team.each(self.workers.iter_mut().take(busy), parts, |worker, (part, speeds)| {
             for (user, last) in (part * share..).zip(speeds) {
                 let user = UserIndex(user as u32);
@@ -170,7 +170,7 @@ impl Detector {
     fn turn(&mut self, frame: &Frame) {
         for user in self.search.slots() {
             let front = frame.state(user.row).front();
-            self.turnings[user.index.0 as usize].see(frame.time, front, user.axis);
+            self.turnings[user.index].see(frame.time, front, user.axis);
         }
     }
 
@@ -214,7 +214,7 @@ impl Detector {
     fn keep_on_path(&mut self, row: usize, user: UserIndex, profile: &Profile, state: &State) {
         let of_net = lines_of(self.net.as_deref());
         let driven = self.driven_at_most(user, state.speed);
-        self.on_lanes[row] = self.paths[user.0 as usize].follow(of_net, state.front(), driven);
+        self.on_lanes[row] = self.paths[user].follow(of_net, state.front(), driven);
         if !self.on_lanes[row] {
             self.take_jump(row as u32, user, profile, state);
         }
@@ -228,7 +228,7 @@ impl Detector {
     /// How far a road user may have driven in this step, with a reserve: where one lane leads back beside the other, the way
     /// to a place across may be far.
     pub(super) fn driven_at_most(&self, user: UserIndex, speed: MetrePerSecond) -> Metre {
-        let last = self.speeds.get(user.0 as usize).map_or(f64::NAN, |last| last.speed);
+        let last = self.speeds.get(user).map_or(f64::NAN, |last| last.speed);
         if last.is_nan() { f64::INFINITY } else { FASTER * last.max(speed) * self.step + LEAST_DRIVEN }
     }
 
@@ -237,16 +237,16 @@ impl Detector {
     fn stop_on_path(&mut self, row: usize, user: UserIndex, profile: &Profile, state: &State) {
         let of_net = lines_of(self.net.as_deref());
         let driven = self.driven_at_most(user, 0.0);
-        let path = &mut self.paths[user.0 as usize];
+        let path = &mut self.paths[user];
         if !path.track.is_empty()
             && !path.track.is_at(path.lines(of_net), state.front())
             && !path.follow(of_net, state.front(), driven)
         {
             self.take_jump(row as u32, user, profile, state);
-            self.paths[user.0 as usize].clear();
+            self.paths[user].clear();
         }
         let of_net = lines_of(self.net.as_deref());
-        let path = &self.paths[user.0 as usize];
+        let path = &self.paths[user];
         if path.track.is_empty() && of_net.is_stretched() {
             self.unplaced.push(row as u32);
         }

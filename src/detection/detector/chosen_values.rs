@@ -47,7 +47,7 @@ impl Detector {
             let steady = SteadyMotion { poses, speed: state.speed, deceleration: 0.0, length, width: of.width };
             UserInStep {
                 moving: Moving { rectangle, speed: state.speed },
-                acceleration: self.speeds[user.index.0 as usize].acceleration,
+                acceleration: self.speeds[user.index].acceleration,
                 of,
                 course: (!poses.is_empty()).then_some(steady),
             }

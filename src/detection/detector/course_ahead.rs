@@ -9,6 +9,7 @@ use crate::traffic::lane_change::LaneChangeReason;
 use crate::traffic::net::{EdgeFunction, LaneIndex};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::index::row_of;
 use crate::util::units::Metre;
 
 /// A path of which the front bumper is further away than this is not that of the road user now, in m.
@@ -22,10 +23,10 @@ impl Detector {
         // Beyond, how far a path leads depends on the log's condition and on when it was last extended.
         let behind = -(profile.length + KEPT_BEHIND);
         let ahead = reach(state, profile, self.options.epsilon).max(distance);
-        let last = self.speeds.get(user.0 as usize).copied().unwrap_or_default();
+        let last = self.speeds.get(user).copied().unwrap_or_default();
         let (deceleration, since_impossible_stop) = (last.deceleration(), last.since_impossible_stop());
         let mut course = Course { deceleration, since_impossible_stop, ..Course::default() };
-        let Some((net, path)) = self.net.as_deref().zip(self.paths.get(user.0 as usize)) else {
+        let Some((net, path)) = self.net.as_deref().zip(self.paths.get(user)) else {
             return course;
         };
         let is_before_jump = self.jumps.iter().any(|jump| jump.row == row);
@@ -53,12 +54,12 @@ impl Detector {
 
     /// The last change of lanes of a road user.
     pub fn lane_change(&self, user: UserIndex) -> Option<LaneChange> {
-        self.lane_changes.get(user.0 as usize).copied().flatten()
+        self.lane_changes.get(user).copied().flatten()
     }
 
     /// States why a road user changed lanes last.
     pub fn set_lane_change_reason(&mut self, user: UserIndex, reason: Option<LaneChangeReason>) {
-        if let Some(Some(change)) = self.lane_changes.get_mut(user.0 as usize) {
+        if let Some(Some(change)) = self.lane_changes.get_mut(user) {
             change.reason = reason;
         }
     }
@@ -67,13 +68,10 @@ impl Detector {
     /// junction, too.
     pub(super) fn take_lane(&mut self, user: UserIndex, from: Option<LaneIndex>, to: LaneIndex) {
         let (Some(net), Some(from)) = (&self.net, from.filter(|from| *from != to)) else { return };
-        let edge = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+        let edge = |lane: LaneIndex| net.lanes[lane].edge;
         if edge(from) != edge(to) || !matches!(net.function(to), EdgeFunction::Normal | EdgeFunction::Internal) {
             return;
         }
-        if self.lane_changes.len() <= user.0 as usize {
-            self.lane_changes.resize(user.0 as usize + 1, None);
-        }
-        self.lane_changes[user.0 as usize] = Some(LaneChange { time: self.time, from, to, reason: None });
+        *row_of(&mut self.lane_changes, user, || None) = Some(LaneChange { time: self.time, from, to, reason: None });
     }
 }

@@ -8,16 +8,13 @@ use crate::geometry::rectangle::direction;
 use crate::traffic::frame::{Frame, Row};
 use crate::traffic::profile::Category;
 use crate::traffic::roster::{Roster, UserIndex};
+use crate::util::index::row_of;
 use crate::util::units::Metre;
 
 impl Detector {
     /// Adds places to which a road user will drive, or where it is now; each later than the one before.
     pub fn drive(&mut self, user: UserIndex, places: impl IntoIterator<Item = DrivenPlace>) {
-        let number = user.0 as usize;
-        if self.driven.len() <= number {
-            self.driven.resize_with(number + 1, DrivenPlaces::default);
-        }
-        self.driven[number].add(places);
+        row_of(&mut self.driven, user, DrivenPlaces::default).add(places);
     }
 
     /// Lays the paths of a step as far as both phases look.
@@ -30,7 +27,7 @@ impl Detector {
             let profile = roster.profile_of(user);
             let follows = state.moves() || profile.carriages > 1;
             let distance_back = self.distance_back(&state);
-            let path = &mut self.paths[user.0 as usize];
+            let path = &mut self.paths[user];
             if profile.category == Category::Obstacle || !(follows || self.look.is_some()) {
                 path.clear();
                 continue;
@@ -42,14 +39,13 @@ impl Detector {
                 behind: profile.length + distance_back + KEPT_BEHIND,
                 ahead: cover.reach(&state, profile, self.options.epsilon),
             };
-            self.driven[user.0 as usize].lay(path, &now);
+            self.driven[user].lay(path, &now);
             self.on_lanes[row] = follows;
         }
     }
 
     /// Extends a road user's path this far ahead.
     pub(super) fn lengthen_driven(&mut self, user: &User, distance: Metre) {
-        let number = user.index.0 as usize;
-        self.driven[number].lengthen(&mut self.paths[number], user.axis, distance);
+        self.driven[user.index].lengthen(&mut self.paths[user.index], user.axis, distance);
     }
 }

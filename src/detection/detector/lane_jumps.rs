@@ -20,7 +20,7 @@ impl Detector {
     /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. One that was put
     /// elsewhere is as if it had just entered the scene. One that did not head along its path has not jumped from it.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, profile: &Profile, state: &State) {
-        let path = &self.paths[user.0 as usize];
+        let path = &self.paths[user];
         if self.behind() == 0.0 || path.track.is_empty() {
             return;
         }
@@ -35,7 +35,7 @@ impl Detector {
         let aside = off - axis * off.dot(&axis);
         let ahead = displacement.dot(&path.track.ahead_at(lines, 0.0).1);
         if off.norm() >= MOST_JUMP || ahead < -BESIDE {
-            self.speeds[user.0 as usize] = LastSpeed::default();
+            self.speeds[user] = LastSpeed::default();
         } else if aside.norm() >= BESIDE {
             let mut path = path.clone();
             let driven = state.speed * (self.step - self.behind());
@@ -52,7 +52,7 @@ impl Detector {
         let front = path.track.point(path.lines(lines_of(self.net.as_deref())));
         (state.x, state.y, state.heading) = (front.x, front.y, *heading);
         self.on_lanes[*row as usize] = state.moves() || profile.carriages > 1;
-        let next = std::mem::replace(&mut self.paths[user.0 as usize], std::mem::take(path));
+        let next = std::mem::replace(&mut self.paths[*user], std::mem::take(path));
         self.next_paths.push((*user, next));
     }
 
@@ -61,7 +61,7 @@ impl Detector {
         self.jumps.clear();
         self.jumped.clear();
         for (user, path) in self.next_paths.drain(..) {
-            self.paths[user.0 as usize] = path;
+            self.paths[user] = path;
             self.jumped.push(user);
         }
     }

@@ -25,7 +25,7 @@ impl StepInputs<'_> {
             return false;
         };
         let are_level = |a: EdgeIndex, b: EdgeIndex| {
-            let [of_a, of_b] = [a, b].map(|edge| net.edges[edge.0 as usize].ends);
+            let [of_a, of_b] = [a, b].map(|edge| net.edges[edge].ends);
             let mut common = of_a.into_iter().filter(|junction| of_b.contains(junction));
             a == b
                 || of_a == of_b
@@ -44,8 +44,8 @@ impl StepInputs<'_> {
             return None;
         }
         let lanes = path.lanes_between(&net.lines, distance - profile.length, distance);
-        let lane = lanes.last().map(|lane| &net.lanes[lane.0 as usize])?;
+        let lane = lanes.last().map(|lane| &net.lanes[*lane])?;
         let is_off_the_road = path.aside().abs() > (lane.width + profile.width) / 2.0;
-        (!is_off_the_road).then(|| lanes.iter().map(|lane| net.lanes[lane.0 as usize].edge).collect())
+        (!is_off_the_road).then(|| lanes.iter().map(|lane| net.lanes[*lane].edge).collect())
     }
 }

@@ -39,6 +39,8 @@ use std::iter::repeat_n;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use typed_index_collections::TiVec;
+
 use super::broad_phase::Search;
 use super::course::LaneChange;
 use super::encounter::Encounter;
@@ -99,19 +101,19 @@ pub struct Detector {
     /// By slot, the road users as they are met that far ahead; empty where that is none.
     users_further: Vec<User>,
     /// By [`UserIndex`], as long as the road user is in the scene.
-    paths: Vec<LanePath>,
+    paths: TiVec<UserIndex, LanePath>,
     /// By [`UserIndex`]; empty unless paths are what was driven.
-    driven: Vec<DrivenPlaces>,
+    driven: TiVec<UserIndex, DrivenPlaces>,
     /// By [`UserIndex`]; empty unless paths are arcs.
-    turnings: Vec<Turning>,
+    turnings: TiVec<UserIndex, Turning>,
     /// By row of the frame, whether the road user is on its path along lanes.
     on_lanes: Vec<bool>,
     /// By [`UserIndex`], the speed in the last step that the road user was in, and the deceleration since the one before.
-    speeds: Vec<LastSpeed>,
+    speeds: TiVec<UserIndex, LastSpeed>,
     /// By [`UserIndex`], the state that was reported in that step; empty unless road users are moved back.
-    reported: Vec<State>,
+    reported: TiVec<UserIndex, State>,
     /// By [`UserIndex`], the last change of lanes; none where there was none, or beyond the end.
-    lane_changes: Vec<Option<LaneChange>>,
+    lane_changes: TiVec<UserIndex, Option<LaneChange>>,
     /// The road users of the step in slots; those that meet are close in memory.
     search: Search<User>,
     /// The roster's changes until the last step, and the number of road users in that step.
@@ -145,18 +147,18 @@ impl Detector {
             jumps: Vec::new(),
             next_paths: Vec::new(),
             jumped: Vec::new(),
-            reported: Vec::new(),
+            reported: TiVec::new(),
             conflicts_only: false,
             time: f64::INFINITY,
             step: 0.0,
             look: look_ahead(options),
             users_further: Vec::new(),
-            paths: Vec::new(),
-            driven: Vec::new(),
-            turnings: Vec::new(),
+            paths: TiVec::new(),
+            driven: TiVec::new(),
+            turnings: TiVec::new(),
             on_lanes: Vec::new(),
-            speeds: Vec::new(),
-            lane_changes: Vec::new(),
+            speeds: TiVec::new(),
+            lane_changes: TiVec::new(),
             search: Search::default(),
             last_step: (0, 0),
             order: RowOrder::default(),
@@ -245,7 +247,7 @@ impl Detector {
     /// Forgets a road user that has left the scene, as its index may be given to another.
     pub fn forget(&mut self, user: UserIndex) {
         self.lose(user);
-        if let Some(places) = self.driven.get_mut(user.0 as usize) {
+        if let Some(places) = self.driven.get_mut(user) {
             places.clear();
         }
     }
@@ -253,16 +255,16 @@ impl Detector {
     /// Forgets what was known of a road user that is not in the step.
     fn lose(&mut self, user: UserIndex) {
         self.next_paths.retain(|(other, _)| *other != user);
-        if let Some(path) = self.paths.get_mut(user.0 as usize) {
+        if let Some(path) = self.paths.get_mut(user) {
             path.clear();
         }
-        if let Some(speed) = self.speeds.get_mut(user.0 as usize) {
+        if let Some(speed) = self.speeds.get_mut(user) {
             *speed = LastSpeed::default();
         }
-        if let Some(change) = self.lane_changes.get_mut(user.0 as usize) {
+        if let Some(change) = self.lane_changes.get_mut(user) {
             *change = None;
         }
-        if let Some(turning) = self.turnings.get_mut(user.0 as usize) {
+        if let Some(turning) = self.turnings.get_mut(user) {
             turning.clear();
         }
     }

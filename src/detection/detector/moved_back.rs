@@ -69,7 +69,7 @@ impl Detector {
         if self.aligns() {
             self.reported.resize(self.paths.len(), State::NOWHERE);
             for row in 0..frame.len() as u32 {
-                self.reported[frame.user(row).0 as usize] = *frame.reported(row);
+                self.reported[frame.user(row)] = *frame.reported(row);
             }
         }
     }
@@ -93,8 +93,8 @@ impl Detector {
 
     /// The state in which a road user was reported in the last step; none if it was not there, or was put elsewhere since.
     pub(super) fn last_reported(&self, user: UserIndex) -> Option<State> {
-        let is_known = self.speeds.get(user.0 as usize).is_some_and(|last| last.is_known());
-        self.reported.get(user.0 as usize).filter(|_| is_known).copied()
+        let is_known = self.speeds.get(user).is_some_and(|last| last.is_known());
+        self.reported.get(user).filter(|_| is_known).copied()
     }
 
     /// Moves a road user back on its way from where it was reported last.
@@ -102,7 +102,7 @@ impl Detector {
         let driven = state.speed * self.behind();
         let came = if self.on_lanes[row as usize] { self.came(user, profile, last, state) } else { None };
         if let Some(came) = came {
-            let (path, of_net) = (&mut self.paths[user.0 as usize], lines_of(self.net.as_deref()));
+            let (path, of_net) = (&mut self.paths[user], lines_of(self.net.as_deref()));
             let before = path.track.chord(path.lines(of_net), profile.chord);
             path.move_back(of_net, driven.min(came));
             let front = path.track.point(path.lines(of_net));
@@ -114,7 +114,7 @@ impl Detector {
         let driven_straight = (state.front() - last.front()).norm();
         self.on_lanes[row as usize] = false;
         if driven_straight > self.driven_at_most(user, state.speed) {
-            self.speeds[user.0 as usize] = LastSpeed::default();
+            self.speeds[user] = LastSpeed::default();
         } else if driven_straight > 0.0 {
             let ends = [last.front(), state.front()];
             let arc = Bow::new(ends, [last.heading, state.heading]);
@@ -128,7 +128,7 @@ impl Detector {
 
     /// How far a road user came along its path since it was reported last; none if it came another way.
     fn came(&self, user: UserIndex, profile: &Profile, last: &State, state: &State) -> Option<Metre> {
-        let path = &self.paths[user.0 as usize];
+        let path = &self.paths[user];
         path.driven().or_else(|| {
             let lines = path.lines(lines_of(self.net.as_deref()));
             let scale = path.track.scale(lines);

@@ -267,7 +267,7 @@ impl<'a> StepInputs<'a> {
         poses.push(Pose { distance: 0.0, front, axis });
         let distances = &distances[distances.partition_point(|distance| *distance <= 0.0)..];
         if self.options.path == PathModel::Arc && self.options.mode == Mode::Closecall {
-            arc::poses(front, axis, self.turnings[user.index.0 as usize].curvature, carriage.length, distances, poses);
+            arc::poses(front, axis, self.turnings[user.index].curvature, carriage.length, distances, poses);
         } else {
             straight::poses(front, axis, distances, poses);
         }

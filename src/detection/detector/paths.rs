@@ -1,5 +1,7 @@
 //! The paths of all road users, on the lines of the net or on their own.
 
+use typed_index_collections::TiSlice;
+
 use crate::detection::path::Pose;
 use crate::detection::path::lanes::LanePath;
 use crate::detection::path::track::Track;
@@ -28,12 +30,12 @@ impl PathSource {
 /// All paths, and the lines of the net's lanes, which most of them follow.
 #[derive(Clone, Copy)]
 pub(super) struct Paths<'a> {
-    paths: &'a [LanePath],
+    paths: &'a TiSlice<UserIndex, LanePath>,
     of_net: &'a Lines,
 }
 
 impl<'a> Paths<'a> {
-    pub(super) fn new(paths: &'a [LanePath], net: Option<&'a Net>) -> Self {
+    pub(super) fn new(paths: &'a TiSlice<UserIndex, LanePath>, net: Option<&'a Net>) -> Self {
         Self { paths, of_net: lines_of(net) }
     }
 
@@ -44,12 +46,12 @@ impl<'a> Paths<'a> {
 
     /// A road user's path, if it ever had one.
     pub(super) fn of(&self, user: UserIndex) -> Option<&'a LanePath> {
-        self.paths.get(user.0 as usize)
+        self.paths.get(user)
     }
 
     /// A road user's track, and the lines that it is on.
     pub(super) fn track(&self, user: UserIndex) -> (&'a Track, &'a Lines) {
-        let path = &self.paths[user.0 as usize];
+        let path = &self.paths[user];
         (&path.track, path.lines(self.of_net))
     }
 
@@ -81,7 +83,7 @@ impl<'a> Paths<'a> {
 
     /// The lane at a distance ahead of a road user.
     pub(super) fn lane_at(&self, user: UserIndex, ahead: Metre) -> Option<LaneIndex> {
-        self.paths[user.0 as usize].lane_at(self.of_net, ahead)
+        self.paths[user].lane_at(self.of_net, ahead)
     }
 }
 

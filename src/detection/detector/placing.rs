@@ -27,12 +27,12 @@ impl Detector {
 
     /// Whether a road user's route is known from this position on.
     pub fn knows_route(&self, user: UserIndex, position: usize) -> bool {
-        self.paths.get(user.0 as usize).is_some_and(|path| path.knows_route(position))
+        self.paths.get(user).is_some_and(|path| path.knows_route(position))
     }
 
     /// The lane that a road user's front bumper is on, where it follows lanes.
     pub fn lane(&self, user: UserIndex) -> Option<LaneIndex> {
-        self.paths.get(user.0 as usize)?.lane()
+        self.paths.get(user)?.lane()
     }
 
     /// Sets a road user's place on the net. No effect while it is still on a path that matches its route.
@@ -40,7 +40,7 @@ impl Detector {
         let Some(net) = &self.net else { return };
         let Row { user, state } = frame.row(row);
         let distance_back = self.distance_back(&state);
-        let (path, profile) = (&mut self.paths[user.0 as usize], roster.profile_of(user));
+        let (path, profile) = (&mut self.paths[user], roster.profile_of(user));
         let is_for = |route: &Arc<[_]>| path.is_for(net, route, placement.route_position);
         if self.on_lanes[row as usize] && placement.route.as_ref().is_none_or(is_for) {
             return;
@@ -71,7 +71,7 @@ impl Detector {
             if *on_lanes || self.look.is_some() {
                 let profile = roster.profile_of(user);
                 let distance = cover.reach(&state, profile, self.options.epsilon);
-                self.paths[user.0 as usize].extend(net, profile.length, distance);
+                self.paths[user].extend(net, profile.length, distance);
             }
         }
     }
@@ -82,7 +82,7 @@ impl Detector {
             return self.lengthen_driven(user, distance);
         }
         if let Some(net) = &self.net {
-            self.paths[user.index.0 as usize].extend(net, roster.profile_at(user.profile).length, distance);
+            self.paths[user.index].extend(net, roster.profile_at(user.profile).length, distance);
         }
     }
 

@@ -1,5 +1,7 @@
 //! The data that both phases share for each road user of a step, and how far it reaches until it stands.
 
+use typed_index_collections::TiSlice;
+
 use super::cover::{Cover, reach};
 use super::last_speed::LastSpeed;
 use super::paths::{PathSource, Paths};
@@ -60,7 +62,7 @@ pub(super) struct StepView<'a> {
     pub is_earlier: bool,
     pub on_lanes: &'a [bool],
     /// By [`UserIndex`], the speed in the last step that the road user was in.
-    pub speeds: &'a [LastSpeed],
+    pub speeds: &'a TiSlice<UserIndex, LastSpeed>,
     pub paths: Paths<'a>,
 }
 
@@ -100,7 +102,7 @@ impl StepView<'_> {
             PathSource::Lanes => !moves || profile.category != Category::Vehicle,
             PathSource::Driven => true,
         };
-        let last = || self.speeds.get(index.0 as usize);
+        let last = || self.speeds.get(index);
         let is_new = || last().is_none_or(|last| last.speed.is_nan());
         let bends = profile.carriages > 1 && on_lanes && !ahead && {
             let (track, lines) = self.paths.track(index);

@@ -1,5 +1,7 @@
 //! What the narrow phase reads of the current step.
 
+use typed_index_collections::TiSlice;
+
 use super::cover::Cover;
 use super::last_speed::LastSpeed;
 use super::paths::Paths;
@@ -11,7 +13,7 @@ use crate::options::condition::LookAhead;
 use crate::traffic::frame::{Frame, State};
 use crate::traffic::net::{Net, Overlaps};
 use crate::traffic::profile::{Carriage, Category, Profile};
-use crate::traffic::roster::Roster;
+use crate::traffic::roster::{Roster, UserIndex};
 use crate::util::units::{Metre, MetrePerSecondSquared};
 
 /// The inputs of the narrow phase in the current step.
@@ -27,8 +29,8 @@ pub(super) struct StepInputs<'a> {
     /// The lanes that overlap as drawn.
     pub overlaps: &'a Overlaps,
     pub paths: Paths<'a>,
-    pub turnings: &'a [Turning],
-    pub speeds: &'a [LastSpeed],
+    pub turnings: &'a TiSlice<UserIndex, Turning>,
+    pub speeds: &'a TiSlice<UserIndex, LastSpeed>,
     pub reach: Reach<'a>,
     pub users: &'a [User],
     /// How far ahead pairs are met.
@@ -107,7 +109,7 @@ impl StepInputs<'_> {
 
     /// Its deceleration since the last step, 0 or more.
     pub fn deceleration(&self, user: &User) -> MetrePerSecondSquared {
-        self.speeds[user.index.0 as usize].deceleration()
+        self.speeds[user.index].deceleration()
     }
 
     pub fn profile(&self, user: &User) -> &Profile {

@@ -120,7 +120,7 @@ impl LanePath {
 
     /// Builds the path; it stays empty where the lane has no geometry.
     pub fn build(&mut self, net: &Net, start: &PathStart, placement: &Placement) {
-        let lane = &net.lanes[placement.lane.0 as usize];
+        let lane = &net.lanes[placement.lane];
         let line = net.lines.line(placement.lane.0);
         let length = net.lines.length(placement.lane.0);
         let hint = placement.position * length / lane.length.max(f64::MIN_POSITIVE);
@@ -323,7 +323,7 @@ fn offset(
         before,
         ahead: start.speed / net.stretch(placement.lane),
         width: start.width,
-        lane_width: net.lanes[placement.lane.0 as usize].width,
+        lane_width: net.lanes[placement.lane].width,
         leads_to_a_lane: leads_to_a_lane(net, placement.lane, placement.lateral_speed),
         sublane: start.sublane,
         step: start.step,
@@ -332,8 +332,8 @@ fn offset(
 
 /// Whether the edge has another lane on that side.
 fn leads_to_a_lane(net: &Net, lane: LaneIndex, towards_higher_lanes: MetrePerSecond) -> bool {
-    let lane = &net.lanes[lane.0 as usize];
-    let last = net.edges[lane.edge.0 as usize].lanes.len() as u32;
+    let lane = &net.lanes[lane];
+    let last = net.edges[lane.edge].lanes.len() as u32;
     if towards_higher_lanes > 0.0 { lane.index + 1 < last } else { lane.index > 0 }
 }
 
@@ -360,7 +360,7 @@ fn lanes_behind(
             let distance = net.lines.length(lane.0) - (start.chord - covered);
             (rear - Foot::of(net.lines.line(lane.0), rear, distance).point).norm()
         };
-        let from = net.lanes[current.0 as usize].from.iter().copied();
+        let from = net.lanes[current].from.iter().copied();
         let before = from.min_by(|&a, &b| distance(a).total_cmp(&distance(b)));
         let Some(before) = before else { break };
         let back = (covered < start.chord).then(|| straight_back(net, current, start.chord - covered)).flatten();

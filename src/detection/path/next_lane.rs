@@ -9,8 +9,8 @@ const EDGES_AHEAD: usize = 9;
 /// The link that leads on from a lane, towards the edges that are ahead on the route. Without a route (`is_free`) any
 /// edge may come next.
 pub(super) fn next_link<'a>(net: &'a Net, lane: LaneIndex, ahead: &[EdgeIndex], is_free: bool) -> Option<&'a Link> {
-    let Lane { links, edge, .. } = &net.lanes[lane.0 as usize];
-    let inside = net.edges[edge.0 as usize].function == EdgeFunction::Internal;
+    let Lane { links, edge, .. } = &net.lanes[lane];
+    let inside = net.edges[*edge].function == EdgeFunction::Internal;
     let wanted = ahead.first();
     if wanted.is_none() && !inside && !is_free {
         return None;
@@ -31,7 +31,7 @@ pub(super) fn next_link<'a>(net: &'a Net, lane: LaneIndex, ahead: &[EdgeIndex], 
 
 /// Whether a lane is on the route, given the edges of the route from the current one on.
 pub(super) fn is_on_route(net: &Net, lane: &Lane, route: &[EdgeIndex]) -> bool {
-    if net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal {
+    if net.edges[lane.edge].function == EdgeFunction::Normal {
         return route.first() == Some(&lane.edge);
     }
     lane.links.first().is_some_and(|link| route.get(1) == Some(&edge_of(net, link.to)))
@@ -39,13 +39,13 @@ pub(super) fn is_on_route(net: &Net, lane: &Lane, route: &[EdgeIndex]) -> bool {
 
 /// The edge of a lane.
 pub(super) fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {
-    net.lanes[lane.0 as usize].edge
+    net.lanes[lane].edge
 }
 
 /// How far a lane of the first edge of a route leads along the route without a lane change (SUMO's criterion for
 /// choosing lanes).
 fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex) -> Metre {
-    let here = &net.lanes[lane.0 as usize];
+    let here = &net.lanes[lane];
     let beyond = match route {
         [_, rest @ ..] if !rest.is_empty() => here
             .links
@@ -60,8 +60,8 @@ fn continuation(net: &Net, route: &[EdgeIndex], lane: LaneIndex) -> Metre {
 
 /// The cosine of the turn from a lane to the next: 1 straight on, −1 for a U-turn.
 fn straightness(net: &Net, lane: LaneIndex, next: LaneIndex) -> f64 {
-    let here = &net.lanes[lane.0 as usize].shape;
-    let there = &net.lanes[next.0 as usize].shape;
+    let here = &net.lanes[lane].shape;
+    let there = &net.lanes[next].shape;
     let (Some([a, b]), Some([c, .., d])) = (here.last_chunk::<2>(), Some(there.as_slice())) else { return 0.0 };
     let out = b - a;
     let on = d - c;

@@ -59,8 +59,8 @@ impl RouteAhead {
     /// Whether it has passed the edge of a lane, or the edges before and behind where the lane is within a junction.
     pub(crate) fn has_passed(&self, net: &Net, lane: LaneIndex) -> bool {
         let passed = self.edges.as_ref().and_then(|edges| edges.get(..=self.begin)).unwrap_or_default();
-        let lane = &net.lanes[lane.0 as usize];
-        let has_edge_of = |lane: &LaneIndex| passed.contains(&net.lanes[lane.0 as usize].edge);
+        let lane = &net.lanes[lane];
+        let has_edge_of = |lane: &LaneIndex| passed.contains(&net.lanes[*lane].edge);
         passed.contains(&lane.edge)
             || (lane.from.iter().any(has_edge_of) && lane.links.iter().any(|link| has_edge_of(&link.to)))
     }
@@ -79,6 +79,6 @@ fn connected<'a>(net: &Net, route: &'a [EdgeIndex], position: usize) -> &'a [Edg
 
 /// Whether a link leads from one edge to another.
 fn has_link(net: &Net, from: EdgeIndex, to: EdgeIndex) -> bool {
-    let lanes = net.edges[from.0 as usize].lanes.iter().map(|lane| &net.lanes[lane.0 as usize]);
-    lanes.flat_map(|lane| &lane.links).any(|link| net.lanes[link.to.0 as usize].edge == to)
+    let lanes = net.edges[from].lanes.iter().map(|lane| &net.lanes[*lane]);
+    lanes.flat_map(|lane| &lane.links).any(|link| net.lanes[link.to].edge == to)
 }

@@ -5,6 +5,7 @@
 //! either. docs/artefacts.md has the rules.
 
 use serde::{Deserialize, Serialize};
+use strum::IntoStaticStr;
 
 use super::manoeuvre::changes_lanes;
 use super::pair::{Pair, Party, STANDS};
@@ -39,9 +40,10 @@ const SWERVES: usize = 2;
 const ALIKE: MetrePerSecond = 1.0;
 
 /// Why a conflict is none of traffic's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, IntoStaticStr)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Artefact {
     /// Two overlap, or would, where they are drawn and not where they drive.
     DrawnOverlap,
@@ -56,18 +58,9 @@ pub enum Artefact {
 }
 
 impl Artefact {
-    /// All, in the order used in tables.
-    pub const ALL: [Self; 5] = [Self::DrawnOverlap, Self::Appeared, Self::StoppedAtOnce, Self::Jumped, Self::Tracking];
-
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::DrawnOverlap => "drawn_overlap",
-            Self::Appeared => "appeared",
-            Self::StoppedAtOnce => "stopped_at_once",
-            Self::Jumped => "jumped",
-            Self::Tracking => "tracking",
-        }
+        self.into()
     }
 
     /// That of a pair in a step; none where it is traffic.
@@ -175,7 +168,7 @@ fn are_unrelated(net: &Net, pair: &Pair) -> bool {
     let of_foe = foe.lanes_over([0.0, foe.to_meeting]).collect::<Vec<LaneIndex>>();
     let is_known = !of_ego.is_empty() && !of_foe.is_empty();
     let relates = |one: LaneIndex, other: LaneIndex| {
-        let is_beside = net.lanes[one.0 as usize].edge == net.lanes[other.0 as usize].edge;
+        let is_beside = net.lanes[one].edge == net.lanes[other].edge;
         net.relates(one, other) || (is_beside && changes_lanes(net, pair))
     };
     is_known && !of_ego.iter().any(|one| of_foe.iter().any(|other| relates(*one, *other)))

@@ -3,12 +3,14 @@
 use std::fmt;
 
 use serde::{Serialize, Serializer};
+use strum::{IntoStaticStr, VariantArray};
 
 use super::manoeuvre::Manoeuvre;
 
-/// Why a conflict came about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// Why a conflict came about, in the order of the evidence.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, IntoStaticStr, VariantArray)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
+#[strum(serialize_all = "snake_case")]
 pub enum Cause {
     /// One drove, or walked, into the junction on red.
     RanRed,
@@ -41,38 +43,9 @@ pub enum Cause {
 pub struct Causes(u16);
 
 impl Cause {
-    /// All causes, in the order of the evidence.
-    pub const ALL: [Self; 12] = [
-        Self::RanRed,
-        Self::LateAmber,
-        Self::DidNotYield,
-        Self::ChangedLane,
-        Self::Overtook,
-        Self::OutsideCrossing,
-        Self::Stood,
-        Self::BehindCurve,
-        Self::LeaderBraked,
-        Self::TooClose,
-        Self::TooFast,
-        Self::Appeared,
-    ];
-
     /// The name in columns and tables.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::RanRed => "ran_red",
-            Self::LateAmber => "late_amber",
-            Self::DidNotYield => "did_not_yield",
-            Self::ChangedLane => "changed_lane",
-            Self::Overtook => "overtook",
-            Self::OutsideCrossing => "outside_crossing",
-            Self::Stood => "stood",
-            Self::BehindCurve => "behind_curve",
-            Self::LeaderBraked => "leader_braked",
-            Self::TooClose => "too_close",
-            Self::TooFast => "too_fast",
-            Self::Appeared => "appeared",
-        }
+    pub fn name(self) -> &'static str {
+        self.into()
     }
 }
 
@@ -112,7 +85,7 @@ impl Causes {
             }
             _ => true,
         };
-        Cause::ALL.into_iter().filter(|cause| self.has(*cause) && fits(*cause)).collect()
+        Cause::VARIANTS.iter().copied().filter(|cause| self.has(*cause) && fits(*cause)).collect()
     }
 
     pub(super) fn add_if(&mut self, cause: Cause, is_there: bool) {
@@ -129,7 +102,7 @@ impl FromIterator<Cause> for Causes {
 impl fmt::Display for Causes {
     fn fmt(&self, to: &mut fmt::Formatter) -> fmt::Result {
         let mut between = "";
-        for cause in Cause::ALL.into_iter().filter(|cause| self.has(*cause)) {
+        for cause in Cause::VARIANTS.iter().copied().filter(|cause| self.has(*cause)) {
             write!(to, "{between}{}", cause.name())?;
             between = " ";
         }

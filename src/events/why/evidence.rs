@@ -193,10 +193,8 @@ fn is_too_fast(pair: &Pair, party: &Party) -> bool {
     let Some((net, lane)) = pair.around.net.zip(party.course.at(0.0)) else { return false };
     // The limit of a lane within a junction is what SUMO takes for its curve.
     let limit = match net.passage(lane) {
-        Some(passage) => {
-            [passage.from, passage.to].map(|lane| net.lanes[lane.0 as usize].speed).into_iter().fold(0.0, f64::max)
-        }
-        None => net.lanes[lane.0 as usize].speed,
+        Some(passage) => [passage.from, passage.to].map(|lane| net.lanes[lane].speed).into_iter().fold(0.0, f64::max),
+        None => net.lanes[lane].speed,
     };
     party.is_vehicle() && party.speed > TOO_FAST * limit + TOO_FAST_BY
 }

@@ -2,6 +2,7 @@
 //! DOT HS 810 767), from the lanes and links before and behind their conflict point. docs/causes.md has the rules.
 
 use serde::Serialize;
+use strum::IntoStaticStr;
 
 use super::pair::{Pair, Party, STANDS, edge_of, turn_between};
 use crate::detection::kind::Kind;
@@ -23,9 +24,10 @@ const ALIKE: Radian = 0.25 * std::f64::consts::PI;
 const AT_THE_JOINT: Metre = 0.1;
 
 /// What the two of a conflict were doing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, IntoStaticStr)]
 #[cfg_attr(feature = "clap", derive(clap::ValueEnum), value(rename_all = "snake_case"))]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Manoeuvre {
     /// One after the other in one lane, or out of it.
     Following,
@@ -60,44 +62,9 @@ pub enum Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// All manoeuvres, in the order used in tables.
-    pub const ALL: [Self; 15] = [
-        Self::Following,
-        Self::CutIn,
-        Self::LaneChange,
-        Self::SideBySide,
-        Self::Merge,
-        Self::Crossing,
-        Self::LeftTurnAcross,
-        Self::RightTurnAcross,
-        Self::TurnInto,
-        Self::OvertakingOncoming,
-        Self::HeadOn,
-        Self::PersonCrossing,
-        Self::PersonAlong,
-        Self::PersonStanding,
-        Self::Object,
-    ];
-
     /// The name in columns and tables.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Following => "following",
-            Self::CutIn => "cut_in",
-            Self::LaneChange => "lane_change",
-            Self::SideBySide => "side_by_side",
-            Self::Merge => "merge",
-            Self::Crossing => "crossing",
-            Self::LeftTurnAcross => "left_turn_across",
-            Self::RightTurnAcross => "right_turn_across",
-            Self::TurnInto => "turn_into",
-            Self::OvertakingOncoming => "overtaking_oncoming",
-            Self::HeadOn => "head_on",
-            Self::PersonCrossing => "person_crossing",
-            Self::PersonAlong => "person_along",
-            Self::PersonStanding => "person_standing",
-            Self::Object => "object",
-        }
+        self.into()
     }
 
     /// That of a pair in a step; none where the lanes of the two are not known.
@@ -200,10 +167,10 @@ pub(super) fn changed_into(pair: &Pair, one: &Party, other: &Party) -> Option<Se
     });
     let drifts = || -> Option<Second> {
         let (net, own) = pair.around.net.zip(course.at(0.0))?;
-        let lane = &net.lanes[own.0 as usize];
+        let lane = &net.lanes[own];
         let towards = if net.left_hand { -course.lateral_speed } else { course.lateral_speed };
         let next = if towards > 0.0 { lane.index.checked_add(1) } else { lane.index.checked_sub(1) }?;
-        let next = net.edges[lane.edge.0 as usize].lanes.get(next as usize)?;
+        let next = net.edges[lane.edge].lanes.get(next as usize)?;
         let is_towards = other.course.of(*next).is_some() && other.course.of(own).is_none();
         (is_towards && course.lateral_speed.abs() > DRIFT).then_some(pair.time)
     };

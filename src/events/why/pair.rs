@@ -205,5 +205,5 @@ pub(super) fn turn_between(net: &Net, one: LaneIndex, other: LaneIndex) -> Radia
 
 /// The edge of a lane.
 pub(super) fn edge_of(net: &Net, lane: LaneIndex) -> EdgeIndex {
-    net.lanes[lane.0 as usize].edge
+    net.lanes[lane].edge
 }

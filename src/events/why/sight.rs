@@ -51,7 +51,7 @@ fn sightline_offset(path: &[Point], reach: Metre) -> Option<(Metre, Point)> {
 fn is_beside_the_road(net: &Net, pair: &Pair, place: Point) -> bool {
     let within =
         pair.ego.course.stretches.iter().filter(|stretch| net.function(stretch.lane) == EdgeFunction::Internal);
-    let mut junctions = within.map(|stretch| net.edges[net.lanes[stretch.lane.0 as usize].edge.0 as usize].ends[0]);
+    let mut junctions = within.map(|stretch| net.edges[net.lanes[stretch.lane].edge].ends[0]);
     net.lanes_at(place, BESIDE_THE_ROAD).next().is_none()
         && !junctions.any(|junction| net.is_near(junction, place, BESIDE_THE_ROAD))
 }

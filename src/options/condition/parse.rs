@@ -1,5 +1,7 @@
 //! Reads a condition: recursive descent over its text.
 
+use strum::VariantNames;
+
 use super::comparison::{Comparison, Operator};
 use super::measure::Measure;
 use super::tree::Tree;
@@ -71,7 +73,7 @@ impl<'a> Parser<'a> {
         if name.is_empty() {
             return Err(self.expected("a measure"));
         }
-        let measure = Measure::ALL.into_iter().find(|measure| measure.name() == name).ok_or_else(|| unknown(name))?;
+        let measure = name.parse().map_err(|_| unknown(name))?;
         self.skip(name.len());
         let found = Operator::ALL.into_iter().find(|(text, _)| self.rest.starts_with(text));
         let (text, operator) = found.ok_or_else(|| self.expected("<, <=, > or >="))?;
@@ -103,11 +105,11 @@ impl<'a> Parser<'a> {
 
 /// That a measure is unknown, and which one may be meant.
 fn unknown(name: &str) -> String {
-    let names = Measure::ALL.map(Measure::name);
+    let names = Measure::VARIANTS;
     let alike = names.iter().map(|known| (strsim::levenshtein(name, known), *known)).min();
     let is_end = |known: &&str| known.strip_suffix(name).is_some_and(|before| before.ends_with('_'));
     let meant = alike.filter(|(edits, _)| 2 * edits <= name.len()).map(|(_, known)| known);
-    let meant = meant.or_else(|| names.into_iter().find(is_end));
+    let meant = meant.or_else(|| names.iter().copied().find(is_end));
     match meant {
         Some(meant) => format!("unknown measure \"{name}\"; did you mean \"{meant}\"?"),
         None => format!("unknown measure \"{name}\"; known are {}", names.join(", ")),

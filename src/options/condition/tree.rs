@@ -87,7 +87,7 @@ impl fmt::Display for Tree {
         };
         match self {
             Self::Compare(Comparison { measure, operator, value }) => {
-                write!(f, "{} {} {value}", measure.name(), operator.text())
+                write!(f, "{measure} {} {value}", operator.text())
             }
             Self::And(parts) => joined(f, parts, " and "),
             Self::Or(parts) => joined(f, parts, " or "),

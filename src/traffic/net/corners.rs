@@ -21,7 +21,7 @@ impl Net {
     /// The walking area at a place, or the nearest just beside it.
     pub fn walking_area_at(&self, place: Point) -> Option<LaneIndex> {
         let away = |lane: LaneIndex| {
-            let area = &self.lanes[lane.0 as usize].shape;
+            let area = &self.lanes[lane].shape;
             let beside = || sides(area).map(|side| distance(side, place)).fold(f64::INFINITY, f64::min);
             if is_inside(sides(area), place) { 0.0 } else { beside() }
         };
@@ -36,8 +36,8 @@ impl Net {
 pub fn cut_corners(net: &Net, deeper_than: Metre) -> Vec<Overlap> {
     let mut driven = FxHashMap::<&str, Vec<LaneIndex>>::default();
     let mut areas = Vec::new();
-    for (lane, index) in net.lanes.iter().zip((0..).map(LaneIndex)) {
-        let edge = &net.edges[lane.edge.0 as usize];
+    for (index, lane) in net.lanes.iter_enumerated() {
+        let edge = &net.edges[lane.edge];
         match edge.function {
             EdgeFunction::Internal if lane.has_vehicles => driven.entry(&edge.junction).or_default().push(index),
             EdgeFunction::WalkingArea => areas.push((index, edge.junction.as_str())),
@@ -47,7 +47,7 @@ pub fn cut_corners(net: &Net, deeper_than: Metre) -> Vec<Overlap> {
     let mut places = Vec::new();
     for (area, junction) in areas {
         for other in driven.get(junction).into_iter().flatten() {
-            let depth = reach(&net.lanes[area.0 as usize].shape, &net.lanes[other.0 as usize]);
+            let depth = reach(&net.lanes[area].shape, &net.lanes[*other]);
             // Deeper, the area lies across the road: persons cross there.
             if depth > deeper_than && depth <= VEHICLE_WIDTH {
                 places.push(Overlap { lanes: (area, *other), depth });

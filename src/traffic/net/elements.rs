@@ -4,6 +4,7 @@ use nalgebra::Point2;
 use smallvec::SmallVec;
 
 use crate::geometry::{Bounds, Vector};
+use crate::util::index::index_tables;
 use crate::util::units::{Metre, MetrePerSecond};
 
 /// SUMO's default width of a lane in m.
@@ -20,6 +21,8 @@ pub struct EdgeIndex(pub u32);
 /// The index of a junction among those that edges begin or end at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct JunctionIndex(pub u32);
+
+index_tables!(LaneIndex, EdgeIndex, JunctionIndex);
 
 /// The purpose of an edge (SUMO's attribute `function`).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@
 
 use parry2d_f64::bounding_volume::Aabb;
 use parry2d_f64::partitioning::{Bvh, BvhBuildStrategy};
+use typed_index_collections::TiSlice;
 
 use super::elements::{Lane, LaneIndex};
 use crate::geometry::{Bounds, Point, parry};
@@ -20,7 +21,7 @@ pub struct Finder {
 
 impl Finder {
     /// A finder of these lanes.
-    pub fn new(lanes: &[Lane]) -> Self {
+    pub fn new(lanes: &TiSlice<LaneIndex, Lane>) -> Self {
         let boxes = lanes.iter().map(|lane| aabb(&lane.bounds())).collect::<Vec<_>>();
         Self { tree: Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes) }
     }
@@ -32,19 +33,24 @@ impl Finder {
 
     /// The lanes that a place is on, or within a distance of, in no particular order; lanes wider than [`REACH`] only as far
     /// as that.
-    pub fn lanes_at(&self, lanes: &[Lane], place: Point, within: Metre) -> impl Iterator<Item = LaneIndex> {
+    pub fn lanes_at(
+        &self,
+        lanes: &TiSlice<LaneIndex, Lane>,
+        place: Point,
+        within: Metre,
+    ) -> impl Iterator<Item = LaneIndex> {
         let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
         let near = self.tree.intersect_aabb(&window).map(LaneIndex).collect::<Vec<_>>().into_iter();
         near.filter(move |lane| {
-            let lane = &lanes[lane.0 as usize];
+            let lane = &lanes[*lane];
             distance(lane, place) <= (lane.width / 2.0 + within).min(REACH)
         })
     }
 
     /// The lane with the nearest centre line; if equal, the first of the net.
-    pub fn lane_at(&self, lanes: &[Lane], place: Point) -> Option<LaneIndex> {
+    pub fn lane_at(&self, lanes: &TiSlice<LaneIndex, Lane>, place: Point) -> Option<LaneIndex> {
         let window = aabb(&Bounds { low: place, high: place }.grown(REACH));
-        let near = self.lanes_in(&window).map(|lane| (distance(&lanes[lane.0 as usize], place), lane));
+        let near = self.lanes_in(&window).map(|lane| (distance(&lanes[lane], place), lane));
         let nearest = near.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         nearest.filter(|(distance, _)| *distance <= REACH).map(|(_, lane)| lane)
     }

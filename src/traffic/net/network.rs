@@ -2,6 +2,7 @@
 
 use nalgebra::Point2;
 use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
 
 use super::degrees::ToDegrees;
 use super::elements::{
@@ -16,9 +17,9 @@ use crate::util::units::{Degree, Metre};
 #[derive(Clone, Debug, Default)]
 pub struct Net {
     /// All lanes, by [`LaneIndex`].
-    pub lanes: Vec<Lane>,
+    pub lanes: TiVec<LaneIndex, Lane>,
     /// All edges, by [`EdgeIndex`].
-    pub edges: Vec<Edge>,
+    pub edges: TiVec<EdgeIndex, Edge>,
     /// All junctions.
     pub junctions: Vec<Junction>,
     /// The lanes' centre lines, by lane; their distances are SUMO's where a lane is longer or shorter than it is drawn.
@@ -36,13 +37,13 @@ pub struct Net {
     /// Finds lanes by place.
     pub finder: Finder,
     /// By [`JunctionIndex`], the box around its outline; empty where the net has none.
-    pub junction_bounds: Vec<Bounds>,
+    pub junction_bounds: TiVec<JunctionIndex, Bounds>,
     /// The ids of the traffic lights that its links name.
     pub lights: Vec<String>,
     /// The ways through its junctions.
     pub passages: Vec<Passage>,
     /// By lane, the passage that it is part of; [`NO_PASSAGE`] for others.
-    pub passage_of: Vec<u32>,
+    pub passage_of: TiVec<LaneIndex, u32>,
     /// The lowest and the highest point of all lanes, in m.
     pub heights: [Metre; 2],
 }
@@ -53,7 +54,7 @@ pub const NO_PASSAGE: u32 = u32::MAX;
 impl Net {
     /// The way through a junction that a lane is part of: a lane within a junction, or a crossing.
     pub fn passage(&self, lane: LaneIndex) -> Option<&Passage> {
-        self.passages.get(*self.passage_of.get(lane.0 as usize)? as usize)
+        self.passages.get(*self.passage_of.get(lane)? as usize)
     }
 
     /// The signals within a distance of a place, each with the lane at whose end it stands; those of vehicles.
@@ -64,14 +65,14 @@ impl Net {
     ) -> impl Iterator<Item = (Signal, LaneIndex)> {
         let of_vehicles = self.passages.iter().filter(|passage| self.function(passage.from) == EdgeFunction::Normal);
         of_vehicles.filter_map(move |passage| {
-            let end = self.lanes[passage.from.0 as usize].shape.last()?;
+            let end = self.lanes[passage.from].shape.last()?;
             Some((passage.signal?, passage.from)).filter(|_| (end - place).norm() <= distance)
         })
     }
 
     /// The purpose of a lane's edge.
     pub fn function(&self, lane: LaneIndex) -> EdgeFunction {
-        self.edges[self.lanes[lane.0 as usize].edge.0 as usize].function
+        self.edges[self.lanes[lane].edge].function
     }
 
     /// Whether one has to yield that takes the first of these ways, both through one junction, to one that takes the other,
@@ -110,7 +111,7 @@ impl Net {
     fn crossings_under(&self, place: Point2<Metre>) -> impl Iterator<Item = &Lane> {
         let lanes = self.finder.lanes_at(&self.lanes, place, 0.0);
         let crossings = lanes.filter(|lane| self.function(*lane) == EdgeFunction::Crossing);
-        let crossings = crossings.map(|lane| &self.lanes[lane.0 as usize]);
+        let crossings = crossings.map(|lane| &self.lanes[lane]);
         crossings.filter(move |lane| distance_beside(&lane.shape, place) <= lane.width / 2.0)
     }
 
@@ -128,14 +129,14 @@ impl Net {
     /// Whether a place is on, or within a distance of, a pavement or an area where persons wait: where no vehicle drives.
     pub(crate) fn is_off_the_road(&self, place: Point2<Metre>, within: Metre) -> bool {
         let is_pavement =
-            |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane.0 as usize].has_vehicles;
+            |lane: LaneIndex| self.function(lane) == EdgeFunction::Normal && !self.lanes[lane].has_vehicles;
         self.finder.lanes_at(&self.lanes, place, within).any(is_pavement) || self.walking_area_at(place).is_some()
     }
 
     /// The lane of an edge with the centre line nearest to a place.
     pub(crate) fn lane_of_edge_at(&self, edge: EdgeIndex, place: Point2<Metre>) -> Option<LaneIndex> {
-        let away = |lane: LaneIndex| distance(&self.lanes[lane.0 as usize], place);
-        let lanes = self.edges[edge.0 as usize].lanes.iter().copied();
+        let away = |lane: LaneIndex| distance(&self.lanes[lane], place);
+        let lanes = self.edges[edge].lanes.iter().copied();
         lanes.min_by(|one, other| away(*one).total_cmp(&away(*other)))
     }
 
@@ -182,11 +183,11 @@ impl Net {
 
     /// Whether a place is within a distance of a junction; true where the net has no outline of it.
     pub fn is_near(&self, junction: JunctionIndex, place: Point2<Metre>, distance: Metre) -> bool {
-        let bounds = &self.junction_bounds[junction.0 as usize];
+        let bounds = &self.junction_bounds[junction];
         bounds.is_empty() || bounds.grown(distance).meet(&Bounds { low: place, high: place })
     }
     /// The id of a lane.
     pub fn lane_id(&self, lane: LaneIndex) -> &str {
-        &self.lanes[lane.0 as usize].id
+        &self.lanes[lane].id
     }
 }

@@ -12,6 +12,7 @@
 //! in every queue.
 
 use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
 
 use super::elements::{EdgeFunction, Lane, LaneIndex};
 use super::finder::{aabb, distance_beside};
@@ -57,12 +58,12 @@ impl Net {
 
     /// Whether the centre lines of two lanes cross.
     pub fn cross_as_drawn(&self, one: LaneIndex, other: LaneIndex) -> bool {
-        cross_each_other(&lane_of(self, one).shape, &lane_of(self, other).shape)
+        cross_each_other(&self.lanes[one].shape, &self.lanes[other].shape)
     }
 
     /// Whether two lanes have room beside each other as they are drawn, each with its width.
     pub fn have_room(&self, one: LaneIndex, other: LaneIndex) -> bool {
-        let [a, b] = [one, other].map(|lane| lane_of(self, lane));
+        let [a, b] = [one, other].map(|lane| &self.lanes[lane]);
         let room = (a.width + b.width) / 2.0 - ROUNDING;
         let is_apart =
             |points: &Lane, line: &Lane| points.shape.iter().all(|point| distance_beside(&line.shape, *point) >= room);
@@ -74,8 +75,8 @@ impl Overlaps {
     fn of(net: &Net) -> Self {
         let connected = Connected::of(net);
         let mut places = Vec::new();
-        for index in (0..net.lanes.len() as u32).map(LaneIndex).filter(|lane| is_driven(net, *lane)) {
-            let window = aabb(&connected.bounds[index.0 as usize].grown(VEHICLE_WIDTH));
+        for index in net.lanes.keys().filter(|lane| is_driven(net, *lane)) {
+            let window = aabb(&connected.bounds[index].grown(VEHICLE_WIDTH));
             let near = net.finder.lanes_in(&window);
             for other in near.filter(|other| *other > index && is_driven(net, *other)) {
                 let depth = connected.overlap(index, other);
@@ -118,13 +119,9 @@ impl Overlaps {
     }
 }
 
-fn lane_of(net: &Net, lane: LaneIndex) -> &Lane {
-    &net.lanes[lane.0 as usize]
-}
-
 fn is_driven(net: &Net, lane: LaneIndex) -> bool {
-    let lane = lane_of(net, lane);
-    let function = net.edges[lane.edge.0 as usize].function;
+    let lane = &net.lanes[lane];
+    let function = net.edges[lane.edge].function;
     lane.has_vehicles && matches!(function, EdgeFunction::Normal | EdgeFunction::Internal)
 }
 
@@ -132,35 +129,34 @@ fn is_driven(net: &Net, lane: LaneIndex) -> bool {
 struct Connected<'a> {
     net: &'a Net,
     /// By lane: for a junction lane, the lanes that its link leads from and to; for others, the lane itself twice.
-    ends: Vec<[LaneIndex; 2]>,
+    ends: TiVec<LaneIndex, [LaneIndex; 2]>,
     /// By lane: its junction and its link there.
-    links: Vec<Option<(u32, u32)>>,
-    bounds: Vec<Bounds>,
+    links: TiVec<LaneIndex, Option<(u32, u32)>>,
+    bounds: TiVec<LaneIndex, Bounds>,
 }
 
 impl<'a> Connected<'a> {
     fn of(net: &'a Net) -> Self {
-        let mut ends = (0..net.lanes.len() as u32).map(|lane| [LaneIndex(lane); 2]).collect::<Vec<_>>();
-        let mut links = vec![None; net.lanes.len()];
-        let is_internal =
-            |lane: LaneIndex| net.edges[lane_of(net, lane).edge.0 as usize].function == EdgeFunction::Internal;
-        for from in (0..net.lanes.len() as u32).map(LaneIndex).filter(|lane| !is_internal(*lane)) {
-            for link in &lane_of(net, from).links {
+        let mut ends = net.lanes.keys().map(|lane| [lane; 2]).collect::<TiVec<_, _>>();
+        let mut links = TiVec::from(vec![None; net.lanes.len()]);
+        let is_internal = |lane: LaneIndex| net.edges[net.lanes[lane].edge].function == EdgeFunction::Internal;
+        for from in net.lanes.keys().filter(|lane| !is_internal(*lane)) {
+            for link in &net.lanes[from].links {
                 let mut next = link.via;
                 // A link has two junction lanes at most.
                 for _ in 0..2 {
                     let Some(via) = next.filter(|via| is_internal(*via)) else { break };
-                    ends[via.0 as usize] = [from, link.to];
-                    next = lane_of(net, via).links.first().and_then(|link| link.via);
+                    ends[via] = [from, link.to];
+                    next = net.lanes[via].links.first().and_then(|link| link.via);
                 }
             }
         }
         for (number, junction) in (0..).zip(&net.junctions) {
             for (link, lane) in (0..).zip(&junction.link_lanes) {
                 let Some(lane) = *lane else { continue };
-                let before = lane_of(net, lane).from.iter().copied().filter(|before| is_internal(*before));
+                let before = net.lanes[lane].from.iter().copied().filter(|before| is_internal(*before));
                 for part in before.chain([lane]) {
-                    links[part.0 as usize] = Some((number, link));
+                    links[part] = Some((number, link));
                 }
             }
         }
@@ -169,12 +165,12 @@ impl<'a> Connected<'a> {
 
     /// By how much two lanes overlap; 0 or less if they do not or are not independent.
     fn overlap(&self, one: LaneIndex, other: LaneIndex) -> Metre {
-        let [a, b] = [one, other].map(|lane| lane_of(self.net, lane));
-        let [ends, others] = [one, other].map(|lane| self.ends[lane.0 as usize]);
+        let [a, b] = [one, other].map(|lane| &self.net.lanes[lane]);
+        let [ends, others] = [one, other].map(|lane| self.ends[lane]);
         if a.edge == b.edge || ends.iter().any(|end| others.contains(end)) {
             return 0.0;
         }
-        let in_one_junction = match (self.links[one.0 as usize], self.links[other.0 as usize]) {
+        let in_one_junction = match (self.links[one], self.links[other]) {
             (Some((junction, link)), Some((same, foe))) if junction == same => {
                 if self.net.junctions[junction as usize].are_foes(link, foe) {
                     return 0.0;
@@ -201,9 +197,9 @@ impl<'a> Connected<'a> {
     /// begins they are not beside each other.
     fn distance(&self, one: LaneIndex, other: LaneIndex, room: Metre) -> Metre {
         let from = |points: LaneIndex, line: LaneIndex| {
-            let near = self.bounds[line.0 as usize].grown(room);
-            let points = lane_of(self.net, points).shape.iter().filter(|point| near.holds(**point));
-            points.map(|point| distance_beside(&lane_of(self.net, line).shape, *point)).fold(f64::INFINITY, f64::min)
+            let near = self.bounds[line].grown(room);
+            let points = self.net.lanes[points].shape.iter().filter(|point| near.holds(**point));
+            points.map(|point| distance_beside(&self.net.lanes[line].shape, *point)).fold(f64::INFINITY, f64::min)
         };
         from(one, other).min(from(other, one))
     }
@@ -215,12 +211,12 @@ impl<'a> Connected<'a> {
         let mut next = 0;
         while let Some(&(lane, travelled)) = reached.get(next).filter(|_| reached.len() < MOST_LANES) {
             next += 1;
-            for link in &lane_of(self.net, lane).links {
+            for link in &self.net.lanes[lane].links {
                 let ahead = link.via.unwrap_or(link.to);
                 if ahead == to {
                     return true;
                 }
-                let travelled = travelled + lane_of(self.net, ahead).length.max(SHORTEST);
+                let travelled = travelled + self.net.lanes[ahead].length.max(SHORTEST);
                 if travelled < within
                     && !reached.iter().any(|(known, shorter)| *known == ahead && *shorter <= travelled)
                 {

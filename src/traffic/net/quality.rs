@@ -28,15 +28,15 @@ impl Net {
 /// several lanes, which all have their edge's length, from map matching and from edited nets.
 pub fn lengths(net: &Net) -> Option<String> {
     let is_driven = |lane: &LaneIndex| {
-        let edge = net.lanes[lane.0 as usize].edge;
-        matches!(net.edges[edge.0 as usize].function, EdgeFunction::Normal | EdgeFunction::Internal)
+        let edge = net.lanes[*lane].edge;
+        matches!(net.edges[edge].function, EdgeFunction::Normal | EdgeFunction::Internal)
     };
-    let lanes = (0..net.lanes.len() as u32).map(LaneIndex).filter(is_driven);
+    let lanes = net.lanes.keys().filter(is_driven);
     let (mut all, mut differ) = (0_u32, 0_u32);
     let mut worst = (0.0, LaneIndex(0));
     for lane in lanes {
         all += 1;
-        let (length, drawn) = (net.lanes[lane.0 as usize].length, net.drawn_length(lane));
+        let (length, drawn) = (net.lanes[lane].length, net.drawn_length(lane));
         let difference = (length - drawn).abs();
         if difference > SHORTEST && difference > LENGTHS_DIFFER * length.max(drawn) {
             differ += 1;
@@ -46,7 +46,7 @@ pub fn lengths(net: &Net) -> Option<String> {
         }
     }
     let are = if differ == 1 { "is" } else { "are" };
-    let lane = &net.lanes[worst.1.0 as usize];
+    let lane = &net.lanes[worst.1];
     let (id, length, drawn) = (&lane.id, lane.length, net.drawn_length(worst.1));
     (differ > 0).then(|| {
         format!(

@@ -25,7 +25,7 @@ impl Net {
             [Some(passage), None] => [passage.from, passage.to].contains(&other),
             [None, Some(passage)] => [passage.from, passage.to].contains(&one),
             [None, None] => {
-                let [a, b] = [one, other].map(|lane| &self.lanes[lane.0 as usize]);
+                let [a, b] = [one, other].map(|lane| &self.lanes[lane]);
                 let leads_to = |link: &Link| b.links.iter().any(|of| of.to == link.to && of.via.is_none());
                 a.from.iter().any(|from| b.from.contains(from))
                     || a.links.iter().any(|link| link.via.is_none() && leads_to(link))
@@ -35,13 +35,13 @@ impl Net {
 
     /// Whether a lane leads directly to another.
     pub(crate) fn follows(&self, from: LaneIndex, to: LaneIndex) -> bool {
-        self.lanes[from.0 as usize].links.iter().any(|link| link.via.unwrap_or(link.to) == to || link.to == to)
+        self.lanes[from].links.iter().any(|link| link.via.unwrap_or(link.to) == to || link.to == to)
     }
 
     /// Whether two lanes are one line in both directions.
     pub fn are_opposite(&self, one: LaneIndex, other: LaneIndex) -> bool {
         let ends = [one, other].map(|lane| {
-            let shape = &self.lanes[lane.0 as usize].shape;
+            let shape = &self.lanes[lane].shape;
             shape.first().zip(shape.last())
         });
         let [Some((begin, end)), Some((other_begin, other_end))] = ends else { return false };

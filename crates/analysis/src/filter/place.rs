@@ -3,6 +3,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use strum::{Display, EnumString, VariantArray};
+
 use closecall::geometry::Point;
 use closecall::util::units::Metre;
 use closecall_run::output::schema::LoggedConflict;
@@ -27,7 +29,8 @@ pub enum Place {
 }
 
 /// A part of the net that has an id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Display, EnumString, VariantArray)]
+#[strum(serialize_all = "snake_case")]
 pub enum Part {
     /// A junction.
     Junction,
@@ -38,16 +41,6 @@ pub enum Part {
 }
 
 impl Part {
-    const ALL: [Self; 3] = [Self::Junction, Self::Edge, Self::Lane];
-
-    fn name(self) -> &'static str {
-        match self {
-            Self::Junction => "junction",
-            Self::Edge => "edge",
-            Self::Lane => "lane",
-        }
-    }
-
     fn of(self, conflict: &LoggedConflict) -> &str {
         match self {
             Self::Junction => conflict.junction(),
@@ -71,7 +64,7 @@ impl Place {
         match self {
             Self::Circle { centre, radius } => (Point::new(conflict.x, conflict.y) - centre).norm() <= *radius,
             Self::Named { part: Some(part), id } => part.of(conflict) == id,
-            Self::Named { part: None, id } => Part::ALL.iter().any(|part| part.of(conflict) == id),
+            Self::Named { part: None, id } => Part::VARIANTS.iter().any(|part| part.of(conflict) == id),
         }
     }
 }
@@ -89,11 +82,8 @@ impl FromStr for Place {
                 _ => Err("a circle must be x,y,radius: three numbers in m, the radius above 0".to_owned()),
             };
         }
-        let part = |part: &Part| Some((*part, text.strip_prefix(part.name())?.strip_prefix(':')?));
-        let (part, id) = match Part::ALL.iter().find_map(part) {
-            Some((part, id)) => (Some(part), id),
-            None => (None, text),
-        };
+        let named = text.split_once(':').and_then(|(part, id)| Some((part.parse().ok()?, id)));
+        let (part, id) = named.map_or((None, text), |(part, id)| (Some(part), id));
         if id.is_empty() {
             return Err("it must be x,y,radius or the id of a junction, edge or lane".to_owned());
         }
@@ -105,7 +95,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             Self::Circle { centre, radius } => write!(f, "{},{},{radius}", centre.x, centre.y),
-            Self::Named { part: Some(part), id } => write!(f, "{}:{id}", part.name()),
+            Self::Named { part: Some(part), id } => write!(f, "{part}:{id}"),
             Self::Named { part: None, id } => f.write_str(id),
         }
     }

@@ -26,8 +26,7 @@ const STOP_LINE: Metre = 0.9;
 pub fn roads(net: &Net, view: &View) -> String {
     let mut text = String::new();
     let lanes = net.lanes.iter().filter(|lane| view.sees(&lane.shape, lane.width)).collect::<Vec<_>>();
-    let of =
-        |function: EdgeFunction| lanes.iter().filter(move |lane| net.edges[lane.edge.0 as usize].function == function);
+    let of = |function: EdgeFunction| lanes.iter().filter(move |lane| net.edges[lane.edge].function == function);
     for area in of(EdgeFunction::WalkingArea) {
         let _ = writeln!(text, "<polygon points=\"{}\" fill=\"{PAVEMENT}\"/>", view.points(&area.shape));
     }
@@ -43,10 +42,10 @@ pub fn roads(net: &Net, view: &View) -> String {
     let [dash, room] = DASHES.map(|length| length * view.scale());
     let dashes = format!(" stroke-dasharray=\"{dash:.1} {room:.1}\"");
     for lane in of(EdgeFunction::Normal).filter(|lane| lane.has_vehicles) {
-        let all = &net.edges[lane.edge.0 as usize].lanes;
+        let all = &net.edges[lane.edge].lanes;
         let inner = if net.left_hand { -1.0 } else { 1.0 };
         let beside = beside(lane, inner * lane.width / 2.0);
-        let is_innermost = all.last().is_some_and(|last| net.lanes[last.0 as usize].id == lane.id);
+        let is_innermost = all.last().is_some_and(|last| net.lanes[*last].id == lane.id);
         text += &line(view, &beside, LINE, MARKING, if is_innermost { "" } else { &dashes });
     }
     let zebra = format!(" stroke-dasharray=\"{:.1}\"", ZEBRA * view.scale());
@@ -90,7 +89,7 @@ pub fn signals(net: &Net, shown: &[ClipSignal], view: &View, time: &Loop) -> Str
 /// The corners of the bar of one of the signals that are shown; none where the net has no such lane.
 pub fn signal_bar(net: &Net, shown: &[ClipSignal], place: usize) -> Option<[Point; 4]> {
     let name = &shown[place].lane;
-    let lane = &net.lanes[net.lane(name)?.0 as usize];
+    let lane = &net.lanes[net.lane(name)?];
     let [.., before, end] = &lane.shape[..] else { return None };
     let along = (end - before).try_normalize(0.0)?;
     let of_lane = shown.iter().filter(|other| other.lane == *name).count();

@@ -69,8 +69,8 @@ impl Chart for Map {
         style: PictureStyle,
     ) -> Result<(), String> {
         let mut bounds = Bounds::EMPTY;
-        let lanes = found.net().map(|net| &net.lanes[..]).unwrap_or_default();
-        lanes.iter().flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
+        let lanes = found.net().into_iter().flat_map(|net| &net.lanes);
+        lanes.flat_map(|lane| &lane.shape).for_each(|point| bounds.include(*point));
         found.places().for_each(|(_, _, place)| bounds.include(place));
         if bounds.low.x > bounds.high.x {
             bounds = Bounds { low: Point::origin(), high: Point::new(100.0, 100.0) };
@@ -94,7 +94,7 @@ fn roads<B: DrawingBackend>(area: &DrawingArea<B, Shift>, net: &Net, view: &View
     for junction in net.junctions.iter().filter(|junction| junction.shape.len() > 2) {
         area.draw(&Polygon::new(view.pixels(&junction.shape), JUNCTION.filled())).map_err(message)?;
     }
-    for lane in net.lanes.iter().filter(|lane| net.edges[lane.edge.0 as usize].function == EdgeFunction::Normal) {
+    for lane in net.lanes.iter().filter(|lane| net.edges[lane.edge].function == EdgeFunction::Normal) {
         let width = ((lane.width - 0.25) * view.scale).round().max(1.0) as u32;
         area.draw(&PathElement::new(view.pixels(&lane.shape), ROAD.stroke_width(width))).map_err(message)?;
     }

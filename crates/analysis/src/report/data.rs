@@ -20,8 +20,6 @@ use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict,
 
 /// The worst conflicts, this many, can be drawn with both rectangles and paths.
 const DRAWN: usize = 2_000;
-/// The cause that one of the two had to yield and did not.
-const DID_NOT_YIELD: &str = Cause::DidNotYield.name();
 /// The number column that nothing on the page shows.
 const NOT_SHOWN: &str = "clearance";
 
@@ -152,7 +150,8 @@ fn columns(text: &mut String, rows: &[RunConflict], drawn: Vec<Value>, net: Opti
     for (place, name) in ["ego_movement", "foe_movement"].into_iter().enumerate() {
         add(name, moves.iter().map(|both| both.map(|both| both.movements[place])).collect());
     }
-    let did_not_yield = |conflict: &LoggedConflict| conflict.cause.split(' ').any(|cause| cause == DID_NOT_YIELD);
+    let did_not_yield =
+        |conflict: &LoggedConflict| conflict.cause.split(' ').any(|cause| cause == Cause::DidNotYield.name());
     let yields = moves.iter().zip(conflicts()).map(|(both, conflict)| both.filter(|_| did_not_yield(conflict))?.yields);
     add("yields", yields.collect());
     let is_there = |column: &&Column| {
@@ -213,7 +212,7 @@ fn once(column: Value) -> Value {
 /// The edge or junction of a lane, in words; without a net, guessed from the lane's id.
 fn spot(lane: &str, net: Option<&Net>) -> String {
     let known = net.and_then(|net| {
-        let edge = &net.edges[net.lanes[net.lane(lane)?.0 as usize].edge.0 as usize];
+        let edge = &net.edges[net.lanes[net.lane(lane)?].edge];
         let within = edge.function != EdgeFunction::Normal && !edge.junction.is_empty();
         Some(if within { format!("junction {}", edge.junction) } else { format!("edge {}", edge.id) })
     });

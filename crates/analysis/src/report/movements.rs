@@ -74,11 +74,11 @@ impl<'a> Movements<'a> {
     /// Those in a net, none yet.
     pub fn of(net: Option<&'a Net>) -> Self {
         let mut edges = FxHashMap::<_, Vec<_>>::default();
-        for (place, edge) in (0..).zip(net.map_or(&[][..], |net| &net.edges)) {
-            let is_road = |net: &Net| edge.lanes.iter().any(|lane| net.lanes[lane.0 as usize].has_vehicles);
+        for (index, edge) in net.iter().flat_map(|net| net.edges.iter_enumerated()) {
+            let is_road = |net: &Net| edge.lanes.iter().any(|lane| net.lanes[*lane].has_vehicles);
             if edge.function == EdgeFunction::Normal && net.is_some_and(is_road) {
-                edges.entry(edge.ends[0]).or_default().push((EdgeIndex(place), Role::Out));
-                edges.entry(edge.ends[1]).or_default().push((EdgeIndex(place), Role::In));
+                edges.entry(edge.ends[0]).or_default().push((index, Role::Out));
+                edges.entry(edge.ends[1]).or_default().push((index, Role::In));
             }
         }
         Self { net, edges, approaches: BTreeMap::new(), list: Vec::new(), places: FxHashMap::default() }
@@ -133,7 +133,7 @@ impl<'a> Movements<'a> {
     }
 
     fn in_net(&mut self, net: &'a Net, conflict: &LoggedConflict) -> Option<[(Movement, Ways<'a>); 2]> {
-        let edge = &net.edges[net.lanes[net.lane(&conflict.lane)?.0 as usize].edge.0 as usize];
+        let edge = &net.edges[net.lanes[net.lane(&conflict.lane)?].edge];
         if edge.function == EdgeFunction::Normal || edge.junction.is_empty() {
             return None;
         }
@@ -161,9 +161,9 @@ impl<'a> Movements<'a> {
 
     /// The movement of a person: its crossing, or the pavement that it is on.
     fn on_foot(&mut self, net: &Net, junction: &str, at: JunctionIndex, lane: LaneIndex) -> Movement {
-        let lane = &net.lanes[lane.0 as usize];
+        let lane = &net.lanes[lane];
         let angle = angle(self.middle(net, at), middle_of(&lane.shape));
-        let place = self.place(junction, &net.edges[lane.edge.0 as usize].id, Role::OnFoot, Some(angle));
+        let place = self.place(junction, &net.edges[lane.edge].id, Role::OnFoot, Some(angle));
         Movement { from: Some(place), to: Some(place), turn: None }
     }
 
@@ -175,13 +175,13 @@ impl<'a> Movements<'a> {
         lane: LaneIndex,
         path: impl Fn() -> Vec<Point>,
     ) -> (Movement, Ways<'a>) {
-        let index = net.lanes[lane.0 as usize].edge;
-        let edge = &net.edges[index.0 as usize];
+        let index = net.lanes[lane].edge;
+        let edge = &net.edges[index];
         let place_of = |edge: EdgeIndex, role| {
-            let name = &net.edges[edge.0 as usize].id;
+            let name = &net.edges[edge].id;
             self.approaches[junction].iter().position(|known| known.name == *name && known.role == role)
         };
-        let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+        let edge_of = |lane: LaneIndex| net.lanes[lane].edge;
         if let Some(passage) = net.passage(lane).filter(|_| edge.ends[0] == at) {
             let movement = Movement {
                 from: place_of(edge_of(passage.from), Role::In),
@@ -195,7 +195,7 @@ impl<'a> Movements<'a> {
             return (Movement { to, ..Movement::default() }, Vec::new());
         }
         let from = place_of(index, Role::In);
-        let vias = edge.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].links).filter_map(|link| link.via);
+        let vias = edge.lanes.iter().flat_map(|lane| &net.lanes[*lane].links).filter_map(|link| link.via);
         let passages = vias.filter_map(|via| net.passage(via)).collect::<Vec<_>>();
         let first = passages.first().map(|passage| edge_of(passage.to));
         let passage = if passages.iter().all(|passage| Some(edge_of(passage.to)) == first) {
@@ -235,7 +235,7 @@ impl<'a> Movements<'a> {
     fn approaches_of(&self, net: &Net, at: JunctionIndex) -> Vec<Approach> {
         let middle = self.middle(net, at);
         let one = |&(edge, role): &(EdgeIndex, Role)| Approach {
-            name: net.edges[edge.0 as usize].id.clone(),
+            name: net.edges[edge].id.clone(),
             angle: Some(angle(middle, point_of(net, edge, role, AWAY))),
             role,
         };
@@ -264,15 +264,15 @@ fn yields(net: &Net, ego: &[&Passage], foe: &[&Passage]) -> Option<u8> {
 fn is_on_foot(net: &Net, lane: LaneIndex) -> bool {
     match net.function(lane) {
         EdgeFunction::Crossing | EdgeFunction::WalkingArea => true,
-        EdgeFunction::Normal => !net.lanes[lane.0 as usize].has_vehicles,
+        EdgeFunction::Normal => !net.lanes[lane].has_vehicles,
         EdgeFunction::Internal | EdgeFunction::Connector => false,
     }
 }
 
 /// Where an edge is that far from the junction, on its middle lane.
 fn point_of(net: &Net, edge: EdgeIndex, role: Role, away: Metre) -> Point {
-    let lanes = &net.edges[edge.0 as usize].lanes;
-    let mut shape = net.lanes[lanes[lanes.len() / 2].0 as usize].shape.clone();
+    let lanes = &net.edges[edge].lanes;
+    let mut shape = net.lanes[lanes[lanes.len() / 2]].shape.clone();
     if role == Role::In {
         shape.reverse();
     }
@@ -352,12 +352,12 @@ mod tests {
         .unwrap();
         let mut movements = Movements::of(Some(&net));
         let mut turns = Vec::new();
-        for (place, lane) in (0..).zip(&net.lanes) {
-            let Some(passage) = net.passage(LaneIndex(place)) else { continue };
-            if net.function(LaneIndex(place)) != EdgeFunction::Internal || passage.lanes[0].0 != place {
+        for (index, lane) in net.lanes.iter_enumerated() {
+            let Some(passage) = net.passage(index) else { continue };
+            if net.function(index) != EdgeFunction::Internal || passage.lanes[0] != index {
                 continue;
             }
-            let all = passage.lanes.iter().flat_map(|lane| &net.lanes[lane.0 as usize].shape);
+            let all = passage.lanes.iter().flat_map(|lane| &net.lanes[*lane].shape);
             let path = all.map(|point| format!("{} {}", point.x, point.y)).collect::<Vec<_>>().join(" ");
             let both = movements.of_both(&conflict(&lane.id, &lane.id, net.lane_id(passage.from), &path)).unwrap();
             let [ego, foe] = both.movements;
@@ -379,8 +379,7 @@ mod tests {
         )))
         .unwrap();
         let mut movements = Movements::of(Some(&net));
-        let passages =
-            (0..net.lanes.len() as u32).map(LaneIndex).filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
+        let passages = net.lanes.keys().filter_map(|lane| net.passage(lane)).collect::<Vec<_>>();
         let id = |passage: &Passage| net.lane_id(passage.lanes[0]);
         let mut found = 0;
         for (one, other) in passages.iter().flat_map(|one| passages.iter().map(move |other| (one, other))) {

@@ -16,7 +16,7 @@ pub fn json(net: &Net) -> Value {
     let mut groups = BTreeMap::<(&str, u32), Vec<&[Point]>>::new();
     let mut stops = BTreeMap::<&str, Vec<[Point; 2]>>::new();
     for lane in &net.lanes {
-        let look = match net.edges[lane.edge.0 as usize].function {
+        let look = match net.edges[lane.edge].function {
             EdgeFunction::Normal if lane.has_vehicles => "road",
             EdgeFunction::Normal => "foot",
             EdgeFunction::Internal => "within",

@@ -2,6 +2,7 @@
 
 use rustc_hash::{FxHashMap, FxHashSet};
 use smallvec::smallvec;
+use typed_index_collections::TiVec;
 
 use super::reader::{Connection, NetReader};
 use crate::{Error, Result};
@@ -25,7 +26,7 @@ impl NetReader<'_> {
                 Some(id) => Some(self.net.lane(id).ok_or_else(|| self.wrong(format!("no lane \"{id}\"")))?),
                 None => None,
             };
-            self.net.lanes[from.0 as usize].links.push(Link { to, via });
+            self.net.lanes[from].links.push(Link { to, via });
             let Connection { direction, signal, .. } = connection;
             let is_crossing = self.net.function(to) == EdgeFunction::Crossing && signal.is_some();
             if self.net.function(from) == EdgeFunction::Normal || is_crossing {
@@ -34,15 +35,15 @@ impl NetReader<'_> {
                     |lane| Passage { junction: 0, link: 0, from, to, direction, signal, lanes: smallvec![lane] };
                 passages.extend(lane.map(passage));
             }
-            let from_lanes = &mut self.net.lanes[via.unwrap_or(to).0 as usize].from;
+            let from_lanes = &mut self.net.lanes[via.unwrap_or(to)].from;
             if !from_lanes.contains(&from) {
                 from_lanes.push(from);
             }
         }
-        self.net.junction_bounds = vec![Bounds::EMPTY; self.junctions.len()];
+        self.net.junction_bounds = vec![Bounds::EMPTY; self.junctions.len()].into();
         for junction in &self.net.junctions {
             if let Some(index) = self.junctions.get(&junction.id) {
-                let bounds = &mut self.net.junction_bounds[index.0 as usize];
+                let bounds = &mut self.net.junction_bounds[*index];
                 junction.shape.iter().for_each(|point| bounds.include(*point));
             }
         }
@@ -68,7 +69,7 @@ impl NetReader<'_> {
                 links.extend(lane.map(|lane| (lane, (number, link))));
             }
         }
-        let mut of = vec![NO_PASSAGE; net.lanes.len()];
+        let mut of = TiVec::from(vec![NO_PASSAGE; net.lanes.len()]);
         let signalled = passages.iter().map(|passage| passage.lanes[0]).collect::<FxHashSet<_>>();
         let is_crossing = |lane: &&LaneIndex| net.function(**lane) == EdgeFunction::Crossing;
         let unsignalled = links.keys().filter(is_crossing).filter(|lane| !signalled.contains(lane));
@@ -86,12 +87,12 @@ impl NetReader<'_> {
         for mut passage in passages {
             // A link has two junction lanes at most.
             let last = passage.lanes[0];
-            let next = net.lanes[last.0 as usize].links.first().and_then(|link| link.via);
+            let next = net.lanes[last].links.first().and_then(|link| link.via);
             passage.lanes.extend(next.filter(|_| net.function(last) == EdgeFunction::Internal));
             let Some((junction, link)) = passage.lanes.last().and_then(|lane| links.get(lane)) else { continue };
             (passage.junction, passage.link) = (*junction, *link);
             for lane in &passage.lanes {
-                of[lane.0 as usize] = net.passages.len() as u32;
+                of[*lane] = net.passages.len() as u32;
             }
             net.passages.push(passage);
         }
@@ -99,7 +100,7 @@ impl NetReader<'_> {
     }
 
     fn end_of(&self, (edge, lane): &(String, u32)) -> Result<LaneIndex> {
-        let lanes = self.net.edge(edge).map(|edge| &self.net.edges[edge.0 as usize].lanes);
+        let lanes = self.net.edge(edge).map(|edge| &self.net.edges[edge].lanes);
         lanes
             .and_then(|lanes| lanes.get(*lane as usize))
             .copied()

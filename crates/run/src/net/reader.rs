@@ -13,7 +13,7 @@ use crate::{Error, Result};
 use closecall::geometry::Vector;
 use closecall::geometry::polylines::stretch;
 use closecall::traffic::net::elements::{
-    Direction, Edge, EdgeFunction, EdgeIndex, Junction, JunctionIndex, Lane, LaneIndex, Location, Signal, USUAL_WIDTH,
+    Direction, Edge, EdgeFunction, Junction, JunctionIndex, Lane, Location, Signal, USUAL_WIDTH,
 };
 use closecall::traffic::net::network::Net;
 use closecall::util::limits::{LANE_LENGTH, LANE_WIDTH, POSITION};
@@ -127,7 +127,7 @@ impl NetReader<'_> {
         let within = junction_of_internal(id);
         let ends = ["from", "to"].map(|end| self.junction_index(attributes.get(end).unwrap_or(within)));
         let junction = attributes.get("to").unwrap_or(within).to_owned();
-        let index = EdgeIndex(self.net.edges.len() as u32);
+        let index = self.net.edges.next_key();
         if self.net.edge_ids.insert(id.to_owned(), index).is_some() {
             return Err(self.wrong(format!("edge \"{id}\" is there twice")));
         }
@@ -148,7 +148,7 @@ impl NetReader<'_> {
 
     fn lane(&mut self, attributes: &ElementAttributes) -> Result<()> {
         let id = attributes.required("id")?;
-        let Some(edge) = self.net.edges.len().checked_sub(1) else {
+        let Some(edge) = self.net.edges.last_key() else {
             return Err(self.wrong(format!("lane \"{id}\" is not inside an edge")));
         };
         let (shape, heights) = attributes.shape(attributes.required("shape")?)?;
@@ -162,7 +162,7 @@ impl NetReader<'_> {
         let limit = attributes.get("speed").and_then(|speed| speed.parse().ok()).filter(|speed| *speed > 0.0);
         let speed = limit.unwrap_or(f64::INFINITY);
         let has_vehicles = attributes.get("allow") != Some("pedestrian") && attributes.get("disallow") != Some("all");
-        let index = LaneIndex(self.net.lanes.len() as u32);
+        let index = self.net.lanes.next_key();
         let edge_lanes = &mut self.net.edges[edge].lanes;
         let place = edge_lanes.len() as u32;
         edge_lanes.push(index);
@@ -173,7 +173,6 @@ impl NetReader<'_> {
         let drawn = shape.windows(2).map(|ends| (ends[1] - ends[0]).norm()).sum();
         self.net.lines.set_stretch(stretch(length, drawn));
         shape.iter().for_each(|point| self.net.lines.push(*point));
-        let edge = EdgeIndex(edge as u32);
         let (links, from) = (Vec::new(), Vec::new());
         let id = id.to_owned();
         self.net.lanes.push(Lane { id, edge, index: place, length, width, speed, has_vehicles, shape, links, from });

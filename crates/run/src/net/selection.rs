@@ -2,14 +2,16 @@
 
 use std::path::Path;
 
+use typed_index_collections::TiVec;
+
 use crate::util::input_file;
 use crate::{Error, Result};
-use closecall::traffic::net::{EdgeFunction, LaneIndex, Net};
+use closecall::traffic::net::{EdgeFunction, EdgeIndex, LaneIndex, Net};
 
 /// A part of the net.
 #[derive(Clone, Debug)]
 pub struct Filter {
-    holds: Vec<bool>,
+    holds: TiVec<LaneIndex, bool>,
 }
 
 impl Filter {
@@ -26,7 +28,7 @@ impl Filter {
     /// # Errors
     /// As for [`Filter::read`].
     pub fn parse(path: &Path, text: &str, net: &Net) -> Result<Self> {
-        let mut filter = Self { holds: vec![false; net.lanes.len()] };
+        let mut filter = Self { holds: vec![false; net.lanes.len()].into() };
         for (line, text) in (1..).zip(text.lines()) {
             let text = text.trim();
             if text.is_empty() {
@@ -38,13 +40,13 @@ impl Filter {
                 .ok_or_else(|| wrong(format!("\"{text}\" is not edge:ID, junction:ID or lane:ID")))?;
             let unknown = || wrong(format!("the net has no {kind} \"{id}\""));
             match kind {
-                "edge" => filter.add_edge(net, net.edge(id).ok_or_else(unknown)?.0),
+                "edge" => filter.add_edge(net, net.edge(id).ok_or_else(unknown)?),
                 "lane" => filter.add(net.lane(id).ok_or_else(unknown)?),
                 "junction" => {
                     if !net.junctions.iter().any(|junction| junction.id == id) {
                         return Err(unknown());
                     }
-                    for (index, edge) in (0..).zip(&net.edges) {
+                    for (index, edge) in net.edges.iter_enumerated() {
                         if edge.function != EdgeFunction::Normal && edge.junction == id {
                             filter.add_edge(net, index);
                         }
@@ -58,16 +60,16 @@ impl Filter {
 
     /// Whether the filter holds a lane; a place without a lane is not held.
     pub fn holds(&self, lane: Option<LaneIndex>) -> bool {
-        lane.is_some_and(|lane| self.holds[lane.0 as usize])
+        lane.is_some_and(|lane| self.holds[lane])
     }
 
-    fn add_edge(&mut self, net: &Net, edge: u32) {
-        for &lane in &net.edges[edge as usize].lanes {
+    fn add_edge(&mut self, net: &Net, edge: EdgeIndex) {
+        for &lane in &net.edges[edge].lanes {
             self.add(lane);
         }
     }
 
     fn add(&mut self, lane: LaneIndex) {
-        self.holds[lane.0 as usize] = true;
+        self.holds[lane] = true;
     }
 }

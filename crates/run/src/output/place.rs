@@ -21,7 +21,7 @@ pub(super) fn junction_of(lane: &str) -> &str {
 pub(super) fn on_lane(net: &Net, known: Option<LaneIndex>, front: Point) -> Option<(&str, Metre)> {
     let lane = known.or_else(|| net.lane_at(front))?;
     let (line, drawn) = (net.lines.line(lane.0), net.lines.length(lane.0));
-    let rounded = if drawn > 0.0 { net.lanes[lane.0 as usize].length / drawn } else { 1.0 };
+    let rounded = if drawn > 0.0 { net.lanes[lane].length / drawn } else { 1.0 };
     Some((net.lane_id(lane), Foot::on_any_part(line, front).distance * rounded))
 }
 

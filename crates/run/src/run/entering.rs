@@ -4,39 +4,34 @@ use std::collections::BTreeMap;
 
 use closecall::traffic::net::{EdgeFunction, JunctionIndex, LaneIndex, Net};
 use closecall::traffic::roster::UserIndex;
+use closecall::util::index::row_of;
+use typed_index_collections::TiVec;
 
 /// The vehicles that entered each junction so far.
 #[derive(Debug, Default)]
 pub(super) struct Entering {
     /// The lane that each road user was last seen on, by [`UserIndex`].
-    lanes: Vec<Option<LaneIndex>>,
+    lanes: TiVec<UserIndex, Option<LaneIndex>>,
     /// By [`JunctionIndex`].
-    counts: Vec<u64>,
+    counts: TiVec<JunctionIndex, u64>,
 }
 
 impl Entering {
     /// Sees a vehicle on a lane.
     pub fn see(&mut self, net: &Net, user: UserIndex, lane: LaneIndex) {
-        let user = user.0 as usize;
-        if self.lanes.len() <= user {
-            self.lanes.resize(user + 1, None);
-        }
-        if self.lanes[user] == Some(lane) {
+        let known = row_of(&mut self.lanes, user, || None);
+        if *known == Some(lane) {
             return;
         }
-        let before = self.lanes[user].replace(lane);
-        if let Some(JunctionIndex(junction)) = entered(net, before, lane) {
-            let junction = junction as usize;
-            if self.counts.len() <= junction {
-                self.counts.resize(junction + 1, 0);
-            }
-            self.counts[junction] += 1;
+        let before = known.replace(lane);
+        if let Some(junction) = entered(net, before, lane) {
+            *row_of(&mut self.counts, junction, || 0) += 1;
         }
     }
 
     /// A road user leaves the scene.
     pub(crate) fn forget(&mut self, user: UserIndex) {
-        if let Some(lane) = self.lanes.get_mut(user.0 as usize) {
+        if let Some(lane) = self.lanes.get_mut(user) {
             *lane = None;
         }
     }
@@ -44,19 +39,19 @@ impl Entering {
     /// The counts by SUMO's id of the junction, of those with lanes of their own.
     pub(crate) fn by_junction(&self, net: &Net) -> BTreeMap<String, u64> {
         let within = net.edges.iter().filter(|edge| edge.function == EdgeFunction::Internal);
-        let count = |junction: JunctionIndex| self.counts.get(junction.0 as usize).copied().filter(|count| *count > 0);
+        let count = |junction: JunctionIndex| self.counts.get(junction).copied().filter(|count| *count > 0);
         within.filter_map(|edge| Some((edge.junction.to_string(), count(edge.ends[0])?))).collect()
     }
 }
 
 /// The junction that a vehicle has entered, or driven through, since it was on another lane; none if it is where it was.
 fn entered(net: &Net, before: Option<LaneIndex>, now: LaneIndex) -> Option<JunctionIndex> {
-    let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
-    let edge = &net.edges[edge_of(now).0 as usize];
+    let edge_of = |lane: LaneIndex| net.lanes[lane].edge;
+    let edge = &net.edges[edge_of(now)];
     let is_new = match before.map(edge_of) {
         None => edge.function == EdgeFunction::Internal,
         Some(from) => {
-            let before = &net.edges[from.0 as usize];
+            let before = &net.edges[from];
             let was_there = before.function == EdgeFunction::Internal && before.ends[0] == edge.ends[0];
             from != edge_of(now) && !was_there
         }
@@ -75,7 +70,7 @@ mod tests {
             "/../../sumo_nets/priority/priority.net.xml"
         )))
         .unwrap();
-        let passage = (0..net.lanes.len() as u32).filter_map(|lane| net.passage(LaneIndex(lane)));
+        let passage = net.lanes.keys().filter_map(|lane| net.passage(lane));
         let passage = passage.max_by_key(|passage| passage.lanes.len()).unwrap();
         let through = [&[passage.from][..], &passage.lanes, &[passage.to]].concat();
         let total = |seen: &[&[LaneIndex]]| {

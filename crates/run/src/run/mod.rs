@@ -276,7 +276,7 @@ impl Run {
     /// none if it has not. Its placement is set.
     pub fn changed_lanes(&self, row: u32) -> Option<i32> {
         let change = self.detector.lane_change(self.frame.user(row)).filter(|change| change.time == self.frame.time)?;
-        let index = |lane: LaneIndex| Some(self.net.as_ref()?.lanes[lane.0 as usize].index as i32);
+        let index = |lane: LaneIndex| Some(self.net.as_ref()?.lanes[lane].index as i32);
         Some(index(change.to)? - index(change.from)?)
     }
 

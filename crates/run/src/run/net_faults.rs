@@ -76,7 +76,7 @@ impl NetFaults {
 fn fault(net: &Net, lanes: [LaneIndex; 2], overlaps: &Overlaps) -> NetFault {
     let [lane, other_lane] = lanes.map(|lane| net.lane_id(lane).to_owned());
     let within = lanes.into_iter().find(|lane| net.function(*lane) != EdgeFunction::Normal);
-    let junction = within.map(|lane| net.edges[net.lanes[lane.0 as usize].edge.0 as usize].junction.clone());
+    let junction = within.map(|lane| net.edges[net.lanes[lane].edge].junction.clone());
     let kind = kind(net, lanes);
     let (deepest, [x, y]) = overlaps.deepest;
     NetFault {
@@ -98,10 +98,10 @@ fn fault(net: &Net, lanes: [LaneIndex; 2], overlaps: &Overlaps) -> NetFault {
 /// Why SUMO lets road users on two lanes overlap.
 fn kind(net: &Net, [one, other]: [LaneIndex; 2]) -> FaultKind {
     let both = || [one, other].into_iter();
-    let edge = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
+    let edge = |lane: LaneIndex| net.lanes[lane].edge;
     let junction = |lane: LaneIndex| net.passage(lane).map(|passage| passage.junction);
     match () {
-        () if both().any(|lane| !net.lanes[lane.0 as usize].has_vehicles) => FaultKind::OnFoot,
+        () if both().any(|lane| !net.lanes[lane].has_vehicles) => FaultKind::OnFoot,
         () if net.relates(one, other) => FaultKind::WaitsInside,
         () if edge(one) == edge(other) || net.have_room(one, other) => FaultKind::NarrowLane,
         () if junction(one).is_some() && junction(one) == junction(other) => FaultKind::NotFoes,

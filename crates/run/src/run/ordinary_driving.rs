@@ -1,10 +1,13 @@
 //! Conflicts that the simulation itself makes of ordinary driving: of how closely its drivers follow, and of how hard they can
 //! brake.
 
+use typed_index_collections::{TiSlice, TiVec};
+
 use closecall::detection::kind::Kind;
 use closecall::events::Conflict;
 use closecall::traffic::profile::{Category, Profile};
 use closecall::traffic::roster::{ProfileIndex, Roster};
+use closecall::util::index::row_of;
 use closecall::util::units::MetrePerSecondSquared;
 
 /// An `emergencyDecel` above SUMO's default of passenger cars is worth a remark, in m/s²: hardly a tyre holds more on a dry
@@ -17,8 +20,8 @@ const NAMED: usize = 5;
 #[derive(Default)]
 pub(super) struct OrdinaryDriving {
     conflicts: u64,
-    following: Vec<u64>,
-    braking: Vec<u64>,
+    following: TiVec<ProfileIndex, u64>,
+    braking: TiVec<ProfileIndex, u64>,
 }
 
 impl OrdinaryDriving {
@@ -27,11 +30,11 @@ impl OrdinaryDriving {
         self.conflicts += 1;
         let ego = roster.profile_at(conflict.ego_profile);
         if conflict.kind == Kind::RearEnd && conflict.ego_speed >= ego.tailgates_from {
-            add_one(&mut self.following, conflict.ego_profile);
+            *row_of(&mut self.following, conflict.ego_profile, || 0) += 1;
         }
         let foe = roster.profile_at(conflict.foe_profile);
         if foe.category == Category::Vehicle && foe.brakes.deceleration > HARDEST {
-            add_one(&mut self.braking, conflict.foe_profile);
+            *row_of(&mut self.braking, conflict.foe_profile, || 0) += 1;
         }
     }
 
@@ -55,19 +58,15 @@ impl OrdinaryDriving {
     }
 }
 
-fn add_one(counts: &mut Vec<u64>, of: ProfileIndex) {
-    let index = of.0 as usize;
-    if counts.len() <= index {
-        counts.resize(index + 1, 0);
-    }
-    counts[index] += 1;
-}
-
 /// The sum of the counts and the types that have one, the largest first; none where no type has.
-fn types(counts: &[u64], roster: &Roster, text: &dyn Fn(&Profile) -> String) -> Option<(u64, String)> {
-    let mut of_types = (0..).zip(counts).filter(|(_, count)| **count > 0).collect::<Vec<(u32, _)>>();
+fn types(
+    counts: &TiSlice<ProfileIndex, u64>,
+    roster: &Roster,
+    text: &dyn Fn(&Profile) -> String,
+) -> Option<(u64, String)> {
+    let mut of_types = counts.iter_enumerated().filter(|(_, count)| **count > 0).collect::<Vec<_>>();
     of_types.sort_by_key(|(_, count)| std::cmp::Reverse(**count));
-    let named = of_types.iter().take(NAMED).map(|(index, _)| text(roster.profile_at(ProfileIndex(*index))));
+    let named = of_types.iter().take(NAMED).map(|(index, _)| text(roster.profile_at(*index)));
     let named = named.collect::<Vec<_>>().join(", ");
     let more = match of_types.len().saturating_sub(NAMED) {
         0 => String::new(),

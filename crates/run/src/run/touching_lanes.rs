@@ -71,7 +71,7 @@ fn places(
 fn lane_on_foot(net: &Net, place: Point) -> Option<LaneIndex> {
     // The shape of a walking area is its outline, that of other lanes their middle.
     let is_on_foot =
-        |lane: &LaneIndex| net.function(*lane) != EdgeFunction::WalkingArea && !net.lanes[lane.0 as usize].has_vehicles;
+        |lane: &LaneIndex| net.function(*lane) != EdgeFunction::WalkingArea && !net.lanes[*lane].has_vehicles;
     let lanes = net.lanes_at(place, BESIDE).filter(is_on_foot);
     let pavement = lanes.min_by_key(|lane| (net.function(*lane) == EdgeFunction::Crossing, *lane));
     pavement
@@ -86,9 +86,9 @@ fn reached(net: &Net, from: LaneIndex, within: Metre, next: impl Fn(&Lane) -> Ve
     let mut at = 0;
     while let Some(&(lane, travelled)) = reached.get(at).filter(|_| reached.len() < MOST_LANES) {
         at += 1;
-        for next in next(&net.lanes[lane.0 as usize]).into_iter().filter(|_| travelled < within) {
+        for next in next(&net.lanes[lane]).into_iter().filter(|_| travelled < within) {
             if reached.iter().all(|(known, _)| *known != next) {
-                reached.push((next, travelled + net.lanes[next.0 as usize].length.max(SHORTEST)));
+                reached.push((next, travelled + net.lanes[next].length.max(SHORTEST)));
             }
         }
     }

@@ -139,7 +139,7 @@ impl Report {
 
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        writeln!(f, "{:<7} {} ({}): {}", self.word(), self.name, self.level.name(), self.headline())?;
+        writeln!(f, "{:<7} {} ({}): {}", self.word(), self.name, self.level, self.headline())?;
         for line in self.details() {
             writeln!(f, "        {line}")?;
         }

@@ -23,24 +23,15 @@ const SEEDS: [u32; 6] = [1, 2, 3, 4, 5, 6];
 const FALSE_ALARM: f64 = 0.005;
 
 /// How strictly a scenario is compared with its expected outcome.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, strum::Display)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Level {
     /// Byte for byte.
     #[default]
     Exact,
     /// By a statistical test over the seeds.
     Statistics,
-}
-
-impl Level {
-    /// The name in `closecall.toml` and in the output.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Statistics => "statistics",
-        }
-    }
 }
 
 /// Differences of means that `Level::Statistics` ignores even if significant, such as those of another compiler's rounding.

@@ -94,7 +94,7 @@ mod tests {
         let mut told = String::new();
         let mut last = None;
         for (edge, step) in &completed.edges {
-            let id = &net.edges[edge.0 as usize].id;
+            let id = &net.edges[*edge].id;
             let is_seen = reached.iter().any(|reached| (reached.edge, reached.step) == (*edge, *step));
             told += &if is_seen {
                 id.clone()

@@ -100,7 +100,7 @@ fn path(found: &FxHashMap<EdgeIndex, Found>, from: EdgeIndex, to: EdgeIndex) -> 
 
 /// The length of an edge in m.
 pub(super) fn length(net: &Net, edge: EdgeIndex) -> Metre {
-    net.edges[edge.0 as usize].lanes.first().map_or(0.0, |lane| net.lanes[lane.0 as usize].length)
+    net.edges[edge].lanes.first().map_or(0.0, |lane| net.lanes[*lane].length)
 }
 
 fn millimetres(net: &Net, edge: EdgeIndex) -> u64 {
@@ -109,9 +109,8 @@ fn millimetres(net: &Net, edge: EdgeIndex) -> u64 {
 
 /// The edges to which links lead, each once.
 fn next_edges(net: &Net, edge: EdgeIndex) -> Vec<EdgeIndex> {
-    let lanes = net.edges[edge.0 as usize].lanes.iter().map(|lane| &net.lanes[lane.0 as usize]);
-    let mut next =
-        lanes.flat_map(|lane| &lane.links).map(|link| net.lanes[link.to.0 as usize].edge).collect::<Vec<_>>();
+    let lanes = net.edges[edge].lanes.iter().map(|lane| &net.lanes[*lane]);
+    let mut next = lanes.flat_map(|lane| &lane.links).map(|link| net.lanes[link.to].edge).collect::<Vec<_>>();
     next.sort_unstable();
     next.dedup();
     next
@@ -137,7 +136,7 @@ mod tests {
         let net = crate::net::parse(Path::new("net"), text + "</net>").unwrap();
         let [from, to] = [from, to].map(|id| net.edge(id).unwrap());
         let found = Connections::default().between(&net, from, to, 100.0)?;
-        Some(found.iter().map(|edge| net.edges[edge.0 as usize].id.clone()).collect())
+        Some(found.iter().map(|edge| net.edges[*edge].id.clone()).collect())
     }
 
     #[test]

@@ -230,7 +230,7 @@ mod tests {
             ("own.1", ""),
         ] {
             let edges = planned.of(vehicle).unwrap();
-            let found = edges.iter().map(|edge| &*net.edges[edge.0 as usize].id).collect::<String>();
+            let found = edges.iter().map(|edge| &*net.edges[*edge].id).collect::<String>();
             assert_eq!(found, route, "{vehicle}");
         }
     }

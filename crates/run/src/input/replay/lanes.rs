@@ -34,14 +34,14 @@ impl Lanes {
 
 /// The edge that a lane is on. For a lane in a junction, the edge before the junction and the edge behind it.
 pub(super) fn edges_of(net: &Net, lane: LaneIndex) -> Option<(EdgeIndex, Option<EdgeIndex>)> {
-    let edge_of = |lane: LaneIndex| net.lanes[lane.0 as usize].edge;
-    let function = |lane: LaneIndex| net.edges[edge_of(lane).0 as usize].function;
+    let edge_of = |lane: LaneIndex| net.lanes[lane].edge;
+    let function = |lane: LaneIndex| net.edges[edge_of(lane)].function;
     match function(lane) {
         EdgeFunction::Normal => Some((edge_of(lane), None)),
         EdgeFunction::Internal => {
-            let before = std::iter::successors(Some(lane), |lane| net.lanes[lane.0 as usize].from.first().copied());
+            let before = std::iter::successors(Some(lane), |lane| net.lanes[*lane].from.first().copied());
             let before = before.take(MOST_PARTS).find(|lane| function(*lane) == EdgeFunction::Normal)?;
-            let behind = net.lanes[lane.0 as usize].links.first().map(|link| edge_of(link.to));
+            let behind = net.lanes[lane].links.first().map(|link| edge_of(link.to));
             Some((edge_of(before), behind))
         }
         _ => None,

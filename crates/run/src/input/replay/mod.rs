@@ -345,7 +345,7 @@ impl Replay {
         // The recording's steps are numbered from 0 where its routes are read.
         user.advance_to(self.steps - 1);
         if is_opposite(recorded, net, lane) {
-            user.oppose(net, net.lanes[lane.0 as usize].edge);
+            user.oppose(net, net.lanes[lane].edge);
         }
         let is_new = !run.knows_route(user.index, user.route_position);
         let placement = Placement {

@@ -21,9 +21,7 @@ impl Replay {
             Some((net, lane?))
         });
         match on_net {
-            Some((net, lane)) => {
-                row.speed == 0.0 && distance(row, net, lane) > net.lanes[lane.0 as usize].width / 2.0 + BESIDE
-            }
+            Some((net, lane)) => row.speed == 0.0 && distance(row, net, lane) > net.lanes[lane].width / 2.0 + BESIDE,
             None => self.stops.is_parked(self.recorded_steps.id(row.user), self.step.time),
         }
     }

@@ -40,7 +40,7 @@ impl ReplayedUser {
     pub(crate) fn oppose(&mut self, net: &Net, edge: EdgeIndex) {
         let Some(route) = &self.route else { return };
         let Some([current, next]) = route.edges.get(self.route_position..self.route_position + 2) else { return };
-        let [[from, to], ends_of_next] = [current, next].map(|edge| net.edges[edge.0 as usize].ends);
+        let [[from, to], ends_of_next] = [current, next].map(|edge| net.edges[*edge].ends);
         if *current == edge && ends_of_next == [to, from] {
             self.route_position += 1;
         }

@@ -2,11 +2,14 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use strum::{Display, EnumString, IntoStaticStr, VariantArray, VariantNames};
+
 use crate::util::header::Wanted;
 use closecall::util::units::Radian;
 
-/// What a column is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What a column is, by its name in `--columns`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Display, EnumString, IntoStaticStr, VariantNames)]
+#[strum(serialize_all = "snake_case")]
 pub(super) enum Field {
     Id,
     Time,
@@ -17,7 +20,9 @@ pub(super) enum Field {
     RearY,
     Heading,
     Speed,
+    #[strum(serialize = "vx")]
     SpeedX,
+    #[strum(serialize = "vy")]
     SpeedY,
     Length,
     Width,
@@ -25,24 +30,7 @@ pub(super) enum Field {
 }
 
 impl Field {
-    pub const COUNT: usize = 14;
-
-    pub const NAMES: [(&'static str, Self); Self::COUNT] = [
-        ("id", Self::Id),
-        ("time", Self::Time),
-        ("frame", Self::Frame),
-        ("x", Self::X),
-        ("y", Self::Y),
-        ("rear_x", Self::RearX),
-        ("rear_y", Self::RearY),
-        ("heading", Self::Heading),
-        ("speed", Self::Speed),
-        ("vx", Self::SpeedX),
-        ("vy", Self::SpeedY),
-        ("length", Self::Length),
-        ("width", Self::Width),
-        ("class", Self::Class),
-    ];
+    pub const COUNT: usize = Self::VARIANTS.len();
 
     /// What a file may lack.
     pub fn is_optional(self) -> bool {
@@ -52,11 +40,6 @@ impl Field {
     /// What its values are read as.
     pub fn wanted(self) -> Wanted {
         if matches!(self, Self::Id | Self::Class) { Wanted::Text } else { Wanted::Number }
-    }
-
-    /// Its name in `--columns`.
-    pub fn key(self) -> &'static str {
-        Self::NAMES.iter().find(|(_, field)| *field == self).map_or("", |(key, _)| key)
     }
 
     /// Its units, each with the factor to SI.
@@ -78,26 +61,22 @@ impl Field {
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 
 /// The unit of headings.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, EnumString, IntoStaticStr, VariantArray)]
 pub(super) enum HeadingUnit {
     #[default]
+    #[strum(serialize = "rad")]
     Radian,
+    #[strum(serialize = "deg")]
     Degree,
     /// Degrees clockwise from north.
+    #[strum(serialize = "north")]
     North,
 }
 
 impl HeadingUnit {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Radian, Self::Degree, Self::North];
-
     /// Its name in `--columns`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Radian => "rad",
-            Self::Degree => "deg",
-            Self::North => "north",
-        }
+        self.into()
     }
 
     /// The heading that a number in this unit means; in a picture, y points down.

@@ -1,7 +1,9 @@
 //! The formats of recordings.
 
+use clap::ValueEnum;
+
 /// A format of recordings.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum RecordingFormat {
     /// SUMO's fcd-output.
     Fcd,
@@ -33,19 +35,7 @@ pub enum RecordingFormat {
 
 impl RecordingFormat {
     /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Fcd => "fcd",
-            Self::Trj => "trj",
-            Self::Fzp => "fzp",
-            Self::Table => "table",
-            Self::InD => "inD",
-            Self::HighD => "highD",
-            Self::Ngsim => "ngsim",
-            Self::Interaction => "interaction",
-            Self::Sind => "sind",
-            Self::CitySim => "citysim",
-            Self::OmegaPrime => "omega-prime",
-        }
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
     }
 }

@@ -112,13 +112,13 @@ pub(super) fn guess(path: &Path, names: &[String]) -> Result<Guess> {
             let factor = factor(&found, if has_time { Field::Time } else { Field::Frame });
             found[place].unit = sample.unit(found[place].field, factor);
         } else if found[place].field == Field::Heading {
-            let named = HeadingUnit::ALL.into_iter().find(|unit| Some(unit.name()) == found[place].unit);
+            let named = found[place].unit.and_then(|unit| unit.parse().ok());
             found[place].unit = named.map(|named| sample.heading_unit(named).name());
         }
     }
     let clock = if has_time { Field::Time } else { Field::Frame };
     let needed = [Field::Id, clock, Field::X, Field::Y];
-    let missing = needed.into_iter().filter(|field| !has(&found, *field)).map(Field::key).collect::<Vec<_>>();
+    let missing = needed.into_iter().filter(|field| !has(&found, *field)).map(<&str>::from).collect::<Vec<_>>();
     let mut columns = Vec::new();
     for (field, _) in &USUAL {
         match found.iter().find(|it| it.field == *field) {
@@ -127,9 +127,9 @@ pub(super) fn guess(path: &Path, names: &[String]) -> Result<Guess> {
                 // Brackets at the end of a name would be taken for its unit.
                 let unit = if name.ends_with(']') { unit.or(first) } else { unit.filter(|unit| Some(*unit) != first) };
                 let unit = unit.map_or(String::new(), |unit| format!("[{unit}]"));
-                columns.push(format!("{}={name}{unit}", field.key()));
+                columns.push(format!("{field}={name}{unit}"));
             }
-            None if needed.contains(field) => columns.push(format!("{}=COLUMN", field.key())),
+            None if needed.contains(field) => columns.push(format!("{field}=COLUMN")),
             None => {}
         }
     }

@@ -1,5 +1,7 @@
 //! Whether headings are what they are taken for: they are compared with how the road users moved.
 
+use strum::VariantArray;
+
 use super::field::HeadingUnit;
 use super::spill::Row;
 use closecall::geometry::Point;
@@ -27,7 +29,7 @@ pub(super) struct Headings {
     begin: Option<(u32, Point)>,
     stretches: u64,
     contradict: u64,
-    fit: [u64; HeadingUnit::ALL.len()],
+    fit: [u64; HeadingUnit::VARIANTS.len()],
 }
 
 impl Headings {
@@ -55,7 +57,7 @@ impl Headings {
         let along = displacement.normalize();
         self.contradict += u64::from(direction(heading).dot(&along) < CONTRADICTS);
         let number = self.unit.number(heading, self.is_picture);
-        for (fit, unit) in self.fit.iter_mut().zip(HeadingUnit::ALL) {
+        for (fit, unit) in self.fit.iter_mut().zip(HeadingUnit::VARIANTS) {
             *fit += u64::from(direction(unit.heading(number, self.is_picture)).dot(&along) >= FITS);
         }
     }
@@ -64,7 +66,7 @@ impl Headings {
     pub fn better(&self) -> Option<HeadingUnit> {
         let share = |unit: HeadingUnit| self.fit[unit as usize] as f64 / self.stretches as f64;
         let is_doubtful = self.stretches >= ENOUGH && share(self.unit) < DOUBTFUL;
-        let best = HeadingUnit::ALL.into_iter().rev().max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
+        let best = HeadingUnit::VARIANTS.iter().copied().rev().max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
         Some(best).filter(|best| is_doubtful && share(*best) >= RIGHT)
     }
 

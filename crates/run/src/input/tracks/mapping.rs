@@ -1,5 +1,7 @@
 //! Which column of a table is what, in which unit: the text of `--columns`, and the options beside it.
 
+use strum::VariantNames;
+
 use super::field::{Field, HeadingUnit};
 use super::format::RecordingFormat;
 use crate::util::header::{self, Wanted};
@@ -96,11 +98,8 @@ impl Mapping {
         for part in text.split(',').map(str::trim).filter(|part| !part.is_empty()) {
             let (key, column) =
                 part.split_once('=').ok_or_else(|| format!("\"{part}\" is not x=COLUMN or x=COLUMN[UNIT]"))?;
-            let field =
-                Field::NAMES.iter().find(|(name, _)| *name == key).map(|(_, field)| *field).ok_or_else(|| {
-                    let known = Field::NAMES.map(|(name, _)| name).join(", ");
-                    format!("\"{key}\" is unknown; known are {known}")
-                })?;
+            let unknown = |_| format!("\"{key}\" is unknown; known are {}", Field::VARIANTS.join(", "));
+            let field = key.parse::<Field>().map_err(unknown)?;
             let unit = column.strip_suffix(']').and_then(|column| column.rsplit_once('['));
             let (name, unit) = unit.map_or((column, None), |(name, unit)| (name, Some(unit)));
             let factor = match unit {
@@ -118,7 +117,7 @@ impl Mapping {
                 }
             };
             if let (Field::Heading, Some(unit)) = (field, unit) {
-                heading_unit = HeadingUnit::ALL.into_iter().find(|it| it.name() == unit).unwrap_or_default();
+                heading_unit = unit.parse().unwrap_or_default();
             }
             if fields.iter().any(|known| known.field == field) {
                 return Err(format!("{key} is there twice"));

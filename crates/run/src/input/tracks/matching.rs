@@ -31,9 +31,8 @@ impl<'a> LaneFinder<'a> {
         let along = direction(heading);
         let beneath = || {
             let near = self.net.lanes_at(front, BESIDE);
-            let usable = near.filter(|lane| {
-                self.net.function(*lane) == EdgeFunction::Normal && self.net.lanes[lane.0 as usize].has_vehicles
-            });
+            let usable = near
+                .filter(|lane| self.net.function(*lane) == EdgeFunction::Normal && self.net.lanes[*lane].has_vehicles);
             let found = usable.map(|lane| (lane, foot(lane)));
             let found = found.filter(|(_, foot)| foot.direction.normalize().dot(&along) >= ALONG);
             found.min_by(|a, b| a.1.aside.abs().total_cmp(&b.1.aside.abs()).then(a.0.cmp(&b.0))).map(|(lane, _)| lane)

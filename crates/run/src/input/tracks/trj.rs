@@ -16,7 +16,7 @@ use crate::util::decimal::Written;
 use crate::util::input_file;
 use crate::{Error, Result};
 use closecall::geometry::{Point, Vector};
-use closecall::traffic::net::{LaneIndex, Net};
+use closecall::traffic::net::{EdgeIndex, LaneIndex, Net};
 use closecall::util::units::Metre;
 
 /// The first byte of each record.
@@ -117,7 +117,7 @@ pub(super) fn convert(path: &Path, net: Option<&Net>, out: &mut FcdWriter) -> Re
 
 /// The lane of a link and number, as closecall writes them.
 fn told(net: &Net, link: i32, lane: u8) -> Option<LaneIndex> {
-    let edge = net.edges.get(usize::try_from(link).ok()?)?;
+    let edge = net.edges.get(EdgeIndex(u32::try_from(link).ok()?))?;
     edge.lanes.get(usize::from(lane)).copied()
 }
 

@@ -13,6 +13,7 @@
 use std::path::Path;
 
 use rustc_hash::FxHashMap;
+use typed_index_collections::TiVec;
 
 use crate::Result;
 use crate::util::output_file::OutputFile;
@@ -50,7 +51,7 @@ pub(crate) struct Trajectories {
     /// Midnight before the first step; none before it.
     midnight: Option<Second>,
     /// By the roster's index.
-    vehicles: Vec<Option<PreviousStep>>,
+    vehicles: TiVec<UserIndex, Option<PreviousStep>>,
     next_number: i32,
     /// The lanes of the rows that were placed in this step.
     placed: FxHashMap<u32, LaneIndex>,
@@ -97,7 +98,7 @@ impl Trajectories {
             file,
             origin,
             midnight: None,
-            vehicles: Vec::new(),
+            vehicles: TiVec::new(),
             next_number: 0,
             placed: FxHashMap::default(),
             record: Vec::new(),
@@ -111,7 +112,7 @@ impl Trajectories {
 
     /// Forgets a vehicle that has left: its index may be reused.
     pub(crate) fn forget(&mut self, user: UserIndex) {
-        if let Some(slot) = self.vehicles.get_mut(user.0 as usize) {
+        if let Some(slot) = self.vehicles.get_mut(user) {
             *slot = None;
         }
     }
@@ -128,7 +129,7 @@ impl Trajectories {
             if profile.category != Category::Vehicle {
                 continue;
             }
-            let slot = &mut self.vehicles[user.0 as usize];
+            let slot = &mut self.vehicles[user];
             let before = slot.take();
             let acceleration =
                 before.as_ref().map_or(0.0, |before| (state.speed - before.speed) / (frame.time - before.time));
@@ -137,8 +138,7 @@ impl Trajectories {
             *slot = Some(PreviousStep { number, time: frame.time, speed: state.speed });
             let front = Point::new(state.x, state.y);
             let rear = front - direction(state.heading) * profile.length;
-            let lane =
-                self.placed.get(&row).copied().or_else(|| net.lane_at(front)).map(|lane| &net.lanes[lane.0 as usize]);
+            let lane = self.placed.get(&row).copied().or_else(|| net.lane_at(front)).map(|lane| &net.lanes[lane]);
             let link = lane.map_or(NO_LINK, |lane| lane.edge.0 as i32);
             let (front, rear) = (front - self.origin, rear - self.origin);
             self.record.push(VEHICLE);
