@@ -19,7 +19,7 @@ from pathlib import Path
 from scenarios import motorway
 
 NETS = Path(__file__).parents[1] / "sumo_nets"
-EXCLUSIONS = ["areas-apart", "paths-apart", "in-line", "known-paths"]
+EXCLUSIONS = ["areas-apart", "paths-apart", "in-line", "known-paths", "known-chances"]
 PART = re.compile(r"([a-z0-9 ]+?) ([0-9.]+) s")
 
 

@@ -8,7 +8,7 @@ use super::measurement::{Axis, Measurement, Plan};
 use super::reference::chance::Chance;
 use super::reference::{nearest, probability as reference};
 use closecall::braking::{LateBraking, Leader};
-use closecall::detection::measures::crash_probability::crash_probability;
+use closecall::detection::measures::crash_probability::{bounds, crash_probability};
 use closecall::detection::measures::ttb::Evasion;
 use closecall::options::{DriverModel, DriverOptions};
 use closecall::traffic::driver_distributions::Driver;
@@ -58,6 +58,8 @@ impl Approach {
 /// A method that computes the probability.
 enum Method {
     Closecall,
+    /// The bounds between which it is, without working it out; an error is how far it is outside.
+    Bounds,
     /// Decelerations and their weights.
     Nodes(Vec<(MetrePerSecondSquared, f64)>),
     /// Pairs of response time and deceleration.
@@ -65,8 +67,13 @@ enum Method {
 }
 
 impl Method {
-    fn probability(&self, approach: &Approach, driver: &Driver) -> f64 {
+    /// The probability; of bounds, what is nearest to `truth` between them.
+    fn probability(&self, approach: &Approach, driver: &Driver, truth: f64) -> f64 {
         match self {
+            Self::Bounds => {
+                let [least, most] = bounds(driver, false, |deceleration| approach.wait(deceleration));
+                truth.clamp(least, most)
+            }
             Self::Closecall => crash_probability(driver, false, |deceleration| approach.wait(deceleration)),
             Self::Nodes(nodes) => {
                 let late = |value| driver.responds_later_than(approach.wait(value));
@@ -136,7 +143,10 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
             })
         });
         let truth = truth.collect::<Vec<_>>();
-        let mut methods = vec![("closecall", String::new(), Method::Closecall)];
+        let mut methods = vec![
+            ("closecall", String::new(), Method::Closecall),
+            ("bounds alone", String::new(), Method::Bounds),
+        ];
         methods.extend(
             NODES.map(|nodes| ("Gauss-Legendre", format!(", {nodes} nodes"), Method::Nodes(gauss_legendre(nodes)))),
         );
@@ -149,7 +159,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
                 let (approaches, driver) = (&approaches, &driver);
                 Timed::new(count * again, move || {
                     for approach in std::iter::repeat_n(approaches, again).flatten() {
-                        black_box(method.probability(black_box(approach), driver));
+                        black_box(method.probability(black_box(approach), driver, 0.5));
                     }
                 })
             })
@@ -157,7 +167,7 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
         let times = interleaved(&mut timed, rounds);
         drop(timed);
         for ((name, parameter, method), ns_per_item) in methods.iter().zip(times) {
-            let off = |(approach, truth): (&Approach, &f64)| (method.probability(approach, &driver) - truth).abs();
+            let off = |(approach, truth): (&Approach, &f64)| (method.probability(approach, &driver, *truth) - truth).abs();
             rows.push(Measurement {
                 axis: Axis::Probability,
                 method: name,
