@@ -17,7 +17,7 @@ use closecall_run::output::formats::ExportFormat;
 #[derive(Args)]
 pub(crate) struct ExportArgs {
     /// Log folder.
-    #[arg(value_name = "DIR")]
+    #[arg(value_name = "LOG")]
     folder: PathBuf,
     /// Format of the file. SSAM's trajectories (.trj) hold all vehicles, which a log does not: run and replay write them with
     /// --trj-output.

@@ -47,11 +47,12 @@ pub use workers::{Distribute, ReportEnd, Workers};
 /// Results go to standard output, messages to standard error, one line each; the usage follows that of a wrong word.
 pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
     let args = args.into_iter().collect::<Vec<_>>();
-    let cli = match parse(args) {
-        Ok(cli) => cli,
+    let (cli, remarks) = match parse(args) {
+        Ok(parsed) => parsed,
         Err(ParseError::Clap(error)) => return refused(&error),
         Err(ParseError::File(error)) => return failed(&error),
     };
+    remarks.iter().for_each(|remark| eprintln!("closecall: {remark}"));
     let done = caught(|| match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),

@@ -15,10 +15,10 @@ use closecall_run::Result;
 #[derive(Args)]
 pub(crate) struct PlotArgs {
     /// Log folders, or folders that contain log folders.
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// Folder for the images.
-    #[arg(short, long, value_name = "FOLDER", default_value = "plots")]
+    #[arg(short, long, value_name = "DIR", default_value = "plots")]
     out: PathBuf,
     /// File format of the images.
     #[arg(long, value_enum, default_value = "svg")]

@@ -24,7 +24,7 @@ use closecall_run::{Error, Result};
 pub(crate) struct ReplayArgs {
     /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
     /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
-    #[arg(value_name = "FILE", required = true)]
+    #[arg(value_name = "FILE", required = true, help_heading = None::<&str>)]
     recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
     #[arg(short = 'n', long, value_name = "NET")]
@@ -47,7 +47,7 @@ pub(crate) struct ReplayArgs {
     sublane: bool,
     /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
     /// reads the steps ahead.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "N", help_heading = "Run", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]
     pub(super) check: CheckArgs,

@@ -16,7 +16,7 @@ use closecall_run::Result;
 #[derive(Args)]
 pub(crate) struct ReportArgs {
     /// Log folders, or folders that contain log folders.
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// HTML file to write.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
@@ -28,7 +28,7 @@ pub(crate) struct ReportArgs {
     #[arg(short, long)]
     quiet: bool,
     /// Runs to compare with, such as those before a change: log folders, or folders that contain log folders.
-    #[arg(long, value_name = "DIR", num_args = 1..)]
+    #[arg(long, value_name = "LOG", num_args = 1..)]
     against: Vec<PathBuf>,
     #[command(flatten)]
     filter: ConflictFilter,

@@ -18,20 +18,11 @@ use closecall_run::{Error, Result};
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
     /// SUMO configuration file.
-    #[arg(value_name = "CONFIG", required_unless_present = "configuration_file")]
+    #[arg(value_name = "SCENARIO", required_unless_present = "configuration_file", help_heading = None::<&str>)]
     scenario: Option<PathBuf>,
-    /// SUMO configuration file, under SUMO's own option name.
-    #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
-    configuration_file: Option<PathBuf>,
     /// Show the run in sumo-gui and paint the conflicts.
     #[arg(long)]
     gui: bool,
-    /// With `--gui`, write the kind and the time left beside each conflict.
-    #[arg(long, requires = "gui")]
-    label: bool,
-    /// With `--gui`, close sumo-gui when the run ends.
-    #[arg(long, requires = "gui")]
-    quit_on_end: bool,
     /// Simulated time at which the run begins, in s.
     #[arg(short = 'b', long, value_name = "S", value_parser = time)]
     begin: Option<Second>,
@@ -48,10 +39,19 @@ pub(crate) struct RunArgs {
     /// step; more help with thousands of road users. Use 1 when running many simulations at once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
+    /// With `--gui`, write the kind and the time left beside each conflict.
+    #[arg(long, requires = "gui")]
+    label: bool,
+    /// With `--gui`, close sumo-gui when the run ends.
+    #[arg(long, requires = "gui")]
+    quit_on_end: bool,
+    /// SUMO configuration file, under SUMO's own option name.
+    #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
+    configuration_file: Option<PathBuf>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
     /// Options passed on to SUMO.
-    #[arg(last = true, value_name = "SUMO OPTIONS")]
+    #[arg(last = true, value_name = "SUMO OPTIONS", help_heading = None::<&str>)]
     sumo_options: Vec<String>,
 }
 

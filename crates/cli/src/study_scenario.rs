@@ -22,6 +22,7 @@ use closecall_run::util::input_file;
 
 /// What to vary in a scenario, and how to run it.
 #[derive(Args)]
+#[command(next_help_heading = "Run")]
 pub(crate) struct ScenarioArgs {
     /// With a SCENARIO: values of an option of closecall run, or of SUMO (sumo:NAME=A,B), instead of the default axes. If
     /// repeated, each option is varied by itself; only the step length is combined with sumo:step-method.ballistic.

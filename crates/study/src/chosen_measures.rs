@@ -40,8 +40,8 @@ impl Method {
     /// Measures of a kind have a colour in common.
     fn name(self) -> &'static str {
         use ChosenMeasure::{
-            Br, ConflictingSpeed, Cpi, CrashIndex, DeltaS, Dr, MaxD, MaxS, Mdrac, Mttc, RssDistance, RssLateralDistance,
-            RssViolation, Sgap, T2, Ta, TaLevel, Tadv, Tet, Thw, Tit,
+            Br, ConflictingSpeed, Cpi, CrashIndex, DeltaS, Dr, MaxD, MaxS, Mdrac, Mttc, RssDistance,
+            RssLateralDistance, RssViolation, Sgap, T2, Ta, TaLevel, Tadv, Tet, Thw, Tit,
         };
         match self {
             Self::Nothing => "none added (its TTC)",

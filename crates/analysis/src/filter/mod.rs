@@ -33,10 +33,10 @@ pub struct ConflictFilter {
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',')]
     pub types: Vec<String>,
     /// Only from this time on, in s.
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "S", value_parser = time)]
     pub from: Option<Second>,
     /// Only until this time, in s.
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "S", value_parser = time)]
     pub to: Option<Second>,
     /// Only here: x,y,radius in m, or the id of a junction, edge or lane; junction:ID, edge:ID and lane:ID name the part too.
     /// May be given several times.

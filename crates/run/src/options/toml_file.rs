@@ -4,6 +4,7 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
+use super::RunOptions;
 use super::word::word;
 use crate::util::input_file;
 use crate::{Error, Result};
@@ -23,6 +24,8 @@ pub struct OptionsFile {
     pub driver: DriverOptions,
     /// The `[regress]` table, for the command of that name.
     pub regress: Option<toml::Table>,
+    /// What to tell the user of old names among its keys.
+    pub remarks: Vec<String>,
 }
 
 impl OptionsFile {
@@ -66,6 +69,8 @@ impl OptionsFile {
                     }
                     let value = plain_value(path, name, &value)?;
                     check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
+                    let place = || format!("{}, line {}", path.display(), line_of(text, name));
+                    file.remarks.extend(RunOptions::old_name(name).map(|remark| format!("{}: {remark}", place())));
                     file.args.extend(word(name, &value));
                 }
             }

@@ -163,7 +163,7 @@ impl Cut<'_> {
         let log = self.logs.join(done.to_string());
         let mut runner = Runner {
             closecall: tools.closecall.clone(),
-            jobs: 1,
+            workers: 1,
             out: None,
             interrupted: tools.interrupted,
             progress: &mut |more, _| (tools.progress)(done + more, all),

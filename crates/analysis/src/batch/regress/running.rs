@@ -19,7 +19,7 @@ pub struct Runner<'a> {
     /// The command line that starts closecall, without arguments. The process must end when its standard input is closed.
     pub closecall: Vec<OsString>,
     /// The number of parallel processes.
-    pub jobs: usize,
+    pub workers: usize,
     /// The folder in which the runs' logs are kept; none to discard them.
     pub out: Option<PathBuf>,
     /// Whether the user wants to stop; called repeatedly.
@@ -58,7 +58,7 @@ impl Runner<'_> {
             }
         };
         std::thread::scope(|scope| {
-            let workers = (0..self.jobs.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
+            let workers = (0..self.workers.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
             while workers.iter().any(|worker| !worker.is_finished()) {
                 if (self.interrupted)() {
                     stop.store(true, Ordering::Relaxed);

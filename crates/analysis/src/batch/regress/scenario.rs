@@ -107,6 +107,8 @@ pub struct Scenario {
     pub has_settings: bool,
     /// How to run and compare it, with the seeds filled in.
     pub settings: RegressSettings,
+    /// What to tell the user of old names in `closecall.toml`.
+    pub remarks: Vec<String>,
 }
 
 impl Scenario {
@@ -170,7 +172,7 @@ impl Scenario {
         };
         let full = folder.join(&sumocfg);
         input_file::file(&full)?;
-        Ok(Self { name, folder, sumocfg, has_settings, settings })
+        Ok(Self { name, folder, sumocfg, has_settings, settings, remarks: file.remarks })
     }
 
     /// The command line of a run in the folder, after the program's name, up to its own options.
