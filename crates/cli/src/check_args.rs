@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ending;
+use super::error::Result;
 use super::files::{default_folder, kept, print_if_elsewhere};
 use closecall_analysis::logged::pack_in_place;
-use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::LogFormat;
@@ -56,7 +56,8 @@ impl CheckArgs {
     /// # Errors
     /// Where another run writes there, or nothing can be written.
     pub fn claim(&self, folder: &Path) -> Result<LogFolder> {
-        if self.out.as_deref().is_some_and(is_auto) { LogFolder::claim_new(folder) } else { LogFolder::claim(folder) }
+        let is_new = self.out.as_deref().is_some_and(is_auto);
+        Ok(if is_new { LogFolder::claim_new(folder) } else { LogFolder::claim(folder) }?)
     }
 
     /// The options.

@@ -5,6 +5,8 @@
 
 mod check_args;
 mod ending;
+mod error;
+mod exit_status;
 mod export;
 mod extract;
 mod files;
@@ -35,10 +37,11 @@ use std::path::Path;
 
 use closecall_analysis::batch::regress::Scenario;
 use closecall_run::util::panics::caught;
-use closecall_run::{Error, Result};
+use error::Result;
 use parse::{Command, ParseError, command, parse};
 
 pub use closecall_run::util::panics::keep_quiet as keep_panics_quiet;
+pub use error::Error;
 pub use sumo::{ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
 pub use workers::{Distribute, ReportEnd, Workers};
 
@@ -70,7 +73,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),
     });
-    match done.flatten() {
+    match done.map_err(Error::from).flatten() {
         Ok(status) => status,
         Err(error) => failed(&error),
     }
@@ -81,7 +84,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
 /// # Errors
 /// Those of `Scenario::read`.
 pub fn scenario(path: &Path) -> Result<Scenario> {
-    Scenario::at(path, &settings::known(&command()))
+    Ok(Scenario::at(path, &settings::known(&command()))?)
 }
 
 /// Prints clap's help, version, or message with the usage below it.

@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 
+use super::error::Result;
 use super::print::print;
 use closecall::braking::{Brakes, Braking, MuModel, mu, stopping_distance};
 use closecall::detection::kind::Kind;
@@ -9,7 +10,6 @@ use closecall::options::{BUILD_UP, EPSILON, RESPONSE};
 use closecall::options::{angle, deceleration, duration, reserve, speed};
 use closecall::traffic::sumo_type::SumoType;
 use closecall::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Radian, Second};
-use closecall_run::Result;
 use closecall_run::util::decimal::Written;
 
 /// Two braking road users.

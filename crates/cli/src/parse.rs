@@ -6,10 +6,10 @@ use std::path::PathBuf;
 
 use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use super::error::{Error, Result};
 use super::print::value;
 use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
 use closecall_run::options::{OptionsFile, old_names};
-use closecall_run::{Error, Result};
 
 use super::plot;
 use super::sweep;
@@ -98,7 +98,7 @@ pub(super) fn parse(args: Vec<OsString>) -> std::result::Result<(Cli, BTreeSet<S
         return Ok((Cli::from_arg_matches(&matches)?, BTreeSet::new()));
     };
     let file = match arguments.try_get_one::<PathBuf>("config") {
-        Ok(Some(path)) => settings::read(&all, path).map_err(ParseError::File)?,
+        Ok(Some(path)) => settings::read(&all, path).map_err(|error| ParseError::File(error.into()))?,
         _ => OptionsFile::default(),
     };
     let known = settings::long_options(&all, name);

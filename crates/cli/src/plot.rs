@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::progress::CountBar;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
 use closecall_analysis::plot::{self, PictureFormat, PictureStyle};
-use closecall_run::Result;
 
 /// Which logs to draw, and where to.
 #[derive(Args)]
@@ -49,5 +49,5 @@ pub fn run(arguments: &PlotArgs) -> Result<()> {
         }
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
-    check_none_lost(&lost)
+    Ok(check_none_lost(&lost)?)
 }

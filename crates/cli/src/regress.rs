@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::error::Result;
 use super::files::absolute;
 use super::print::{print, value};
 use super::progress::CountBar;
@@ -12,7 +13,6 @@ use super::sumo::{Sumo, no_sumo};
 use closecall::util::threads::processors;
 use closecall_analysis::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
 use closecall_analysis::batch::sweep::Seeds;
-use closecall_run::Result;
 use closecall_run::util::output_file::same_file;
 
 /// Which scenarios to run, and how to compare them.

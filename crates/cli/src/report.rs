@@ -4,13 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::progress::CountBar;
 use closecall::util::units::counted;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
 use closecall_analysis::report;
-use closecall_run::Result;
 
 /// Which logs to show, and where to write the page.
 #[derive(Args)]
@@ -49,5 +49,5 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
         print(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
-    check_none_lost(&lost)
+    Ok(check_none_lost(&lost)?)
 }

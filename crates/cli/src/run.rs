@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check_args::CheckArgs;
+use super::error::Result;
 use super::sumo::{GuiRequest, RunRequest, Sumo, no_sumo};
 use closecall::options::{step_length, time};
 use closecall::util::threads::default_threads;
 use closecall::util::units::Second;
+use closecall_run::Error;
 use closecall_run::input::sumo_files;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// A SUMO scenario and how to run it.
 #[derive(Args)]
@@ -71,7 +72,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     // Opened here so that an error carries the operating system's own message, and SUMO never waits for a pipe.
     input_file::file(&scenario)?;
     if scenario.is_dir() {
-        return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
+        return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration").into());
     }
     sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);

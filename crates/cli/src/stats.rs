@@ -4,12 +4,12 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::error::Result;
 use super::print::{print, value};
 use super::progress::CountBar;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::{check_keeps_logs, check_none_lost};
 use closecall_analysis::statistics::{By, Observed, Request, Statistics, table};
-use closecall_run::Result;
 use closecall_run::util::output_file;
 
 /// Which logs to analyse, and how to print the result.
@@ -106,5 +106,5 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Some(out) => output_file::write(&out, printed.as_bytes())?,
         None => print(printed)?,
     }
-    check_none_lost(&statistics.lost)
+    Ok(check_none_lost(&statistics.lost)?)
 }

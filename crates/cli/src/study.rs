@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::study_scenario::{RESULTS, ScenarioArgs};
 use super::sumo::{RunRequest, Sumo};
 use super::sweep::ParseRun;
 use closecall::util::units::Second;
-use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::OutputFiles;

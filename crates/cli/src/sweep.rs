@@ -9,6 +9,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::error::{Error, Result};
 use super::files::{absolute, default_folder, print_if_elsewhere};
 use super::print::{print, value};
 use super::run::{RunArgs, request};
@@ -17,10 +18,10 @@ use super::workers::Workers;
 use closecall::util::threads::processors;
 use closecall::util::units::counted;
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Task, Vary};
+use closecall_run::Error as RunError;
 use closecall_run::input::sumo_outputs::is_output;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// A SUMO scenario, its seeds, and the options to vary.
 #[derive(Args)]
@@ -249,7 +250,7 @@ pub(super) fn distribute(
     if missing.is_empty() {
         return Ok(0);
     }
-    std::fs::create_dir_all(unfinished).map_err(|source| Error::file(unfinished, source))?;
+    std::fs::create_dir_all(unfinished).map_err(|source| RunError::file(unfinished, source))?;
     let bar = bar(done_before, done_before + missing.len(), quiet);
     let mut done = done_before;
     let mut failed = 0;
@@ -266,8 +267,8 @@ pub(super) fn distribute(
     let _ = std::fs::remove_dir_all(unfinished);
     match outcome {
         Ok(()) => Ok(failed),
-        Err(Error::Stopped) => Err(Error::Paused { done, all: done_before + missing.len() }),
-        Err(error) => Err(error),
+        Err(RunError::Stopped) => Err(Error::Paused(done, done_before + missing.len())),
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -320,7 +321,7 @@ pub(super) fn check_runs(plan: &Sweep, seeds: &Seeds, parse_run: &ParseRun) -> R
 
 fn text(path: &Path) -> Result<String> {
     let text = path.to_str().map(str::to_owned);
-    text.ok_or_else(|| Error::content(path, "its name is not UTF-8, so a sweep cannot pass it on"))
+    Ok(text.ok_or_else(|| RunError::content(path, "its name is not UTF-8, so a sweep cannot pass it on"))?)
 }
 
 #[cfg(test)]

@@ -5,11 +5,11 @@ mod place;
 use std::fmt;
 
 use super::logged::{LoggedConflict, LoggedRun};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Cause, Manoeuvre};
 use closecall::util::units::Second;
 use closecall_run::output::summary::{Exposure, SetAside, in_words};
-use closecall_run::{Error, Result};
 
 pub use place::Place;
 
@@ -65,12 +65,10 @@ impl ConflictFilter {
     /// Checks that the parts do not contradict each other.
     ///
     /// # Errors
-    /// [`Error::Value`] if the period ends before it begins.
+    /// [`Error::EmptyPeriod`] if the period ends before it begins.
     pub fn check(&self) -> Result<()> {
         match (self.from, self.to) {
-            (Some(from), Some(to)) if from > to => {
-                Err(Error::Value(format!("--from {from} is after --to {to}: no conflict is in between")))
-            }
+            (Some(from), Some(to)) if from > to => Err(Error::EmptyPeriod(from, to)),
             _ => Ok(()),
         }
     }

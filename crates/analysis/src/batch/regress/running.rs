@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use super::scenario::Scenario;
-use closecall_run::{Error, Result};
+use crate::{Error, Result};
 
 /// The interval at which processes and the user's interrupt are polled.
 const ASKED_EVERY: Duration = Duration::from_millis(5);
@@ -70,7 +70,7 @@ impl Runner<'_> {
         });
         // Ctrl-C in a terminal also ends the runs, so the last worker may be done before the interrupt is polled.
         if stop.into_inner() || (self.interrupted)() {
-            return Err(Error::Stopped);
+            return Err(closecall_run::Error::Stopped.into());
         }
         let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
         Ok(ends.into_iter().map(|end| end.unwrap_or_else(|| Err("it never ran".to_owned()))).collect())

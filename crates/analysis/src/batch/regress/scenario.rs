@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::logged::SUMMARY;
+use crate::{Error, Result};
 use closecall::util::units::{Metre, Second};
 use closecall_run::input::sumo_outputs::output_in;
 use closecall_run::options::OptionsFile;
@@ -13,7 +14,6 @@ use closecall_run::options::RunOptions;
 use closecall_run::output::formats::OutputFiles;
 use closecall_run::output::log::CONFLICTS;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// The name of a scenario's file of settings.
 pub(crate) const SETTINGS: &str = "closecall.toml";
