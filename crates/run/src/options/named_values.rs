@@ -43,18 +43,19 @@ impl RunOptions {
         old_names::remark(&SettingsParser::command(), name)
     }
 
-    /// Checks the value of a setting in a file, unless the option is one of another command.
+    /// Checks the value of a setting in a file, unless the option is one of another command; says which name replaces an old
+    /// one.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn check_setting(name: &str, value: &str) -> std::result::Result<(), String> {
+    pub fn check_setting(name: &str, value: &str) -> std::result::Result<Option<String>, String> {
         let mut command = SettingsParser::command();
         let option = name.replace('_', "-");
         if !is_option(&command, &option) {
-            return Ok(());
+            return Ok(None);
         }
-        let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
-        checked.map_err(|error| plain(&error).to_string())
+        let checked = command.try_get_matches_from_mut(word(name, value));
+        checked.map(|_| old_names::remark(&command, name)).map_err(|error| plain(&error).to_string())
     }
 }
 

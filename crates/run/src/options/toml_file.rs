@@ -4,14 +4,13 @@ use std::path::Path;
 
 use rustc_hash::FxHashMap;
 
-use super::RunOptions;
 use super::word::word;
 use crate::util::input_file;
 use crate::{Error, Result};
 use closecall::options::{DriverOptions, TypeOptions};
 
-/// Says what is wrong with the value of an option, if anything is.
-pub type Check = fn(&str, &str) -> std::result::Result<(), String>;
+/// Says what is wrong with the value of an option, if anything is; else what to tell the user of its name.
+pub type Check = fn(&str, &str) -> std::result::Result<Option<String>, String>;
 
 /// The content of a TOML file of options.
 #[derive(Debug, Default)]
@@ -68,9 +67,10 @@ impl OptionsFile {
                         return Err(Error::content(path, format!("unknown key \"{name}\"")));
                     }
                     let value = plain_value(path, name, &value)?;
-                    check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
-                    let place = || format!("{}, line {}", path.display(), line_of(text, name));
-                    file.remarks.extend(RunOptions::old_name(name).map(|remark| format!("{}: {remark}", place())));
+                    let line = line_of(text, name);
+                    let remark = check(name, &value).map_err(|why| Error::line(path, line, why))?;
+                    let place = || format!("{}, line {line}", path.display());
+                    file.remarks.extend(remark.map(|remark| format!("{}: {remark}", place())));
                     file.args.extend(word(name, &value));
                 }
             }
