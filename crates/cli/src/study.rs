@@ -34,7 +34,7 @@ pub(crate) struct StudyArgs {
     #[command(flatten)]
     of_scenario: ScenarioArgs,
     /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
-    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
+    #[arg(short, long, value_name = "DIR", help_heading = "Output", display_order = 0)]
     out: Option<PathBuf>,
 }
 

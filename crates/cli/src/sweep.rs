@@ -51,10 +51,10 @@ pub(crate) struct SweepArgs {
     #[command(flatten)]
     passed: Passed,
     /// Folder for the results [default: closecall-sweep next to the scenario, or else in the working directory].
-    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
+    #[arg(short, long, value_name = "DIR", help_heading = "Output", display_order = 0)]
     out: Option<PathBuf>,
     /// Print only errors.
-    #[arg(short, long, help_heading = "Output")]
+    #[arg(short, long, help_heading = "Output", display_order = 0)]
     quiet: bool,
 }
 
@@ -123,16 +123,18 @@ const FOR_SUMO: &str = "sumo_options";
 fn passed() -> Vec<Arg> {
     let all = RunArgs::augment_args(clap::Command::new("run"));
     let passed = all.get_arguments().filter(|argument| !OWN.contains(&argument.get_id().as_str())).cloned();
-    let with_own_default = |argument: Arg| {
+    let as_own = |argument: Arg| {
         let own = DEFAULTS.into_iter().find(|(option, _)| argument.get_long() == Some(*option));
         let argument = own.map_or(argument.clone(), |(_, value)| argument.default_value(value));
-        match argument.get_long() {
+        let argument = match argument.get_long() {
             // The help of `closecall run` names its own default.
             Some("threads") => argument.help("Threads of each run at most, SUMO's own included"),
             _ => argument,
-        }
+        };
+        // In the help, they come after what only this command has.
+        argument.display_order(None)
     };
-    passed.map(with_own_default).collect()
+    passed.map(as_own).collect()
 }
 
 impl Args for Passed {
