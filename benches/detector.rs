@@ -160,7 +160,7 @@ fn measure(name: &str, start: Vec<State>) {
     let mut others = Vec::new();
     if count == LARGE {
         others.extend([Shortcut::PathsApart, Shortcut::InLine].map(|kept| {
-            let options = Options { keep: vec![kept], ..Options::default() };
+            let options = Options { no_shortcuts: vec![kept], ..Options::default() };
             Phases::new(&format!("keep {}", kept.to_possible_value().unwrap().get_name()), &options)
         }));
     }

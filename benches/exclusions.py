@@ -35,7 +35,7 @@ def nanoseconds(config: Path, end: float, out: Path, keep: str | None) -> float:
         "--threads",
         1,
         "--explain",
-        *(["--keep", keep] if keep else []),
+        *([f"--no-shortcuts={keep}"] if keep else []),
     ]
     command = [sys.executable, "-m", "closecall", *map(str, words), "--", "--no-warnings"]
     output = subprocess.run(command, check=True, capture_output=True, text=True).stdout

@@ -261,6 +261,9 @@ impl Checker {
 pub fn options_from(keywords: Option<&Bound<PyDict>>) -> PyResult<RunOptions> {
     let mut settings = Vec::new();
     for (name, value) in keywords.into_iter().flatten() {
+        if let Some(remark) = RunOptions::old_name(&name.to_string()) {
+            say::old_name(name.py(), remark)?;
+        }
         let text = if let Ok(flag) = value.extract::<bool>() {
             flag.to_string()
         } else if let Ok(items) = value.extract::<Vec<Bound<PyAny>>>() {

@@ -109,7 +109,7 @@ fn documentation(column: &Column) -> String {
 ///     ValueError: it is not a log.
 #[pyfunction]
 pub fn read_log(py: Python, folder: PathBuf) -> PyResult<Vec<Conflict>> {
-    let read = || -> closecall_run::Result<Vec<_>> {
+    let read = || -> closecall_analysis::Result<Vec<_>> {
         ConflictReader::open(&folder)?.with_snapshots().map(|conflict| conflict.map(Conflict)).collect()
     };
     py.detach(read).map_err(exception)

@@ -20,7 +20,7 @@ use crate::numbers::numbers;
 ///     decel, foe_decel: braking decelerations in m/s², 0.01 to 1000; 9.0 by default.
 ///     response_time: time t1 + t2 at full speed before braking begins, in s; 1.05 by default.
 ///     build_up: time t3 in which the deceleration builds up, in s; 0.1 by default.
-///     epsilon: redundancy, in m; 0.5 by default.
+///     epsilon: reserve ε of μ, in m; 0.5 by default.
 ///     kind: "rear_end", "side" or "frontal", which sets the cosine of the angle between the headings to 1, 0 or -1.
 ///     model: "minimal", "at_rest", "paper" or "rss", which has values of its own for the times and decelerations.
 ///     angle: the angle between the headings in rad, 0 to π, instead of the kind.

@@ -121,13 +121,13 @@ pub struct Options {
     #[cfg_attr(feature = "clap", arg(long, value_name = "default|all|NAME,…", default_value_t, help_heading = "Log"))]
     #[serde(skip_serializing_if = "Measures::is_empty")]
     pub measures: Measures,
-    /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
-    #[cfg_attr(feature = "clap", arg(long))]
-    pub keep_all: bool,
-    /// Keep single tests, to measure what leaving out each one saves.
-    #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true))]
-    #[serde(skip)]
-    pub keep: Vec<Shortcut>,
+    /// Disable all shortcuts, or only the named ones; slower, with the same result.
+    #[cfg_attr(feature = "clap", arg(
+        long, alias = "keep-all", value_enum, value_name = "NAME,…", value_delimiter = ',', num_args = 0..=1,
+        require_equals = true, default_missing_values = Shortcut::ALL_NAMES
+    ))]
+    #[serde(rename = "keep_all", serialize_with = "shortcut::are_all")]
+    pub no_shortcuts: Vec<Shortcut>,
     /// Settings of vehicle types (`[type.NAME]` in the TOML file).
     #[cfg_attr(feature = "clap", arg(skip))]
     pub types: FxHashMap<String, TypeOptions>,
@@ -161,8 +161,7 @@ impl Default for Options {
             align: Align::default(),
             log: Condition::default(),
             measures: Measures::default(),
-            keep_all: false,
-            keep: Vec::new(),
+            no_shortcuts: Vec::new(),
             types: FxHashMap::default(),
             driver_options: DriverOptions::default(),
         }

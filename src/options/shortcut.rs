@@ -1,4 +1,6 @@
-//! Work that a run leaves out where the scene does not need it; `--keep` names single ones.
+//! Work that a run leaves out where the scene does not need it; `--no-shortcuts` has it do all of it, or what it names.
+
+use serde::Serializer;
 
 /// Work that a scene may not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,4 +21,17 @@ pub enum Shortcut {
     /// A crash probability is not worked out where an upper bound shows that it decides nothing.
     #[cfg_attr(feature = "clap", value(alias = "known_chances"))]
     KnownChances,
+}
+
+impl Shortcut {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::AreasApart, Self::PathsApart, Self::InLine, Self::KnownPaths];
+    /// Their names.
+    #[cfg(feature = "clap")]
+    pub(super) const ALL_NAMES: [&str; 4] = ["areas-apart", "paths-apart", "in-line", "known-paths"];
+}
+
+/// Writes whether these are all.
+pub(super) fn are_all<S: Serializer>(shortcuts: &[Shortcut], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.serialize_bool(Shortcut::ALL.iter().all(|one| shortcuts.contains(one)))
 }

@@ -92,7 +92,7 @@ pub fn net(bytes: &[u8]) {
 
 /// Any text as a TOML file of options gives words or an error.
 pub fn config(bytes: &[u8]) {
-    let known = ["mu", "epsilon", "obstacles", "keep-all", "response-time"].map(str::to_owned);
+    let known = ["mu", "epsilon", "obstacles", "no-shortcuts", "response-time"].map(str::to_owned);
     let Ok(file) = OptionsFile::parse(Path::new("config"), &text(bytes), &known, RunOptions::check_setting) else {
         return;
     };

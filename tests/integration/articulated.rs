@@ -6,7 +6,9 @@ use std::sync::Arc;
 use closecall::geometry::Vector;
 use closecall::geometry::contact::touches;
 use closecall::geometry::rectangle::Rectangle;
-use closecall::{Detector, Encounter, Frame, Kind, Options, Placement, Point, Profile, Roster, State, SumoType};
+use closecall::{
+    Detector, Encounter, Frame, Kind, Options, Placement, Point, Profile, Roster, Shortcut, State, SumoType,
+};
 use proptest::prelude::*;
 
 use super::road::Road;
@@ -191,8 +193,8 @@ proptest! {
         let steps = moves.iter().map(|speed| { front += speed; (front, *speed, car) }).collect::<Vec<_>>();
         let steps = [(125.0, 5.0, car)].into_iter().chain(steps).chain([(front, 0.0, car)]).collect::<Vec<_>>();
         for steps in [&steps[..steps.len() - 1], &steps] {
-            let [left_out, kept] = [false, true].map(|keep_all| {
-                meet(&road, &profile, steps, &Options { keep_all, ..Options::default() })
+            let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+                meet(&road, &profile, steps, &Options { no_shortcuts: disabled.to_vec(), ..Options::default() })
             });
             prop_assert_eq!(left_out, kept);
         }

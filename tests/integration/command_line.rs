@@ -229,3 +229,54 @@ fn runs_that_differ_in_an_option_have_rates_of_their_own() {
     assert_eq!(refused.status.code(), Some(2));
     assert!(stderr(&refused).ends_with("runs: the runs differ in epsilon: for --against name those of one variant\n"));
 }
+
+#[test]
+fn an_old_name_is_accepted_and_said_once() {
+    let folder = tempfile::tempdir().unwrap();
+    record(&folder.path().join("recorded"));
+    fs::write(folder.path().join("new.toml"), "no_shortcuts = true\nseverity_rule = \"fhwa\"\n").unwrap();
+    fs::write(folder.path().join("old.toml"), "keep_all = true\nseverity = \"fhwa\"\n").unwrap();
+    let options = |out: &str, more: &[&str]| {
+        let done = closecall(folder.path(), &replay(&[&["--out", out], more].concat()));
+        assert_eq!(done.status.code(), Some(0), "{}", stderr(&done));
+        let run = fs::read_to_string(folder.path().join(out).join("run.json")).unwrap();
+        let run: serde_json::Value = serde_json::from_str(&run).unwrap();
+        (run["options"].clone(), stderr(&done).lines().filter(|line| line.contains(" is now ")).collect::<String>())
+    };
+    let (present, said) = options("a", &["--config", "new.toml"]);
+    assert_eq!((present["keep_all"].as_bool(), said.as_str()), (Some(true), ""));
+    let words = ["--keep-all", "--severity=fhwa", "--severity", "fhwa"];
+    let (of_words, said) = options("b", &words);
+    assert_eq!(of_words, present);
+    let line = |old: &str, new: &str| format!("closecall: {old} is now {new}; the old name still works");
+    assert_eq!(said, line("--keep-all", "--no-shortcuts") + &line("--severity", "--severity-rule"));
+    let (of_file, said) = options("c", &["--config", "old.toml"]);
+    assert_eq!(of_file, present);
+    let of = |number, old, new| line(&format!("old.toml, line {number}: {old}"), new);
+    assert_eq!(said, of(1, "keep_all", "no_shortcuts") + &of(2, "severity", "severity_rule"));
+    assert_eq!(options("d", &[&words[..], &["--quiet"]].concat()).1, "");
+}
+
+#[test]
+fn help_has_its_options_in_groups() {
+    let folder = tempfile::tempdir().unwrap();
+    let checks = ["Run", "Model", "Severity", "Log", "Output"];
+    let replays = ["Run", "Recording", "Model", "Severity", "Log", "Output"];
+    let filter = "Filter: which conflicts count (several values: a,b)";
+    for (command, groups) in [
+        ("run", &checks[..]),
+        ("sweep", &checks),
+        ("study", &checks),
+        ("replay", &replays),
+        ("stats", &["Output", "Comparison", filter]),
+    ] {
+        let help = stdout(&closecall(folder.path(), &[command, "--help"]));
+        let found = help.lines().filter_map(|line| line.strip_suffix(':')).filter(|line| !line.starts_with(' '));
+        let found = found.collect::<Vec<_>>();
+        assert_eq!(found, [&["Arguments", "Options"], groups].concat(), "{help}");
+    }
+    let sweep = stdout(&closecall(folder.path(), &["sweep", "-h"]));
+    let default = |option: &str| sweep.lines().find(|line| line.contains(option)).unwrap().to_owned();
+    assert!(default("--threads <N>").ends_with(" at most, SUMO's own included [default: 1]"), "{sweep}");
+    assert!(default("--log-clips <SEVERITY>").contains("[default: none]"), "{sweep}");
+}

@@ -166,8 +166,8 @@ proptest! {
     /// With these shortcuts off, straight paths are built and stored like those that turn.
     #[test]
     fn straight_traffic_meets_the_same_whatever_is_left_out(cars in some_cars()) {
-        let [left_out, kept] = [vec![], vec![Shortcut::AreasApart, Shortcut::PathsApart]].map(|keep| {
-            let options = Options { keep, ..options() };
+        let [left_out, kept] = [vec![], vec![Shortcut::AreasApart, Shortcut::PathsApart]].map(|disabled| {
+            let options = Options { no_shortcuts: disabled, ..options() };
             look_at(&mut Detector::new(&options, None), &options, &cars)
         });
         prop_assert_eq!(left_out, kept);
@@ -191,8 +191,8 @@ proptest! {
     ) {
         let mut options = Options { mode: Mode::Paper, ..options() };
         options.types.values_mut().for_each(|settings| settings.build_up = Some(build_up));
-        let [left_out, kept] = [false, true].map(|keep_all| {
-            let options = Options { keep_all, ..options.clone() };
+        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+            let options = Options { no_shortcuts: disabled.to_vec(), ..options.clone() };
             look_at(&mut Detector::new(&options, None), &options, &cars)
         });
         prop_assert_eq!(left_out, kept);
@@ -213,7 +213,9 @@ fn a_kind_without_pairs_is_reported_as_left_out() {
     assert_eq!(left_out(&options(), ahead), [frontal, side]);
     assert_eq!(left_out(&options(), towards_it), [side]);
     assert_eq!(left_out(&options(), across), [frontal]);
-    for needs_all in [Options { keep_all: true, ..options() }, Options { mode: Mode::Paper, ..options() }] {
+    for needs_all in
+        [Options { no_shortcuts: Shortcut::ALL.to_vec(), ..options() }, Options { mode: Mode::Paper, ..options() }]
+    {
         assert!(left_out(&needs_all, ahead).is_empty());
     }
 }
@@ -334,8 +336,8 @@ proptest! {
         let profile = roster.profile(Profile::vehicle(&sumo, &options())).unwrap();
         ["a", "b"].iter().for_each(|id| _ = roster.enter(id, profile));
         let cars = [(0.0, 0.0, 0.0, speed), (x, y, heading, foe_speed)];
-        let [left_out, kept] = [false, true].map(|keep_all| {
-            let options = Options { path: PathModel::Arc, keep_all, ..options() };
+        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
+            let options = Options { path: PathModel::Arc, no_shortcuts: disabled.to_vec(), ..options() };
             turned_by(turn, &mut Detector::new(&options, None), &cars, &[0, 1], &roster)
         });
         prop_assert_eq!(left_out, kept);
@@ -387,9 +389,9 @@ proptest! {
 
     #[test]
     fn looking_further_leaves_nothing_out(cars in some_cars(), arcs: bool) {
-        let [left_out, kept] = [false, true].map(|keep_all| {
+        let [left_out, kept] = [&[][..], &Shortcut::ALL].map(|disabled| {
             let path = if arcs { PathModel::Arc } else { PathModel::Straight };
-            let options = Options { keep_all, path, ..logging("ttc < 4 or drac > 2 or pet < 2") };
+            let options = Options { no_shortcuts: disabled.to_vec(), path, ..logging("ttc < 4 or drac > 2 or pet < 2") };
             look_at(&mut Detector::new(&options, None), &options, &cars)
         });
         prop_assert_eq!(left_out, kept);

@@ -3,7 +3,7 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
-use closecall::{Net, Options, PathModel, Placement, Profile, State, SumoType};
+use closecall::{Net, Options, PathModel, Placement, Profile, Shortcut, State, SumoType};
 use closecall_run::Run;
 
 use crate::street::street;
@@ -63,7 +63,9 @@ fn a_platoon_has_conflicts_of_neighbours_only() {
     let neighbours = of(&[["last", "third"], ["second", "first"], ["third", "second"]]);
     let arcs = Options { path: PathModel::Arc, ..Options::default() };
     let wide = Options { log: "ttc < 10 or margin < 0 or gap < 100".parse().unwrap(), ..Options::default() };
-    for options in [Options::default(), arcs, wide, Options { keep_all: true, ..Options::default() }] {
+    for options in
+        [Options::default(), arcs, wide, Options { no_shortcuts: Shortcut::ALL.to_vec(), ..Options::default() }]
+    {
         let found = [pairs_on(&options, None, &platoon, ""), pairs_on(&options, Some(street()), &platoon, "east_0")];
         for found in found {
             assert!(found.iter().all(|pair| neighbours.contains(pair)), "{found:?}");

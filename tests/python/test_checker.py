@@ -394,3 +394,9 @@ def test_the_log_is_written_on_request(tmp_path: Path) -> None:
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["complete"] and record["summary"]["steps"] == 1
     assert record["summary"]["conflicts"] == checker.summary["conflicts"] != []
+
+
+def test_an_old_keyword_is_accepted_and_said_once() -> None:
+    done = python("import closecall\nfor _ in range(3):\n    closecall.Checker(keep_all=True, mu='rss')")
+    said = "closecall: keep_all is now no_shortcuts; the old name still works\n"
+    assert (done.returncode, done.stderr) == (0, said)

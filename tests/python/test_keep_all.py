@@ -1,4 +1,4 @@
-"""Leaving out work that a scene does not need changes no result: `--keep-all` gives the same bytes everywhere."""
+"""Leaving out work that a scene does not need changes no result: `--no-shortcuts` gives the same bytes everywhere."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def checked(config: Path, out: Path, *words: str) -> Found:
     more = ["--config", str(config.parent / "closecall.toml"), *end, *seed, *words]
     done = closecall("run", config, *more, "--log-series", "--quiet", "--out", out)
     assert done.returncode == 0, done.stderr
-    return logged(out, "--keep-all" in words)
+    return logged(out, "--no-shortcuts" in words)
 
 
 def differ_only_in_what_is_left_out(found: Found, whole: Found) -> tuple[int, int]:
@@ -68,7 +68,7 @@ all_scenarios = pytest.mark.parametrize("config", sorted(NETS.glob("*/*.sumocfg"
 
 @all_scenarios
 def test_leaving_out_changes_no_result(config: Path, tmp_path: Path) -> None:
-    found, whole = checked(config, tmp_path / "left_out"), checked(config, tmp_path / "kept", "--keep-all")
+    found, whole = checked(config, tmp_path / "left_out"), checked(config, tmp_path / "kept", "--no-shortcuts")
     left_out, kept = differ_only_in_what_is_left_out(found, whole)
     assert left_out > kept
 
@@ -107,7 +107,7 @@ def test_leaving_out_changes_no_result_of_a_wider_condition(net: str, tmp_path: 
     config, wider = NETS / net / f"{net}.sumocfg", ("--log", "ssm", "--end", "50")
     found, whole = (
         checked(config, tmp_path / "left_out", *wider),
-        checked(config, tmp_path / "kept", *wider, "--keep-all"),
+        checked(config, tmp_path / "kept", *wider, "--no-shortcuts"),
     )
     assert found[0]["conflicts.csv"].count(b"\n") > 10
     left_out, kept = differ_only_in_what_is_left_out(found, whole)

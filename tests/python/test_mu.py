@@ -160,11 +160,12 @@ def test_a_value_out_of_its_range_is_named(changed: dict[str, Any], message: str
         cc.mu(**values)
 
 
-def test_the_command_prints_all_three_models() -> None:
+def test_the_command_prints_every_model() -> None:
     speeds = ["--speed", "30", "--foe-speed", "25", "--decel", "8", "--foe-decel", "4"]
     words = [*speeds, "--response-time", "1", "--build-up", "0", "--epsilon", "0"]
     found = json.loads(closecall("mu", *words, "--json").stdout)
     assert (found["minimal"], found["at_rest"], found["paper"]) == (17.125, 8.125, 8.125)
+    assert found["rss"] == cc.mu(30.0, 25.0, model="rss", epsilon=0.0)
     assert "minimal  17.125 m" in closecall("mu", *words).stdout
 
 

@@ -143,7 +143,7 @@ def test_trajectories_equal_those_that_sumo_records(scenario: Copy, tmp_path: Pa
 
 def test_trajectories_do_not_depend_on_what_is_left_out(scenario: Copy, tmp_path: Path) -> None:
     config, files = scenario("left_turn"), [tmp_path / "some.trj", tmp_path / "all.trj"]
-    for file, words in zip(files, ([], ["--keep-all"])):
+    for file, words in zip(files, ([], ["--no-shortcuts"])):
         done = closecall("run", config, "--end", "60", "--trj-output", file, "--out", tmp_path / "out", *words)
         assert done.returncode == 0, done.stderr
     assert files[0].read_bytes() == files[1].read_bytes()

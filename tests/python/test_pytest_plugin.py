@@ -39,7 +39,7 @@ def test_a_conflict_has_an_attribute_for_every_column(closecall_scenario: RunSce
 def test_options_and_the_scenarios_own_settings_apply(closecall_scenario: RunScenario) -> None:
     with_crate = closecall_scenario(NETS / "obstacles")
     assert "crate" in {conflict.foe for conflict in with_crate.conflicts}
-    short = closecall_scenario(NETS / "rear_end" / "rear_end.sumocfg", end=5, epsilon=1.0, keep_all=True)
+    short = closecall_scenario(NETS / "rear_end" / "rear_end.sumocfg", end=5, epsilon=1.0, no_shortcuts=True)
     assert short.summary["end"] <= 5
     (conflict,) = short.conflicts
     (as_ever,) = closecall_scenario(NETS / "rear_end", end=5).conflicts

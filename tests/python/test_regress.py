@@ -74,15 +74,15 @@ def differs(folder: Path, *words: str) -> str:
     return done.stdout
 
 
-def test_any_number_of_jobs_prints_the_same_report(blessed: Copy, tmp_path: Path) -> None:
+def test_any_number_of_workers_prints_the_same_report(blessed: Copy, tmp_path: Path) -> None:
     folders = [blessed(name) for name in ("frontal", "priority", "side")]
     for folder in folders:
         settings(folder, "[regress]\nseeds = [42, 43]\n")
     assert closecall("regress", *folders, "--bless").returncode == 0
     reports = set()
-    for jobs in ("1", "4"):
+    for workers in ("1", "4"):
         junit = tmp_path / "junit.xml"
-        done = closecall("regress", *folders, "--jobs", jobs, "--junit", junit)
+        done = closecall("regress", *folders, "--workers", workers, "--junit", junit)
         assert done.returncode == 0, done.stdout + done.stderr
         reports.add((done.stdout, junit.read_bytes()))
     ((text, _),) = reports
@@ -312,7 +312,7 @@ def test_progress_is_shown_on_a_terminal(blessed: Copy) -> None:
     # 24 rows of 100 columns.
     fcntl.ioctl(end, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 100, 0, 0))
     seeds = ",".join(map(str, range(1, 13)))
-    command = [sys.executable, "-m", "closecall", "regress", str(blessed("side")), "--jobs", "1", "--seeds", seeds]
+    command = [sys.executable, "-m", "closecall", "regress", str(blessed("side")), "--workers", "1", "--seeds", seeds]
     with subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=end, env={**os.environ, "TERM": "xterm"}
     ) as process:

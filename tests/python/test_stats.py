@@ -131,7 +131,7 @@ def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
         counts: dict[str, int] = {}
         for row in logged:
             counts[group_of(row)] = counts.get(group_of(row), 0) + 1
-        found = stats(log, "--by", by, "--worst", "1000")
+        found = stats(log, "--by", by, "--top", "1000")
         assert {group["group"]: group["count"] for group in found["groups"][1:]} == counts
         if by in ("edge", "junction"):
             counts.pop("(none)", None)
@@ -145,7 +145,7 @@ def test_groups_and_hot_spots_add_up(tmp_path: Path) -> None:
 
 
 def test_the_worst_conflicts_come_first_in_sorted_rows(plans: Path) -> None:
-    found = stats(plans / "left_turn", "--worst", "500")["worst"]
+    found = stats(plans / "left_turn", "--top", "500")["worst"]
     every = [row for log in sorted(plans.glob("left_turn/*/*")) for row in counted(log)]
     order = ["caution", "serious", "critical"]
 

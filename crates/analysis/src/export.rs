@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::filter::{ConflictFilter, set_aside_in_words};
 use super::logged::{ConflictReader, LostRows, Progress, Reading, check_keeps_logs, log_folders};
+use crate::{Error, Result};
 use closecall_run::output::formats::{ExportFormat, Exported};
 use closecall_run::output::summary::SetAside;
-use closecall_run::{Error, Result};
 
 /// What was written.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub struct Made {
 /// Writes the conflicts of the log in a folder, or in one below it, that pass the filter to `out`, whole or not at all.
 ///
 /// # Errors
-/// That of [`ConflictFilter::check`]; those of reading the log; [`Error::Content`] where the folder holds several; [`Error::Value`] where the format cannot
+/// That of [`ConflictFilter::check`]; those of reading the log; [`Error::content`] where the folder holds several; [`Error::Value`] where the format cannot
 /// hold it or it would be written over the log; those of writing `out`.
 pub fn write(
     folder: &Path,

@@ -19,6 +19,7 @@
 
 pub mod batch;
 pub mod dataset;
+mod error;
 pub mod export;
 pub mod filter;
 pub mod logged;
@@ -29,3 +30,5 @@ pub mod statistics;
 pub mod study;
 mod style;
 pub mod variants;
+
+pub use error::{Error, Result};

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::ending;
+use super::error::Result;
 use super::files::{default_folder, kept, print_if_elsewhere};
 use closecall_analysis::logged::pack_in_place;
-use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::LogFormat;
@@ -26,21 +26,21 @@ fn is_auto(out: &Path) -> bool {
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(super) struct CheckArgs {
-    /// Folder for the log [default: closecall-out next to the scenario or recording, or else in the working directory].
-    /// An earlier log is kept in its folder earlier; auto makes a new folder beside the default one.
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
     /// TOML file with options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// List the tests that were skipped because they could not change the result, and the time each part took.
-    #[arg(long)]
-    explain: bool,
-    /// Print only errors.
-    #[arg(short, long)]
-    pub quiet: bool,
     #[command(flatten)]
     pub options: RunOptions,
+    /// Folder for the log [default: closecall-out next to the scenario or recording, or else in the working directory].
+    /// An earlier log is moved to its folder earlier; auto makes a new folder beside the default one.
+    #[arg(short, long, value_name = "DIR", help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Print only errors.
+    #[arg(short, long, help_heading = "Output")]
+    pub quiet: bool,
+    /// List the skipped tests, and the time each part took.
+    #[arg(long, help_heading = "Output")]
+    explain: bool,
     #[command(flatten)]
     pub outputs: OutputFiles,
 }
@@ -56,7 +56,8 @@ impl CheckArgs {
     /// # Errors
     /// Where another run writes there, or nothing can be written.
     pub fn claim(&self, folder: &Path) -> Result<LogFolder> {
-        if self.out.as_deref().is_some_and(is_auto) { LogFolder::claim_new(folder) } else { LogFolder::claim(folder) }
+        let is_new = self.out.as_deref().is_some_and(is_auto);
+        Ok(if is_new { LogFolder::claim_new(folder) } else { LogFolder::claim(folder) }?)
     }
 
     /// The options.

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::error::Result;
 use super::print::print;
-use closecall_run::Result;
 use closecall_run::output::summary::Summary;
 
 /// Prints the summary; with `explain`, every skipped test and the time that each part of the work took.

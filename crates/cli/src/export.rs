@@ -4,20 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::progress::CountBar;
 use closecall::util::units::counted;
 use closecall_analysis::export;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
-use closecall_run::Result;
 use closecall_run::output::formats::ExportFormat;
 
 /// Which log to export, as what, and where to.
 #[derive(Args)]
 pub(crate) struct ExportArgs {
     /// Log folder.
-    #[arg(value_name = "DIR")]
+    #[arg(value_name = "LOG")]
     folder: PathBuf,
     /// Format of the file. SSAM's trajectories (.trj) hold all vehicles, which a log does not: run and replay write them with
     /// --trj-output.
@@ -45,5 +45,5 @@ pub fn run(arguments: ExportArgs) -> Result<()> {
         print(format_args!("{}{of} in {}\n", counted(made.conflicts, "conflict"), out.display()))?;
         made.set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
-    check_none_lost(made.lost.as_slice())
+    Ok(check_none_lost(made.lost.as_slice())?)
 }

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::error::Result;
 use super::files::absolute;
 use super::print::{print, value};
 use super::progress::CountBar;
@@ -11,7 +12,6 @@ use super::selector::SelectorArgs;
 use super::sumo::{Sumo, no_sumo};
 use closecall_analysis::batch::extract::{Extracted, SCENARIO, Tools, extract, extract_openscenario, extract_osi};
 use closecall_analysis::logged::check_keeps_logs;
-use closecall_run::Result;
 use closecall_run::util::decimal::Written;
 
 /// Which conflict to cut out, and where to.

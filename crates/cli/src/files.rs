@@ -2,9 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use super::error::Result;
 use super::print::print;
+use closecall_run::Error;
 use closecall_run::RunOptions;
-use closecall_run::{Error, Result};
 
 /// The run's own files, which its other outputs must not overwrite. SUMO's files are known only once it has started.
 pub(super) fn kept(config: Option<&Path>, options: &RunOptions, out: &Path) -> Vec<PathBuf> {
@@ -46,5 +47,5 @@ fn can_be_written(folder: &Path) -> bool {
 
 /// A path that other processes can use: their working directories may differ.
 pub(super) fn absolute(path: &Path) -> Result<PathBuf> {
-    std::path::absolute(path).map_err(|source| Error::file(path, source))
+    Ok(std::path::absolute(path).map_err(|source| Error::file(path, source))?)
 }

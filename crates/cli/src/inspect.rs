@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
-use closecall_run::Result;
 use closecall_run::input::tracks;
 
 /// Which file to look at.

@@ -5,6 +5,8 @@
 
 mod check_args;
 mod ending;
+mod error;
+mod exit_status;
 mod export;
 mod extract;
 mod files;
@@ -35,10 +37,11 @@ use std::path::Path;
 
 use closecall_analysis::batch::regress::Scenario;
 use closecall_run::util::panics::caught;
-use closecall_run::{Error, Result};
+use error::Result;
 use parse::{Command, ParseError, command, parse};
 
 pub use closecall_run::util::panics::keep_quiet as keep_panics_quiet;
+pub use error::Error;
 pub use sumo::{ConvertNet, FilmRequest, GuiRequest, RunRequest, SaveConfiguration, ShowRequest, Simulate, Sumo};
 pub use workers::{Distribute, ReportEnd, Workers};
 
@@ -47,11 +50,12 @@ pub use workers::{Distribute, ReportEnd, Workers};
 /// Results go to standard output, messages to standard error, one line each; the usage follows that of a wrong word.
 pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 {
     let args = args.into_iter().collect::<Vec<_>>();
-    let cli = match parse(args) {
-        Ok(cli) => cli,
+    let (cli, remarks) = match parse(args) {
+        Ok(parsed) => parsed,
         Err(ParseError::Clap(error)) => return refused(&error),
         Err(ParseError::File(error)) => return failed(&error),
     };
+    remarks.iter().for_each(|remark| eprintln!("closecall: {remark}"));
     let done = caught(|| match cli.command {
         Command::Run(arguments) => run::run(*arguments, sumo).map(|()| 0),
         Command::Sweep(arguments) => sweep::run(*arguments, sumo, &parse::parse_run),
@@ -69,7 +73,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
         Command::Report(arguments) => report::run(&arguments).map(|()| 0),
         Command::Plot(arguments) => plot::run(&arguments).map(|()| 0),
     });
-    match done.flatten() {
+    match done.map_err(Error::from).flatten() {
         Ok(status) => status,
         Err(error) => failed(&error),
     }
@@ -80,7 +84,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>, sumo: Option<Sumo>) -> u8 
 /// # Errors
 /// Those of `Scenario::read`.
 pub fn scenario(path: &Path) -> Result<Scenario> {
-    Scenario::at(path, &settings::known(&command()))
+    Ok(Scenario::at(path, &settings::known(&command()))?)
 }
 
 /// Prints clap's help, version, or message with the usage below it.

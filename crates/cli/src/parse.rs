@@ -1,12 +1,15 @@
 //! The command line as clap reads it, with the options of a TOML file.
 
+use std::collections::BTreeSet;
 use std::ffi::OsString;
+use std::path::PathBuf;
 
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use super::error::{Error, Result};
 use super::print::value;
 use super::{export, extract, inspect, mu, playback, regress, replay, report, run, settings, stats};
-use closecall_run::{Error, Result};
+use closecall_run::options::{OptionsFile, old_names};
 
 use super::plot;
 use super::sweep;
@@ -29,11 +32,11 @@ pub(super) enum Command {
     /// Check a recording for conflicts: SUMO's fcd-output, SSAM's .trj, Vissim's .fzp, tables of trajectories
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
-    /// Tell what a recording is taken for, what it lacks, and the command that replays it
+    /// Identify a recording, list missing data, and print the command that replays it
     Inspect(inspect::InspectArgs),
-    /// Run scenarios and compare their conflicts with the blessed ones
+    /// Run scenarios and compare their conflicts with the approved baseline
     Regress(regress::RegressArgs),
-    /// Print the minimal collision distance μ of two road users by all three models
+    /// Print the minimal collision distance μ of two road users under each model
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
     /// Check stiff and extreme cases against exact references
@@ -51,7 +54,7 @@ pub(super) enum Command {
     /// Show the seconds around a conflict in sumo-gui
     #[command(args_override_self = true)]
     Show(playback::ShowArgs),
-    /// Cut a conflict out of a run: a folder with a scenario in which it happens again, and a test
+    /// Extract a conflict as a scenario and a test
     #[command(args_override_self = true)]
     Extract(extract::ExtractArgs),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm
@@ -86,26 +89,48 @@ pub(super) fn command() -> clap::Command {
     })
 }
 
-/// Parses the words. The options of a TOML file come before them, so that what was typed wins.
-pub(super) fn parse(args: Vec<OsString>) -> std::result::Result<Cli, ParseError> {
-    let matches = command().try_get_matches_from(&args)?;
-    let Some((name, arguments)) = matches.subcommand() else { return Ok(Cli::from_arg_matches(&matches)?) };
-    let known = settings::long_options(&command(), name);
-    let file = match arguments.try_get_one::<std::path::PathBuf>("config") {
-        Ok(Some(path)) => settings::read(&command(), path).map_err(ParseError::File)?,
-        _ => return Ok(Cli::from_arg_matches(&matches)?),
+/// Parses the words; also returns what to tell the user of old names among them, unless only errors are wanted. The options of a
+/// TOML file come before the words, so that what was typed wins.
+pub(super) fn parse(args: Vec<OsString>) -> std::result::Result<(Cli, BTreeSet<String>), ParseError> {
+    let all = command();
+    let matches = all.clone().try_get_matches_from(&args)?;
+    let Some((name, arguments)) = matches.subcommand() else {
+        return Ok((Cli::from_arg_matches(&matches)?, BTreeSet::new()));
     };
-    let place = args.iter().position(|word| word == name).map_or(args.len(), |place| place + 1);
+    let file = match arguments.try_get_one::<PathBuf>("config") {
+        Ok(Some(path)) => settings::read(&all, path).map_err(|error| ParseError::File(error.into()))?,
+        _ => OptionsFile::default(),
+    };
+    let known = settings::long_options(&all, name);
     let is_known = |word: &&String| known.iter().any(|option| option == settings::option_of(word));
+    let place = args.iter().position(|word| word == name).map_or(args.len(), |place| place + 1);
     let (before, after) = args.split_at(place);
-    let all = before.iter().cloned().chain(file.args.iter().filter(is_known).map(OsString::from)).chain(after.to_vec());
-    let mut cli = Cli::from_arg_matches(&command().try_get_matches_from(all)?)?;
+    let of_file = file.args.iter().filter(is_known).map(OsString::from);
+    let words = before.iter().cloned().chain(of_file).chain(after.iter().cloned());
+    let matches = all.clone().try_get_matches_from(words)?;
+    let is_quiet = |of: &ArgMatches| matches!(of.try_get_one("quiet"), Ok(Some(true)));
+    let remarks = match matches.subcommand() {
+        Some((_, arguments)) if is_quiet(arguments) => BTreeSet::new(),
+        _ => all
+            .find_subcommand(name)
+            .into_iter()
+            .flat_map(|own| old_names_in(own, after))
+            .chain(file.remarks.clone())
+            .collect(),
+    };
+    let mut cli = Cli::from_arg_matches(&matches)?;
     match &mut cli.command {
         Command::Run(arguments) => arguments.check.options.set_tables(file),
         Command::Replay(arguments) => arguments.check.options.set_tables(file),
         _ => {}
     }
-    Ok(cli)
+    Ok((cli, remarks))
+}
+
+/// What to tell the user of old names among the words of a command. No value begins with two dashes, but for those after `--`.
+fn old_names_in(command: &clap::Command, words: &[OsString]) -> impl Iterator<Item = String> {
+    let options = words.iter().filter_map(|word| word.to_str()).take_while(|word| *word != "--");
+    options.filter(|word| word.starts_with("--")).filter_map(|word| old_names::remark(command, word))
 }
 
 /// clap's message as one line, without the usage.
@@ -122,7 +147,7 @@ fn in_one_line(error: &clap::Error) -> Error {
 /// clap's error as one line, and the errors of the TOML file.
 pub(super) fn parse_run(args: Vec<OsString>) -> Result<run::RunArgs> {
     match parse(args) {
-        Ok(Cli { command: Command::Run(arguments) }) => Ok(*arguments),
+        Ok((Cli { command: Command::Run(arguments) }, _)) => Ok(*arguments),
         Ok(_) => Err(value("these are not the words of closecall run")),
         Err(ParseError::Clap(error)) => Err(in_one_line(&error)),
         Err(ParseError::File(error)) => Err(error),

@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::{print, value};
 use super::selector::SelectorArgs;
 use super::sumo::{FilmRequest, ShowRequest, Sumo, no_sumo};
 use closecall_analysis::logged::check_keeps_logs;
 use closecall_analysis::playback::{Playback, stills, svg};
-use closecall_run::Result;
 use closecall_run::output::font::FONT;
 use closecall_run::util::output_file;
 
@@ -28,7 +28,7 @@ struct Choice {
 
 impl Choice {
     fn find(&self) -> Result<Playback> {
-        Playback::find(&self.conflict.folder, self.conflict.which(), self.net.as_deref())
+        Ok(Playback::find(&self.conflict.folder, self.conflict.which(), self.net.as_deref())?)
     }
 }
 
@@ -88,7 +88,7 @@ pub fn show(arguments: &ShowArgs, sumo: Option<Sumo>) -> Result<()> {
     }
     playback.notes.iter().for_each(|note| eprintln!("closecall: {note}"));
     let scene = serde_json::to_string(&playback.show()).map_err(|error| value(error.to_string()))?;
-    (sumo.show)(&ShowRequest { scene, label: arguments.label, quit_on_end: arguments.quit_on_end })
+    Ok((sumo.show)(&ShowRequest { scene, label: arguments.label, quit_on_end: arguments.quit_on_end })?)
 }
 
 fn film(playback: &Playback, format: &'static str, sumo: Option<Sumo>) -> Result<Vec<u8>> {
@@ -98,7 +98,7 @@ fn film(playback: &Playback, format: &'static str, sumo: Option<Sumo>) -> Result
         ));
     };
     let pictures = stills(playback, f64::from(RATE));
-    (sumo.film)(&FilmRequest { pictures, rate: RATE, format, font: FONT })
+    Ok((sumo.film)(&FilmRequest { pictures, rate: RATE, format, font: FONT })?)
 }
 
 /// What a clip is written as.

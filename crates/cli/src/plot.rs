@@ -4,21 +4,21 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::progress::CountBar;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
 use closecall_analysis::plot::{self, PictureFormat, PictureStyle};
-use closecall_run::Result;
 
 /// Which logs to draw, and where to.
 #[derive(Args)]
 pub(crate) struct PlotArgs {
     /// Log folders, or folders that contain log folders.
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// Folder for the images.
-    #[arg(short, long, value_name = "FOLDER", default_value = "plots")]
+    #[arg(short, long, value_name = "DIR", default_value = "plots")]
     out: PathBuf,
     /// File format of the images.
     #[arg(long, value_enum, default_value = "svg")]
@@ -49,5 +49,5 @@ pub fn run(arguments: &PlotArgs) -> Result<()> {
         }
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
-    check_none_lost(&lost)
+    Ok(check_none_lost(&lost)?)
 }

@@ -3,7 +3,7 @@
 use std::fmt::Display;
 use std::io::{ErrorKind, Write};
 
-use closecall_run::{Error, Result};
+use super::error::{Error, Result};
 
 /// Prints results. A reader that closes its end of the pipe early is not an error.
 pub(super) fn print(text: impl Display) -> Result<()> {

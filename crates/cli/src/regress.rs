@@ -5,13 +5,14 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::error::Result;
 use super::files::absolute;
 use super::print::{print, value};
 use super::progress::CountBar;
 use super::sumo::{Sumo, no_sumo};
 use closecall::util::threads::processors;
 use closecall_analysis::batch::regress::{Level, Report, Runner, Scenario, junit, regress, scenario, summary};
-use closecall_run::Result;
+use closecall_analysis::batch::sweep::Seeds;
 use closecall_run::util::output_file::same_file;
 
 /// Which scenarios to run, and how to compare them.
@@ -27,14 +28,14 @@ pub(crate) struct RegressArgs {
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
     /// Runs at the same time [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    jobs: Option<u16>,
+    #[arg(long, alias = "jobs", value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    workers: Option<u16>,
     /// Run only the scenario of this name; may be repeated.
     #[arg(long, value_name = "NAME", action = clap::ArgAction::Append)]
     only: Vec<String>,
-    /// Seeds to use instead of the scenarios' own; the comparison is then statistical.
-    #[arg(long, value_name = "N,…", value_delimiter = ',')]
-    seeds: Vec<u32>,
+    /// Random seeds for SUMO instead of the scenarios' own, such as 1-10 or 1,2,5-9; the comparison is then statistical.
+    #[arg(long, value_name = "SEEDS")]
+    seeds: Option<Seeds>,
     /// Folder in which to keep the logs of all runs.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -63,9 +64,11 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut scenarios = Vec::new();
     let mut reports = BTreeMap::new();
     let mut places = Vec::new();
+    let seeds = arguments.seeds.as_ref().map_or(&[][..], |seeds| &seeds.0);
     for (place, folder) in folders.iter().enumerate() {
-        match Scenario::read(folder, known).and_then(|scenario| scenario.with_seeds(&arguments.seeds)) {
+        match Scenario::read(folder, known).and_then(|scenario| scenario.with_seeds(seeds)) {
             Ok(scenario) => {
+                scenario.remarks.iter().for_each(|remark| eprintln!("closecall: {remark}"));
                 scenarios.push(scenario);
                 places.push(place);
             }
@@ -82,7 +85,7 @@ pub fn run(arguments: RegressArgs, known: &[String], sumo: Option<Sumo>) -> Resu
     let mut progress = |done, all| bar.show(done, all);
     let mut runner = Runner {
         closecall: sumo.closecall,
-        jobs: arguments.jobs.map_or_else(processors, usize::from),
+        workers: arguments.workers.map_or_else(processors, usize::from),
         out: arguments.out.as_deref().map(absolute).transpose()?,
         interrupted: sumo.interrupted,
         progress: &mut progress,

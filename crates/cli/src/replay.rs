@@ -6,9 +6,11 @@ use std::sync::Arc;
 use clap::Args;
 
 use super::check_args::CheckArgs;
+use super::error::{Error, Result};
 use super::progress::Progress;
 use super::sumo::Sumo;
 use closecall::util::threads::default_threads;
+use closecall_run::Error as RunError;
 use closecall_run::RunOptions;
 use closecall_run::input::replay::Replay;
 use closecall_run::input::tracks::{self, TrackOptions};
@@ -16,7 +18,6 @@ use closecall_run::output::input_hash::Input;
 use closecall_run::output::record::RunRecord;
 use closecall_run::run::Run;
 use closecall_run::run::recorded::{Ending, RecordedRun};
-use closecall_run::{Error, Result};
 
 /// A recording and how to check it.
 #[derive(Args)]
@@ -24,7 +25,7 @@ use closecall_run::{Error, Result};
 pub(crate) struct ReplayArgs {
     /// Recording to check: SUMO's fcd-output as XML, CSV or Parquet, SSAM's .trj, Vissim's .fzp, or a table of trajectories; also
     /// gzipped. Several tables of one time base, such as those of vehicles and of pedestrians, are one recording.
-    #[arg(value_name = "FILE", required = true)]
+    #[arg(value_name = "FILE", required = true, help_heading = None::<&str>)]
     recordings: Vec<PathBuf>,
     /// Net on which the recording was made. Without one, paths follow no lanes: see --path arc.
     #[arg(short = 'n', long, value_name = "NET")]
@@ -47,7 +48,7 @@ pub(crate) struct ReplayArgs {
     sublane: bool,
     /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
     /// reads the steps ahead.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
+    #[arg(long, value_name = "N", help_heading = "Run", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
@@ -106,7 +107,7 @@ pub fn run(arguments: ReplayArgs, sumo: Option<Sumo>) -> Result<()> {
         remarks: replay.remarks(),
         ..Ending::default()
     });
-    if matches!(outcome, Ok(()) | Err(Error::CutShort { .. })) {
+    if matches!(outcome, Ok(()) | Err(Error::Run(RunError::CutShort { .. }))) {
         arguments.check.finish(&closed?, &recording, &out)?;
     }
     outcome
@@ -123,7 +124,7 @@ fn record(arguments: &ReplayArgs, options: RunOptions) -> Result<RunRecord> {
         .chain(&arguments.stops);
     Ok(RunRecord {
         sublane: arguments.sublane,
-        inputs: files.map(|path| Input::of(path)).collect::<Result<_>>()?,
+        inputs: files.map(|path| Input::of(path)).collect::<closecall_run::Result<_>>()?,
         ..RunRecord::new(arguments.recording().to_owned(), options)
     })
 }
@@ -135,7 +136,7 @@ fn check(replay: &mut Replay, run: &mut Run, interrupted: &mut dyn FnMut() -> bo
         let progress = progress.get_or_insert_with(|| Progress::new(time, None, !quiet));
         progress.show(time, replay.road_users(), run.closed_conflicts());
         if interrupted() {
-            return Err(Error::Interrupted { time });
+            return Err(RunError::Interrupted { time }.into());
         }
     }
     Ok(())

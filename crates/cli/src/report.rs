@@ -4,19 +4,19 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::progress::CountBar;
 use closecall::util::units::counted;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::check_none_lost;
 use closecall_analysis::report;
-use closecall_run::Result;
 
 /// Which logs to show, and where to write the page.
 #[derive(Args)]
 pub(crate) struct ReportArgs {
     /// Log folders, or folders that contain log folders.
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// HTML file to write.
     #[arg(short, long, value_name = "FILE", default_value = "report.html")]
@@ -28,7 +28,7 @@ pub(crate) struct ReportArgs {
     #[arg(short, long)]
     quiet: bool,
     /// Runs to compare with, such as those before a change: log folders, or folders that contain log folders.
-    #[arg(long, value_name = "DIR", num_args = 1..)]
+    #[arg(long, value_name = "LOG", num_args = 1..)]
     against: Vec<PathBuf>,
     #[command(flatten)]
     filter: ConflictFilter,
@@ -49,5 +49,5 @@ pub fn run(arguments: &ReportArgs) -> Result<()> {
         print(format_args!("{conflicts} of {runs} in {} ({size:.1} MB)\n", arguments.out.display()))?;
         set_aside.map_or(Ok(()), |text| print(format_args!("{text}\n")))?;
     }
-    check_none_lost(&lost)
+    Ok(check_none_lost(&lost)?)
 }

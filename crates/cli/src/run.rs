@@ -5,33 +5,25 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::check_args::CheckArgs;
+use super::error::Result;
 use super::sumo::{GuiRequest, RunRequest, Sumo, no_sumo};
 use closecall::options::{step_length, time};
 use closecall::util::threads::default_threads;
 use closecall::util::units::Second;
+use closecall_run::Error;
 use closecall_run::input::sumo_files;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// A SUMO scenario and how to run it.
 #[derive(Args)]
 #[command(next_help_heading = "Run")]
 pub(crate) struct RunArgs {
     /// SUMO configuration file.
-    #[arg(value_name = "CONFIG", required_unless_present = "configuration_file")]
+    #[arg(value_name = "SCENARIO", required_unless_present = "configuration_file", help_heading = None::<&str>)]
     scenario: Option<PathBuf>,
-    /// SUMO configuration file, under SUMO's own option name.
-    #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
-    configuration_file: Option<PathBuf>,
     /// Show the run in sumo-gui and paint the conflicts.
     #[arg(long)]
     gui: bool,
-    /// With `--gui`, write the kind and the time left beside each conflict.
-    #[arg(long, requires = "gui")]
-    label: bool,
-    /// With `--gui`, close sumo-gui when the run ends.
-    #[arg(long, requires = "gui")]
-    quit_on_end: bool,
     /// Simulated time at which the run begins, in s.
     #[arg(short = 'b', long, value_name = "S", value_parser = time)]
     begin: Option<Second>,
@@ -48,10 +40,19 @@ pub(crate) struct RunArgs {
     /// step; more help with thousands of road users. Use 1 when running many simulations at once.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
+    /// With `--gui`, write the kind and the time left beside each conflict.
+    #[arg(long, requires = "gui")]
+    label: bool,
+    /// With `--gui`, close sumo-gui when the run ends.
+    #[arg(long, requires = "gui")]
+    quit_on_end: bool,
+    /// SUMO configuration file, under SUMO's own option name.
+    #[arg(short = 'c', long, value_name = "FILE", conflicts_with = "scenario")]
+    configuration_file: Option<PathBuf>,
     #[command(flatten)]
     pub(super) check: CheckArgs,
     /// Options passed on to SUMO.
-    #[arg(last = true, value_name = "SUMO OPTIONS")]
+    #[arg(last = true, value_name = "SUMO OPTIONS", help_heading = None::<&str>)]
     sumo_options: Vec<String>,
 }
 
@@ -71,7 +72,7 @@ pub(super) fn request(arguments: &RunArgs) -> Result<RunRequest> {
     // Opened here so that an error carries the operating system's own message, and SUMO never waits for a pipe.
     input_file::file(&scenario)?;
     if scenario.is_dir() {
-        return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration"));
+        return Err(Error::content(&scenario, "it is a folder, not a SUMO configuration").into());
     }
     sumo_files::check_are_files(&scenario)?;
     let out = arguments.check.log_folder(&scenario);

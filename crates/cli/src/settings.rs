@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use clap::Command;
+use clap::{Arg, Command};
 
 use closecall_run::Result;
 use closecall_run::RunOptions;
@@ -29,7 +29,9 @@ pub(crate) fn option_of(word: &str) -> &str {
     name.split_once('=').map_or(name, |(name, _)| name)
 }
 
+/// The long options of one command, also under their old names.
 fn options_of(command: &Command) -> Vec<String> {
-    let named = command.get_arguments().filter_map(|argument| argument.get_long());
+    let names = |argument| Arg::get_long(argument).into_iter().chain(argument.get_all_aliases().unwrap_or_default());
+    let named = command.get_arguments().flat_map(names);
     named.filter(|name| !["config", "help", "version"].contains(name)).map(str::to_owned).collect()
 }

@@ -4,46 +4,46 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
+use super::error::Result;
 use super::print::{print, value};
 use super::progress::CountBar;
 use closecall_analysis::filter::ConflictFilter;
 use closecall_analysis::logged::{check_keeps_logs, check_none_lost};
 use closecall_analysis::statistics::{By, Observed, Request, Statistics, table};
-use closecall_run::Result;
 use closecall_run::util::output_file;
 
 /// Which logs to analyse, and how to print the result.
 #[derive(Args)]
 pub(crate) struct StatsArgs {
     /// Log folders, or folders that contain log folders at any depth, such as the results of a sweep.
-    #[arg(value_name = "DIR", required = true)]
+    #[arg(value_name = "LOG", required = true)]
     folders: Vec<PathBuf>,
     /// What to group the conflicts by.
-    #[arg(long, value_enum, default_value = "kind")]
+    #[arg(long, value_enum, default_value = "kind", help_heading = "Output")]
     by: By,
     /// Output format.
-    #[arg(long, value_enum, default_value = "text")]
+    #[arg(long, value_enum, default_value = "text", help_heading = "Output")]
     format: Format,
-    /// Runs to compare with: log folders, or folders that contain log folders.
-    #[arg(long, value_name = "DIR", num_args = 1..)]
-    against: Vec<PathBuf>,
-    /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
-    #[arg(long)]
-    csv_safe: bool,
     /// File to write instead of standard output.
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Number of worst conflicts and of hot spots to list.
-    #[arg(long, value_name = "N", default_value_t = 10)]
-    worst: usize,
+    /// Length of the lists of worst conflicts and of hot spots.
+    #[arg(long, alias = "worst", value_name = "N", default_value_t = 10, help_heading = "Output")]
+    top: usize,
+    /// With `--format csv`, begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
+    #[arg(long, help_heading = "Output")]
+    csv_safe: bool,
+    /// Runs to compare with: log folders, or folders that contain log folders.
+    #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Comparison")]
+    against: Vec<PathBuf>,
     /// Ratio of rates that a comparison is to find: say how many runs that takes, by the spread of these runs.
-    #[arg(long, value_name = "RATIO", value_parser = ratio)]
+    #[arg(long, value_name = "RATIO", value_parser = ratio, help_heading = "Comparison")]
     plan: Option<f64>,
     /// Crashes observed in reality where the runs of --against were made of: say how many the first set may have.
-    #[arg(long, value_name = "CRASHES", requires_all = ["against", "years"])]
+    #[arg(long, value_name = "CRASHES", requires_all = ["against", "years"], help_heading = "Comparison")]
     observed: Option<u64>,
     /// Years in which the crashes were observed.
-    #[arg(long, value_name = "YEARS", value_parser = years, requires = "observed")]
+    #[arg(long, value_name = "YEARS", value_parser = years, requires = "observed", help_heading = "Comparison")]
     years: Option<f64>,
     #[command(flatten)]
     filter: ConflictFilter,
@@ -79,13 +79,13 @@ enum Format {
 
 /// Prints the statistics.
 pub fn run(arguments: StatsArgs) -> Result<()> {
-    let StatsArgs { folders, by, format, against, csv_safe, out, worst, plan, observed, years, filter } = arguments;
+    let StatsArgs { folders, by, format, against, csv_safe, out, top, plan, observed, years, filter } = arguments;
     if let Some(out) = &out {
         check_keeps_logs(out, &[&folders[..], &against].concat(), None)?;
     }
     let mut bar = CountBar::new("conflicts", true);
     let observed = observed.zip(years).map(|(crashes, years)| Observed { crashes, years });
-    let request = Request { folders, by, against, filter, worst, plan, observed };
+    let request = Request { folders, by, against, filter, worst: top, plan, observed };
     let statistics = Statistics::of(&request, &mut |read, all| bar.show(read, all))?;
     drop(bar);
     if observed.is_some() && statistics.transferred.is_none() {
@@ -106,5 +106,5 @@ pub fn run(arguments: StatsArgs) -> Result<()> {
         Some(out) => output_file::write(&out, printed.as_bytes())?,
         None => print(printed)?,
     }
-    check_none_lost(&statistics.lost)
+    Ok(check_none_lost(&statistics.lost)?)
 }

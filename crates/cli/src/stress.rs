@@ -2,8 +2,8 @@
 
 use clap::Args;
 
+use super::error::{Error, Result};
 use super::print::print;
-use closecall_run::{Error, Result};
 use closecall_study::stress::{self, Group};
 
 /// Which cases to run, and how many.
@@ -26,7 +26,7 @@ pub fn run(arguments: &StressArgs) -> Result<()> {
     print(format_args!("{}", stress::table(&rows)))?;
     let exceeded = rows.iter().filter(|row| !row.holds()).count();
     if exceeded > 0 {
-        return Err(Error::Exceeded(format!("{exceeded} of {} bounds are exceeded", rows.len())));
+        return Err(Error::Exceeded(exceeded, rows.len()));
     }
     print(format_args!("all {} bounds hold\n", rows.len()))?;
     Ok(())

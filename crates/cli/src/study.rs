@@ -4,12 +4,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::error::Result;
 use super::print::print;
 use super::study_scenario::{RESULTS, ScenarioArgs};
 use super::sumo::{RunRequest, Sumo};
 use super::sweep::ParseRun;
 use closecall::util::units::Second;
-use closecall_run::Result;
 use closecall_run::RunOptions;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::output::formats::OutputFiles;
@@ -17,13 +17,11 @@ use closecall_study::{self, Axis, Plan};
 
 /// What to measure, and where to write it.
 #[derive(Args)]
+#[command(next_help_heading = "Run")]
 pub(crate) struct StudyArgs {
     /// SUMO configuration file: study this scenario's step length and other settings, instead of closecall's own choices.
-    #[arg(value_name = "SCENARIO")]
+    #[arg(value_name = "SCENARIO", help_heading = None::<&str>)]
     scenario: Option<PathBuf>,
-    /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
     /// Fewer items, repetitions, values and seeds; without a scenario it takes about two minutes.
     #[arg(long)]
     quick: bool,
@@ -35,6 +33,9 @@ pub(crate) struct StudyArgs {
     nets: PathBuf,
     #[command(flatten)]
     of_scenario: ScenarioArgs,
+    /// Folder for study.csv, study.md and the charts [default: closecall-study, next to the scenario if there is one].
+    #[arg(short, long, value_name = "DIR", help_heading = "Output", display_order = 0)]
+    out: Option<PathBuf>,
 }
 
 /// Studies the scenario, or closecall's own choices; returns the exit status.

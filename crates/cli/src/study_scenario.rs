@@ -5,6 +5,7 @@ use std::path::Path;
 
 use clap::Args;
 
+use super::error::Result;
 use super::files::{absolute, default_folder, print_if_elsewhere};
 use super::print::{print, value};
 use super::run::request;
@@ -15,13 +16,13 @@ use closecall::options::share;
 use closecall::util::threads::processors;
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Vary};
 use closecall_analysis::study::scenario::{self, Plan, Study};
-use closecall_run::Result;
 use closecall_run::input::sumo_files;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::util::input_file;
 
 /// What to vary in a scenario, and how to run it.
 #[derive(Args)]
+#[command(next_help_heading = "Run")]
 pub(crate) struct ScenarioArgs {
     /// With a SCENARIO: values of an option of closecall run, or of SUMO (sumo:NAME=A,B), instead of the default axes. If
     /// repeated, each option is varied by itself; only the step length is combined with sumo:step-method.ballistic.

@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use super::error;
 use super::print::value;
 use closecall_run::Result;
 use closecall_run::RunOptions;
@@ -36,7 +37,7 @@ pub struct Sumo<'a> {
 }
 
 /// The error of a binary without Python.
-pub(super) fn no_sumo() -> Result<()> {
+pub(super) fn no_sumo() -> error::Result<()> {
     Err(value("this binary was built without Python and cannot run SUMO; `pip install closecall` gives one that can"))
 }
 

@@ -9,6 +9,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgMatches, Args, FromArgMatches};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use super::error::{Error, Result};
 use super::files::{absolute, default_folder, print_if_elsewhere};
 use super::print::{print, value};
 use super::run::{RunArgs, request};
@@ -17,16 +18,17 @@ use super::workers::Workers;
 use closecall::util::threads::processors;
 use closecall::util::units::counted;
 use closecall_analysis::batch::sweep::{Seeds, Sweep, Task, Vary};
+use closecall_run::Error as RunError;
 use closecall_run::input::sumo_outputs::is_output;
 use closecall_run::output::folder::LogFolder;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// A SUMO scenario, its seeds, and the options to vary.
 #[derive(Args)]
+#[command(next_help_heading = "Run")]
 pub(crate) struct SweepArgs {
     /// SUMO configuration file.
-    #[arg(value_name = "CONFIG")]
+    #[arg(value_name = "SCENARIO", help_heading = None::<&str>)]
     scenario: PathBuf,
     /// Random seeds for SUMO, one run each, such as 1-100 or 1,2,5-9.
     #[arg(long, value_name = "SEEDS")]
@@ -34,9 +36,6 @@ pub(crate) struct SweepArgs {
     /// Values of an option of closecall run, or of SUMO (sumo:NAME=A,B), one run each. If repeated, every combination is run.
     #[arg(long, value_name = "NAME=A,B,…", action = clap::ArgAction::Append)]
     vary: Vec<Vary>,
-    /// Folder for the results [default: closecall-sweep next to the scenario, or else in the working directory].
-    #[arg(short, long, value_name = "DIR")]
-    out: Option<PathBuf>,
     /// Runs at the same time on this machine [default: one per processor].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     workers: Option<u16>,
@@ -49,11 +48,14 @@ pub(crate) struct SweepArgs {
     /// Do only the run with this number in --list, for a batch system that starts a process for each run.
     #[arg(long, value_name = "N", conflicts_with_all = ["workers", "scheduler"])]
     task: Option<usize>,
-    /// Print only errors.
-    #[arg(short, long)]
-    quiet: bool,
     #[command(flatten)]
     passed: Passed,
+    /// Folder for the results [default: closecall-sweep next to the scenario, or else in the working directory].
+    #[arg(short, long, value_name = "DIR", help_heading = "Output", display_order = 0)]
+    out: Option<PathBuf>,
+    /// Print only errors.
+    #[arg(short, long, help_heading = "Output", display_order = 0)]
+    quiet: bool,
 }
 
 /// Parses a command line of `closecall run`, including its TOML file.
@@ -76,9 +78,8 @@ impl Passed {
 
     /// The words of `closecall run` that all runs share, and the files whose content matters.
     pub fn shared(&self, scenario: &Path, varied: &[Vary]) -> Result<(Vec<String>, Vec<PathBuf>)> {
-        // The workers already use all processors, so one thread per run is fastest. Clips of thousands of runs are made only
-        // if they are asked for.
-        let mut args = vec![text(&absolute(scenario)?)?, "--threads=1".to_owned(), "--log-clips=none".to_owned()];
+        let mut args = vec![text(&absolute(scenario)?)?];
+        args.extend(DEFAULTS.map(|(option, value)| format!("--{option}={value}")));
         args.extend_from_slice(&self.args);
         let mut files = self.files.clone();
         for vary in varied.iter().filter(|vary| !vary.is_sumos() && FILES.contains(&vary.option())) {
@@ -90,6 +91,9 @@ impl Passed {
     }
 }
 
+/// Defaults of a sweep where `closecall run` has others. The workers already use all processors, so one thread per run is
+/// fastest. Clips of thousands of runs are made only if they are asked for.
+const DEFAULTS: [(&str, &str); 2] = [("threads", "1"), ("log-clips", "none")];
 /// Arguments of `closecall run` that a sweep sets itself or has no use for.
 const OWN: [&str; 12] = [
     "scenario",
@@ -115,10 +119,22 @@ const FILES: [&str; 2] = ["config", "filter"];
 /// The argument for the words after `--`.
 const FOR_SUMO: &str = "sumo_options";
 
-/// The arguments of `closecall run` that a sweep passes on.
+/// The arguments of `closecall run` that a sweep passes on, with its own defaults.
 fn passed() -> Vec<Arg> {
     let all = RunArgs::augment_args(clap::Command::new("run"));
-    all.get_arguments().filter(|argument| !OWN.contains(&argument.get_id().as_str())).cloned().collect()
+    let passed = all.get_arguments().filter(|argument| !OWN.contains(&argument.get_id().as_str())).cloned();
+    let as_own = |argument: Arg| {
+        let own = DEFAULTS.into_iter().find(|(option, _)| argument.get_long() == Some(*option));
+        let argument = own.map_or(argument.clone(), |(_, value)| argument.default_value(value));
+        let argument = match argument.get_long() {
+            // The help of `closecall run` names its own default.
+            Some("threads") => argument.help("Threads of each run at most, SUMO's own included"),
+            _ => argument,
+        };
+        // In the help, they come after what only this command has.
+        argument.display_order(None)
+    };
+    passed.map(as_own).collect()
 }
 
 impl Args for Passed {
@@ -236,7 +252,7 @@ pub(super) fn distribute(
     if missing.is_empty() {
         return Ok(0);
     }
-    std::fs::create_dir_all(unfinished).map_err(|source| Error::file(unfinished, source))?;
+    std::fs::create_dir_all(unfinished).map_err(|source| RunError::file(unfinished, source))?;
     let bar = bar(done_before, done_before + missing.len(), quiet);
     let mut done = done_before;
     let mut failed = 0;
@@ -253,8 +269,8 @@ pub(super) fn distribute(
     let _ = std::fs::remove_dir_all(unfinished);
     match outcome {
         Ok(()) => Ok(failed),
-        Err(Error::Stopped) => Err(Error::Paused { done, all: done_before + missing.len() }),
-        Err(error) => Err(error),
+        Err(RunError::Stopped) => Err(Error::Paused(done, done_before + missing.len())),
+        Err(error) => Err(error.into()),
     }
 }
 
@@ -307,7 +323,7 @@ pub(super) fn check_runs(plan: &Sweep, seeds: &Seeds, parse_run: &ParseRun) -> R
 
 fn text(path: &Path) -> Result<String> {
     let text = path.to_str().map(str::to_owned);
-    text.ok_or_else(|| Error::content(path, "its name is not UTF-8, so a sweep cannot pass it on"))
+    Ok(text.ok_or_else(|| RunError::content(path, "its name is not UTF-8, so a sweep cannot pass it on"))?)
 }
 
 #[cfg(test)]
@@ -323,10 +339,10 @@ mod tests {
     #[test]
     fn only_typed_options_of_closecall_run_are_passed_on() {
         let passed =
-            passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--keep-all", "--", "--scale", "2"]);
+            passed_of(&["--epsilon", "1", "--mu=paper", "--obstacles", "a,b", "--artefacts", "--", "--scale", "2"]);
         let mut args = passed.args;
         args.sort();
-        assert_eq!(args, ["--epsilon=1", "--keep-all", "--mu=paper", "--obstacles=a,b"]);
+        assert_eq!(args, ["--artefacts", "--epsilon=1", "--mu=paper", "--obstacles=a,b"]);
         assert_eq!(passed.for_sumo, ["--scale", "2"]);
         assert!(passed_of(&[]).args.is_empty());
         assert_eq!(passed_of(&["--epsilon", "1", "--epsilon", "2"]).args, ["--epsilon=2"]);
@@ -336,7 +352,7 @@ mod tests {
     fn what_cannot_be_varied_is_refused() {
         for (vary, said) in [
             ("seed=1,2", "use --seeds"),
-            ("keep-all=1", "takes no value"),
+            ("artefacts=1", "takes no value"),
             ("scale=1,2", "write sumo:scale"),
             ("sumo:fcd-output=a.xml,b.xml", "several runs would write at once"),
             ("sumo:log=a", "several runs would write at once"),

@@ -40,9 +40,6 @@ pub enum Error {
         /// What is wrong with it.
         message: String,
     },
-    /// A log lacks rows that its run counted; what is there was used.
-    #[error("{0}")]
-    Lost(String),
     /// A recording ends early; the steps before that were checked.
     #[error("{}: cut short after time {} s: {message}", path.display(), in_microseconds(*time))]
     CutShort {
@@ -59,9 +56,6 @@ pub enum Error {
     /// A value of a caller or an option is out of range.
     #[error("{0}")]
     Value(String),
-    /// A measured value exceeds its bound.
-    #[error("{0}")]
-    Exceeded(String),
     /// A step that cannot be checked; the steps before it were.
     #[error("at {} s: {message}", in_microseconds(*time))]
     Step {
@@ -98,14 +92,6 @@ pub enum Error {
     /// The user ended a command before it had a result.
     #[error("interrupted; nothing was compared or written")]
     Stopped,
-    /// The user ended a sweep.
-    #[error("interrupted after {done} of {all} runs; repeat the command to continue")]
-    Paused {
-        /// Number of completed runs.
-        done: usize,
-        /// Number of runs.
-        all: usize,
-    },
 }
 
 impl Error {
@@ -127,20 +113,5 @@ impl Error {
     /// A step that cannot be checked.
     pub fn step(time: f64, message: impl Into<String>) -> Self {
         Self::Step { time, message: message.into() }
-    }
-
-    /// The exit status of a command that ends with this error: 1 if SUMO failed during the run or a bound was exceeded,
-    /// 3 if a recording was cut short or a log lacks rows, 70 if closecall itself is at fault, 130 if the user interrupted it, 2 for every
-    /// other unusable input.
-    pub fn exit_status(&self) -> u8 {
-        match self {
-            Self::Failed { .. } | Self::Exceeded(_) => 1,
-            Self::CutShort { .. } | Self::Lost(_) => 3,
-            // EX_SOFTWARE of sysexits.h.
-            Self::Internal(_) => 70,
-            // The convention of shells: 128 + SIGINT.
-            Self::Interrupted { .. } | Self::Stopped | Self::Paused { .. } => 130,
-            _ => 2,
-        }
     }
 }

@@ -72,7 +72,7 @@ pub fn measure(axis: Axis, plan: &Plan, record: Option<&mut Recorder>) -> Result
 ///
 /// # Errors
 /// An error that names the file that cannot be written.
-pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
+pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> closecall_analysis::Result<()> {
     let path = folder.join("study.csv");
     let failed = |error: csv::Error| Error::content(&path, error.to_string());
     let mut table = OutputFile::create(&path)?;
@@ -88,7 +88,7 @@ pub fn write(folder: &Path, rows: &[Measurement], plan: &Plan) -> Result<()> {
             error_over_time::draw(folder, axis.name(), &panels::panels(axis, &of_axis), panels::note(axis))?;
         }
     }
-    output_file::write(&folder.join("study.md"), page::of(rows, plan.quick).as_bytes())
+    Ok(output_file::write(&folder.join("study.md"), page::of(rows, plan.quick).as_bytes())?)
 }
 
 /// Marks the rows that no other row of the same scene beats in error, time or both.

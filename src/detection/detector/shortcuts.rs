@@ -21,7 +21,7 @@ pub struct Shortcuts {
 impl Shortcuts {
     /// All but those that these options keep the run from.
     pub fn of(options: &Options) -> Self {
-        let shortcuts = |what| !options.keep_all && !options.keep.contains(&what);
+        let shortcuts = |what| !options.no_shortcuts.contains(&what);
         Self {
             areas_apart: shortcuts(Shortcut::AreasApart),
             paths_apart: shortcuts(Shortcut::PathsApart),

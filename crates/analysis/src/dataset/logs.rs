@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::logged::{self, LoggedRun, PARQUET};
+use crate::{Error, Result};
 use closecall_run::output::log::RUN;
-use closecall_run::{Error, Result};
 
 /// A log's `run.json`; null where there is none.
 pub fn record(log: &Path) -> Result<serde_json::Value> {

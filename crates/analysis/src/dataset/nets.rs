@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::Result;
 use closecall::traffic::net::Net;
 use closecall_run::output::input_hash::Input;
 use closecall_run::util::input_file::open;
-use closecall_run::{Error, Result};
 
 /// The root element of a net is within this many bytes; netconvert writes its options before it.
 const HEAD: u64 = 1 << 16;
@@ -61,7 +61,7 @@ pub fn find(given: Option<&Path>, logs: &[PathBuf], records: &[Value]) -> Result
             ground.file = Some(first.path);
         }
         Err(error) => {
-            let gone = matches!(error, Error::File { .. });
+            let gone = matches!(error, closecall_run::Error::File { .. });
             let what = if gone { "is not there any more" } else { "cannot be read" };
             let path = first.path.display();
             ground.notes.push(format!("The net {path} {what}, so the map shows none; --net gives another place."));

@@ -5,11 +5,11 @@ mod place;
 use std::fmt;
 
 use super::logged::{LoggedConflict, LoggedRun};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Cause, Manoeuvre};
 use closecall::util::units::Second;
 use closecall_run::output::summary::{Exposure, SetAside, in_words};
-use closecall_run::{Error, Result};
 
 pub use place::Place;
 
@@ -33,10 +33,10 @@ pub struct ConflictFilter {
     #[arg(long = "type", value_name = "TYPE", value_delimiter = ',')]
     pub types: Vec<String>,
     /// Only from this time on, in s.
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "S", value_parser = time)]
     pub from: Option<Second>,
     /// Only until this time, in s.
-    #[arg(long, value_name = "TIME", value_parser = time)]
+    #[arg(long, value_name = "S", value_parser = time)]
     pub to: Option<Second>,
     /// Only here: x,y,radius in m, or the id of a junction, edge or lane; junction:ID, edge:ID and lane:ID name the part too.
     /// May be given several times.
@@ -65,12 +65,10 @@ impl ConflictFilter {
     /// Checks that the parts do not contradict each other.
     ///
     /// # Errors
-    /// [`Error::Value`] if the period ends before it begins.
+    /// [`Error::EmptyPeriod`] if the period ends before it begins.
     pub fn check(&self) -> Result<()> {
         match (self.from, self.to) {
-            (Some(from), Some(to)) if from > to => {
-                Err(Error::Value(format!("--from {from} is after --to {to}: no conflict is in between")))
-            }
+            (Some(from), Some(to)) if from > to => Err(Error::EmptyPeriod(from, to)),
             _ => Ok(()),
         }
     }

@@ -4,11 +4,11 @@ use std::cmp::Reverse;
 use std::path::Path;
 
 use super::reader::ConflictReader;
+use crate::{Error, Result};
 use closecall::util::units::counted;
 use closecall_run::output::rank::Rank;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::output::summary::{SetAside, in_words};
-use closecall_run::{Error, Result};
 
 /// Which conflict of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +23,7 @@ impl ConflictSelector {
     /// Finds it, with its snapshots.
     ///
     /// # Errors
-    /// [`Error::Value`] where the log has none such; the errors of reading it.
+    /// [`Error::NoConflict`] or [`Error::NoWorst`] where the log has none such; the errors of reading it.
     pub fn find(self, folder: &Path) -> Result<LoggedConflict> {
         let id = match self {
             Self::Id(id) => id,
@@ -31,7 +31,7 @@ impl ConflictSelector {
         };
         let mut conflicts = ConflictReader::open(folder)?.with_snapshots();
         let found = conflicts.find(|conflict| conflict.as_ref().map_or(true, |conflict| conflict.id == id));
-        found.transpose()?.ok_or_else(|| Error::Value(format!("{} has no conflict {id}", folder.display())))
+        found.transpose()?.ok_or_else(|| Error::NoConflict(folder.to_owned(), id))
     }
 }
 
@@ -51,11 +51,7 @@ fn worst(folder: &Path, place: usize) -> Result<u64> {
     let Some((_, Reverse(id))) = place.checked_sub(1).and_then(|place| found.get(place)) else {
         let count = counted(count as u64, "conflict");
         let aside = in_words(&set_aside).map(|words| format!(", and has {words}; name one by its id"));
-        return Err(Error::Value(format!(
-            "--worst {place}: {} has {count}{}",
-            folder.display(),
-            aside.unwrap_or_default()
-        )));
+        return Err(Error::NoWorst(folder.to_owned(), place, count + &aside.unwrap_or_default()));
     };
     Ok(*id)
 }

@@ -5,11 +5,11 @@ use std::io::{Read, Seek, SeekFrom, Take};
 use std::path::{Path, PathBuf};
 
 use super::plausible::PlausibleRows;
+use crate::{Error, Result};
 use closecall_run::output::input_hash::Hasher;
 use closecall_run::output::schema::{COLUMNS, Column, LoggedConflict, Presence, Value};
 use closecall_run::util::csv_safe::plain;
 use closecall_run::util::input_file::{self, ShortRows};
-use closecall_run::{Error, Result};
 
 /// The rows of a `conflicts.csv`; memory is that of one row.
 #[derive(Debug)]

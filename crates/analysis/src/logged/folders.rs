@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use rustc_hash::FxHashSet;
 
+use crate::{Error, Result};
 use closecall_run::output::earlier_log::EARLIER;
 pub use closecall_run::output::log::PARQUET;
 use closecall_run::output::log::{CONFLICTS, files};
 use closecall_run::util::output_file::same_file;
-use closecall_run::{Error, Result};
 
 /// The name of the file of counts that a blessed scenario has.
 pub const SUMMARY: &str = "summary.json";
@@ -19,7 +19,7 @@ pub const SUMMARY: &str = "summary.json";
 /// are found only in folders that are named.
 ///
 /// # Errors
-/// [`Error::File`] where a folder is missing or cannot be read; [`Error::Content`] where it holds no log.
+/// [`Error::file`] where a folder is missing or cannot be read; [`Error::content`] where it holds no log.
 pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut known = Vec::new();
     for folder in named {
@@ -41,13 +41,13 @@ pub fn log_folders(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// net.
 ///
 /// # Errors
-/// Those of [`log_folders`]; [`Error::Value`] that names the file.
+/// Those of [`log_folders`]; [`Error::WouldReplace`] that names the file.
 pub fn check_keeps_logs(out: &Path, folders: &[PathBuf], net: Option<&Path>) -> Result<()> {
     let logs = log_folders(folders)?;
     let read = logs.iter().flat_map(|log| files(log)).chain(net.map(Path::to_owned));
     let read = read.collect::<Vec<_>>();
     let over = same_file(out, read.iter().map(|file| &**file));
-    over.map_or(Ok(()), |over| Err(Error::Value(format!("--out would be written over {}", over.display()))))
+    over.map_or(Ok(()), |over| Err(Error::WouldReplace(over.to_owned())))
 }
 
 /// The logs in a folder and below it, each as its real folder and as it was come to. A folder that links lead to more than

@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 use super::packed::{DIGEST_KEY, FINGERPRINT_KEY, RECORD_KEY, RUN_TIME_KEY, RunTime, digest};
 use super::reader::{self, ConflictReader};
 use super::run::record;
+use crate::{Error, Result};
 use closecall_run::output::input_hash::Hasher;
 use closecall_run::output::log::{CONFLICTS, PARQUET};
 use closecall_run::output::parquet_columns::{self, fill};
 use closecall_run::output::schema::Column;
 use closecall_run::util::output_file::OutputFile;
 use closecall_run::util::parquet_column::unreadable;
-use closecall_run::{Error, Result};
 
 /// Rows of a row group: what is in memory while one is written.
 const GROUP: usize = 1 << 16;
@@ -48,7 +48,7 @@ pub enum LabelValue {
 /// Writes a log with its `run.json` as the Parquet file `out`, whole or not at all.
 ///
 /// # Errors
-/// Those of reading the log; [`Error::File`] or [`Error::Content`] where `out` cannot be written.
+/// Those of reading the log; [`Error::file`] or [`Error::content`] where `out` cannot be written.
 pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTime, out: &Path) -> Result<()> {
     let conflicts = ConflictReader::open(folder)?.with_snapshots();
     let (_, record) = record(folder)?;
@@ -57,15 +57,15 @@ pub fn pack(folder: &Path, labels: &[Label], fingerprint: &str, run_time: RunTim
     let metadata = [(RECORD_KEY, record), (FINGERPRINT_KEY, fingerprint.to_owned()), (RUN_TIME_KEY, run_time)];
     write(&mut file, conflicts, labels, metadata).map_err(|fault| match fault {
         Fault::Own(error) => error,
-        Fault::Parquet(error) => unreadable(out, &error),
+        Fault::Parquet(error) => unreadable(out, &error).into(),
     })?;
-    file.finish()
+    Ok(file.finish()?)
 }
 
 /// Turns the `conflicts.csv` of a log into `conflicts.parquet`.
 ///
 /// # Errors
-/// Those of [`pack`]; [`Error::File`] where the CSV file cannot be removed.
+/// Those of [`pack`]; [`Error::file`] where the CSV file cannot be removed.
 pub fn pack_in_place(folder: &Path) -> Result<()> {
     pack(folder, &[], "", RunTime::default(), &folder.join(PARQUET))?;
     let csv = folder.join(CONFLICTS);

@@ -8,11 +8,11 @@ use parquet::basic::Type as Physical;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use serde::{Deserialize, Serialize};
 
+use crate::{Error, Result};
 use closecall::util::units::Second;
 use closecall_run::output::input_hash::Hasher;
 use closecall_run::output::schema::Column;
 use closecall_run::util::{input_file, parquet_column};
-use closecall_run::{Error, Result};
 
 /// The key of the text of `run.json` in the file's metadata.
 pub(super) const RECORD_KEY: &str = "closecall.run.json";
@@ -81,7 +81,7 @@ impl Packed {
     /// Reads the metadata of a `conflicts.parquet`.
     ///
     /// # Errors
-    /// [`Error::File`] where it cannot be read; [`Error::Content`] where no sweep has written it.
+    /// [`Error::file`] where it cannot be read; [`Error::content`] where no sweep has written it.
     pub fn of(path: &Path) -> Result<Self> {
         let file = open(path)?;
         let metadata = file.metadata().file_metadata();
@@ -105,5 +105,5 @@ impl Packed {
 /// Opens a Parquet file.
 pub(super) fn open(path: &Path) -> Result<SerializedFileReader<File>> {
     let file = input_file::file(path)?;
-    parquet_column::open(path, file)
+    Ok(parquet_column::open(path, file)?)
 }

@@ -9,10 +9,10 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use super::group_column::GroupColumn;
 use super::packed::{is_as_written, open};
 use super::plausible::PlausibleRows;
+use crate::{Error, Result};
 use closecall_run::output::parquet_columns::physical;
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value};
 use closecall_run::util::parquet_column::guarded;
-use closecall_run::{Error, Result};
 
 /// Rows in memory at once: few, so that all of their columns stay in a core's cache.
 const BATCH: usize = 256;
@@ -201,11 +201,12 @@ impl ParquetLog {
 
     /// Reads the wanted columns of the batch.
     fn read_batch(&mut self, wanted: [bool; COLUMNS.len()]) -> Result<()> {
-        guarded(&self.path, || {
+        let read = guarded(&self.path, || {
             let group = self.file.get_row_group(self.next_group - 1)?;
             let columns = self.columns.iter_mut().zip(wanted).filter(|(_, is_wanted)| *is_wanted);
             columns.filter_map(|(column, _)| column.as_mut()).try_for_each(|column| column.read(&*group, &self.batch))
-        })
+        });
+        Ok(read?)
     }
 }
 

@@ -7,9 +7,9 @@ use super::conflicts_csv::CsvLog;
 use super::folders::PARQUET;
 use super::parquet::ParquetLog;
 use super::run::LoggedRun;
+use crate::{Error, Result};
 use closecall_run::output::log::CONFLICTS;
 use closecall_run::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
-use closecall_run::{Error, Result};
 
 /// The conflicts of one log folder, one by one, in the order of the file. Memory does not grow with their number.
 #[derive(Debug)]
@@ -93,7 +93,7 @@ impl ConflictReader {
         let is_csv = csv.exists() || !parquet.exists();
         let run = match LoggedRun::read(folder) {
             Ok(run) => Some(run),
-            Err(Error::File { path, source }) if source.kind() != ErrorKind::NotFound => {
+            Err(Error::Run(closecall_run::Error::File { path, source })) if source.kind() != ErrorKind::NotFound => {
                 return Err(Error::file(&path, source));
             }
             Err(_) => None,

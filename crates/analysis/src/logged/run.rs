@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::folders::PARQUET;
 use super::packed::Packed;
+use crate::{Error, Result};
 use closecall::util::limits::{DURATION, TIME};
 use closecall::util::units::Second;
 use closecall_run::output::input_hash::Input;
@@ -13,7 +14,6 @@ use closecall_run::output::log::RUN;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::output::summary::Summary;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// How a run was made: the part of `run.json` that statistics need.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -59,7 +59,7 @@ pub struct LoggedVersions {
 /// The text of a log folder's `run.json`, and the file that holds it: `run.json` itself or `conflicts.parquet`.
 ///
 /// # Errors
-/// [`Error::File`] where neither is there; [`Error::Content`] where the Parquet file has none or cannot be read.
+/// [`Error::file`] where neither is there; [`Error::content`] where the Parquet file has none or cannot be read.
 pub fn record(folder: &Path) -> Result<(PathBuf, String)> {
     let own = folder.join(RUN);
     let packed = folder.join(PARQUET);
@@ -75,7 +75,7 @@ impl LoggedRun {
     /// Reads the [`fn@record`] of a log folder.
     ///
     /// # Errors
-    /// [`Error::File`] or [`Error::Line`] where it is missing or closecall did not write it.
+    /// [`Error::file`] or [`Error::line`] where it is missing or closecall did not write it.
     pub fn read(folder: &Path) -> Result<Self> {
         let (path, text) = record(folder)?;
         Self::parse(&path, &text)
@@ -84,7 +84,7 @@ impl LoggedRun {
     /// Reads the text of a `run.json`; `path` names it in errors.
     ///
     /// # Errors
-    /// [`Error::Line`] or [`Error::Content`] where closecall did not write it.
+    /// [`Error::line`] or [`Error::content`] where closecall did not write it.
     pub fn parse(path: &Path, text: &str) -> Result<Self> {
         let mut run: Self = serde_json::from_str(text)
             .map_err(|error| Error::line(path, error.line() as u64, error.to_string().replace('\n', " ")))?;

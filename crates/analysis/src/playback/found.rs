@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::dataset::nets;
 use crate::logged::{ConflictSelector, LoggedRun, record};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::events::{Clip, MOST};
 use closecall::geometry::Point;
@@ -19,7 +20,6 @@ use closecall_run::output::clips::CLIPS;
 use closecall_run::output::log::RUN;
 use closecall_run::output::schema::LoggedConflict;
 use closecall_run::util::input_file::{self, next_line};
-use closecall_run::{Error, Result};
 
 /// A conflict with its clip.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl Playback {
     /// Finds a conflict and its clip in a log, and reads the net from `net`, or from where the run had it.
     ///
     /// # Errors
-    /// [`Error::Value`] where the log has no such conflict, or the conflict no clip; the errors of reading the log.
+    /// [`Error::NoConflict`], [`Error::NoWorst`] or [`Error::NoClip`]; the errors of reading the log.
     pub fn find(folder: &Path, which: ConflictSelector, net: Option<&Path>) -> Result<Self> {
         let conflict = which.find(folder)?;
         let clip = clips(folder, &[conflict.id])?.remove(&conflict.id).ok_or_else(|| no_clip(folder, &conflict))?;
@@ -91,7 +91,7 @@ impl Playback {
 /// The clips of those conflicts of a log that have one, by the conflicts' `id`.
 ///
 /// # Errors
-/// [`Error::File`] and [`Error::Line`] where the file of the clips is not as a run writes it.
+/// [`Error::file`] and [`Error::line`] where the file of the clips is not as a run writes it.
 pub fn clips(folder: &Path, ids: &[u64]) -> Result<FxHashMap<u64, Clip>> {
     let path = folder.join(CLIPS);
     let mut found = FxHashMap::default();
@@ -160,5 +160,5 @@ fn no_clip(folder: &Path, conflict: &LoggedConflict) -> Error {
         Some(_) if !folder.join(CLIPS).is_file() => format!("there is no {CLIPS} in the folder"),
         Some(_) => format!("its run kept at most {MOST}; --log-clips critical, or --begin, leaves out others"),
     };
-    Error::Value(format!("conflict {} of {} has no clip: {why}", conflict.id, folder.display()))
+    Error::NoClip(folder.to_owned(), conflict.id, why)
 }

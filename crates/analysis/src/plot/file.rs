@@ -6,14 +6,14 @@ use std::path::Path;
 use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea, SVGBackend};
 
+use crate::{Error, Result};
 use closecall_run::util::output_file;
 use closecall_run::util::xml_text::valid;
-use closecall_run::{Error, Result};
 
 /// Writes a PNG with red, green and blue of one byte each.
 ///
 /// # Errors
-/// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
+/// [`Error::content`] where `draw` fails, [`Error::file`] where the file cannot be written.
 pub(crate) fn png<E: Display>(
     path: &Path,
     size: (u32, u32),
@@ -29,13 +29,13 @@ pub(crate) fn png<E: Display>(
         writer.finish()
     });
     written.map_err(|error| undrawn(path, &error))?;
-    output_file::write(path, &encoded)
+    Ok(output_file::write(path, &encoded)?)
 }
 
 /// Writes an SVG; with a `width` in mm it is shown that wide.
 ///
 /// # Errors
-/// [`Error::Content`] where `draw` fails, [`Error::File`] where the file cannot be written.
+/// [`Error::content`] where `draw` fails, [`Error::file`] where the file cannot be written.
 pub(crate) fn svg<E: Display>(
     path: &Path,
     size: (u32, u32),
@@ -52,7 +52,7 @@ pub(crate) fn svg<E: Display>(
         );
         text = text.replacen(&pixels, &shown, 1);
     }
-    output_file::write(path, valid(&text).as_bytes())
+    Ok(output_file::write(path, valid(&text).as_bytes())?)
 }
 
 fn undrawn(path: &Path, message: &impl Display) -> Error {

@@ -2,8 +2,8 @@
 
 use plotters::style::{FontStyle, register_font};
 
+use crate::{Error, Result};
 use closecall_run::output::font::FONT;
-use closecall_run::{Error, Result};
 
 /// The font's name in the pictures; an SVG viewer uses its own font of that name, or its own sans-serif.
 pub(crate) const NAME: &str = "DejaVu Sans, sans-serif";

@@ -19,8 +19,8 @@ use plotters::prelude::{DrawingArea, DrawingBackend, WHITE};
 use super::dataset::{self, Conflicts};
 use super::filter::ConflictFilter;
 use super::logged::{LostRows, Progress, check_keeps_logs};
+use crate::{Error, Result};
 use chart::{Chart, message};
-use closecall_run::{Error, Result};
 
 pub use chart::PictureStyle;
 

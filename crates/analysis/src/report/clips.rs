@@ -8,13 +8,13 @@ use serde_json::{Value, json};
 
 use crate::dataset::kept::RunConflict;
 use crate::playback::{clips, signal_bar, signal_colour};
+use crate::{Error, Result};
 use closecall::detection::kind::Severity;
 use closecall::events::{Clip, ClipUser};
 use closecall::geometry::Point;
 use closecall::traffic::net::Net;
 use closecall::util::units::Metre;
 use closecall_run::output::schema::LoggedConflict;
-use closecall_run::{Error, Result};
 
 /// This many of the worst conflicts are played.
 const PLAYED: usize = 20;
@@ -28,7 +28,7 @@ const THOUSANDTHS: f64 = 1000.0;
 /// report is whole without them.
 ///
 /// # Errors
-/// [`Error::File`] where a file cannot be read.
+/// [`Error::file`] where a file cannot be read.
 pub(crate) fn of_worst(
     worst_first: &[RunConflict],
     logs: &[PathBuf],
@@ -43,7 +43,7 @@ pub(crate) fn of_worst(
         }
         match clips(log, &ids) {
             Ok(found) => all.extend(found.into_iter().map(|(id, clip)| ((run, id), clip))),
-            Err(error @ Error::File { .. }) => return Err(error),
+            Err(error @ Error::Run(closecall_run::Error::File { .. })) => return Err(error),
             Err(error) => notes.push(format!("No playback: {error}.")),
         }
     }

@@ -8,6 +8,7 @@ use serde_json::{Map, Value, json};
 use super::contact::parts;
 use super::movements::Movements;
 use super::{clips, faults, page_net};
+use crate::Result;
 use crate::dataset::Conflicts;
 use crate::dataset::kept::RunConflict;
 use crate::statistics::Effects;
@@ -15,7 +16,6 @@ use closecall::detection::kind::{Kind, Severity};
 use closecall::events::Cause;
 use closecall::options::Options;
 use closecall::traffic::net::{EdgeFunction, Net};
-use closecall_run::Result;
 use closecall_run::output::schema::{COLUMNS, Column, ColumnType, LoggedConflict, Presence, Value as Cell};
 
 /// The worst conflicts, this many, can be drawn with both rectangles and paths.

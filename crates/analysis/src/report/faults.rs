@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
+use crate::{Error, Result};
 use closecall_run::output::net_faults_csv::{NET_FAULTS, NetFault, sort};
 use closecall_run::util::csv_safe::plain;
-use closecall_run::{Error, Result};
 
 /// The page has the worst, this many.
 const MOST: usize = 500;
@@ -15,7 +15,7 @@ const MOST: usize = 500;
 /// The faults in the logs, the worst first.
 ///
 /// # Errors
-/// [`Error::File`] or [`Error::Content`] that names a file that cannot be read.
+/// [`Error::file`] or [`Error::content`] that names a file that cannot be read.
 pub fn json(logs: &[PathBuf]) -> Result<Value> {
     let mut faults = BTreeMap::<[String; 2], NetFault>::new();
     for log in logs.iter().map(|log| log.join(NET_FAULTS)).filter(|file| file.is_file()) {

@@ -17,7 +17,7 @@ use super::filter::ConflictFilter;
 use super::logged::{LostRows, Progress, check_keeps_logs};
 use super::statistics::Effects;
 use super::style;
-use closecall_run::Result;
+use crate::Result;
 use closecall_run::util::output_file::OutputFile;
 
 /// The template, with a mark for each part.
@@ -101,7 +101,7 @@ pub fn write(request: &Request, out: &Path, progress: &mut Progress) -> Result<M
     let mut bytes = 0;
     page(&data, |part| {
         bytes += part.len();
-        file.append(part.as_bytes())
+        Ok(file.append(part.as_bytes())?)
     })?;
     file.finish()?;
     Ok(Made { runs, conflicts: seen, set_aside, bytes, lost })

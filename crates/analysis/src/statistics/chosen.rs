@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::logged::LoggedRun;
 use crate::variants::{Variants, repeated};
-use closecall_run::{Error, Result};
+use crate::{Error, Result};
 
 /// A log that is not counted or needs a warning, and why.
 #[derive(Clone, Debug, Serialize)]
@@ -32,7 +32,7 @@ pub(crate) struct Chosen {
 /// Chooses among the runs in these log folders.
 ///
 /// # Errors
-/// Those of [`LoggedRun::read`], and [`Error::Content`] if none of them has a result.
+/// Those of [`LoggedRun::read`], and [`Error::content`] if none of them has a result.
 pub fn choose(folders: &[PathBuf]) -> Result<Chosen> {
     let mut runs = Vec::with_capacity(folders.len());
     let mut left_out = Vec::new();

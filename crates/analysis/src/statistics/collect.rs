@@ -21,10 +21,10 @@ use super::worst::WorstOf;
 use crate::filter::{ConflictFilter, set_aside_in_words};
 use crate::logged::{LoggedRun, LostRows, Progress, Reading, log_folders};
 use crate::variants::{Variant, Variants};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::util::threads::processors;
 use closecall_run::output::summary::SetAside;
-use closecall_run::{Error, Result};
 
 /// The result of one pass over a set of runs.
 #[derive(Debug)]
@@ -167,14 +167,14 @@ impl Collection {
     /// Checks that the runs have one setting: a comparison tells two settings apart.
     ///
     /// # Errors
-    /// [`Error::Value`] that names in what the runs in `folders` differ.
+    /// [`Error::SeveralVariants`] that names in what the runs in `folders` differ.
     pub(crate) fn check_alike(&self, folders: &[PathBuf]) -> Result<()> {
         if !self.variants.are_several() {
             return Ok(());
         }
         let named = folders.iter().map(|folder| folder.display().to_string()).collect::<Vec<_>>().join(" ");
         let varied = self.variants.varied.join(", ");
-        Err(Error::Value(format!("{named}: the runs differ in {varied}: for --against name those of one variant")))
+        Err(Error::SeveralVariants(named, varied))
     }
 
     /// The records of a variant's runs.

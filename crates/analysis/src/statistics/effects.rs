@@ -11,11 +11,11 @@ use super::counts::{Counts, Spot};
 use super::group::By;
 use super::pairs::{Unit, pairs, ratio};
 use super::rate::{Ratio, rate_ratio};
+use crate::Result;
 use crate::filter::ConflictFilter;
 use crate::logged::{LostRows, Progress};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::util::units::counted;
-use closecall_run::Result;
 
 /// Below this many conflicts in both sets together, the spread of the runs says little, and the interval is that of the
 /// counts.
@@ -73,7 +73,7 @@ impl Effects {
         let mut read = |folders| {
             let set = Collection::read(folders, By::Manoeuvre, &filter, 0, progress)?;
             set.check_alike(folders)?;
-            Ok::<_, closecall_run::Error>(set)
+            Ok::<_, crate::Error>(set)
         };
         let mut sets = [read(after)?, read(before)?];
         let lost = sets.iter_mut().flat_map(|set| std::mem::take(&mut set.lost)).collect();

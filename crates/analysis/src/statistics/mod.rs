@@ -33,8 +33,8 @@ use serde::Serialize;
 
 use super::filter::ConflictFilter;
 use super::logged::{LoggedRun, LostRows, Progress};
+use crate::{Error, Result};
 use closecall_run::output::summary::SetAside;
-use closecall_run::{Error, Result};
 
 pub use chosen::LeftOutLog;
 pub use collect::Collection;
@@ -123,11 +123,11 @@ impl Statistics {
     /// Reads the logs and computes their statistics. It reports to `progress` how far it has read.
     ///
     /// # Errors
-    /// Those of [`Collection::read`]; [`Error::Value`] if no folder is named, or if runs of one set that is compared with
+    /// Those of [`Collection::read`]; [`Error::NoLog`] if no folder is named, or if runs of one set that is compared with
     /// another differ in their settings.
     pub fn of(request: &Request, progress: &mut Progress) -> Result<Self> {
         if request.folders.is_empty() {
-            return Err(Error::Value("no log folder is named".to_owned()));
+            return Err(Error::NoLog);
         }
         request.filter.check()?;
         let mut set = Collection::read(&request.folders, request.by, &request.filter, request.worst, progress)?;

@@ -13,9 +13,9 @@ use super::weighted::WeightedEvents;
 use super::worst::WorstOf;
 use crate::filter::ConflictFilter;
 use crate::logged::{ConflictReader, LoggedConflict, LostRows};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall_run::output::summary::SetAside;
-use closecall_run::{Error, Result};
 
 /// After this many conflicts the reader reports how far it is.
 const EVERY: u64 = 4096;

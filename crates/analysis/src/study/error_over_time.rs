@@ -6,8 +6,8 @@ use std::path::Path;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
+use crate::Result;
 use crate::plot::{file, font};
-use closecall_run::Result;
 
 const FONT: &str = font::NAME;
 

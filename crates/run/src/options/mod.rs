@@ -4,6 +4,7 @@
 //! ([`RunOptions::from_settings`]).
 
 mod named_values;
+pub mod old_names;
 mod series_format;
 mod toml_file;
 mod word;

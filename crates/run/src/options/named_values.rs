@@ -3,8 +3,8 @@
 use clap::error::{ContextKind, ContextValue};
 use clap::{CommandFactory, FromArgMatches, Parser};
 
-use super::RunOptions;
 use super::word::word;
+use super::{RunOptions, old_names};
 use crate::{Error, Result};
 
 #[derive(Parser)]
@@ -38,25 +38,31 @@ impl RunOptions {
         settings.options.checked()
     }
 
-    /// Checks the value of a setting in a file, unless the option is one of another command.
+    /// Which name replaces that of a setting; none where it is no old name.
+    pub fn old_name(name: &str) -> Option<String> {
+        old_names::remark(&SettingsParser::command(), name)
+    }
+
+    /// Checks the value of a setting in a file, unless the option is one of another command; says which name replaces an old
+    /// one.
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn check_setting(name: &str, value: &str) -> std::result::Result<(), String> {
+    pub fn check_setting(name: &str, value: &str) -> std::result::Result<Option<String>, String> {
         let mut command = SettingsParser::command();
         let option = name.replace('_', "-");
         if !is_option(&command, &option) {
-            return Ok(());
+            return Ok(None);
         }
-        let checked = command.try_get_matches_from_mut(word(name, value)).map(|_| ());
-        checked.map_err(|error| plain(&error).to_string())
+        let checked = command.try_get_matches_from_mut(word(name, value));
+        checked.map(|_| old_names::remark(&command, name)).map_err(|error| plain(&error).to_string())
     }
 }
 
-/// Whether this is a long option, or the former name of one.
+/// Whether this is a long option, or the old name of one.
 fn is_option(command: &clap::Command, option: &str) -> bool {
     let is_this = |known: &clap::Arg| {
-        known.get_long() == Some(option) || known.get_all_aliases().is_some_and(|former| former.contains(&option))
+        known.get_long() == Some(option) || known.get_all_aliases().is_some_and(|old| old.contains(&option))
     };
     command.get_arguments().any(is_this)
 }
@@ -92,6 +98,7 @@ fn name_of(argument: &str) -> String {
 mod tests {
     use super::*;
     use closecall::braking::MuModel;
+    use closecall::options::shortcut::Shortcut;
 
     #[test]
     fn the_defaults_are_the_documented_ones() {
@@ -107,9 +114,19 @@ mod tests {
     #[test]
     fn a_setting_has_the_name_of_the_long_option() {
         let options =
-            RunOptions::from_settings([("mu", "at-rest".to_owned()), ("keep_all", "true".to_owned())]).unwrap();
+            RunOptions::from_settings([("mu", "at-rest".to_owned()), ("artefacts", "true".to_owned())]).unwrap();
         assert_eq!(options.model.mu, MuModel::AtRest);
-        assert!(options.model.keep_all);
+        assert!(options.model.artefacts);
+    }
+
+    #[test]
+    fn shortcuts_are_disabled_all_or_by_name_also_under_the_old_name() {
+        let of = |name, value: &str| RunOptions::from_settings([(name, value.to_owned())]).unwrap().model.no_shortcuts;
+        assert_eq!(of("no_shortcuts", "true"), Shortcut::ALL);
+        assert_eq!(of("no_shortcuts", "areas-apart,in_line"), [Shortcut::AreasApart, Shortcut::InLine]);
+        assert_eq!(of("no_shortcuts", "false"), []);
+        assert_eq!(of("keep_all", "true"), Shortcut::ALL);
+        assert!(RunOptions::old_name("keep_all").is_some() && RunOptions::old_name("no_shortcuts").is_none());
     }
 
     #[test]
@@ -127,7 +144,7 @@ mod tests {
             ("serious_tcc", "1", "unknown option \"serious_tcc\"; did you mean \"serious_ttc\"?"),
             ("serious_ttc", "-1", "invalid value '-1' for \"serious_ttc\": it must be 0 to 3600 s"),
             ("mu", "big", "invalid value 'big' for \"mu\"; possible values: minimal, at-rest, paper, rss"),
-            ("keep_all", "3", "unexpected value '3' for \"keep_all\" found; no more were expected"),
+            ("artefacts", "3", "unexpected value '3' for \"artefacts\" found; no more were expected"),
         ] {
             let message = RunOptions::from_settings([(name, value.to_owned())]).unwrap_err().to_string();
             assert_eq!(message, said);

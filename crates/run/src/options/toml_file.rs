@@ -9,8 +9,8 @@ use crate::util::input_file;
 use crate::{Error, Result};
 use closecall::options::{DriverOptions, TypeOptions};
 
-/// Says what is wrong with the value of an option, if anything is.
-pub type Check = fn(&str, &str) -> std::result::Result<(), String>;
+/// Says what is wrong with the value of an option, if anything is; else what to tell the user of its name.
+pub type Check = fn(&str, &str) -> std::result::Result<Option<String>, String>;
 
 /// The content of a TOML file of options.
 #[derive(Debug, Default)]
@@ -23,6 +23,8 @@ pub struct OptionsFile {
     pub driver: DriverOptions,
     /// The `[regress]` table, for the command of that name.
     pub regress: Option<toml::Table>,
+    /// What to tell the user of old names among its keys.
+    pub remarks: Vec<String>,
 }
 
 impl OptionsFile {
@@ -65,7 +67,10 @@ impl OptionsFile {
                         return Err(Error::content(path, format!("unknown key \"{name}\"")));
                     }
                     let value = plain_value(path, name, &value)?;
-                    check(name, &value).map_err(|why| Error::line(path, line_of(text, name), why))?;
+                    let line = line_of(text, name);
+                    let remark = check(name, &value).map_err(|why| Error::line(path, line, why))?;
+                    let place = || format!("{}, line {line}", path.display());
+                    file.remarks.extend(remark.map(|remark| format!("{}: {remark}", place())));
                     file.args.extend(word(name, &value));
                 }
             }

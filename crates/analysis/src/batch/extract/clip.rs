@@ -9,12 +9,12 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use super::extracted::{Extracted, fill};
 use crate::logged::{ConflictSelector, record};
 use crate::playback::Playback;
+use crate::{Error, Result};
 use closecall::events::Clip;
 use closecall::geometry::{Bounds, Point};
 use closecall::util::units::Metre;
 use closecall_run::output::formats::{Scenario, scenario, trace};
 use closecall_run::util::output_file;
-use closecall_run::{Error, Result};
 
 /// The scenario's file.
 pub const SCENARIO: &str = "conflict.xosc";
@@ -27,13 +27,13 @@ const AROUND: Metre = 100.0;
 const YEAR_9999: Duration = Duration::from_secs(253_402_300_799);
 
 /// Writes the part of a SUMO net that is within bounds as OpenDRIVE.
-pub type ConvertNet<'a> = dyn FnMut(&Path, &Bounds, &Path) -> Result<()> + 'a;
+pub type ConvertNet<'a> = dyn FnMut(&Path, &Bounds, &Path) -> closecall_run::Result<()> + 'a;
 
 /// Writes the clip of a conflict as OpenSCENARIO XML, with its net as OpenDRIVE, into the folder `out`, whole or not at all.
 /// The net is `net` or the one that the log names.
 ///
 /// # Errors
-/// [`Error::Value`] where the log has no such conflict, or the conflict no clip; [`Error::Content`] where `out` is not empty;
+/// [`Error::NoConflict`] or [`Error::NoClip`]; [`Error::content`] where `out` is not empty;
 /// those of `convert` and of reading and writing.
 pub fn extract_openscenario(
     folder: &Path,
@@ -50,7 +50,7 @@ pub fn extract_openscenario(
         }
         let roads = net_file.is_some().then_some(ROADS);
         let text = scenario(&Scenario { conflict: &conflict, clip: &clip, roads, date: &date });
-        output_file::write(&place.join(SCENARIO), text.as_bytes())
+        Ok(output_file::write(&place.join(SCENARIO), text.as_bytes())?)
     })?;
     let remark = match net_file {
         Some(_) => (!notes.is_empty()).then(|| notes.join(" ")),
@@ -62,7 +62,7 @@ pub fn extract_openscenario(
 /// Writes the clip of a conflict as a trace of OSI.
 ///
 /// # Errors
-/// [`Error::Value`] where the log has no such conflict, or the conflict no clip; those of reading and writing.
+/// [`Error::NoConflict`] or [`Error::NoClip`]; those of reading and writing.
 pub fn extract_osi(folder: &Path, which: ConflictSelector, out: &Path) -> Result<Extracted> {
     let Playback { conflict, clip, .. } = Playback::find(folder, which, None)?;
     output_file::write(out, &trace(&clip))?;

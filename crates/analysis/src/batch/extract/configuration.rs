@@ -5,10 +5,10 @@ use std::path::Path;
 
 use quick_xml::escape::unescape;
 
+use crate::{Error, Result};
 use closecall_run::input::sumo_files::{SumoOption, options_of};
 use closecall_run::util::output_file;
 use closecall_run::util::xml_text::escaped;
-use closecall_run::{Error, Result};
 
 /// The configuration.
 pub(crate) const CONFIGURATION: &str = "conflict.sumocfg";
@@ -39,7 +39,7 @@ impl Configuration {
     /// what it would write is left out.
     ///
     /// # Errors
-    /// Those of reading it; [`Error::File`] where a file cannot be copied.
+    /// Those of reading it; [`Error::file`] where a file cannot be copied.
     pub(crate) fn gather(saved: &Path, into: &Path) -> Result<Self> {
         let from = saved.parent().unwrap_or(Path::new(""));
         let mut options = Vec::new();
@@ -88,18 +88,19 @@ impl Configuration {
     /// Writes it.
     ///
     /// # Errors
-    /// [`Error::File`] that names the file.
+    /// [`Error::file`] that names the file.
     pub fn write(&self, path: &Path) -> Result<()> {
         let lines =
             self.0.iter().map(|Set { name, value, .. }| format!("    <{name} value=\"{}\"/>\n", escaped(value)));
-        output_file::write(path, format!("<configuration>\n{}</configuration>\n", lines.collect::<String>()).as_bytes())
+        let text = format!("<configuration>\n{}</configuration>\n", lines.collect::<String>());
+        Ok(output_file::write(path, text.as_bytes())?)
     }
 }
 
 /// Copies a file into a folder, under its own name if that is free; returns the name.
 ///
 /// # Errors
-/// [`Error::File`] that names the file.
+/// [`Error::file`] that names the file.
 pub fn copy(path: &Path, into: &Path) -> Result<String> {
     let own = path.file_name().unwrap_or_default().to_string_lossy();
     let mut name = own.clone().into_owned();

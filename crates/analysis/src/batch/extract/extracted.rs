@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::logged::LoggedConflict;
+use crate::{Error, Result};
 use closecall_run::util::output_file::{self, folder_of};
-use closecall_run::{Error, Result};
 
 /// What was cut out.
 #[derive(Debug)]
@@ -54,6 +54,6 @@ mod tests {
         check_is_new(&folder.path().join("new")).unwrap();
         fs::write(folder.path().join("a"), "").unwrap();
         assert!(check_is_new(folder.path()).unwrap_err().to_string().contains("it is not empty"));
-        assert!(matches!(check_is_new(&folder.path().join("a")), Err(Error::File { .. })));
+        assert!(matches!(check_is_new(&folder.path().join("a")), Err(Error::Run(closecall_run::Error::File { .. }))));
     }
 }

@@ -23,12 +23,12 @@ use serde_json::Value;
 use crate::batch::regress::running::{Job, Runner};
 use crate::batch::regress::scenario::{SETTINGS, Scenario};
 use crate::logged::{ConflictReader, ConflictSelector, LoggedConflict, LoggedRun};
+use crate::{Error, Result};
 pub use clip::{ConvertNet, SCENARIO, extract_openscenario, extract_osi};
 use closecall::util::units::{Metre, SAME_MOMENT, Second};
 use closecall_run::output::input_hash::Input;
 use closecall_run::util::decimal::Written;
 use closecall_run::util::output_file;
-use closecall_run::{Error, Result};
 use configuration::{CONFIGURATION, Configuration, STATE};
 pub use extracted::Extracted;
 use extracted::fill;
@@ -57,13 +57,13 @@ pub struct Tools<'a> {
 }
 
 /// Saves SUMO's options, as these words and the configuration that they name set them, in a configuration of their own.
-pub type SaveConfiguration<'a> = dyn FnMut(&[String], &Path) -> Result<()> + 'a;
+pub type SaveConfiguration<'a> = dyn FnMut(&[String], &Path) -> closecall_run::Result<()> + 'a;
 
 /// Cuts a conflict of the log in a folder out, into the folder `out`, whole or not at all.
 ///
 /// # Errors
-/// [`Error::Value`] where the log has no such conflict; [`Error::Content`] where SUMO cannot run it again, or it is another
-/// one then, or `out` is not empty; [`Error::Stopped`] if the user interrupted it; those of reading and writing.
+/// [`Error::NoConflict`]; [`Error::content`] where SUMO cannot run it again, or it is another
+/// one then, or `out` is not empty; [`closecall_run::Error::Stopped`] if the user interrupted it; those of reading and writing.
 pub fn extract(folder: &Path, which: ConflictSelector, out: &Path, tools: &mut Tools) -> Result<Extracted> {
     let conflict = which.find(folder)?;
     let run = LoggedRun::read(folder)?;
@@ -153,7 +153,7 @@ impl Cut<'_> {
         }
         let text = toml_options::toml(&self.run.options, &first);
         let text = format!("{text}\n[regress]\nsumocfg = \"{CONFIGURATION}\"\nseeds = [{}]\n", self.seed);
-        output_file::write(&self.place.join(SETTINGS), text.trim_start().as_bytes())
+        Ok(output_file::write(&self.place.join(SETTINGS), text.trim_start().as_bytes())?)
     }
 
     /// Runs the scenario and looks for the conflict; what is wrong is what the scenario lacks. `done` runs of `all` have ended.
@@ -163,7 +163,7 @@ impl Cut<'_> {
         let log = self.logs.join(done.to_string());
         let mut runner = Runner {
             closecall: tools.closecall.clone(),
-            jobs: 1,
+            workers: 1,
             out: None,
             interrupted: tools.interrupted,
             progress: &mut |more, _| (tools.progress)(done + more, all),

@@ -69,7 +69,7 @@ mod tests {
         let text = toml(&serde_json::to_value(&options).unwrap(), "warmup = 2.5\n");
         let known = ["mu", "response-time", "obstacles", "log", "measures", "align", "epsilon", "warmup"];
         let file =
-            OptionsFile::parse(Path::new("closecall.toml"), &text, &known.map(str::to_owned), |_, _| Ok(())).unwrap();
+            OptionsFile::parse(Path::new("closecall.toml"), &text, &known.map(str::to_owned), |_, _| Ok(None)).unwrap();
         let args = file.args.iter().map(|word| word.trim_start_matches("--").split_once('=').unwrap());
         let mut read = RunOptions::from_settings(args.map(|(name, value)| (name, value.to_owned()))).unwrap();
         read.set_tables(file);

@@ -7,7 +7,7 @@ use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 use serde::{Deserialize, Serialize};
 
-use closecall_run::Result;
+use crate::Result;
 use closecall_run::output::input_hash::Input;
 
 /// If a file has more parts of one sort than this, none is kept: expected results should stay smaller than the net.

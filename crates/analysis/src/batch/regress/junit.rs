@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::Report;
-use closecall_run::Result;
+use crate::Result;
 use closecall_run::util::output_file;
 use closecall_run::util::xml_text::escaped;
 
@@ -12,7 +12,7 @@ use closecall_run::util::xml_text::escaped;
 /// # Errors
 /// `Error::File` if the file cannot be written.
 pub fn write(path: &Path, reports: &[Report]) -> Result<()> {
-    output_file::write(path, document(reports).as_bytes())
+    Ok(output_file::write(path, document(reports).as_bytes())?)
 }
 
 fn document(reports: &[Report]) -> String {

@@ -19,7 +19,7 @@ mod verdict;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use closecall_run::{Error, Result};
+use crate::{Error, Result};
 use joint_permutation::{fewest_seeds, smallest_p};
 use outcome::{Outcome, SeedSummary};
 use running::Job;
@@ -35,7 +35,7 @@ pub use verdict::Compared;
 /// The reports are in the order of the scenarios and do not depend on the number of processes.
 ///
 /// # Errors
-/// [`Error::Stopped`] if the user interrupted it, and [`Error::File`] if the temporary folder cannot be created. Errors of
+/// [`closecall_run::Error::Stopped`] if the user interrupted it, and [`Error::file`] if the temporary folder cannot be created. Errors of
 /// a single scenario are in its report.
 pub fn regress(scenarios: &[Scenario], runner: &mut Runner, bless: bool) -> Result<Vec<Report>> {
     let temporary = tempfile::Builder::new().prefix("closecall-regress-").tempdir();
@@ -59,7 +59,7 @@ pub fn regress(scenarios: &[Scenario], runner: &mut Runner, bless: bool) -> Resu
     let mut reports = Vec::new();
     for (number, scenario) in scenarios.iter().enumerate() {
         let verdict = match failures.remove(&number) {
-            Some((seed, message)) => Err(Error::Value(format!("seed {seed}: {message}"))),
+            Some((seed, message)) => Err(Error::Seed(seed, message)),
             None => {
                 let logs = jobs.iter().filter(|job| job.number == number).map(|job| (job.seed, job.log.clone()));
                 judge(scenario, &logs.collect::<Vec<_>>(), bless)

@@ -10,13 +10,13 @@ use serde_json::Value;
 
 use super::fingerprint::Fingerprint;
 use crate::logged::{LoggedRun, SUMMARY};
+use crate::{Error, Result};
 use closecall::detection::kind::{Kind, Severity};
 use closecall::util::units::Second;
 use closecall_run::output::log;
 use closecall_run::output::schema::{COLUMNS, Column, LoggedConflict, Presence};
 use closecall_run::output::summary::{Count, Exposure};
 use closecall_run::util::{input_file, output_file};
-use closecall_run::{Error, Result};
 
 /// The results of a scenario's runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,7 +182,7 @@ impl Outcome {
     /// Writes this as the expected results.
     ///
     /// # Errors
-    /// [`Error::File`] that names what cannot be written.
+    /// [`Error::file`] that names what cannot be written.
     pub fn write(&self, expected: &Path) -> Result<()> {
         let text =
             serde_json::to_string_pretty(&self.summary).map_err(|error| Error::content(expected, error.to_string()))?;

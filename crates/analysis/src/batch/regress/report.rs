@@ -5,8 +5,8 @@ use std::fmt;
 use super::exact::Differences;
 use super::scenario::{Level, Scenario};
 use super::verdict::Compared;
+use crate::{Error, Result};
 use closecall::util::units::counted;
-use closecall_run::{Error, Result};
 
 /// The number of differences of one sort that are shown.
 const SHOWN: usize = 10;

@@ -9,7 +9,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use super::scenario::Scenario;
-use closecall_run::{Error, Result};
+use crate::{Error, Result};
 
 /// The interval at which processes and the user's interrupt are polled.
 const ASKED_EVERY: Duration = Duration::from_millis(5);
@@ -19,7 +19,7 @@ pub struct Runner<'a> {
     /// The command line that starts closecall, without arguments. The process must end when its standard input is closed.
     pub closecall: Vec<OsString>,
     /// The number of parallel processes.
-    pub jobs: usize,
+    pub workers: usize,
     /// The folder in which the runs' logs are kept; none to discard them.
     pub out: Option<PathBuf>,
     /// Whether the user wants to stop; called repeatedly.
@@ -58,7 +58,7 @@ impl Runner<'_> {
             }
         };
         std::thread::scope(|scope| {
-            let workers = (0..self.jobs.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
+            let workers = (0..self.workers.clamp(1, jobs.len().max(1))).map(|_| scope.spawn(work)).collect::<Vec<_>>();
             while workers.iter().any(|worker| !worker.is_finished()) {
                 if (self.interrupted)() {
                     stop.store(true, Ordering::Relaxed);
@@ -70,7 +70,7 @@ impl Runner<'_> {
         });
         // Ctrl-C in a terminal also ends the runs, so the last worker may be done before the interrupt is polled.
         if stop.into_inner() || (self.interrupted)() {
-            return Err(Error::Stopped);
+            return Err(closecall_run::Error::Stopped.into());
         }
         let ends = ends.into_inner().unwrap_or_else(PoisonError::into_inner);
         Ok(ends.into_iter().map(|end| end.unwrap_or_else(|| Err("it never ran".to_owned()))).collect())

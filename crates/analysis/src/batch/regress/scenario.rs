@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use crate::logged::SUMMARY;
+use crate::{Error, Result};
 use closecall::util::units::{Metre, Second};
 use closecall_run::input::sumo_outputs::output_in;
 use closecall_run::options::OptionsFile;
@@ -13,7 +14,6 @@ use closecall_run::options::RunOptions;
 use closecall_run::output::formats::OutputFiles;
 use closecall_run::output::log::CONFLICTS;
 use closecall_run::util::input_file;
-use closecall_run::{Error, Result};
 
 /// The name of a scenario's file of settings.
 pub(crate) const SETTINGS: &str = "closecall.toml";
@@ -98,6 +98,8 @@ pub struct Scenario {
     pub has_settings: bool,
     /// How to run and compare it, with the seeds filled in.
     pub settings: RegressSettings,
+    /// What to tell the user of old names in `closecall.toml`.
+    pub remarks: Vec<String>,
 }
 
 impl Scenario {
@@ -161,7 +163,7 @@ impl Scenario {
         };
         let full = folder.join(&sumocfg);
         input_file::file(&full)?;
-        Ok(Self { name, folder, sumocfg, has_settings, settings })
+        Ok(Self { name, folder, sumocfg, has_settings, settings, remarks: file.remarks })
     }
 
     /// The command line of a run in the folder, after the program's name, up to its own options.

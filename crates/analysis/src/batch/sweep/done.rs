@@ -10,13 +10,13 @@ use rustc_hash::FxHashMap;
 
 use super::task::{RUN, Task, data_set};
 use crate::logged::{ConflictReader, Label, LabelValue, LoggedRun, PARQUET, Packed};
+use crate::{Error, Result};
 use closecall_run::output::input_hash::{Hasher, Input};
 use closecall_run::output::log;
-use closecall_run::{Error, Result};
 
 /// The hashes of the files that closecall itself reads.
 pub(super) fn contents(files: &[PathBuf]) -> Result<Vec<String>> {
-    files.iter().map(|path| Input::of(path).map(|input| input.sha256)).collect()
+    files.iter().map(|path| Ok(Input::of(path)?.sha256)).collect()
 }
 
 /// The hash of everything that defines a run.

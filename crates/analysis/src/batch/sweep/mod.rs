@@ -14,8 +14,8 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use crate::logged::{Label, LabelValue};
+use crate::{Error, Result};
 use closecall_run::input::sumo_outputs::{PREFIX, has_outputs};
-use closecall_run::{Error, Result};
 
 pub use seeds::Seeds;
 pub use setting::Setting;
@@ -39,8 +39,7 @@ impl Sweep {
     /// `also_read` are the files that closecall itself reads; a run is done only if their contents are unchanged.
     ///
     /// # Errors
-    /// [`Error::Value`] if an option is varied twice, two runs have the same name, or there are too many runs;
-    /// [`Error::File`] if a file cannot be read.
+    /// [`Error::VariedTwice`], [`Error::TooManyRuns`], and those of [`Sweep::of_settings`].
     pub fn plan(
         args: &[String],
         for_sumo: &[String],
@@ -51,11 +50,11 @@ impl Sweep {
     ) -> Result<Self> {
         let mut columns = BTreeSet::new();
         if let Some(twice) = varied.iter().find(|vary| !columns.insert(vary.column())) {
-            return Err(Error::Value(format!("{} is varied twice", twice.parameter)));
+            return Err(Error::VariedTwice(twice.parameter.clone()));
         }
         let runs = varied.iter().map(|vary| vary.values.len()).chain([seeds.0.len()]);
         if runs.fold(1, usize::saturating_mul) > MOST {
-            return Err(Error::Value(format!("that would be more than {MOST} runs")));
+            return Err(Error::TooManyRuns(MOST));
         }
         let settings = vary::product(varied).iter().map(|chosen| Setting::of(chosen)).collect::<Vec<_>>();
         Self::of_settings(args, for_sumo, seeds, &settings, out, also_read)
@@ -64,7 +63,7 @@ impl Sweep {
     /// Plans the runs of these settings; the other arguments are those of [`Sweep::plan`].
     ///
     /// # Errors
-    /// [`Error::Value`] if two runs have the same name; [`Error::File`] if a file cannot be read.
+    /// [`Error::SameName`]; an error of closecall-run that names a file which cannot be read.
     pub fn of_settings(
         args: &[String],
         for_sumo: &[String],
@@ -96,7 +95,7 @@ impl Sweep {
                 let mut labels = setting.labels.clone();
                 labels.push(Label { name: "seed".to_owned(), value: LabelValue::Count(seed) });
                 if !names.insert(name.clone()) {
-                    return Err(Error::Value(format!("two runs would both be called {name}")));
+                    return Err(Error::SameName(name));
                 }
                 let fingerprint = done::fingerprint(&own, &labels, &read);
                 tasks.push(Task { name, args: own, out: out.to_owned(), labels, fingerprint });
@@ -108,11 +107,11 @@ impl Sweep {
     /// The sweep of one of the runs, which are numbered from 1 on.
     ///
     /// # Errors
-    /// [`Error::Value`] if no run has this number.
+    /// [`Error::NoRun`] if no run has this number.
     pub fn only(mut self, number: usize) -> Result<Self> {
         let last = self.tasks.len();
         if !(1..=last).contains(&number) {
-            return Err(Error::Value(format!("no run has the number {number}: they are 1 to {last}")));
+            return Err(Error::NoRun(number, last));
         }
         self.tasks = vec![self.tasks.swap_remove(number - 1)];
         Ok(self)
@@ -121,7 +120,7 @@ impl Sweep {
     /// The runs to be done: those without a file in the folder, and those whose file no longer fits.
     ///
     /// # Errors
-    /// [`Error::Content`] if the folder contains the log of a single run, or runs of a sweep that varied other options and
+    /// [`Error::content`] if the folder contains the log of a single run, or runs of a sweep that varied other options and
     /// therefore has other columns.
     pub fn missing(&self) -> Result<Vec<&Task>> {
         done::missing(&self.out, &self.tasks)

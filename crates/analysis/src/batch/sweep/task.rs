@@ -6,10 +6,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use crate::logged::{self, Label, LoggedRun, PARQUET, RunTime};
+use crate::{Error, Result};
 use closecall_run::options::SERIES_FILES;
 use closecall_run::output::clips::CLIPS;
 use closecall_run::util::output_file::check_is_no_link;
-use closecall_run::{Error, Result};
 
 /// The folder of the data set in a sweep's folder.
 pub(super) const CONFLICTS: &str = "conflicts";
@@ -36,7 +36,7 @@ impl Task {
     /// Adds the run's log to the data set; its series and its clips, if there are any, go to a folder beside it.
     ///
     /// # Errors
-    /// [`Error::Content`] if the run did not reach its end; those of [`logged::pack`].
+    /// [`Error::content`] if the run did not reach its end; those of [`logged::pack`].
     pub fn finish(&self, log: &Path, run_time: RunTime) -> Result<()> {
         if !LoggedRun::read(log)?.complete {
             return Err(Error::content(log, "the run did not reach its end"));

@@ -1,8 +1,8 @@
 //! Tables for spreadsheets and scripts: one line per value, with every digit.
 
 use super::cells::{Cell, Table};
+use crate::{Error, Result};
 use closecall_run::util::csv_safe::safe;
-use closecall_run::{Error, Result};
 
 /// The tables as CSV: `table,row,name,column,value`; `row` counts from 1, `name` is the row's first cell. With `is_safe`, no
 /// spreadsheet runs a text as a formula.

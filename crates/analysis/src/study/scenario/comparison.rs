@@ -8,8 +8,8 @@ use super::richardson::{Convergence, convergence, own_error};
 use crate::batch::sweep::Task;
 use crate::logged::RunTime;
 use crate::study::pareto::is_on_front;
+use crate::{Error, Result};
 use closecall::util::units::Second;
-use closecall_run::{Error, Result};
 
 /// The measure by which steps are recommended.
 pub(crate) const HEADLINE: &str = "conflicts_per_vehicle_hour";

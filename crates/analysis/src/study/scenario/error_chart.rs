@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::comparison::{SHOWN, Study};
 use super::plan::{Axis, Choice};
+use crate::Result;
 use crate::study::error_over_time::{self, Panel, Point};
-use closecall_run::Result;
 
 /// Draws the charts of steps and of the other axes; returns their names.
 pub(super) fn draw(study: &Study, folder: &Path) -> Result<Vec<&'static str>> {

@@ -3,11 +3,11 @@
 use std::iter::once;
 
 use super::estimate::{Estimate, mean};
+use crate::Result;
 use crate::batch::sweep::Task;
 use crate::logged::{ConflictReader, LoggedConflict, LoggedRun, Packed, RunTime};
 use crate::statistics::{quantile, rate};
 use closecall::detection::kind::{Kind, Severity};
-use closecall_run::Result;
 use closecall_run::output::schema::{Column, Value};
 
 /// The columns whose quantiles are measures.

@@ -16,7 +16,7 @@ mod rows;
 
 use std::path::Path;
 
-use closecall_run::Result;
+use crate::Result;
 use closecall_run::util::output_file;
 
 pub use comparison::Study;

@@ -4,8 +4,8 @@
 
 use crate::batch::sweep::{Setting, Vary};
 use crate::logged::{Label, LabelValue};
+use crate::{Error, Result};
 use closecall::util::units::Second;
-use closecall_run::{Error, Result};
 
 /// The name of the axis of step lengths.
 pub const STEP: &str = "step-length";
@@ -82,7 +82,7 @@ impl Plan {
     /// the user's own setting, if it is set anywhere.
     ///
     /// # Errors
-    /// [`Error::Value`] if a step length is not a number above 0, or an option is varied twice.
+    /// [`Error::Value`] if a step length is not a number above 0, [`Error::VariedTwice`].
     pub fn of(varied: &[Vary], quick: bool, own: &dyn Fn(&Vary) -> Option<String>) -> Result<Self> {
         let own = |vary: &Vary| {
             let default =
@@ -194,7 +194,7 @@ fn as_given(varied: &[Vary]) -> Result<Vec<Vary>> {
     for vary in varied {
         let parameter = if vary.option() == STEP { STEP.to_owned() } else { vary.parameter.clone() };
         if axes.iter().any(|known| known.parameter == parameter) {
-            return Err(Error::Value(format!("{parameter} is varied twice")));
+            return Err(Error::VariedTwice(parameter));
         }
         axes.push(Vary { parameter, values: vary.values.clone() });
     }

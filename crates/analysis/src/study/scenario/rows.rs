@@ -6,8 +6,8 @@ use serde::Serialize;
 
 use super::comparison::Study;
 use super::richardson::Convergence;
+use crate::{Error, Result};
 use closecall_run::util::output_file::OutputFile;
-use closecall_run::{Error, Result};
 
 /// The value of the row with the limit at a step of 0.
 const EXTRAPOLATED: &str = "extrapolated";
@@ -78,5 +78,5 @@ pub(super) fn write(study: &Study, path: &Path) -> Result<()> {
     }
     writer.flush().map_err(|source| Error::file(path, source))?;
     drop(writer);
-    table.finish()
+    Ok(table.finish()?)
 }

@@ -31,18 +31,18 @@ pub use trajectories::{FAR, origin as origin_of_trajectories};
 #[derive(Clone, Debug, Default, PartialEq, Eq, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputFiles {
+    /// Format of the conflicts in the log. Parquet is made of conflicts.csv when the run has ended, and replaces it.
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t)]
+    pub log_format: LogFormat,
     /// Write each conflict that counts once in the format of SUMO's SSM device.
     #[arg(long, value_name = "FILE")]
     pub ssm_output: Option<PathBuf>,
     /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
     #[arg(long, value_name = "FILE")]
     pub trj_output: Option<PathBuf>,
-    /// Replace an earlier log in the folder, instead of keeping it in the folder's own folder earlier.
+    /// Replace an earlier log in the folder, instead of moving it to the folder's own folder earlier.
     #[arg(long)]
     pub force: bool,
-    /// Format of the conflicts in the log. Parquet is made of conflicts.csv when the run has ended, and replaces it.
-    #[arg(long, value_enum, default_value_t)]
-    pub log_format: LogFormat,
     /// Begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
     #[arg(long)]
     pub csv_safe: bool,

@@ -1,0 +1,40 @@
+//! The errors of a command; `exit_status.rs` has the status with which each ends it.
+
+/// The result of a command.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// An error of a command. Its `Display` is one line for standard error.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A run or a recording failed, or a file cannot be used.
+    #[error(transparent)]
+    Run(#[from] closecall_run::Error),
+    /// What is made of logs failed.
+    #[error(transparent)]
+    Analysis(closecall_analysis::Error),
+    /// A word of the command line cannot be used.
+    #[error("{0}")]
+    Value(String),
+    /// So many of all measured values exceed their bounds.
+    #[error("{0} of {1} bounds are exceeded")]
+    Exceeded(usize, usize),
+    /// The user ended a sweep after so many of all runs.
+    #[error("interrupted after {0} of {1} runs; repeat the command to continue")]
+    Paused(usize, usize),
+}
+
+impl From<closecall_analysis::Error> for Error {
+    fn from(error: closecall_analysis::Error) -> Self {
+        match error {
+            closecall_analysis::Error::Run(error) => Self::Run(error),
+            own => Self::Analysis(own),
+        }
+    }
+}
+
+impl From<closecall::Error> for Error {
+    fn from(error: closecall::Error) -> Self {
+        Self::Run(error.into())
+    }
+}
