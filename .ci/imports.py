@@ -24,7 +24,7 @@ CRATES = ["src", "crates/run/src", "crates/analysis/src", "crates/study/src", "c
 PACKAGE = "bridge/python/closecall"
 
 USE = re.compile(r"^\s*(pub(?:\([^)]*\))?\s+)?use\s+([^;]+);", re.MULTILINE)
-PATH = re.compile(r"\b(?:crate|super|self|[a-z_][a-z0-9_]*)(?:::\w+)+")
+PATH = re.compile(r"\b(?:crate|super|self|[a-z_][a-z0-9_]*)(?:::\w+)+\b(?!!)")
 TEST_MODULE = re.compile(r"^#\[cfg\(test\)\]\nmod \w+ \{\n.*?^\}$", re.DOTALL | re.MULTILINE)
 VISIBILITY = re.compile(r"\bpub\(in [^)]*\)")
 STRING_OR_COMMENT = re.compile(r'"(?:[^"\\]|\\.)*"|//[^\n]*|/\*.*?\*/', re.DOTALL)

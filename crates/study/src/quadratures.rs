@@ -143,10 +143,8 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
             })
         });
         let truth = truth.collect::<Vec<_>>();
-        let mut methods = vec![
-            ("closecall", String::new(), Method::Closecall),
-            ("bounds alone", String::new(), Method::Bounds),
-        ];
+        let mut methods =
+            vec![("closecall", String::new(), Method::Closecall), ("bounds alone", String::new(), Method::Bounds)];
         methods.extend(
             NODES.map(|nodes| ("Gauss-Legendre", format!(", {nodes} nodes"), Method::Nodes(gauss_legendre(nodes)))),
         );
@@ -167,7 +165,8 @@ pub(super) fn measure(plan: &Plan) -> Vec<Measurement> {
         let times = interleaved(&mut timed, rounds);
         drop(timed);
         for ((name, parameter, method), ns_per_item) in methods.iter().zip(times) {
-            let off = |(approach, truth): (&Approach, &f64)| (method.probability(approach, &driver, *truth) - truth).abs();
+            let off =
+                |(approach, truth): (&Approach, &f64)| (method.probability(approach, &driver, *truth) - truth).abs();
             rows.push(Measurement {
                 axis: Axis::Probability,
                 method: name,

@@ -6,11 +6,10 @@
 
 use std::cell::Cell;
 
-use super::Detector;
 use crate::braking::LateBraking;
-use crate::detection::encounter::{Encounter, Nearness};
+use crate::detection::encounter::Nearness;
 use crate::detection::measures::crash_probability::{bounds, crash_probability};
-use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
+use crate::detection::measures::table::LoggedMeasure;
 use crate::detection::measures::ttb::Evasion;
 use crate::traffic::driver_distributions::Driver;
 use crate::traffic::roster::{ProfileIndex, Roster};
@@ -135,24 +134,5 @@ impl Chances {
                 formula(driver, *has_responded, &wait)
             }
         }
-    }
-}
-
-impl Detector {
-    /// A crash probability of a pair that was measured in this step, [`LoggedMeasure::CrashProbability`] or
-    /// [`LoggedMeasure::CrashProbabilityBraking`].
-    pub fn crash_probability(&self, roster: &Roster, nearness: &Nearness, measure: LoggedMeasure) -> Probability {
-        self.workers[nearness.chances.worker as usize].found.chances.of(nearness, measure, roster)
-    }
-
-    /// An encounter of this step with its crash probabilities.
-    pub fn with_probabilities(&self, roster: &Roster, found: &Encounter) -> Encounter {
-        let with = |near: Nearness| {
-            let crash_at_most = CHANCES.map(|measure| self.crash_probability(roster, &near, measure));
-            let add = |values: LoggedValues, (measure, value)| values.with(measure, Some(value));
-            let values = CHANCES.into_iter().zip(crash_at_most).fold(near.values, add);
-            Nearness { values, crash_at_most, ..near }
-        };
-        Encounter { nearness: found.nearness.map(with), ..*found }
     }
 }

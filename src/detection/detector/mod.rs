@@ -7,7 +7,6 @@
 
 mod candidates;
 mod chances;
-mod chosen_values;
 mod course_ahead;
 mod cover;
 mod driving;
@@ -22,6 +21,7 @@ mod meet;
 mod moved_back;
 mod neighbours;
 mod occupancy;
+mod on_request;
 mod one_between;
 mod overlap;
 mod paths;

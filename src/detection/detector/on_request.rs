@@ -1,16 +1,19 @@
-//! What the detector knows of a pair for the measures that a log has only if they are chosen.
+//! What the detector works out of a pair on request: the measures that a log has only if they are chosen, and crash
+//! probabilities.
 
 use super::Detector;
+use super::chances::CHANCES;
 use super::reach::User;
 use crate::detection::chosen_values::{PairInStep, UserInStep, need_courses};
-use crate::detection::encounter::Encounter;
+use crate::detection::encounter::{Encounter, Nearness};
 use crate::detection::measures::plane::Moving;
+use crate::detection::measures::table::{LoggedMeasure, LoggedValues};
 use crate::detection::measures::ttc::SteadyMotion;
 use crate::geometry::rectangle::Rectangle;
 use crate::options::measures::{ChosenMeasure, ChosenValues, Measures};
 use crate::traffic::frame::Frame;
 use crate::traffic::roster::Roster;
-use crate::util::units::Second;
+use crate::util::units::{Probability, Second};
 
 impl Detector {
     /// The measures that are computed besides those that every run has.
@@ -27,6 +30,23 @@ impl Detector {
     /// The time advantage of a pair in this step.
     pub fn tadv(&self, frame: &Frame, roster: &Roster, found: &Encounter) -> Option<Second> {
         self.values(frame, roster, found, ChosenMeasure::Tadv.into())[ChosenMeasure::Tadv as usize]
+    }
+
+    /// A crash probability of a pair that was measured in this step, [`LoggedMeasure::CrashProbability`] or
+    /// [`LoggedMeasure::CrashProbabilityBraking`].
+    pub fn crash_probability(&self, roster: &Roster, nearness: &Nearness, measure: LoggedMeasure) -> Probability {
+        self.workers[nearness.chances.worker as usize].found.chances.of(nearness, measure, roster)
+    }
+
+    /// An encounter of this step with its crash probabilities.
+    pub fn with_probabilities(&self, roster: &Roster, found: &Encounter) -> Encounter {
+        let with = |near: Nearness| {
+            let crash_at_most = CHANCES.map(|measure| self.crash_probability(roster, &near, measure));
+            let add = |values: LoggedValues, (measure, value)| values.with(measure, Some(value));
+            let values = CHANCES.into_iter().zip(crash_at_most).fold(near.values, add);
+            Nearness { values, crash_at_most, ..near }
+        };
+        Encounter { nearness: found.nearness.map(with), ..*found }
     }
 
     fn values(&self, frame: &Frame, roster: &Roster, found: &Encounter, measures: Measures) -> ChosenValues {
