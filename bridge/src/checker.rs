@@ -133,8 +133,8 @@ impl Checker {
     ///         not in the scene.
     ///
     /// Returns:
-    ///     Whether the listener wants the next step too: a simulation drops one that is closed. If another simulation or
-    ///     state was loaded meanwhile, the checker closes itself with a warning.
+    ///     Whether the listener wants the next step too: a simulation drops closed listeners. If another simulation or state
+    ///     was loaded meanwhile, the checker closes itself with a warning.
     ///
     /// Raises:
     ///     ValueError: a column is missing, unknown, has another length or no real numbers, an id occurs twice, the time is

@@ -43,7 +43,7 @@ pub fn written(py: Python, data: &Bound<PyAny>, tracks: &TrackOptions) -> PyResu
     Ok(file)
 }
 
-/// Writes the columns that are read. Those of nulls alone, which Polars hands over otherwise than Arrow says, are not asked for.
+/// Writes the columns that are read. Columns of only nulls are skipped: Polars does not export them as Arrow specifies.
 fn write(data: &Bound<PyAny>, stream: Bound<PyAny>, file: &NamedTempFile, tracks: &TrackOptions) -> PyResult<()> {
     let mut reader = reader_of(&stream)?;
     let schema = reader.schema();

@@ -13,7 +13,7 @@ use closecall_run::{Error, Result};
 
 pub use place::Place;
 
-/// Which conflicts count: those that meet each of its parts. An empty part is met by all.
+/// Which conflicts count: those that match every part. An empty part matches all.
 #[derive(Clone, Debug, Default, PartialEq, clap::Args)]
 #[command(next_help_heading = "Filter: which conflicts count (several values: a,b)")]
 pub struct ConflictFilter {
@@ -56,7 +56,7 @@ pub(crate) fn set_aside_in_words(set_aside: &SetAside) -> Option<String> {
     in_words(set_aside).map(|words| format!("{words} (--artefacts counts them in)"))
 }
 
-/// Whether one of these is met, or there are none.
+/// Whether one of these matches, or none is set.
 fn any<T>(wanted: &[T], is_met: impl Fn(&T) -> bool) -> bool {
     wanted.is_empty() || wanted.iter().any(is_met)
 }

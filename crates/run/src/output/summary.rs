@@ -30,8 +30,8 @@ pub struct Summary {
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,
-    /// The sum of all crash probabilities: compares plans with the same steps, and is no number of crashes. Earlier versions
-    /// called it `expected_crashes`.
+    /// The sum of all crash probabilities: compares plans with the same steps; not a number of crashes. Earlier versions called
+    /// it `expected_crashes`.
     #[serde(default, alias = "expected_crashes")]
     pub risk_index: f64,
     /// The collisions that SUMO itself reported; none where it was not asked.

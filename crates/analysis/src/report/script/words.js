@@ -29,7 +29,7 @@ function deed(row, ego, foe) {
     return `${moving(ego, speeds[0])} came too close to ${near}${other(foe, speeds[1])}`;
   }
   const did = (past, would) => (collidedByWorst(row) ? past : `was about to ${would}`);
-  // The one that drives its front into the other; otherwise one that moves.
+  // Whose front hits the other; otherwise a moving one.
   const fronts = [0, 1].filter((who) => parts[who] === 0 && moves[who]);
   const by = fronts.length ? fronts[0] : moves[0] ? 0 : 1;
   const [mover, hit] = [moving(names[by], speeds[by]), other(names[1 - by], speeds[1 - by])];
