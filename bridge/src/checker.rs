@@ -33,7 +33,7 @@ const AUTO: &str = "closecall-out";
 ///         gets frames.
 ///     net: the net file; by default the simulation's own.
 ///     out: a folder for the log (conflicts.csv, run.json; series.csv with `log_series=True`, series.parquet with
-///         `log_series="parquet"`); by default no log is written. An earlier log is kept in its folder `earlier`;
+///         `log_series="parquet"`); by default no log is written. An earlier log is moved to `earlier/` within it;
 ///         "auto" makes a new folder closecall-out-N.
 ///     force: whether to replace an earlier log instead of keeping it.
 ///     keep: how many closed conflicts stay in memory for `conflicts`, the latest; by default all, or 10,000 with `out`.

@@ -27,13 +27,13 @@ fn is_auto(out: &Path) -> bool {
 #[command(next_help_heading = "Run")]
 pub(super) struct CheckArgs {
     /// Folder for the log [default: closecall-out next to the scenario or recording, or else in the working directory].
-    /// An earlier log is kept in its folder earlier; auto makes a new folder beside the default one.
+    /// An earlier log is moved to its subfolder earlier/; auto makes a new folder beside the default one.
     #[arg(short, long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// TOML file with options.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// List the tests that were skipped because they could not change the result, and the time each part took.
+    /// List skipped tests, and the time each part took.
     #[arg(long)]
     explain: bool,
     /// Print only errors.

@@ -1,4 +1,4 @@
-//! `closecall mu`: the minimal collision distance of two road users by all three models.
+//! `closecall mu`: the minimal collision distance of two road users under each model.
 
 use clap::{Args, ValueEnum};
 
@@ -47,7 +47,7 @@ pub(crate) struct MuArgs {
     json: bool,
 }
 
-/// Prints μ by all three models.
+/// Prints μ under each model.
 pub fn run(arguments: &MuArgs) -> Result<()> {
     let brakes =
         Brakes { response: arguments.response_time, build_up: arguments.build_up, deceleration: arguments.decel };

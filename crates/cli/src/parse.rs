@@ -29,11 +29,11 @@ pub(super) enum Command {
     /// Check a recording for conflicts: SUMO's fcd-output, SSAM's .trj, Vissim's .fzp, tables of trajectories
     #[command(args_override_self = true)]
     Replay(Box<replay::ReplayArgs>),
-    /// Tell what a recording is taken for, what it lacks, and the command that replays it
+    /// Identify a recording, list missing data, and print the command that replays it
     Inspect(inspect::InspectArgs),
-    /// Run scenarios and compare their conflicts with the blessed ones
+    /// Run scenarios and compare their conflicts with the approved baseline
     Regress(regress::RegressArgs),
-    /// Print the minimal collision distance μ of two road users by all three models
+    /// Print the minimal collision distance μ of two road users under each model
     #[command(args_override_self = true)]
     Mu(mu::MuArgs),
     /// Check stiff and extreme cases against exact references
@@ -51,7 +51,7 @@ pub(super) enum Command {
     /// Show the seconds around a conflict in sumo-gui
     #[command(args_override_self = true)]
     Show(playback::ShowArgs),
-    /// Cut a conflict out of a run: a folder with a scenario in which it happens again, and a test
+    /// Extract a conflict as a standalone scenario and a test
     #[command(args_override_self = true)]
     Extract(extract::ExtractArgs),
     /// Write a log in the format of another tool: GeoJSON, GeoParquet, GeoPackage, sumo-gui, device.ssm

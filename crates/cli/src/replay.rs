@@ -45,8 +45,8 @@ pub(crate) struct ReplayArgs {
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.
     #[arg(long)]
     sublane: bool,
-    /// Threads at most that test the pairs of a step, as many as these keep busy [default: one per processor]. With 1, no thread
-    /// reads the steps ahead.
+    /// Maximum number of threads that test the pairs of a step [default: one per processor]. With 1, no thread reads the steps
+    /// ahead.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
     threads: Option<u8>,
     #[command(flatten)]

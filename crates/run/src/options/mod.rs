@@ -40,7 +40,7 @@ pub struct LogOptions {
     /// Types of the SUMO polygons that are static obstacles.
     #[arg(long, value_name = "TYPE,…", value_delimiter = ',')]
     pub obstacles: Vec<String>,
-    /// Report only conflicts on the edges, lanes and junctions of this SUMO selection file.
+    /// Log only conflicts on the edges, lanes and junctions of this SUMO selection file.
     #[arg(long, value_name = "FILE")]
     pub filter: Option<PathBuf>,
     /// Count traffic and log conflicts only after this time from the begin, in s.

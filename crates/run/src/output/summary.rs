@@ -186,7 +186,7 @@ impl fmt::Display for Skipped {
 }
 
 impl Summary {
-    /// Counts a conflict; one that is none of traffic's only with `counts_artefacts`.
+    /// Counts a conflict; an artefact only with `counts_artefacts`.
     pub fn add(&mut self, conflict: &Conflict, counts_artefacts: bool) {
         let Conflict { kind, severity, .. } = *conflict;
         let artefact = conflict.artefact.filter(|_| !counts_artefacts);

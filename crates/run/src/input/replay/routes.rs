@@ -49,7 +49,7 @@ pub struct Route {
 }
 
 impl Routes {
-    /// Reads the routes of a recording. In one that is cut short, they end there. `stopped` is asked in each step whether to stop.
+    /// Reads the routes of a recording. If it is cut short, they end there. `stopped` is asked in each step whether to stop.
     ///
     /// # Errors
     /// Those of [`Recording`]; [`Error::File`] if a temporary file cannot be written; [`Error::Stopped`].

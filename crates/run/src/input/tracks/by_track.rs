@@ -17,7 +17,7 @@ use closecall::util::units::{Metre, Second};
 /// Where ids are used again, a road user that is away for longer than this does not come back.
 const AWAY: Second = 5.0;
 
-/// So many rows of a track are smoothed together: a shorter track as a whole.
+/// Rows of a track that are smoothed together; shorter tracks as a whole.
 const PART: usize = 1 << 16;
 /// Rows before and after a part that are smoothed with it. With noise of 0.1 m a row matters for about 0.2 s.
 const AROUND: usize = 1 << 12;

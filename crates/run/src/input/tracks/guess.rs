@@ -84,7 +84,7 @@ struct Found<'a> {
     unit: Option<&'static str>,
 }
 
-/// What a table is taken for.
+/// The guessed layout of a table.
 pub(super) struct Guess {
     /// The text of `--columns`.
     pub columns: String,

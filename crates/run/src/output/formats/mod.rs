@@ -37,10 +37,10 @@ pub struct OutputFiles {
     /// Write the trajectories of all vehicles in SSAM's format (.trj, version 3).
     #[arg(long, value_name = "FILE")]
     pub trj_output: Option<PathBuf>,
-    /// Replace an earlier log in the folder, instead of keeping it in the folder's own folder earlier.
+    /// Replace an earlier log in the folder, instead of moving it to the subfolder earlier/.
     #[arg(long)]
     pub force: bool,
-    /// Format of the conflicts in the log. Parquet is made of conflicts.csv when the run has ended, and replaces it.
+    /// Format of the conflicts in the log. Parquet replaces conflicts.csv when the run has ended.
     #[arg(long, value_enum, default_value_t)]
     pub log_format: LogFormat,
     /// Begin ids that a spreadsheet would run as formulas (=, +, -, @) with an apostrophe.
