@@ -17,7 +17,7 @@ pub(super) struct Span {
 }
 
 impl Span {
-    /// That of a first step.
+    /// Starts a span.
     pub fn of(seen: &Observation, keeps_steps: bool) -> Self {
         Self { extremes: Extremes::of(seen, true), steps: keeps_steps.then(|| vec![step(seen)]) }
     }

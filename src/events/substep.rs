@@ -71,7 +71,7 @@ pub(super) struct FirstContact {
 
 impl Between<'_> {
     /// How close they came; none where the begin or the end of the step is closest. They collide where they overlap by more
-    /// than `tolerance`, and between the ends by as much as arcs leave the straight line besides: so well is the way known. A
+    /// than `tolerance`, and between the ends also by the deviation of arcs from the straight line: the accuracy of the path. A
     /// collision that lasts until the end of the step is one only if it `is_seen` there, as the tolerance depends on the lanes
     /// that they are on.
     pub(crate) fn closest(&self, tolerance: Metre, is_seen: bool) -> Option<Closest> {

@@ -106,7 +106,7 @@ pub(super) struct Keeps {
 }
 
 impl Event {
-    /// That of a first step.
+    /// Starts an event.
     pub fn of(seen: &Observation, keeps: Keeps) -> Self {
         let pair = [seen.found.ego, seen.found.foe];
         let followed = Span::of(seen, keeps.steps);
@@ -254,7 +254,7 @@ impl Event {
         expected.or(known.map(|pet| PetSoFar::Known(pet.lasts)))
     }
 
-    /// Whether the condition is met at this time, that of its last step.
+    /// Whether the condition holds at this time, that of its last step.
     pub(crate) fn is_met_at(&self, time: Second) -> bool {
         self.followed.extremes.end == time
     }

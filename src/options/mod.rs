@@ -121,10 +121,10 @@ pub struct Options {
     #[cfg_attr(feature = "clap", arg(long, value_name = "default|all|NAME,…", default_value_t, help_heading = "Log"))]
     #[serde(skip_serializing_if = "Measures::is_empty")]
     pub measures: Measures,
-    /// Run every test on every pair, even where the scene does not need it; slower, with the same result.
+    /// Disable all shortcuts: run every test on every pair; slower, with the same result.
     #[cfg_attr(feature = "clap", arg(long))]
     pub keep_all: bool,
-    /// Keep single tests, to measure what leaving out each one saves.
+    /// Disable single shortcuts, to measure what each one saves.
     #[cfg_attr(feature = "clap", arg(long, value_enum, value_name = "WHAT,…", value_delimiter = ',', hide = true))]
     #[serde(skip)]
     pub keep: Vec<Shortcut>,
@@ -173,7 +173,7 @@ impl Options {
     /// Checks that the options are possible for road users whose future is not known.
     ///
     /// # Errors
-    /// [`Error::FutureUnknown`] if they are to be met where they really drive.
+    /// [`Error::FutureUnknown`] if predictions are to use the path really driven.
     pub fn check_future_is_unknown(&self) -> Result<()> {
         if self.path != PathModel::Driven {
             return Ok(());

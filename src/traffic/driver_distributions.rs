@@ -101,7 +101,7 @@ impl Driver {
         if deviation > 0.0 { libm::erfc(above / (deviation * SQRT_2)) / 2.0 } else { f64::from(above < 0.0) }
     }
 
-    /// The probability that its vehicle brakes too weakly, where every deceleration below one that is too weak is, too.
+    /// The probability that its vehicle brakes too weakly, if `is_too_weak` is true up to some deceleration.
     pub(crate) fn brakes_too_weakly(&self, is_too_weak: impl Fn(MetrePerSecondSquared) -> bool) -> f64 {
         /// The deceleration is then right to a millionth of the range.
         const HALVINGS: u32 = 20;

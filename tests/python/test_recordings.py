@@ -1,4 +1,4 @@
-"""Recordings: what is there is read, what is missing is said, what is not understood is refused."""
+"""Recordings: existing data is read, missing data reported, data that is not understood refused."""
 
 from __future__ import annotations
 

@@ -214,8 +214,8 @@ impl StepInputs<'_> {
         }
     }
 
-    /// How hard the one brakes that can avoid the collision: the ego, or either where their paths cross. A person stops at once,
-    /// which is no sign of danger.
+    /// How hard the road user brakes that can avoid the collision: the ego, or either where paths cross. A person stops at
+    /// once: not a sign of danger.
     fn evasive_braking(&self, [ego, foe]: [&User; 2], kind: Kind) -> MetrePerSecondSquared {
         let of = |user: &User| if user.category == Category::Vehicle { self.deceleration(user) } else { 0.0 };
         if kind == Kind::RearEnd { of(ego) } else { of(ego).max(of(foe)) }

@@ -46,7 +46,7 @@ impl Detector {
         }
     }
 
-    /// Puts one that has jumped back on its former path, for this step.
+    /// Puts a jumping road user back on its former path, for this step.
     pub(super) fn undo_jump(&mut self, jump: &mut Jump, profile: &Profile, state: &mut State) {
         let Jump { row, user, path, heading } = jump;
         let front = path.track.point(path.lines(lines_of(self.net.as_deref())));

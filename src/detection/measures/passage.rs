@@ -1,10 +1,10 @@
-//! How a second road user passes the corridor of a first one that has been there: it crosses it, or goes on in it.
+//! How a second road user passes the corridor of an earlier one: it crosses it, or goes on in it.
 //!
 //! It crosses from when it comes into the corridor through the side until it is clear of it. Where the two go on together
 //! before that, on one path, it has crossed until then. What makes them go on together is the path, not an angle: the
 //! middle of the one within the width of the other, until they drive in parallel. One that comes into the corridor from
-//! behind, where the other drove or stood when the record began, goes on in it from there, and what follows is no crossing
-//! before it has been clear of it.
+//! behind, where the other drove or stood when the record began, goes on in it from there. It cannot cross before it has been
+//! clear of it.
 
 use super::corridor::{Corridor, Step};
 use super::driven_path::Course;
@@ -105,7 +105,7 @@ impl<'a> Track<'a> {
         on
     }
 
-    /// Where a pose is beside the track as far as it was driven before a time.
+    /// Where a pose is beside the part of the track driven before a time.
     fn beside(&self, pose: &Pose, before: Second) -> Beside {
         let poses = &self.course.poses;
         let mut nearest = (f64::INFINITY, Beside { aside: f64::INFINITY, angle: 0.0, is_on: false });
@@ -191,7 +191,7 @@ pub(super) fn crossing(steps: &[Step], first: &Corridor, track: &Track, halves: 
     }
 }
 
-/// The crossing of one that is clear of the corridor again, at a part of a step. It has crossed if it came at an angle, or
+/// The crossing of a road user that is clear of the corridor again, at a part of a step; none unless it came at an angle, or
 /// left on the other side.
 fn cleared(
     under_way: &Crossing,

@@ -161,7 +161,7 @@ mod tests {
         assert_eq!(pet_of(&course(0.0, 2.0), &course(0.0, 4.0)), None);
     }
 
-    /// What one has driven between two times, later by this much.
+    /// What one has driven between two times, `later` seconds later.
     fn part(of: &DrivenPath, [begin, end]: [f64; 2], later: f64) -> DrivenPath {
         let mut part = DrivenPath::new(4.0, 2.0);
         for pose in &of.courses()[0].poses[..] {

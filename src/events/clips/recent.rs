@@ -67,7 +67,7 @@ impl Recent {
         }
         let oldest = frame.time - BEFORE - APART;
         self.left.drain(..self.left.partition_point(|left| left.time < oldest));
-        // The memory of one that is over is used again.
+        // Reuse the memory of a past step.
         let mut over = self.steps.drain(..self.steps.partition_point(|step| step.time < oldest));
         let mut step = over.next().unwrap_or_default();
         drop(over);

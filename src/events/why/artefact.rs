@@ -1,4 +1,4 @@
-//! What is SUMO's or a tracker's making, not traffic's: what would be set aside by someone who watched it.
+//! What SUMO or a tracker makes, not traffic: an observer would set it aside.
 //!
 //! SUMO's drivers know distances along their lanes, the links that are foes of theirs, and nothing of how lanes are drawn. So
 //! rectangles may overlap where no driver had to notice anything. What appears, stops or jumps within one step was not driven
@@ -23,7 +23,7 @@ const UNBRAKED: MetrePerSecondSquared = 2.5;
 const AFTER_A_STOP: Second = 2.0;
 /// A road user turns by no more than a radian in this distance, in m: the turning circle of a small car has 9 to 10 m.
 const TURNS_IN: Metre = 2.5;
-/// A smaller turn is no jump, in rad.
+/// A smaller turn is not a jump, in rad.
 const LEAST_TURN: Radian = 0.35;
 /// Of two that touch while one follows the other, headings differ by less in any bend that vehicles drive, in rad: on the
 /// smallest turning circle, 9 m across, a car of 5 m turns by this over its length.
@@ -117,7 +117,7 @@ fn is_mistracked(pair: &Pair, party: &Party) -> bool {
     party.category != Category::Obstacle && (contradicts || sways)
 }
 
-/// Whether a person goes along with one who rides: most likely one road user that was tracked twice.
+/// Whether a person goes along with a rider: most likely one road user that was tracked twice.
 fn rides_along(pair: &Pair) -> bool {
     pair.both().into_iter().any(|(person, rider)| {
         person.category == Category::Person

@@ -74,7 +74,7 @@ fn comes_to_queue(pair: &Pair, manoeuvre: Option<Manoeuvre>) -> bool {
 /// A road user and its way through the junction.
 type Entrant<'a> = (&'a Party, &'a Passage);
 
-/// What a traffic light shows to one that passes it: the letter, since how long, and how fast it is.
+/// What a traffic light shows a passing vehicle: the letter, since how long, and the vehicle's speed.
 struct Shown {
     letter: u8,
     lasts: Second,

@@ -72,7 +72,7 @@ impl Comparison {
             (Measure::Drac | Measure::CrashProbability | Measure::ExtendedDeltaV, false) | (Measure::Ttb, true) => {
                 Ok(LookAhead { seconds: Second::INFINITY, ..LookAhead::NONE })
             }
-            // Two that overlap now are always met.
+            // Current overlaps are always found.
             (Measure::Overlap, false) if operator.holds(0.0, value) => Err(UNBOUNDED.into()),
             (Measure::Overlap, false) => Ok(LookAhead::NONE),
             _ => Err(UNBOUNDED.into()),

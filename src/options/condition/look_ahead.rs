@@ -37,8 +37,8 @@ impl LookAhead {
         *self == Self::NONE
     }
 
-    /// How far ahead of a road user with this speed, which would stand after `stop` m, another is met. One that stands is
-    /// met where it stands, or where it may be within the PET.
+    /// How far ahead a road user with this speed is predicted, which would stand after `stop` m. If it stands: where it is, or
+    /// may be within the PET.
     pub fn distance(&self, speed: MetrePerSecond, stop: Metre, horizon: Second) -> Metre {
         let Self { metres, seconds, response, pet, rss } = *self;
         let stop = if rss { stop.max(rss::stopping_distance(speed)) } else { stop };
@@ -59,7 +59,7 @@ impl LookAhead {
         }
     }
 
-    /// The one that looks less far.
+    /// The shorter look-ahead.
     pub(super) fn nearer(self, other: Self) -> Self {
         let far = |look: &Self| look.distance(COMPARED_AT, 0.0, Second::INFINITY);
         if far(&other) < far(&self) { other } else { self }
