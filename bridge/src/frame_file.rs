@@ -1,4 +1,4 @@
-//! A data frame of trajectories as a CSV file, which is then read as any recording is. Of its columns only those that are read are
+//! A data frame of trajectories as a CSV file, which is then read like any recording. Only the columns that are read are
 //! written.
 
 use std::io::{BufWriter, Write};

@@ -1,5 +1,5 @@
-//! Where the road users were in the last seconds, so that what an event records of both begins before the event: when a
-//! conflict opens, the first may have left a part of the conflict area already.
+//! Where the road users were in the last seconds, so that an event's record begins before the event: when a conflict opens, the
+//! first may already have left part of the conflict area.
 
 use std::collections::VecDeque;
 

@@ -1,8 +1,7 @@
-//! How two of an event struck each other first.
+//! How the pair of an event first struck each other.
 //!
-//! A step ends at some moment after the contact, the later the longer it lasts: one may have turned meanwhile, or have stopped,
-//! and the two lie in each other somehow. The first contact is found between the steps, so that the kind and the place of a
-//! collision depend on no step.
+//! A step ends some time after the contact: by then one may have turned or stopped, and the two overlap somehow. The first
+//! contact is found between the steps, so the kind and place of a collision do not depend on them.
 
 use super::moment::Moment;
 use super::past::Past;

@@ -1,11 +1,11 @@
-//! What happens to the two of an event between two steps: each moves evenly from where it was to where it is, on an arc where
+//! What happens to the pair of an event between two steps: each moves evenly from where it was to where it is, on an arc where
 //! it turns.
 //!
 //! A coarse step may end before and after a pair came closest, or even touched. Where road users are moved back to the moment
-//! of their speeds, the place that SUMO reports is another one on their way. The signed distance of two rectangles that do not
-//! turn (below 0: how deep they overlap) is a convex function of time, so that a golden-section search finds the smallest; a way
-//! on which they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a
-//! quotient of linear functions of time, which has its extremes at the ends of the step.
+//! of their speeds, SUMO reports a different place on their path. The signed distance of two rectangles that do not turn (below
+//! 0: how deep they overlap) is a convex function of time, so that a golden-section search finds the smallest; a way on which
+//! they turn is cut into parts in which they hardly do. The time to collision needs no search: of two in line it is a quotient
+//! of linear functions of time, which has its extremes at the ends of the step.
 
 use crate::geometry::bow::Bow;
 use crate::geometry::rectangle::{Rectangle, direction};

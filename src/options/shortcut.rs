@@ -1,4 +1,4 @@
-//! Work that a run leaves out where the scene does not need it; `--keep` names single ones.
+//! Work that a run skips where the scene does not need it; `--keep` disables single shortcuts.
 
 /// Work that a scene may not need.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

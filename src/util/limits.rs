@@ -1,4 +1,4 @@
-//! The limits of everything that closecall reads, each with its reason: one table for every door.
+//! The limits of everything that closecall reads, each with its reason: one table for all readers.
 //!
 //! A value beyond them is a mistake in the file, and its results mean nothing: a vehicle 10¹⁵ m wide meets every
 //! other. Each reader refuses it with the file, the line, the value and the limit. docs/limits.md has the same table.

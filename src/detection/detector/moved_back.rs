@@ -7,8 +7,8 @@
 //! - along its former path, if it was moved to another lane at the step's end ([`super::jump`]);
 //! - else the arc between both poses, on which a vehicle moves that a script steers.
 //!
-//! No place lies outside. One that was not in the last step, or was put elsewhere since, stays where it was reported. Where it
-//! was at the moment of the others is not known, so that it meets nothing in that step.
+//! No place lies outside. A road user that was not in the last step, or was put elsewhere since, stays where it was reported.
+//! Its place at the others' moment is unknown, so it is skipped in that step.
 
 use super::Detector;
 use super::last_speed::LastSpeed;

@@ -1,4 +1,4 @@
-//! Which shortcuts a run takes: all but those that the options keep it from.
+//! The shortcuts of a run: all but those that the options disable.
 
 use crate::options::Options;
 use crate::options::shortcut::Shortcut;

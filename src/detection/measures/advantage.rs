@@ -6,7 +6,7 @@
 //! on a collision course:      TAdv = 0,                           T2 = TTC
 //! ```
 //!
-//! Like the PET, only of paths that cross or merge: not of a follower. None if one of the two stands clear of the other's
+//! Like the PET, only for paths that cross or merge, not for a follower. None if one of the two stands clear of the other's
 //! path, or if the paths do not meet within [`HORIZON`].
 
 use super::driven_path::DrivenPath;

@@ -2,7 +2,7 @@
 //!
 //! It crosses from when it comes into the corridor through the side until it is clear of it. Where the two go on together
 //! before that, on one path, it has crossed until then. What makes them go on together is the path, not an angle: the
-//! middle of the one within the width of the other, until they drive in parallel. One that comes into the corridor from
+//! middle of the one within the width of the other, until they drive in parallel. A road user that enters the corridor from
 //! behind, where the other drove or stood when the record began, goes on in it from there. It cannot cross before it has been
 //! clear of it.
 

@@ -6,7 +6,7 @@
 //! corridor; the first leaves it when its rectangle touches what the second covers there for the last time. So the time is
 //! final when the second has crossed, whatever both do afterwards. An articulated vehicle has a corridor of each carriage.
 //!
-//! One that follows the other has none, whatever the bends that both drive through, nor have two that part out of one lane.
+//! A follower has none, whatever the bends that both drive through, nor do two that leave one lane in different directions.
 
 use super::corridor::Corridor;
 use super::driven_path::{DrivenPath, bounds};

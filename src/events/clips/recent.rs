@@ -1,5 +1,4 @@
-//! Where all road users were in the last seconds, and which pairs were in conflict: what a clip shows from before it was
-//! known that there would be one.
+//! Where all road users were in the last seconds, and which pairs were in conflict: what a clip shows from before its conflict.
 
 use std::collections::VecDeque;
 

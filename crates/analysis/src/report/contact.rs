@@ -1,5 +1,5 @@
-//! With which part each of the two of a conflict touches the other: where they overlap at the worst step, or would first
-//! touch if both keep their speeds along their paths from there.
+//! Which parts of two road users touch: where they overlap at the worst step, or would first touch if both keep their speeds
+//! along their paths from there.
 
 use closecall::detection::measures::ttc::{SteadyMotion, time_to_collision};
 use closecall::detection::path::Pose;

@@ -1,7 +1,7 @@
 //! The generalised Pareto distribution of excesses over a threshold: maximum likelihood and goodness of fit.
 //!
-//! Of an excess that reaches a bound only that much is known: it is censored there. No crate offers the fit. With θ = ξ/σ,
-//! m excesses below the bound and k at it, the likelihood's maximum over ξ has a closed form,
+//! An excess that reaches a bound is censored there. No crate offers the fit. With θ = ξ/σ, m excesses below the bound and k at
+//! it, the likelihood's maximum over ξ has a closed form,
 //!
 //! ```text
 //! ξ(θ) = ( Σ ln(1 + θ y) + k ln(1 + θ bound) ) / m

@@ -67,7 +67,7 @@ pub struct Request {
     pub worst: usize,
     /// The ratio of rates for which runs are to be planned.
     pub plan: Option<f64>,
-    /// The crashes observed where the runs to compare with were made of.
+    /// The crashes observed in reality for the runs to compare with.
     pub observed: Option<Observed>,
 }
 

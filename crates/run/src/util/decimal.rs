@@ -1,4 +1,4 @@
-//! Numbers as text with a fixed number of decimals: the same bytes as `{:.6}`, several times as fast.
+//! Numbers as text with a fixed number of decimals: the same bytes as `{:.6}`, several times faster.
 //!
 //! The crates for this (ryu, dtoa and what builds on them) write as many digits as a number needs; rounding those once
 //! more is not rounding the number.

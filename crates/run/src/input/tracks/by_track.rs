@@ -1,5 +1,5 @@
-//! The tracks of a recording, one road user after the other: searched for jumps, smoothed if that is wanted, completed, and put in
-//! the order of time. Smoothing has a part of a track in memory: what is further away does not change a row.
+//! The tracks of a recording, one road user after the other: searched for jumps, smoothed on request, completed, and sorted by
+//! time. Smoothing keeps only part of a track in memory: rows further away have no effect.
 
 use std::io::Result;
 

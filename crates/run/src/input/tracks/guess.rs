@@ -1,4 +1,4 @@
-//! Which columns of a table of no known layout are what, and in which unit: by their names, and by the values of the first rows.
+//! Guesses the meaning and unit of columns in a table of unknown layout, from their names and the values of the first rows.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Which column of a table is what, in which unit: the text of `--columns`, and the options beside it.
+//! The meaning and unit of a table's columns: the text of `--columns`, and the options beside it.
 
 use strum::VariantNames;
 

@@ -1,4 +1,4 @@
-//! The road users of a table, and what was assumed of them: counted, and said.
+//! The road users of a table, and assumptions about them, counted and reported.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
