@@ -31,15 +31,14 @@ pub(crate) struct ReplayArgs {
     net: Option<PathBuf>,
     #[command(flatten)]
     tracks: TrackOptions,
-    /// Route and additional files that define the vehicle types and the routes; types they do not define are SUMO's default
-    /// ones.
+    /// Route and additional files that define the vehicle types and the routes; other types are SUMO's defaults.
     #[arg(short = 'r', long, value_name = "FILE,…", value_delimiter = ',')]
     route_files: Vec<PathBuf>,
     /// What the traffic lights showed: SUMO's output of a timedEvent SaveTLSStates or SaveTLSSwitchStates; also gzipped. It needs
     /// a net. Without it the causes ran_red and late_amber are not found.
     #[arg(long, value_name = "FILE", requires = "net")]
     signals: Option<PathBuf>,
-    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found for obstacles alone.
+    /// Where vehicles stopped: SUMO's --stop-output; also gzipped. Without it the cause stood is found only for obstacles.
     #[arg(long, value_name = "FILE")]
     stops: Option<PathBuf>,
     /// The recording was made with SUMO's sublane model (--lateral-resolution), where vehicles move sideways within a lane.

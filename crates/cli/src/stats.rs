@@ -36,10 +36,10 @@ pub(crate) struct StatsArgs {
     /// Number of worst conflicts and of hot spots to list.
     #[arg(long, value_name = "N", default_value_t = 10)]
     worst: usize,
-    /// Ratio of rates that a comparison is to find: say how many runs that takes, by the spread of these runs.
+    /// Ratio of rates to detect: print how many runs a comparison needs, given the spread of these runs.
     #[arg(long, value_name = "RATIO", value_parser = ratio)]
     plan: Option<f64>,
-    /// Crashes observed in reality where the runs of --against were made of: say how many the first set may have.
+    /// Crashes observed in reality for the runs of --against: estimate how many the first set may have.
     #[arg(long, value_name = "CRASHES", requires_all = ["against", "years"])]
     observed: Option<u64>,
     /// Years in which the crashes were observed.

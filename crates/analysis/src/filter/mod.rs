@@ -42,7 +42,7 @@ pub struct ConflictFilter {
     /// May be given several times.
     #[arg(long = "where", value_name = "PLACE")]
     pub places: Vec<Place>,
-    /// Also those that are SUMO's or a tracker's making, not traffic's.
+    /// Also artefacts, made by SUMO or a tracker, not traffic.
     #[arg(long)]
     pub artefacts: bool,
 }

@@ -53,8 +53,8 @@ pub struct LogOptions {
     #[arg(long, hide = true)]
     #[serde(skip)]
     pub log_encounters: bool,
-    /// Keep where the road users were around each conflict of at least this severity, in clips.jsonl.gz: `closecall clip`
-    /// and `closecall show` play it.
+    /// Record the road users around each conflict of at least this severity in clips.jsonl.gz: `closecall clip` and `closecall
+    /// show` play it.
     #[arg(long, value_enum, value_name = "SEVERITY", default_value_t)]
     #[serde(skip_serializing_if = "ClipLevel::is_default")]
     pub log_clips: ClipLevel,
