@@ -70,8 +70,7 @@ pub struct Nearness {
     pub assessment: Assessment,
 }
 
-/// Which of a step's chances are those of a pair: those of a thread, and the place among them. Where they are says nothing about
-/// the pair.
+/// Where a step's chances of a pair are: the thread, and the place in its list. It is unrelated to the pair.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ChancesIndex {
     pub worker: u32,

@@ -317,7 +317,7 @@ impl Extremes {
         closest.clearance < self.clearance || closest.overlap > self.overlap || closest.contact.is_some()
     }
 
-    /// Takes how severe a step is, and what it is if it is none of traffic's: that is asked only where it matters.
+    /// Takes how severe a step is, and which artefact: `artefact` is called only where it matters.
     fn assess(&mut self, now: Assessment, artefact: impl FnOnce() -> Option<Artefact>) {
         if self.of_traffic.is_none_or(|known| now > known) {
             match artefact() {
@@ -344,8 +344,8 @@ impl Extremes {
         }
     }
 
-    /// The same with what was seen of a passing: one that crosses another's path close behind it, or close to it, was near. One
-    /// that turns into the other's road close behind it follows it from there.
+    /// The same, raised if one crossed the other's path close behind it, or passed close to it. After turning into the other's
+    /// road close behind it, it follows from there.
     pub(crate) fn verdict_with(&self, pet: Option<Pet>, rule: SeverityThresholds) -> (Assessment, Option<Artefact>) {
         let (assessment, artefact) = self.verdict();
         let crosses = !matches!(self.why.manoeuvre, Some(Manoeuvre::Following | Manoeuvre::Merge));
@@ -362,8 +362,7 @@ impl Extremes {
         self.is_tracked && self.begin == self.end
     }
 
-    /// Adds how close the two came between two steps, how they struck each other, how severe that was, and what it is if it is
-    /// none of traffic's.
+    /// Adds how close the two came between two steps, how they struck each other, how severe that was, and which artefact.
     pub(crate) fn come_closer(
         &mut self,
         closest: &Closest,

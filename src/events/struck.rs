@@ -14,8 +14,8 @@ use crate::traffic::profile::{Category, Profile};
 use crate::traffic::roster::UserIndex;
 use crate::util::units::{Metre, MetrePerSecond, Radian, Second};
 
-/// A person's course is the direction in which it has gone this far, in m: SUMO turns one that steps aside, or is about to
-/// be hit, across its way.
+/// A person's course is the direction in which it has gone this far, in m: SUMO turns a person across its way if it steps aside
+/// or is about to be hit.
 const WALKED: Metre = 0.5;
 
 /// The first contact of two.

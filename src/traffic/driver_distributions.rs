@@ -68,7 +68,7 @@ impl Driver {
         Self { build_up, ..Self::of([mean.ln() - spread / 2.0, spread.sqrt()], braking) }
     }
 
-    /// One that stops within a known time at a known deceleration: a person on foot.
+    /// Stops within a known time at a known deceleration: a person on foot.
     pub fn certain(response: Second, deceleration: MetrePerSecondSquared) -> Self {
         Self::of([response.ln(), 0.0], [deceleration, 0.0, deceleration, deceleration])
     }

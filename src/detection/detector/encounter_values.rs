@@ -83,8 +83,8 @@ impl StepInputs<'_> {
         self.options.log.pet_below(&|measure| values.of(measure), may_have_pet)
     }
 
-    /// The gap of a pair. One that meets only beyond where both stand has a margin of at least the distance by which one
-    /// would have to go on for that; its gap is as large.
+    /// The gap of a pair. If it meets only beyond where both stand, its margin is at least the distance by which one would have
+    /// to go on; its gap is increased accordingly.
     pub(super) fn gap_beyond(&self, gap: Metre, mu: Metre, slots: [u32; 2], meeting: &ConflictPoint) -> Metre {
         if !self.is_further() {
             return gap;

@@ -17,8 +17,8 @@ use crate::util::units::Metre;
 const MOST_JUMP: Metre = 10.0;
 
 impl Detector {
-    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. One that was put
-    /// elsewhere is as if it had just entered the scene. One that did not head along its path has not jumped from it.
+    /// Notes that a road user has jumped to the side of its path, if it has and road users are moved back. After being put
+    /// elsewhere it counts as new. If it did not head along its path, it has not jumped from it.
     pub(super) fn take_jump(&mut self, row: u32, user: UserIndex, profile: &Profile, state: &State) {
         let path = &self.paths[user];
         if self.behind() == 0.0 || path.track.is_empty() {

@@ -25,13 +25,13 @@ use crate::util::units::{Metre, Radian, Second};
 
 /// A road user that is further beside its path has not come along it, in m; SUMO's narrowest lanes are wider.
 pub(super) const BESIDE: Metre = 0.5;
-/// One that came along its path heads along it, or went at least this part of the straight way along it, less [`ROUNDED`].
+/// A road user that follows its path heads along it, or went at least this part of the straight way along it, less [`ROUNDED`].
 const ALONG: f64 = 0.95;
 /// By how much recorded places are rounded, in m.
 const ROUNDED: Metre = 0.02;
-/// One whose heading differs by more from that of its path does not follow it, in rad: a script steers it.
+/// If its heading differs by more from that of its path, it does not follow it, in rad: a script steers it.
 const ASKEW: Radian = 0.3;
-/// One that turns by more in a step has not driven an arc, in rad: a person turns where it stands.
+/// A larger turn in a step is not an arc, in rad: a person turns where it stands.
 const MOST_TURN: Radian = 1.0;
 
 impl Detector {

@@ -19,7 +19,7 @@ pub struct Shortcuts {
 }
 
 impl Shortcuts {
-    /// All but those that these options keep the run from.
+    /// All but those that these options disable.
     pub fn of(options: &Options) -> Self {
         let shortcuts = |what| !options.keep_all && !options.keep.contains(&what);
         Self {

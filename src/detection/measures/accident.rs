@@ -23,8 +23,8 @@ const HIGHEST: f64 = 30.0;
 /// The time between the lines of two levels, in s.
 const APART: Second = 0.5;
 
-/// The conflicting speed: that of the one that evades by braking, before this step in which it does; that of the faster one if
-/// both do, none if neither does.
+/// The conflicting speed: that of the road user that evades by braking, before this step; the faster one's if both do, none if
+/// neither does.
 pub fn conflicting_speed(
     speeds: [MetrePerSecond; 2],
     accelerations: [MetrePerSecondSquared; 2],

@@ -16,9 +16,9 @@ use crate::util::units::{Metre, Radian, Second};
 
 /// Two on one path whose headings differ by less than this drive in parallel, in rad: 5°, more than lanes and tracks sway.
 const PARALLEL: Radian = 0.0873;
-/// How often it is looked where the second is beside the path of the first, in m: a fraction of a width.
+/// The distance between two looks at where the second is beside the first's path, in m: a fraction of a width.
 const OFTEN: Metre = 0.5;
-/// … and at most this often in a step: that of 100 m. One that went further has jumped.
+/// … and at most this often in a step: that of 100 m. A longer step is a jump.
 const MOST_OFTEN: f64 = 200.0;
 /// How often the distance between two looks is halved to find where it joins that path: to 2 cm.
 const HALVES: u32 = 5;

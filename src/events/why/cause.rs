@@ -16,7 +16,7 @@ pub enum Cause {
     RanRed,
     /// One drove into the junction on amber although it could have stopped.
     LateAmber,
-    /// One that had to yield drove on.
+    /// One drove on although it had to yield.
     DidNotYield,
     /// One changed lanes into that of the other.
     ChangedLane,

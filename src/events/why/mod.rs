@@ -31,7 +31,7 @@ pub(super) struct Why {
     /// None where it is not known.
     pub manoeuvre: Option<Manoeuvre>,
     pub causes: Causes,
-    /// Why the one that changed lanes did so, where that is a cause and known.
+    /// SUMO's reason for the lane change, where that is a cause and known.
     pub lane_change_reason: Option<LaneChangeReason>,
     /// The lanes that the ego and the foe are on.
     pub lanes: [Option<LaneIndex>; 2],

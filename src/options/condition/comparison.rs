@@ -49,7 +49,7 @@ const UNBOUNDED: &str = "holds for pairs however far ahead they meet; join it by
                          \"margin < 0\" or \"ttc < 5\"";
 
 impl Comparison {
-    /// That of the default.
+    /// The default comparison.
     pub const MARGIN: Self = Self { measure: Measure::Margin, operator: Operator::Below, value: 0.0 };
 
     /// How far ahead the pairs that meet it have to be looked for; an error says why no distance is enough.

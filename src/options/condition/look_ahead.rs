@@ -3,12 +3,12 @@
 use crate::braking::rss;
 use crate::util::units::{Metre, MetrePerSecond, MetrePerSecondSquared, Second};
 
-/// The longest PET that a condition may ask for, in s: so long the places of all road users are kept.
+/// The longest PET that a condition may ask for, in s: all places are kept that long.
 pub(super) const LONGEST_PET: Second = 60.0;
 /// The longest PET that is looked for where no condition asks for a longer one, in s.
 pub(super) const USUAL_PET: Second = 5.0;
-/// How a road user may speed up within the PET that is looked for, in m/s²: SUMO's `accel` of cars, rounded up. Without it,
-/// one that still waits when the other leaves would be missed.
+/// How a road user may speed up within the PET that is looked for, in m/s²: SUMO's `accel` of cars, rounded up. Without it, a
+/// road user still waiting when the other leaves would be missed.
 const SPEEDS_UP: MetrePerSecondSquared = 3.0;
 /// The speed at which two distances ahead are compared, in m/s; any is valid.
 const COMPARED_AT: MetrePerSecond = 14.0;

@@ -85,7 +85,7 @@ impl ConflictFilter {
         self.artefacts || conflict.artefact.is_empty()
     }
 
-    /// The same; one that does not count is added to those set aside.
+    /// The same; if it does not count, it is added to those set aside.
     pub(crate) fn sets_aside(&self, conflict: &LoggedConflict, set_aside: &mut SetAside) -> bool {
         let counts = self.counts(conflict);
         if !counts {

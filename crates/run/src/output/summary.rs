@@ -26,7 +26,7 @@ pub struct Summary {
     pub end: Second,
     /// Steps that were checked; 0 in the `run.json` of a run that was killed or still goes on.
     pub steps: u64,
-    /// All logged conflicts, by kind and severity; those that are set aside by why they are.
+    /// All logged conflicts, by kind and severity; those set aside by reason.
     pub conflicts: Vec<Count>,
     /// Conflicts in which the two rectangles overlapped.
     pub collisions: u64,

@@ -33,7 +33,7 @@ pub struct Routes {
     lists: Lists,
     /// For every vehicle, in the order of arrival, where its route is in `lists`.
     places: SpooledTempFile,
-    /// The vehicle's number for each time that a vehicle enters the scene. One that comes back enters again.
+    /// The vehicle's number for each time that a vehicle enters the scene. A returning vehicle enters again.
     entering: BufReader<SpooledTempFile>,
     /// The number of places where nothing tells which edges were driven.
     pub gaps: u64,

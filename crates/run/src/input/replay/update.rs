@@ -84,8 +84,8 @@ impl Evidence {
         }
     }
 
-    /// Compares the way with the speeds. One that stops or starts may have done so within the period; one that
-    /// drives against its lane or was moved has another way than its speeds tell.
+    /// Compares the distance with the speeds. Stops and starts may lie within the period; after driving against its lane or
+    /// being moved, a vehicle's distance does not match its speeds.
     fn compare(&mut self, row: &RecordedRow, last: &RecordedRow, period: Second) {
         let Some(driven) = driven(last, row) else { return };
         let change = row.speed - last.speed;
