@@ -268,7 +268,7 @@ impl fmt::Display for Summary {
         }
         writeln!(
             f,
-            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; no number of crashes",
+            "risk index {:.2}: the sum of all crash probabilities, to compare plans with; not a number of crashes",
             self.risk_index
         )?;
         let Exposure { vehicles, persons, vehicle_kilometres, .. } = self.exposure;
