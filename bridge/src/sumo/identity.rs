@@ -1,4 +1,4 @@
-//! How simulations are told apart: `load` and `loadState` replace one silently.
+//! How simulations are distinguished: `load` and `loadState` replace one silently.
 //!
 //! Compared are the time, the numbers of vehicles that were ever loaded and inserted, and where the time makes a jump the
 //! configuration, the net and the seed. Two states of the same scenario and seed at the same time are the same simulation.
