@@ -90,7 +90,7 @@ pub enum Error {
         message: String,
     },
     /// The user ended the run.
-    #[error("interrupted at {} s; the log has the conflicts found so far", in_microseconds(*time))]
+    #[error("interrupted at {} s; the log has all conflicts so far", in_microseconds(*time))]
     Interrupted {
         /// The simulated time that was reached.
         time: f64,
